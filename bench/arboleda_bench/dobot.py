@@ -12,7 +12,7 @@ import sys
 from collections.abc import Callable, Sequence
 
 from arboleda.drivers.dobot.frames import Mode
-from arboleda.virtual.dobot.machine import Frame, Message, Said, VirtualDobot
+from arboleda.virtual.dobot.machine import ClientText, Frame, Message, VirtualDobot
 from arboleda.virtual.dobot.sockets import Server
 
 from .floor_dobot import ANGLES_DEG
@@ -57,7 +57,7 @@ class Watched(VirtualDobot):
         self.waits: list[tuple[float, float]] = []  # s
         self._was, self._ended_at, self._told_at = Mode.IDLE, 0.0, 0.0
 
-    def step(self, now: float, events: Sequence[Said]) -> list[Message]:
+    def step(self, now: float, events: Sequence[ClientText]) -> list[Message]:
         moves = any("MovJ" in event.text for event in events)
         if moves and self._ended_at and self._told_at and now - self._ended_at < LONGEST_S:
             self.waits.append((now - self._ended_at, now - self._told_at))

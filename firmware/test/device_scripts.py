@@ -10,7 +10,7 @@ from random import Random
 from arboleda.app.config import load
 from arboleda.kinds.declared import Device
 from arboleda.sim.board import Board
-from arboleda.sim.body import Told
+from arboleda.sim.body import BodyReport
 from arboleda.sim.machine import MachineBody
 
 from .author import FIRST_BOOT, AnyAuthor
@@ -82,9 +82,9 @@ class Forgetting(MachineBody):
         super().reset()
         self.facts = {name: type.first for name, type in self.kind.facts.items()}
 
-    def tell(self) -> Told:
+    def tell(self) -> BodyReport:
         types = self.kind.facts
-        return Told(
+        return BodyReport(
             facts=tuple(
                 (name, float(value) if types[name].type is float else value)
                 for name, value in self.facts.items()

@@ -69,7 +69,7 @@ def _runner(root: Path) -> Any:
 
     from arboleda.app import config
     from arboleda.app.simulate.plants import Plant
-    from arboleda.app.simulate.random_plants import Drawn
+    from arboleda.app.simulate.random_plants import RandomPlants
     from arboleda.app.simulate.setting import Setting
     from arboleda.app.simulate.workers import collect_rarely
 
@@ -91,10 +91,10 @@ def _runner(root: Path) -> Any:
     examples = Turns(*(Plant(declared=config.load(path)) for path in paths))
     settings = (
         setting(packaged, MANY),
-        setting(Drawn(), MANY),
+        setting(RandomPlants(), MANY),
         setting(examples, MANY),
         setting(packaged, CRASHES, any_of=True),
-        setting(Drawn(), MANY, any_of=True),
+        setting(RandomPlants(), MANY, any_of=True),
         setting(examples, CRASHES),
     )
     collect_rarely()

@@ -21,7 +21,7 @@ from arboleda.model.messages import OperatorAnswer, Verb
 from arboleda.model.sentence import OWN, Sentence
 from arboleda.testing import Rig, shipped
 from arboleda.views import view
-from arboleda.views.oee import Kept, Oee, oee
+from arboleda.views.oee import KeptFigures, Oee, oee
 
 EVIL = sys.argv[1]
 SAID = {
@@ -88,7 +88,7 @@ class Side:
         return [TaskRow(number=1, state="failed", reason="deadline", **said, **times)]
 
     def oee(self, query: OeeQuery) -> list[Oee]:
-        return [oee(EVIL, Kept(works=[], runs=[], downs=[], shortest={}), 0.0, 1.0)]
+        return [oee(EVIL, KeptFigures(works=[], runs=[], downs=[], shortest={}), 0.0, 1.0)]
 
     def submit(self, text: str, _asked_by: str) -> Future[dict[str, Any]]:
         answer: Future[dict[str, Any]] = Future()

@@ -13,7 +13,7 @@ from typing import Any
 import pytest
 
 from arboleda.adapters import webhook
-from arboleda.adapters.webhook import Hook, NotTaken, Refused, Webhook
+from arboleda.adapters.webhook import DeliveryRefused, Hook, NotDelivered, Webhook
 from arboleda.app.alarm_options import AlarmOptions
 from arboleda.app.build import App, Options, build
 from arboleda.app.parts.alarms import OnTopic
@@ -86,10 +86,10 @@ def test_an_alarm_is_posted_as_json_with_its_token(hooked: Hooked, post: Callabl
 @pytest.mark.parametrize(
     ("status", "error", "why"),
     [
-        (422, Refused, "it answers 422"),
-        (500, NotTaken, "it answers 500"),
-        (403, NotTaken, f"it answers 403: see ${webhook.TOKEN}"),
-        (301, NotTaken, f"it answers 301: name the address that it leads to in ${webhook.URL}"),
+        (422, DeliveryRefused, "it answers 422"),
+        (500, NotDelivered, "it answers 500"),
+        (403, NotDelivered, f"it answers 403: see ${webhook.TOKEN}"),
+        (301, NotDelivered, f"it answers 301: name the address that it leads to in ${webhook.URL}"),
     ],
 )
 def test_an_answer_that_is_no_yes_says_what_to_do(
@@ -105,10 +105,10 @@ def test_who_does_not_answer_or_is_not_there_is_told_of_in_words(
     hooked: Hooked, post: Callable[[], None]
 ) -> None:
     hooked.gate.clear()
-    with pytest.raises(NotTaken, match=r"^no answer within 0.5 s$"):
+    with pytest.raises(NotDelivered, match=r"^no answer within 0.5 s$"):
         post()
     hooked.close()
-    with pytest.raises(NotTaken) as said:
+    with pytest.raises(NotDelivered) as said:
         post()
     assert "refused" in str(said.value) and "SECRET" not in str(said.value)
 
@@ -127,14 +127,14 @@ def test_over_mqtt_an_alarm_waits_for_the_broker_and_comes_again_after_it(
 ) -> None:
     monkeypatch.setattr("arboleda.app.parts.alarms.TAKES_S", 0.3)
     topic = OnTopic(shipped(), OtherBroker(stopped_broker.address, None), "arboleda/alarms")
-    with pytest.raises(NotTaken, match="is not connected"):
+    with pytest.raises(NotDelivered, match="is not connected"):
         topic.post(ALARM)
     monkeypatch.setattr("arboleda.app.parts.alarms.TAKES_S", PATIENCE_S)
     stopped_broker.start()
     topic.post(ALARM)
     stopped_broker.stop()
     monkeypatch.setattr("arboleda.app.parts.alarms.TAKES_S", 0.3)
-    with pytest.raises(NotTaken):
+    with pytest.raises(NotDelivered):
         topic.post(ALARM)
     topic.close()
 

@@ -17,7 +17,7 @@ import pytest
 from arboleda.adapters.broker import EmbeddedBroker
 from arboleda.adapters.broker_login import Address, Credentials
 from arboleda.adapters.mqtt_broker import limits
-from arboleda.adapters.mqtt_broker.access import ALLOWED, Access, Role, Who
+from arboleda.adapters.mqtt_broker.access import ALLOWED, Access, ClientIdentity, Role
 from arboleda.model.errors import StartError
 from arboleda.wire.transport import Publication
 
@@ -290,8 +290,10 @@ def test_it_does_not_open_where_a_stranger_would_get_in(monkeypatch: pytest.Monk
     broker = EmbeddedBroker(port=0, users=USERS)
     right = Access.login
 
-    def careless(access: Access, user: str | None, password: bytes | None, shown: str) -> Who | None:
-        return right(access, user, password, shown) if user else Who(role=Role.READER)
+    def careless(
+        access: Access, user: str | None, password: bytes | None, shown: str
+    ) -> ClientIdentity | None:
+        return right(access, user, password, shown) if user else ClientIdentity(role=Role.READER)
 
     monkeypatch.setattr(Access, "login", careless)
     with pytest.raises(StartError, match="lets in nobody in particular"):
@@ -302,9 +304,9 @@ def test_it_does_not_open_where_a_stranger_would_get_in(monkeypatch: pytest.Monk
 def test_it_does_not_open_where_a_wrong_password_would_do(
     monkeypatch: pytest.MonkeyPatch, careless: str
 ) -> None:
-    def login(access: Access, user: str | None, password: bytes | None, _shown: str) -> Who | None:
+    def login(access: Access, user: str | None, password: bytes | None, _shown: str) -> ClientIdentity | None:
         there = user == "arboleda" and (password is None) is (careless == "a user without password")
-        return Who(role=Role.PLANT, user="arboleda") if there else None
+        return ClientIdentity(role=Role.PLANT, user="arboleda") if there else None
 
     monkeypatch.setattr(Access, "login", login)
     with pytest.raises(StartError, match=f"lets in {careless}"):

@@ -8,7 +8,7 @@ import pytest
 
 from arboleda.app import config
 from arboleda.app.plant_file.robot_models import mobile_models
-from arboleda.app.simulate.plants import InTurn, Plant
+from arboleda.app.simulate.plants import Plant, PlantRotation
 from arboleda.app.simulate.random_plants import ATTEMPTS, as_yaml
 from arboleda.app.simulate.setting import Setting
 from arboleda.model.errors import ConfigError
@@ -53,7 +53,7 @@ def drawn(folder: Path, seed: int) -> PlantModel:
 def test_whatever_goes_wrong_nothing_breaks_with_arms_of_ones_own(folder: Path, seed: int) -> None:
     plant = drawn(folder, seed)
     assert {cell.arm.model for cell in plant.cells} <= set(NAMES)
-    setting = Setting(plants=InTurn(plants=(Plant(declared=plant),)), cycles=3, level="normal")
+    setting = Setting(plants=PlantRotation(plants=(Plant(declared=plant),)), cycles=3, level="normal")
     assert setting.run(seed).broken is None
 
 

@@ -13,7 +13,7 @@ pytest.importorskip("rclpy", reason="rclpy is not installed")
 
 from std_msgs.msg import String, UInt8
 
-from arboleda.kinds.declared import Told
+from arboleda.kinds.declared import VerbCall
 from arboleda.model.commands import Command, Stop, StopMode
 from arboleda.model.messages import Interference, Report
 from arboleda.model.plant_model import Evidence, Link, MotionState, PlantModel
@@ -159,7 +159,7 @@ def test_a_device_that_speaks_ros_2_itself_is_told_orders_and_tells_facts(side: 
     model = PlantModel(name="lab", cells=(replace(cell, members=(("station", spoken),)),))
     orchestrator, device = side("orchestrator", model), side()
     orders = device.hear(String, "station/order")
-    publisher = orchestrator.port._commands["station", Told]
+    publisher = orchestrator.port._commands["station", VerbCall]
     eventually(lambda: publisher.get_subscription_count() == 2)  # one of them its own
     orchestrator.port.send(WARM)
     (told,) = eventually(lambda: orders)  # type: ignore[misc]

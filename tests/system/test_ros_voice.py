@@ -48,7 +48,7 @@ def test_a_report_that_repeats_the_last_has_the_same_status():
 
 def test_a_status_is_heard_as_the_report_it_was_made_of_again_and_again():
     said, heard, now = StatusMessage(ARM), [], [0.0]
-    ear = statuses.Ear(ARM, lambda: now[0], heard.append)
+    ear = statuses.StatusListener(ARM, lambda: now[0], heard.append)
     numbered = [replace(NUMBERED, number=number) for number in (9, 10, 4294967295)]
     reports = [MOVING, MOVING, FURTHER, MOVING, MOVING, GONE, *numbered, FURTHER]
     for number, report in enumerate(reports):
@@ -60,7 +60,7 @@ def test_a_status_is_heard_as_the_report_it_was_made_of_again_and_again():
 
 def test_a_status_that_says_the_same_under_the_next_number_is_not_read_again(monkeypatch):
     said, heard = StatusMessage(ARM), []
-    ear = statuses.Ear(ARM, lambda: 0.0, heard.append)
+    ear = statuses.StatusListener(ARM, lambda: 0.0, heard.append)
     ear(serialize_message(said.of(NUMBERED)))
     monkeypatch.setattr(statuses, "deserialize_message", None)
     ear(serialize_message(said.of(NUMBERED.again(0.0, number=42))))
@@ -69,7 +69,7 @@ def test_a_status_that_says_the_same_under_the_next_number_is_not_read_again(mon
 
 def test_a_number_that_no_board_can_tell_is_refused_also_where_nothing_else_changed():
     said, heard = StatusMessage(ARM), []
-    ear = statuses.Ear(ARM, lambda: 0.0, heard.append)
+    ear = statuses.StatusListener(ARM, lambda: 0.0, heard.append)
     ear(serialize_message(said.of(NUMBERED)))
     with pytest.raises(PayloadError, match="number is '9999999999'; an integer of 0 to 4294967295 is needed"):
         ear(serialize_message(said.of(NUMBERED.again(0.0, number=9_999_999_999))))
@@ -78,7 +78,7 @@ def test_a_number_that_no_board_can_tell_is_refused_also_where_nothing_else_chan
 
 def test_a_bad_status_is_refused_each_time_it_comes():
     heard = []
-    ear = statuses.Ear(ARM, lambda: 0.0, heard.append)
+    ear = statuses.StatusListener(ARM, lambda: 0.0, heard.append)
     good = serialize_message(StatusMessage(ARM).of(MOVING))
     bad = serialize_message(StatusMessage(MOBILE).of(MOVING))
     ear(good)

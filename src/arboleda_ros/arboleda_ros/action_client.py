@@ -17,19 +17,19 @@ from typing import Any, ClassVar
 from arboleda.adapters.device_feed import taking
 from arboleda.drivers.port import Clock, DriverError, Hear, NotSent
 from arboleda.drivers.ros_action.events import (
-    Answered,
-    Asked,
     CancelAll,
-    CancelAnswered,
-    Ended,
+    CancelAnswer,
+    CommandNotSent,
+    CommandRequest,
     Event,
-    Found,
+    GoalAnswer,
+    GoalResult,
+    Measurement,
     Message,
-    Seen,
     SendGoal,
+    ServersFound,
     Status,
-    Unsent,
-    Untaken,
+    UnusableMessage,
 )
 from arboleda.drivers.ros_action.machine import Machine
 from arboleda.model.commands import Command
@@ -95,15 +95,15 @@ class ActionClientDriver:
         self._link.start()
 
     def send(self, command: Command) -> None:
-        for message in self._step(Asked(command=command)):
-            if isinstance(message, Unsent):
+        for message in self._step(CommandRequest(command=command)):
+            if isinstance(message, CommandNotSent):
                 raise NotSent(message.why)
 
     def stop(self) -> None:
         if self._link is not None:
             self._link.close()
 
-    def see(self, seen: Seen) -> None:
+    def see(self, seen: Measurement) -> None:
         """Something was measured; in the thread of ROS 2."""
         self._take(seen, seen)
 
@@ -138,7 +138,7 @@ class ActionClientDriver:
             self._step(event)
 
     def _lose(self, why: str) -> None:
-        self._step(Untaken(why=why))
+        self._step(UnusableMessage(why=why))
 
     def _later(self, what: Callable[[], None]) -> None:
         """Have it done in the thread of ROS 2: an action client is not made for several."""
@@ -160,7 +160,7 @@ class ActionClientDriver:
 
     def _answered(self, id: str, future: Any) -> None:
         handle = future.result()
-        self._take(handle, Answered(id=id, accepted=handle.accepted))
+        self._take(handle, GoalAnswer(id=id, accepted=handle.accepted))
         if handle.accepted:
             handle.get_result_async().add_done_callback(partial(self._ended, id))
 
@@ -168,11 +168,11 @@ class ActionClientDriver:
         said = future.result()
         status = STATUSES.get(said.status, Status.UNKNOWN)
         with taking(said, self._lose):
-            self._step(Ended(id=id, status=status, **self.end(said.result)))
+            self._step(GoalResult(id=id, status=status, **self.end(said.result)))
 
     def _cancelled(self, future: Any) -> None:
         said = future.result()
-        self._take(said, CancelAnswered(refused=said.return_code == REJECTED))
+        self._take(said, CancelAnswer(refused=said.return_code == REJECTED))
 
     def _look(self) -> None:
         """Each server publishes the states of its goals, by an endpoint of its own."""
@@ -180,7 +180,7 @@ class ActionClientDriver:
         found = self._node.get_publishers_info_by_topic(topic)
         ready = bool(found) and self._client.server_is_ready()
         servers = tuple(sorted(zlib.crc32(bytes(each.endpoint_gid)) for each in found)) if ready else ()
-        self._step(Found(servers=servers))
+        self._step(ServersFound(servers=servers))
 
 
 def stamp_of(message: Any) -> tuple[int, int]:

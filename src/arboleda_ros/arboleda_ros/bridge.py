@@ -25,7 +25,7 @@ from arboleda.wire.status import ERROR, OK, WARN
 
 from . import convert, qos, statuses
 from .port import Port
-from .robot_publisher import Voice
+from .robot_publisher import RobotPublisher
 from .senders import Senders
 
 NEWS_S = 10.0  # for so long `/diagnostics` warns of a command of somebody else
@@ -48,7 +48,7 @@ class BridgePort(Port):
         for robot in robots:
             self._obey(robot)
         speak = partial(self._speak, profile=qos.COMMAND)
-        self._voices = {robot.name: Voice(robot, speak, node.get_clock()) for robot in robots}
+        self._voices = {robot.name: RobotPublisher(robot, speak, node.get_clock()) for robot in robots}
         self._rejections = {robot.name: speak(String, f"{robot.name}/rejected") for robot in robots}
         # Discovery keeps the order in which endpoints were made, here and in the orchestrator: a heartbeat
         # that arrives proves that the commands, made before it, arrive too.

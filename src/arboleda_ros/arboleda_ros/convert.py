@@ -10,7 +10,7 @@ from sensor_msgs.msg import JointState
 from std_msgs.msg import Float32MultiArray, MultiArrayDimension, String, UInt8
 
 from arboleda.kinds.arm import Arm, MoveJoints, SetEffector
-from arboleda.kinds.declared import Device, Told
+from arboleda.kinds.declared import Device, VerbCall
 from arboleda.kinds.mobile import FollowPath, Mobile
 from arboleda.model.commands import Command, Home, Stop, StopMode
 from arboleda.model.counting import counted
@@ -30,13 +30,13 @@ _AT_NODE = 0.125  # of the pitch: a mobile farther than this from every node is 
 def commands_of(robot: Robot) -> tuple[type[Command], ...]:
     """The kinds of command a robot takes."""
     if isinstance(robot, Device):
-        return (Told, Stop)
+        return (VerbCall, Stop)
     return (MoveJoints, SetEffector, Stop, Home) if isinstance(robot, Arm) else (FollowPath, Stop, Home)
 
 
 def message_type(kind: type[Command]) -> type:
     """The ROS 2 type of a plain command topic."""
-    if kind is Told:
+    if kind is VerbCall:
         return String
     return Float32MultiArray if kind in (MoveJoints, FollowPath) else UInt8
 
@@ -50,7 +50,7 @@ def ordered(robot: Robot) -> tuple[type, str]:
 
 def command_message(command: Command, *, copy: bool = False) -> Float32MultiArray | UInt8 | String:
     """A command as its plain topic carries it; arrays are labelled with the id, and as copies."""
-    if isinstance(command, Told):
+    if isinstance(command, VerbCall):
         return String(data=order.write(command))
     if not loses_its_id(command):
         return _labelled(command.id, _values(command), *((COPY,) if copy else ()))
@@ -106,7 +106,7 @@ def command(kind: type[Command], robot: Robot, message: Float32MultiArray | UInt
     if isinstance(robot, Mobile) and kind is FollowPath:
         id, values = _unlabelled(message, robot.name)
         return FollowPath(id=id, robot=robot.name, nodes=_nodes(robot, values))
-    if isinstance(robot, Device) and kind is Told:
+    if isinstance(robot, Device) and kind is VerbCall:
         return order.read(robot, message.data)[0]
     if kind is SetEffector:
         return SetEffector(id="", robot=robot.name, on=bool(_one_of(message, (0, 1))))

@@ -21,7 +21,7 @@ _LOOKED_AT = 5  # topics in one look: each takes as long as the whole graph is l
 _ALERT = 5  # looks at all topics once nodes have come or gone; what they publish is discovered a little later
 
 
-class Alone:
+class ExclusiveTopics:
     """`topics` are relative names; to be watched from their node's own making on."""
 
     def __init__(self, node: Node) -> None:

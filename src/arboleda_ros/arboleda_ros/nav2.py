@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 from typing import Any
 
-from arboleda.drivers.nav2.localisation import Counted, Localised
+from arboleda.drivers.nav2.localisation import MapPose, OdometryPose
 from arboleda.drivers.nav2.machine import Route, to_pose, waypoints
 from arboleda.drivers.nav2.pose import Pose
 from arboleda.drivers.nav2.settings import ToPose, Waypoints
@@ -36,10 +36,10 @@ class _Nav2(ActionClientDriver):
                 node.create_subscription(PoseWithCovarianceStamped, topic, self._localise, delivery)
 
     def _count(self, message: Any) -> None:
-        self.see(Counted(stamp=stamp_of(message), pose=pose_of(message.pose.pose)))
+        self.see(OdometryPose(stamp=stamp_of(message), pose=pose_of(message.pose.pose)))
 
     def _localise(self, message: Any) -> None:
-        self.see(Localised(stamp=stamp_of(message), pose=pose_of(message.pose.pose)))
+        self.see(MapPose(stamp=stamp_of(message), pose=pose_of(message.pose.pose)))
 
 
 @driver("navigate_to_pose", settings=ToPose)

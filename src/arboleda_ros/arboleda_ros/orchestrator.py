@@ -15,7 +15,7 @@ from rclpy.publisher import Publisher
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Bool, String, UInt8, UInt32
 
-from arboleda.adapters.rate_limit import Seldom
+from arboleda.adapters.rate_limit import RateLimit
 from arboleda.app import view_text
 from arboleda.kinds.arm import Arm
 from arboleda.kinds.declared import Device
@@ -83,7 +83,7 @@ class OrchestratorPort(Port):
             for kind in convert.commands_of(robot)
         }
         self._senders = Senders(node, clock)
-        self._others = Seldom()  # a stream of goals is one piece of news
+        self._others = RateLimit()  # a stream of goals is one piece of news
         self._own = {
             (robot.name, kind): OwnTopic()
             for robot in robots
@@ -232,7 +232,7 @@ class OrchestratorPort(Port):
         speakers = Speakers(self._node, robot.name, self._clock, self._on_event)
         tells_facts = isinstance(robot, Device) and robot.evidence is not Evidence.STATE
         if robot.link is Link.MQTT or robot.evidence is Evidence.IDS or tells_facts:
-            ear = statuses.Ear(robot, self._clock, self._on_event)
+            ear = statuses.StatusListener(robot, self._clock, self._on_event)
             topic = f"{robot.name}/status"
             if robot.link is Link.ROS:
                 self._listen_as_offered(DiagnosticStatus, topic, ear, raw=True, speakers=speakers)

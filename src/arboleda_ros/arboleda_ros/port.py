@@ -15,12 +15,12 @@ from rclpy.publisher import Publisher
 from rclpy.qos import QoSProfile
 from rclpy.subscription import Subscription
 
-from arboleda.adapters.rate_limit import Seldom
+from arboleda.adapters.rate_limit import RateLimit
 from arboleda.model.errors import PayloadError
 from arboleda.wire.status import ERROR, OK, WARN
 
 from . import qos, statuses
-from .exclusive_topics import DISCOVERY_S, Alone
+from .exclusive_topics import DISCOVERY_S, ExclusiveTopics
 from .speakers import Speakers
 
 NAMED = "arboleda: "  # how the names of all our statuses begin
@@ -44,11 +44,11 @@ class Port:
         self._node = node
         self._clock = clock
         self._log = logging.getLogger(f"arboleda.ros.{node.get_name()}")
-        self._alone = Alone(node)
+        self._alone = ExclusiveTopics(node)
         self._refused = 0
         self._failures = 0
         self._warnings: dict[str, None] = {}
-        self._seldom = Seldom()
+        self._seldom = RateLimit()
         self._logged: set[str] = set()
         self._intrusions: tuple[str, ...] = ()  # as told last
         self._diagnostics = self._speak(DiagnosticArray, "/diagnostics", qos.COMMAND)

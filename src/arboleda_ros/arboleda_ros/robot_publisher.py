@@ -25,7 +25,7 @@ _STATES = {state: UInt8(data=int(state)) for state in MotionState}
 _PIECES = {piece: Bool(data=piece) for piece in (False, True)}
 
 
-class Voice:
+class RobotPublisher:
     """The publishers of one robot; only arms have a piece sensor, and devices no joints."""
 
     def __init__(self, robot: Robot, speak: Speak, clock: Clock) -> None:

@@ -41,7 +41,7 @@ def report_of(at: float, robot: Robot, message: DiagnosticStatus) -> Report:
     return from_status(at, robot, plain)
 
 
-class Ear:
+class StatusListener:
     """Hears a robot's `status` as bytes: what only repeats the last one under the next number, as at rest, is
     not read again."""
 

@@ -20,14 +20,14 @@ from arboleda.adapters.web.api import make_app
 from arboleda.adapters.web.auth import Door, Role
 from arboleda.adapters.web.guard import Guard
 from arboleda.adapters.web.names import names_for
-from arboleda.adapters.web.second_loop import Apart
+from arboleda.adapters.web.second_loop import SecondLoop
 from arboleda.adapters.web.server import Server
 from arboleda.core.leaving import stop_left
 from arboleda.core.text import alternatives, spelled
 from arboleda.model.messages import OperatorAnswer, Verb
 from arboleda.model.sentence import Phrase, Sentence
 from arboleda.testing import shipped
-from arboleda.views.oee import Kept, Oee, Run, Work, oee
+from arboleda.views.oee import KeptFigures, Oee, Run, Work, oee
 
 from ...patience import PATIENCE_S
 
@@ -48,7 +48,7 @@ OFFERS = [{"cell": "saw", "recipes": [OFFER | {"parameters": [WIDTH]}]}]
 LATE = Phrase("late", "{robot} was late")(robot="ra1")
 FAILED = Work(cell="sis_a", order="sis_a 0B 7", state="failed", accepted_s=0.0, started_s=0.0, ended_s=50.0)
 RAN = Run(since_s=0.0, seen_s=100.0, ended=True)
-FIGURES = Kept(works=[FAILED], runs=[RAN], downs=[], shortest={})
+FIGURES = KeptFigures(works=[FAILED], runs=[RAN], downs=[], shortest={})
 KEPT = [
     TaskRow(
         number=number,
@@ -235,7 +235,7 @@ def running(
     mount(app)
     bound = "0.0.0.0" if tokens and not public_url else "127.0.0.1"
     names = names_for(bound, public_url, scheme="https" if tls else "http")
-    guarded = Guard(Apart(app), names, door, sockets=sockets, plant=name)
+    guarded = Guard(SecondLoop(app), names, door, sockets=sockets, plant=name)
     server = Server(guarded, **{"port": 0, **options}, tls=tls)
     web = Web(server, door, tls)
     try:

@@ -10,7 +10,7 @@ import pytest
 from arboleda.adapters.web import stream
 from arboleda.app import tokens
 from arboleda.app.client import PlantClient
-from arboleda.app.line import Refused
+from arboleda.app.line import VerbRefused
 from arboleda.app.state import StateDir
 from arboleda.model.errors import ArboledaError, QueueFull, TextError
 from arboleda.model.messages import Verb
@@ -48,7 +48,7 @@ def test_the_client_operates_the_plant_or_one_thing_of_it(state, plant):
     assert client.operate(Verb.HOME, "ra1", by_hand=True) == {"verb": "home", "scope": "ra1"}
     assert plant.acts == [(Verb.STOP, "", False), (Verb.HOME, "ra1", True)]
     plant.refusal = "ra1 still moves."
-    with pytest.raises(Refused, match=r"^ra1 still moves\.$"):
+    with pytest.raises(VerbRefused, match=r"^ra1 still moves\.$"):
         client.operate(Verb.CLEAR, "sis_a")
 
 

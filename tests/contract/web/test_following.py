@@ -17,10 +17,10 @@ import pytest
 from arboleda.adapters.web.auth import Role
 from arboleda.app import remote_plant
 from arboleda.app.client import PlantClient
-from arboleda.app.leader import Led
-from arboleda.app.line import Silent
+from arboleda.app.leader import LeaderInfo
+from arboleda.app.line import PlantSilent
 from arboleda.app.parts.waiting_room import WaitingRoom
-from arboleda.app.remote_plant import Elsewhere, Nobody
+from arboleda.app.remote_plant import NoLeader, RemotePlant
 from arboleda.app.state import StateDir
 from arboleda.app.tokens import TOKENS as FILE
 from arboleda.app.web_options import WebOptions
@@ -29,7 +29,7 @@ from arboleda.model.messages import Verb
 
 from .conftest import QUEUED, TASK, TOKENS, VIEW, Plant, Web
 
-HERE = Led(plant="demo", host=socket.gethostname(), process=7, url="", epoch=7)
+HERE = LeaderInfo(plant="demo", host=socket.gethostname(), process=7, url="", epoch=7)
 ASKED = f"plant demo is led on {HERE.host}: asked there\n"
 STORE = "postgresql://db"
 
@@ -40,7 +40,7 @@ def state(tmp_path: Path) -> Path:
 
 
 @contextmanager
-def standing_by(state: Path, led: Led | None) -> Iterator[None]:
+def standing_by(state: Path, led: LeaderInfo | None) -> Iterator[None]:
     """A process on this state directory that stands by."""
     room = WaitingRoom("demo", state, WebOptions(port=0))
     with StateDir(state, plant="demo", store=STORE) as made:
@@ -52,7 +52,7 @@ def standing_by(state: Path, led: Led | None) -> Iterator[None]:
             room.stop()
 
 
-def led_at(port: int) -> Led:
+def led_at(port: int) -> LeaderInfo:
     return replace(HERE, url=f"http://127.0.0.1:{port}")
 
 
@@ -60,7 +60,7 @@ class Database:
     """Says who leads, as `leadership_of`."""
 
     def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
-        self.led: Led | None = None
+        self.led: LeaderInfo | None = None
         self.standbys = 0
         self.name = STORE
         monkeypatch.setattr(remote_plant, "leadership_of", lambda store, plant: self)
@@ -89,7 +89,7 @@ def database(monkeypatch: pytest.MonkeyPatch) -> Database:
 
 
 def client(state: Path, known: dict[str, str] | None = None) -> PlantClient:
-    return PlantClient(state, Elsewhere(state, lambda: (STORE, "demo"), lambda: known or {}))
+    return PlantClient(state, RemotePlant(state, lambda: (STORE, "demo"), lambda: known or {}))
 
 
 def keep_tokens(state: Path) -> None:
@@ -147,7 +147,7 @@ def test_a_viewers_token_lets_it_look_and_stop(state: Path, open_to_all: Web) ->
 
 def test_a_leader_that_is_not_there_is_said_to_at_once(state: Path, free_port: int) -> None:
     began = time.monotonic()
-    with standing_by(state, led_at(free_port)), pytest.raises(Silent) as silent:
+    with standing_by(state, led_at(free_port)), pytest.raises(PlantSilent) as silent:
         PlantClient(state).operate(Verb.STOP)
     assert time.monotonic() - began < 5.0
     assert f"which cannot be reached at http://127.0.0.1:{free_port} (" in str(silent.value)
@@ -200,7 +200,7 @@ def test_where_nothing_runs_the_database_knows_who_leads(
 @pytest.mark.parametrize("standbys", [0, 1])
 def test_where_nobody_leads_that_is_said(state: Path, database: Database, standbys: int) -> None:
     database.standbys = standbys
-    with pytest.raises(Nobody) as nobody:
+    with pytest.raises(NoLeader) as nobody:
         client(state).status()
     assert str(nobody.value) == f"No plant is running on {state}. Nobody leads the plant of {STORE} now."
     assert nobody.value.awaited is bool(standbys)
@@ -233,9 +233,11 @@ def test_after_silence_here_only_what_is_done_once_is_asked_of_the_next_leader(
         here.announce(cutting)
         assert client(state).operate(Verb.STOP) == {"verb": "stop", "scope": ""}
         assert client(state).submit("sis_a 0B 7 #lot-1") == QUEUED
-        with pytest.raises(Silent, match=r"did not answer\. Plant demo is led .* It may have taken the task"):
+        with pytest.raises(
+            PlantSilent, match=r"did not answer\. Plant demo is led .* It may have taken the task"
+        ):
             client(state).submit("sis_a 0B 7")
-        with pytest.raises(Silent, match="Plant demo is led on"):
+        with pytest.raises(PlantSilent, match="Plant demo is led on"):
             client(state).operate(Verb.CLEAR)
     assert plant.texts == ["sis_a 0B 7 #lot-1"] and plant.acts == [(Verb.STOP, "", False)]
 
@@ -244,7 +246,7 @@ def test_where_nobody_else_leads_silence_here_is_said(state: Path, cutting: int,
     database.led = replace(led_at(cutting), process=os.getpid())
     with StateDir(state, plant="demo") as here:
         here.announce(cutting)
-        with pytest.raises(Silent, match=r"did not answer\.$"):
+        with pytest.raises(PlantSilent, match=r"did not answer\.$"):
             client(state).operate(Verb.STOP)
 
 

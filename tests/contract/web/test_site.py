@@ -22,7 +22,7 @@ from arboleda.app.endpoints import Place
 from arboleda.app.site.reach import ANSWER_S, NO_ANSWER
 from arboleda.app.site.watch import NOT_SEEN, NOT_STOPPED, STANDS_BY, STOPPED, STOPPED_ALL, Site
 from arboleda.dashboard.frames import ended
-from arboleda.dashboard.site.side import PlantSeen
+from arboleda.dashboard.site.side import LastSeenPlant
 from arboleda.model.messages import OperatorAnswer, Verb
 
 from ...patience import PATIENCE_S
@@ -78,7 +78,7 @@ def watched(places: list[Place], act: Callable[[Site], Awaitable[T]]) -> T:
     return asyncio.run(run())
 
 
-async def seen(site: Site, enough: Callable[[list[PlantSeen]], bool]) -> list[PlantSeen]:
+async def seen(site: Site, enough: Callable[[list[LastSeenPlant]], bool]) -> list[LastSeenPlant]:
     """The plants once they are as wanted."""
     ends = time.monotonic() + PATIENCE_S
     while not enough(site.plants()):
@@ -87,12 +87,12 @@ async def seen(site: Site, enough: Callable[[list[PlantSeen]], bool]) -> list[Pl
     return site.plants()
 
 
-def heard(plants: list[PlantSeen]) -> list[str]:
+def heard(plants: list[LastSeenPlant]) -> list[str]:
     return [plant.name for plant in plants if plant.silent is None]
 
 
 def test_a_plant_that_does_not_answer_is_said_to_be_silent_and_holds_up_no_other() -> None:
-    async def look(site: Site) -> tuple[float, list[PlantSeen]]:
+    async def look(site: Site) -> tuple[float, list[LastSeenPlant]]:
         began = time.monotonic()
         await seen(site, lambda plants: heard(plants) == ["first", "second"])
         took_s = time.monotonic() - began
@@ -184,7 +184,7 @@ def test_a_task_goes_to_its_plant_and_a_refusal_is_told() -> None:
 
 
 def test_a_leader_and_its_standby_are_one_plant() -> None:
-    async def look(site: Site) -> list[PlantSeen]:
+    async def look(site: Site) -> list[LastSeenPlant]:
         return await seen(site, lambda plants: [each.standbys for each in plants] == [1])
 
     with standby("demo") as waits, running(called("demo")) as web:
@@ -193,7 +193,7 @@ def test_a_leader_and_its_standby_are_one_plant() -> None:
 
 
 def test_a_plant_of_which_only_the_standby_answers_does_not_look_well() -> None:
-    async def look(site: Site) -> list[PlantSeen]:
+    async def look(site: Site) -> list[LastSeenPlant]:
         return await seen(site, lambda plants: plants and plants[0].silent == STANDS_BY())
 
     with standby("demo") as waits:
@@ -216,7 +216,7 @@ def test_two_that_both_lead_a_plant_of_one_name_are_two_rows_and_both_are_stoppe
 
 @pytest.mark.parametrize("token", [TOKENS[Role.OPERATOR], ""])
 def test_a_plant_of_a_network_is_shown_its_token(token: str) -> None:
-    async def look(site: Site) -> list[PlantSeen]:
+    async def look(site: Site) -> list[LastSeenPlant]:
         return await seen(site, lambda plants: plants and plants[0].silent != NOT_SEEN())
 
     with running(called("demo"), TOKENS) as web:

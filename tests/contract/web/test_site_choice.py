@@ -8,7 +8,7 @@ import pytest
 
 from arboleda.app.endpoints import Place
 from arboleda.app.site.watch import Site
-from arboleda.dashboard.site.side import Asked
+from arboleda.dashboard.site.side import RequestOutcome
 
 from .conftest import QUEUED, Plant, running
 from .test_site import called, deaf, heard, seen, watched
@@ -16,8 +16,8 @@ from .test_site import called, deaf, heard, seen, watched
 BOTH = "north/sis_a,south/sis_b,south/sis_a 0b 7"
 
 
-def ask(text: str, *names: str) -> Callable[[Site], Awaitable[Asked]]:
-    async def act(site: Site) -> Asked:
+def ask(text: str, *names: str) -> Callable[[Site], Awaitable[RequestOutcome]]:
+    async def act(site: Site) -> RequestOutcome:
         await seen(site, lambda plants: heard(plants) == list(names))
         return await site.submit("", text)
 

@@ -234,7 +234,7 @@ def test_the_server_ends_with_an_application_that_does_not(monkeypatch: pytest.M
         await receive()
         await asyncio.Event().wait()
 
-    server = Server(second_loop.Apart(endless), port=0)
+    server = Server(second_loop.SecondLoop(endless), port=0)
     server.start()
     server.stop()
     assert not {"http", "http pages"} & {thread.name for thread in threading.enumerate()}

@@ -11,11 +11,11 @@ import httpx
 import pytest
 
 from arboleda.app import tokens
-from arboleda.app.leader import Led
+from arboleda.app.leader import LeaderInfo
 from arboleda.app.parts.waiting_room import WaitingRoom
 from arboleda.app.web_options import WebOptions
 
-LED = Led(plant="demo", host="host-a", process=7, url="http://10.0.0.5:8080", epoch=3)
+LED = LeaderInfo(plant="demo", host="host-a", process=7, url="http://10.0.0.5:8080", epoch=3)
 NEAR = "http://127.0.0.1:8080"
 TASK = {"text": "sis_a 0B 7"}
 
@@ -25,7 +25,7 @@ def rooms(tmp_path: Path) -> Iterator[Callable[..., httpx.Client]]:
     """`rooms(led)`: a client of a room that knows of this leader."""
     with ExitStack() as stack:
 
-        def made(led: Led | None, **options: object) -> httpx.Client:
+        def made(led: LeaderInfo | None, **options: object) -> httpx.Client:
             room = WaitingRoom("demo", tmp_path, WebOptions(**{"port": 0, **options}))
             room.start(lambda *_, **__: None)
             stack.callback(room.stop)
@@ -71,14 +71,14 @@ def test_a_client_that_goes_on_takes_no_token_along(room: httpx.Client) -> None:
     ("led", "options"),
     [
         (None, {}),
-        (Led(plant="demo", host="host-a", process=7, url="", epoch=3), {}),
-        (Led(plant="demo", host="host-a", process=7, url=NEAR, epoch=3), {}),
+        (LeaderInfo(plant="demo", host="host-a", process=7, url="", epoch=3), {}),
+        (LeaderInfo(plant="demo", host="host-a", process=7, url=NEAR, epoch=3), {}),
         (LED, {"public_url": LED.url}),
     ],
     ids=["nobody", "no address", "only its own host reaches it", "the name that both have"],
 )
 def test_where_nobody_is_to_be_reached_at_another_address_it_is_unavailable(
-    rooms: Callable[..., httpx.Client], tmp_path: Path, led: Led | None, options: dict[str, str]
+    rooms: Callable[..., httpx.Client], tmp_path: Path, led: LeaderInfo | None, options: dict[str, str]
 ) -> None:
     room = rooms(led, **options)
     if options:
@@ -88,7 +88,7 @@ def test_where_nobody_is_to_be_reached_at_another_address_it_is_unavailable(
 
 
 def test_on_one_machine_the_address_of_one_machine_will_do(rooms: Callable[..., httpx.Client]) -> None:
-    led = Led(plant="demo", host=socket.gethostname(), process=7, url=NEAR, epoch=3)
+    led = LeaderInfo(plant="demo", host=socket.gethostname(), process=7, url=NEAR, epoch=3)
     assert rooms(led).post("/api/tasks", json=TASK).headers["location"] == f"{NEAR}/api/tasks"
 
 
@@ -109,7 +109,7 @@ def test_who_means_another_plant_is_told_so(room: httpx.Client) -> None:
 
 def test_its_page_leads_to_that_of_the_leader_where_that_can_be(rooms: Callable[..., httpx.Client]) -> None:
     assert f'href="{LED.url}"' in rooms(LED).get("/").text
-    far = rooms(Led(plant="demo", host="host-a", process=7, url=NEAR, epoch=3)).get("/").text
+    far = rooms(LeaderInfo(plant="demo", host="host-a", process=7, url=NEAR, epoch=3)).get("/").text
     assert "Only host-a reaches that page." in far and "href" not in far
 
 

@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from arboleda.adapters.vda5050.messages import Headers, Unfit, from_bytes
+from arboleda.adapters.vda5050.messages import Headers, SchemaMismatch, from_bytes
 from arboleda.virtual.vda5050.machine import VirtualAgv
 from arboleda.virtual.vda5050.words import state_of
 
@@ -37,11 +37,11 @@ def test_an_optional_field_that_is_null_is_not_there(version: str) -> None:
 
 
 def test_a_field_that_has_to_be_there_is_not_null() -> None:
-    with pytest.raises(Unfit, match="orderId"):
+    with pytest.raises(SchemaMismatch, match="orderId"):
         told("2.1", orderId=None)
 
 
 def test_what_does_not_fit_is_named_with_its_value() -> None:
-    with pytest.raises(Unfit) as refused:
+    with pytest.raises(SchemaMismatch) as refused:
         told("2.1", lastNodeSequenceId="two")
     assert str(refused.value) == "lastNodeSequenceId must be integer; it is 'two'"

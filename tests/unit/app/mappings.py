@@ -35,7 +35,7 @@ class Example:
             read = settings.read(document, place, settings.shape(self.driver, self.settings), self.settings)
             for inside, sentence in read.problems(belt) if read is not None else ():
                 document.problem((*place, *inside), sentence)
-        except settings.Unfit as unfit:
+        except settings.SettingsRefused as unfit:
             document.problem(unfit.place, str(unfit))
         try:
             document.finish()

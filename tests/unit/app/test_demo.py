@@ -6,7 +6,7 @@ from collections import Counter
 
 import pytest
 
-from arboleda.app.demo import ALARM_S, CALM_S, Demo, Enough, Task
+from arboleda.app.demo import ALARM_S, CALM_S, Demo, DemoEnded, Task
 from arboleda.model.messages import Verb
 from arboleda.sim.devices import Alarm, Reboot
 from arboleda.testing.sim import Sim
@@ -83,7 +83,7 @@ def test_buttons_of_the_card_lead_out_and_then_another_cell_fails(show: Show) ->
 
 def test_nothing_is_given_and_nothing_fails_after_its_end(show: Show) -> None:
     show.play(20)
-    show.demo.step(show.sim.now, [Enough()])
+    show.demo.step(show.sim.now, [DemoEnded()])
     given, fell = len(show.tasks), len(show.faults)
     show.play(120)
     assert (len(show.tasks), len(show.faults)) == (given, fell)
@@ -95,7 +95,7 @@ def test_an_alarm_is_over_in_time_though_the_demonstration_ends() -> None:
     while not any(isinstance(fault, Alarm) for fault in show.faults):
         show.play(1, visited=True)
     alarm = show.faults[-1]
-    show.demo.step(show.sim.now, [Enough()])
+    show.demo.step(show.sim.now, [DemoEnded()])
     assert show.demo.next_deadline == pytest.approx(alarm.at + ALARM_S)
     over = show.demo.step(alarm.at + ALARM_S, [])
     assert over == [Alarm(at=alarm.at + ALARM_S, board=alarm.board, is_on=False)]

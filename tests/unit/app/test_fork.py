@@ -11,7 +11,7 @@ import pytest
 
 from arboleda.app.fork.command import compared
 from arboleda.app.fork.plant_events import Pair
-from arboleda.app.fork.run import Asked, Forked, forked
+from arboleda.app.fork.run import ForkRequest, ForkResult, forked
 from arboleda.app.replay_command import sentence_of
 from arboleda.model.messages import Verb
 from arboleda.model.plant_model import PlantModel
@@ -43,23 +43,23 @@ def taped(acts: dict[float, Act], *, model: PlantModel | None = None, s: float =
     return world.plant
 
 
-def fork(plant: TapedPlant, at: float, **changes: Any) -> Forked:
+def fork(plant: TapedPlant, at: float, **changes: Any) -> ForkResult:
     at_ns = round((START_S + at) * 1e9)
-    asked = Asked(**{"at_ns": at_ns, "model": RECORDED, "recorded": RECORDED, **changes})
+    asked = ForkRequest(**{"at_ns": at_ns, "model": RECORDED, "recorded": RECORDED, **changes})
     found = forked(plant.beginning, plant.steps(), asked, sentence_of)
     assert found.difference is None
     return found
 
 
-def differences(found: Forked) -> list[Pair]:
+def differences(found: ForkResult) -> list[Pair]:
     return [pair for pair in compared(found, None) if not pair.same]
 
 
-def end_of(found: Forked, task: str) -> str:
+def end_of(found: ForkResult, task: str) -> str:
     return [each.said for each in found.fork if each.stream == f"task {task}"][-1]
 
 
-def ended(found: Forked) -> Iterator[tuple[float, float]]:
+def ended(found: ForkResult) -> Iterator[tuple[float, float]]:
     """When each task ended, in the record and in the fork."""
     for pair in compared(found, None):
         if pair.either.stream.startswith("task ") and pair.recorded and pair.fork:
@@ -135,6 +135,6 @@ def test_an_arm_that_stood_still_goes_on_from_where_it_was_heard() -> None:
 
 def test_a_plant_of_other_bits_is_not_forked() -> None:
     other = replace(shipped(), timing=replace(shipped().timing, effector_timeout_s=9.0))
-    asked = Asked(at_ns=round((START_S + 8.0) * 1e9), model=other, recorded=other)
+    asked = ForkRequest(at_ns=round((START_S + 8.0) * 1e9), model=other, recorded=other)
     found = forked(run_of("undisturbed").beginning, run_of("undisturbed").steps(), asked, sentence_of)
     assert found.difference is not None and found.world is None

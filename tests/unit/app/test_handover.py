@@ -9,7 +9,7 @@ import pytest
 
 from arboleda.adapters.plant_memory import PlantMemory, Superseded
 from arboleda.app.parts import handover
-from arboleda.app.parts.handover import GoingOn, hold_all
+from arboleda.app.parts.handover import CellResumption, hold_all
 from arboleda.app.parts.lease import LeasePart
 from arboleda.model.errors import ArboledaError
 from arboleda.model.messages import OperatorAnswer, Verb
@@ -57,7 +57,7 @@ def test_what_is_at_work_is_held_until_it_stands_and_nothing_else() -> None:
 
 def test_what_was_held_for_the_change_goes_on_once_that_is_possible() -> None:
     plant = Plant(a="held", b="held")
-    part = GoingOn(plant, ["a"], 7)
+    part = CellResumption(plant, ["a"], 7)
     part.start()
     while len(plant.said) < 3:
         pass
@@ -71,7 +71,7 @@ def test_what_cannot_go_on_stays_held_and_is_named(
     monkeypatch.setattr(handover, "HEARD_S", 0.01)
     plant = Plant(a="held")
     plant.operate = lambda verb, scope="": _refused(verb, scope)  # type: ignore[method-assign]
-    part = GoingOn(plant, ["a"], 7)
+    part = CellResumption(plant, ["a"], 7)
     part.start()
     while "stays held" not in caplog.text:
         pass

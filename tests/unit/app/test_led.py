@@ -6,14 +6,14 @@ import socket
 
 import pytest
 
-from arboleda.app.leader import Led, of_standby, said_of
+from arboleda.app.leader import LeaderInfo, of_standby, said_of
 from arboleda.app.web_options import WebOptions
 
-LED = Led(plant="demo", host="host-a", process=7, url="http://10.0.0.5:8080", epoch=3)
+LED = LeaderInfo(plant="demo", host="host-a", process=7, url="http://10.0.0.5:8080", epoch=3)
 
 
-def led(host: str, url: str) -> Led:
-    return Led(plant="demo", host=host, process=7, url=url, epoch=3)
+def led(host: str, url: str) -> LeaderInfo:
+    return LeaderInfo(plant="demo", host=host, process=7, url=url, epoch=3)
 
 
 @pytest.mark.parametrize(

@@ -6,7 +6,7 @@ import threading
 
 import pytest
 
-from arboleda.app.loop import Loop, UnderWay
+from arboleda.app.loop import Loop, StepInFlight
 from arboleda.model.errors import ArboledaError
 
 
@@ -269,7 +269,7 @@ def test_what_comes_out_of_a_step_is_sent_in_the_order_that_is_wanted(make, sent
 def read(loop: Loop, found: list) -> None:
     try:
         found.append(loop.read_handed_on(lambda machine: len(machine.steps), within_s=1.0))
-    except UnderWay:
+    except StepInFlight:
         found.append("under way")
 
 

@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from arboleda.adapters.webhook import NotTaken, Refused
+from arboleda.adapters.webhook import DeliveryRefused, NotDelivered
 from arboleda.app.parts.outbox import Outbox
 
 PATIENCE_S = 20.0
@@ -89,7 +89,7 @@ def test_alarms_arrive_in_order(outbox: Outbox, receiver: Receiver) -> None:
 def test_one_that_did_not_arrive_is_tried_again_more_and_more_slowly_and_said_once(
     outbox: Outbox, receiver: Receiver, pauses: list[float], caplog: pytest.LogCaptureFixture
 ) -> None:
-    receiver.trouble = lambda alarm: NotTaken("no answer within 5 s") if receiver.tries < 9 else None
+    receiver.trouble = lambda alarm: NotDelivered("no answer within 5 s") if receiver.tries < 9 else None
     outbox.start()
     outbox.put(alarm("a"))
     outbox.put(alarm("b"))
@@ -112,7 +112,7 @@ def test_whatever_a_receiver_raises_is_tried_again(outbox: Outbox, receiver: Rec
 def test_one_that_is_refused_is_said_and_does_not_stand_in_the_way(
     outbox: Outbox, receiver: Receiver, caplog: pytest.LogCaptureFixture
 ) -> None:
-    receiver.trouble = lambda alarm: Refused("it answers 422") if alarm["id"] == "a" else None
+    receiver.trouble = lambda alarm: DeliveryRefused("it answers 422") if alarm["id"] == "a" else None
     outbox.start()
     outbox.put(alarm("a"))
     outbox.put(alarm("b"))
@@ -127,7 +127,7 @@ def test_who_puts_one_in_never_waits_and_what_does_not_fit_is_said(
     outbox.start()
     outbox.put(alarm("0"))
     assert receiver.busy.wait(PATIENCE_S)  # 0 is on its way, and the receiver takes its time
-    receiver.trouble = lambda alarm: NotTaken("slow") if receiver.tries == 1 else None
+    receiver.trouble = lambda alarm: NotDelivered("slow") if receiver.tries == 1 else None
     for id in "123456":
         outbox.put(alarm(id))
     receiver.gate.set()
@@ -155,7 +155,7 @@ def test_one_that_arrives_after_it_made_room_does_not_count_as_dropped(
 def test_at_the_end_what_waits_is_tried_once_more_and_what_is_left_is_said(
     outbox: Outbox, receiver: Receiver, caplog: pytest.LogCaptureFixture
 ) -> None:
-    receiver.trouble = lambda alarm: NotTaken("gone")
+    receiver.trouble = lambda alarm: NotDelivered("gone")
     outbox.put(alarm("a"))
     outbox.put(alarm("b"))
     outbox.start()

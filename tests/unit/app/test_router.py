@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import pytest
 
-from arboleda.app.parts.router import NoWay, Router
+from arboleda.app.parts.router import NoRoute, Router
 from arboleda.model.commands import Command, Stop, StopMode
 from arboleda.model.messages import Heartbeat, Notice
 from arboleda.model.plant_model import Link, PlantModel
@@ -50,5 +50,5 @@ def test_a_command_goes_by_the_link_of_its_robot_and_a_notice_to_each_port_once(
 
 def test_a_command_that_nothing_can_send_is_not_sent(plant: PlantModel) -> None:
     router = Router(plant, {Link.MQTT: Port()})
-    with pytest.raises(NoWay, match=r"nothing in this process reaches oven \(link: driver\)"):
+    with pytest.raises(NoRoute, match=r"nothing in this process reaches oven \(link: driver\)"):
         router.send(halt("oven"))

@@ -16,13 +16,13 @@ from arboleda.app import config
 from arboleda.app.cli import main
 from arboleda.app.simulate import setting
 from arboleda.app.simulate.plants import Plant
-from arboleda.app.simulate.random_plants import Drawn
+from arboleda.app.simulate.random_plants import RandomPlants
 from arboleda.app.simulate.request import Request, shared
 from arboleda.model.plant_model import Evidence
 from arboleda.simulator import judged
 from arboleda.simulator.faults import KINDS
 from arboleda.simulator.invariants import Invariant
-from arboleda.simulator.invariants.invariant import Look, When, invariant
+from arboleda.simulator.invariants.invariant import Look, Trigger, invariant
 
 PLANT = """
 name: small
@@ -78,7 +78,7 @@ def arboleda(plant: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.Captur
 def brittle(arboleda: Arboleda, monkeypatch: pytest.MonkeyPatch) -> Invariant:
     """The one invariant, which a reboot breaks; it does nothing else."""
 
-    @invariant(When.ALWAYS)
+    @invariant(Trigger.ALWAYS)
     def unbooted(look: Look) -> Iterable[str]:
         """Nothing reboots, ever."""
         if hasattr(look.world, "rebooted"):
@@ -196,7 +196,7 @@ def test_until_failure_goes_on_until_something_breaks(arboleda: Arboleda) -> Non
 
 
 def test_an_exception_in_a_step_is_a_breach(arboleda: Arboleda, monkeypatch: pytest.MonkeyPatch) -> None:
-    @invariant(When.ALWAYS)
+    @invariant(Trigger.ALWAYS)
     def bad(look: Look) -> Iterable[str]:
         """It has a mistake."""
         raise KeyError("nobody")
@@ -373,7 +373,7 @@ def test_a_drawn_plant_is_shrunk_with_its_faults_and_replayed_from_the_file(
     arboleda: Arboleda, tmp_path: Path
 ) -> None:
     faults, out = tmp_path / "faults.json", tmp_path / "out.json"
-    seed = next(seed for seed in range(100) if _is_rich(Drawn().of(seed)))
+    seed = next(seed for seed in range(100) if _is_rich(RandomPlants().of(seed)))
     faults.write_text(json.dumps({"faults": [{"kind": "bridge_stall", "at": 1, "seconds": 0.1}, REBOOT]}))
     ended = arboleda("--drawn-plants", "--seed", seed, "--seeds", 1, "--faults", faults, "--json", out)
     assert ended.status == 1 and "1 of 2 faults is enough:" in ended.said

@@ -15,7 +15,7 @@ import pytest
 from arboleda.adapters.store import Store
 from arboleda.adapters.task_rows import TaskQuery
 from arboleda.app.parts import orchestrator
-from arboleda.app.parts.orchestrator import NotKept, Orchestrator
+from arboleda.app.parts.orchestrator import KeptStateUnknown, Orchestrator
 from arboleda.core import stop_lane
 from arboleda.core.leaving import StopLeft, ends_motion
 from arboleda.core.plant import Plant
@@ -385,7 +385,7 @@ def test_nobody_is_told_what_is_not_kept_yet(plant, gate, robots, store, monkeyp
     assert gate.reached.wait(SOON_S)
     assert states(plant, "a") == ("queued", ["queued"])
     assert all(robot["latched"] is False for robot in plant.snapshot()["robots"])
-    with pytest.raises(NotKept, match="ask again later"):
+    with pytest.raises(KeptStateUnknown, match="ask again later"):
         plant.find("of nobody")
     assert {row["state"] for each in views for row in each["tasks"]} == {"queued"}
     gate.open()

@@ -12,7 +12,7 @@ from arboleda.app import config
 from arboleda.app.cli import cli
 from arboleda.bt_xml import checking, leaves, reading
 from arboleda.bt_xml.findings import Findings
-from arboleda.bt_xml.nodes import Category, Way
+from arboleda.bt_xml.nodes import Category, PortDirection
 from arboleda.model.errors import ConfigError
 
 from .told import looked_at, tree
@@ -39,7 +39,7 @@ def mistakes(body: str, kinds: dict[str, leaves.Kind]) -> tuple[str, ...]:
 def test_verbs_questions_facts_and_targets_are_nodes_with_typed_ports(kinds: dict[str, leaves.Kind]) -> None:
     program = (kinds["mill_run"].ports or {})["program"]
     assert (program.type, program.words, program.is_needed) == ("int", ("1001", "1002"), True)
-    assert (kinds["camera_look"].ports or {})["answer"].way is Way.OUT
+    assert (kinds["camera_look"].ports or {})["answer"].way is PortDirection.OUT
     assert kinds["mill_says"].category is Category.CONDITION
     assert kinds["loader_visit"].category is Category.DECORATOR
     assert "vise" in (kinds["loader_go"].ports or {})["target"].words

@@ -5,7 +5,7 @@ from __future__ import annotations
 from arboleda.bt_xml import checking, reading
 from arboleda.bt_xml.findings import Findings
 from arboleda.bt_xml.forest import Forest
-from arboleda.bt_xml.reading import NotHere
+from arboleda.bt_xml.reading import MissingInclude
 from arboleda.model.errors import ConfigError
 
 HEAD = '<root BTCPP_format="4">'
@@ -16,7 +16,7 @@ def looked_at(text: str | bytes, **beside: str) -> tuple[Forest, Findings, list[
 
     def fetch(file: str, path: str, package: str) -> tuple[str, bytes]:
         if package:
-            raise NotHere((f"there is no package {package}",))
+            raise MissingInclude((f"there is no package {package}",))
         if path.removesuffix(".xml") not in beside:
             raise ConfigError((f"{path}: there is no such file",))
         return path, beside[path.removesuffix(".xml")].encode()

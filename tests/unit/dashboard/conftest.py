@@ -6,7 +6,7 @@ from typing import Any
 import pytest
 
 from arboleda.dashboard.faces import Face
-from arboleda.dashboard.page_state import Story
+from arboleda.dashboard.page_state import PageState
 from arboleda.testing import Rig, shipped
 from arboleda.views import view
 
@@ -22,9 +22,9 @@ class Told(Rig):
     """A plant whose story is told at every step, as the page's feed does."""
 
     def __init__(self, *, past_acts: Sequence[dict[str, Any]] = (), **changes: Any) -> None:
-        self.story: Story | None = None
+        self.story: PageState | None = None
         super().__init__(shipped(**changes))
-        self.story = Story(view.layout(self.plant.model), list(past_acts))
+        self.story = PageState(view.layout(self.plant.model), list(past_acts))
         self.wait(0.5)
 
     def _keep(self) -> None:

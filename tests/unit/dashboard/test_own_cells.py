@@ -8,7 +8,7 @@ from dataclasses import replace
 from arboleda.dashboard import page
 from arboleda.dashboard.faces import Face
 from arboleda.dashboard.faces.links import says
-from arboleda.dashboard.page_state import Story
+from arboleda.dashboard.page_state import PageState
 from arboleda.dashboard.shell import parts_of
 from arboleda.dashboard.wording import words
 from arboleda.model.messages import Event
@@ -25,7 +25,7 @@ class Told(Bench):
     """A bench whose story is told at every step, as the page's feed does."""
 
     def __init__(self, plant: PlantModel) -> None:
-        self.story = Story(view.layout(plant), [])
+        self.story = PageState(view.layout(plant), [])
         super().__init__(plant)
 
     def _pass(self, *events: Event) -> None:

@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 
 from arboleda.dashboard.faces import Face
-from arboleda.dashboard.page_state import Story
+from arboleda.dashboard.page_state import PageState
 from arboleda.dashboard.past.moments import address, moment_of
 from arboleda.dashboard.past.past import Past
 from arboleda.model.messages import Verb
@@ -40,9 +40,9 @@ class Recorded:
         self.seen = [(at, snapshot) for at, snapshot, _ in site.seen]
         self.past = Past(Views(reader.opened(site.files[0])), self.layout)
 
-    def stories(self) -> Iterator[tuple[int, Story]]:
+    def stories(self) -> Iterator[tuple[int, PageState]]:
         """At each moment the story of a page that saw everything; of snapshots in one ms after the last."""
-        story = Story(self.layout, [])
+        story = PageState(self.layout, [])
         for (at_ns, snapshot), (next_ns, _) in pairwise(self.seen):
             story.see(snapshot, at_ns / 1e9)
             if moment_of(at_ns / 1e9) < moment_of(next_ns / 1e9):

@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from arboleda.dashboard.past.frame_queue import Turns
+from arboleda.dashboard.past.frame_queue import FrameQueue
 from arboleda.dashboard.past.side import Start
 from arboleda.dashboard.past.stills import Stills
 from arboleda.dashboard.past.visitor import Arrival, Visitor
@@ -71,7 +71,7 @@ class Page:
     def __init__(self, **arrival: Any) -> None:
         self.past, self.client = FakePast(), Client()
         side: Any = SimpleNamespace(past=lambda epoch: self.past, starts=lambda: STARTS)
-        self.visitor = Visitor(self.client, side, Stills(), Turns(), words("en"), Arrival(**arrival))  # type: ignore[arg-type]
+        self.visitor = Visitor(self.client, side, Stills(), FrameQueue(), words("en"), Arrival(**arrival))  # type: ignore[arg-type]
         asyncio.run(self.visitor.come())
 
     def hear(self, *what: Any) -> None:

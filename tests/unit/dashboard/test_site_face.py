@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from arboleda.dashboard.site.face import face, whole_oee
-from arboleda.dashboard.site.side import PlantSeen
+from arboleda.dashboard.site.side import LastSeenPlant
 from arboleda.dashboard.wording import words
 from arboleda.model.sentence import OWN
 
@@ -16,9 +16,9 @@ def cell(state: str = "idle", **said: Any) -> dict[str, Any]:
     return {"name": "sis_a", "state": state, "not_ready": None, "held_by": None, "advice": [], **said}
 
 
-def plant(name: str, *cells: dict[str, Any], tasks: tuple[str, ...] = (), **more: Any) -> PlantSeen:
+def plant(name: str, *cells: dict[str, Any], tasks: tuple[str, ...] = (), **more: Any) -> LastSeenPlant:
     snapshot = {"cells": list(cells), "tasks": [{"state": each} for each in tasks]}
-    return PlantSeen(**{"name": name, "url": f"http://{name}:8080", "snapshot": snapshot, **more})
+    return LastSeenPlant(**{"name": name, "url": f"http://{name}:8080", "snapshot": snapshot, **more})
 
 
 def figures(oee: float | None, planned_s: float, done: int = 0, failed: int = 0) -> dict[str, Any]:

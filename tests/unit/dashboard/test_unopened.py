@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from arboleda.dashboard.page_budget import Unopened
+from arboleda.dashboard.page_budget import PageBudget
 
 
 class Page:
-    """A client of NiceGUI, as far as `Unopened` knows it."""
+    """A client of NiceGUI, as far as `PageBudget` knows it."""
 
     def __init__(self, id: str) -> None:
         self.id = id
@@ -28,7 +28,7 @@ class Page:
             each()
 
 
-def pages(unopened: Unopened, count: int) -> list[Page]:
+def pages(unopened: PageBudget, count: int) -> list[Page]:
     made = [Page(str(number)) for number in range(count)]
     for each in made:
         unopened.add(each)  # type: ignore[arg-type]
@@ -36,12 +36,12 @@ def pages(unopened: Unopened, count: int) -> list[Page]:
 
 
 def test_the_oldest_that_nobody_opened_go() -> None:
-    made = pages(Unopened(most=3), 5)
+    made = pages(PageBudget(most=3), 5)
     assert [page.deleted for page in made] == [True, True, False, False, False]
 
 
 def test_a_page_that_was_opened_stays_whatever_comes_after_it() -> None:
-    unopened = Unopened(most=3)
+    unopened = PageBudget(most=3)
     opened = Page("opened")
     unopened.add(opened)  # type: ignore[arg-type]
     opened.open()
@@ -50,7 +50,7 @@ def test_a_page_that_was_opened_stays_whatever_comes_after_it() -> None:
 
 
 def test_one_that_was_deleted_otherwise_counts_no_more() -> None:
-    unopened = Unopened(most=3)
+    unopened = PageBudget(most=3)
     gone = Page("gone")
     unopened.add(gone)  # type: ignore[arg-type]
     gone.delete()

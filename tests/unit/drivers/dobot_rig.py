@@ -10,7 +10,7 @@ from arboleda.drivers import MoveJoints, Report
 from arboleda.model.plant_model import Evidence, Link
 from arboleda.testing.plants import shipped
 from arboleda.virtual.dobot.faults import FAULTS
-from arboleda.virtual.dobot.loopback import Joined as Pair
+from arboleda.virtual.dobot.loopback import Loopback as Pair
 from arboleda.virtual.dobot.machine import VirtualDobot
 from arboleda.virtual.faults import Faults
 
@@ -20,7 +20,7 @@ GOAL = tuple(math.radians(each) for each in (10, 20, -30, 0, 5, 0))
 GO = MoveJoints(id="9-1", robot=ARM.name, q=GOAL)
 
 
-class Joined(Pair):
+class Loopback(Pair):
     """`reports` is all that the plant would hear."""
 
     def __init__(self, *on: str, enabled: bool = True) -> None:

@@ -7,7 +7,7 @@ import pytest
 from arboleda.drivers import MotionState, SetEffector, Stop, StopMode
 from arboleda.model.commands import Home
 
-from .dobot_rig import ARM, GO, GOAL, Joined
+from .dobot_rig import ARM, GO, GOAL, Loopback
 
 HALT = Stop(id="9-5", robot=ARM.name, mode=StopMode.HALT)
 LATCH = Stop(id="9-6", robot=ARM.name, mode=StopMode.LATCH)
@@ -16,13 +16,13 @@ READY = Home(id="9-2", robot=ARM.name)
 GRIP = SetEffector(id="9-3", robot=ARM.name, on=True)
 
 
-def up(*faults: str, enabled: bool = True) -> Joined:
-    joined = Joined(*faults, enabled=enabled)
+def up(*faults: str, enabled: bool = True) -> Loopback:
+    joined = Loopback(*faults, enabled=enabled)
     joined.wait(0.5)
     return joined
 
 
-def moving(*faults: str) -> Joined:
+def moving(*faults: str) -> Loopback:
     """An arm that is on its way, before half of it."""
     joined = up(*faults)
     assert joined.ask(GO) is None
@@ -142,7 +142,7 @@ def test_clearing_clears_the_alarms_of_the_controller() -> None:
 
 
 def test_getting_ready_powers_and_enables_the_arm() -> None:
-    joined = Joined("power_off", enabled=False)
+    joined = Loopback("power_off", enabled=False)
     joined.wait(0.5)
     assert (joined.last.state, joined.last.homed) == (MotionState.NOT_HOMED, False)
     joined.faults.switch("power_off", on=False)
@@ -218,7 +218,7 @@ def test_a_paused_arm_counts_as_moving() -> None:
 
 
 def test_nothing_leaves_without_a_connection() -> None:
-    joined = Joined("power_cycle")
+    joined = Loopback("power_cycle")
     joined.wait(0.1)
     assert joined.ask(GO) == "dobot is not connected"
 

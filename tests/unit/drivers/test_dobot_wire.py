@@ -7,7 +7,7 @@ import random
 import pytest
 
 from arboleda.drivers.dobot.frames import SIZE, Feedback, FrameReader, Mode, unpacked
-from arboleda.drivers.dobot.replies import LONGEST, Nonsense, ReplyReader
+from arboleda.drivers.dobot.replies import LONGEST, NotAReply, ReplyReader
 
 FRAME = Feedback(
     mode=Mode.RUNNING,
@@ -77,5 +77,5 @@ def test_a_controller_that_is_not_in_tcp_mode_says_so_in_its_own_way() -> None:
 
 @pytest.mark.parametrize("data", [b"oops;", b"0,{oops;", b"x" * (LONGEST + 1), b"\xff\xfe;"])
 def test_nonsense_is_no_reply(data: bytes) -> None:
-    with pytest.raises(Nonsense):
+    with pytest.raises(NotAReply):
         ReplyReader().feed(data)

@@ -11,18 +11,18 @@ from arboleda.drivers import MotionState, Report, Stop, StopMode
 from arboleda.drivers.gripper_command.machine import Width, machine
 from arboleda.drivers.gripper_command.settings import Settings
 from arboleda.drivers.ros_action.events import (
-    Answered,
-    Asked,
     CancelAll,
-    CancelAnswered,
-    Ended,
+    CancelAnswer,
+    CommandRequest,
     Event,
-    Found,
+    GoalAnswer,
+    GoalResult,
     Message,
     SendGoal,
+    ServersFound,
     Status,
 )
-from arboleda.drivers.ros_action.joints import JointsSeen
+from arboleda.drivers.ros_action.joints import JointStateEvent
 from arboleda.kinds.declared import Device
 from arboleda.kinds.gripper import GripperSettings, gripper
 from arboleda.model.commands import Command
@@ -47,7 +47,7 @@ def told(id: str, verb: str, **values: Any) -> Command:
 
 
 CLOSE, OPEN = told("9-1", "close", width_mm=10.0, force_n=30.0), told("9-2", "open")
-STALLED = Ended(id=CLOSE.id, status=Status.ABORTED, stalled=True)
+STALLED = GoalResult(id=CLOSE.id, status=Status.ABORTED, stalled=True)
 
 
 class Rig:
@@ -65,8 +65,8 @@ class Rig:
             self.now += 0.05
             stamp = (int(self.now * 1000), 0)
             position = self.settings.position(self.mm)
-            self.tell(Found(servers=(7,)))
-            self.tell(JointsSeen(names=("finger_joint",), positions=(position,), stamp=stamp))
+            self.tell(ServersFound(servers=(7,)))
+            self.tell(JointStateEvent(names=("finger_joint",), positions=(position,), stamp=stamp))
 
     def tell(self, *events: Event) -> list[Message]:
         news = self.machine.step(self.now, events)
@@ -74,13 +74,13 @@ class Rig:
         return news
 
     def ask(self, command: Command) -> list[Message]:
-        return self.tell(Asked(command=command))
+        return self.tell(CommandRequest(command=command))
 
     def under_way(self, command: Command) -> None:
         self.ask(command)
-        self.tell(Answered(id=command.id, accepted=True))
+        self.tell(GoalAnswer(id=command.id, accepted=True))
 
-    def grip(self, end: Ended = STALLED, at_mm: float = PART_MM) -> None:
+    def grip(self, end: GoalResult = STALLED, at_mm: float = PART_MM) -> None:
         """It closes, comes to rest there, and the server says that end of it."""
         self.under_way(CLOSE)
         self.mm = at_mm
@@ -117,7 +117,7 @@ def test_fingers_that_rest_before_their_width_have_a_part_however_the_goal_ends(
 
 
 def test_fingers_that_come_to_their_width_have_none(rig: Rig) -> None:
-    rig.grip(Ended(id=CLOSE.id, status=Status.SUCCEEDED), at_mm=10)
+    rig.grip(GoalResult(id=CLOSE.id, status=Status.SUCCEEDED), at_mm=10)
     assert (rig.gripped, rig.last.failed, rig.last.failure) == (False, CLOSE.id, "nothing_gripped")
 
 
@@ -154,7 +154,7 @@ def test_whether_there_is_a_part_is_not_said_while_it_opens(rig: Rig) -> None:
     rig.wait(0.5)
     assert rig.gripped is None
     rig.mm = OPEN_MM
-    rig.tell(Ended(id=OPEN.id, status=Status.SUCCEEDED))
+    rig.tell(GoalResult(id=OPEN.id, status=Status.SUCCEEDED))
     rig.wait(0.1)
     assert (rig.gripped, rig.last.done) == (False, OPEN.id)
 
@@ -167,7 +167,7 @@ def test_an_opening_that_ends_elsewhere_fails(rig: Rig) -> None:
     rig.grip()
     rig.under_way(OPEN)
     rig.mm = 60
-    rig.tell(Ended(id=OPEN.id, status=Status.SUCCEEDED))
+    rig.tell(GoalResult(id=OPEN.id, status=Status.SUCCEEDED))
     rig.wait(0.5)
     assert (rig.last.failed, rig.last.failure, rig.gripped) == (OPEN.id, "width_not_reached", None)
 
@@ -182,7 +182,7 @@ def test_a_new_goal_takes_the_place_of_one_that_does_not_end(rig: Rig) -> None:
     rig.under_way(CLOSE)
     assert any(isinstance(each, SendGoal) and each.id == OPEN.id for each in rig.ask(OPEN))
     assert (rig.last.failed, rig.last.failure) == (CLOSE.id, "replaced_by_the_next")
-    rig.tell(Answered(id=OPEN.id, accepted=True), Ended(id=CLOSE.id, status=Status.CANCELED))
+    rig.tell(GoalAnswer(id=OPEN.id, accepted=True), GoalResult(id=CLOSE.id, status=Status.CANCELED))
     assert rig.last.accepted == OPEN.id and rig.last.failed == CLOSE.id
 
 
@@ -192,7 +192,7 @@ def test_a_goal_that_does_not_end_in_its_time_is_given_up_and_cancelled(rig: Rig
     rig.wait(5.6)
     assert (rig.last.failed, rig.last.failure) == (OPEN.id, "not_ended")
     assert CancelAll() in rig.said and rig.last.state is MotionState.MOVING
-    rig.tell(CancelAnswered(refused=False))
+    rig.tell(CancelAnswer(refused=False))
     rig.wait(0.1)
     assert (rig.last.state, rig.gripped) == (MotionState.STOPPED, None)
 
@@ -202,7 +202,7 @@ def test_after_a_stop_under_way_nobody_knows_whether_there_is_a_part(rig: Rig) -
     rig.mm = 60
     rig.wait(0.2)
     assert CancelAll() in rig.ask(HALT)
-    rig.tell(CancelAnswered(refused=False), Ended(id=CLOSE.id, status=Status.CANCELED))
+    rig.tell(CancelAnswer(refused=False), GoalResult(id=CLOSE.id, status=Status.CANCELED))
     rig.wait(0.5)
     assert (rig.gripped, rig.last.state) == (None, MotionState.STOPPED)
 
@@ -210,7 +210,7 @@ def test_after_a_stop_under_way_nobody_knows_whether_there_is_a_part(rig: Rig) -
 def test_a_goal_that_is_refused_changes_nothing(rig: Rig) -> None:
     rig.grip()
     rig.ask(OPEN)
-    rig.tell(Answered(id=OPEN.id, accepted=False))
+    rig.tell(GoalAnswer(id=OPEN.id, accepted=False))
     assert (rig.last.rejected, rig.last.refusal, rig.gripped) == (OPEN.id, "goal_refused", True)
 
 

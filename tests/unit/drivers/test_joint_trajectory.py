@@ -11,20 +11,20 @@ from arboleda.drivers import Home, MotionState, MoveJoints, Report, SetEffector,
 from arboleda.drivers.joint_trajectory.machine import machine
 from arboleda.drivers.joint_trajectory.settings import Settings
 from arboleda.drivers.ros_action.events import (
-    Answered,
-    Asked,
     CancelAll,
-    CancelAnswered,
-    Ended,
+    CancelAnswer,
+    CommandNotSent,
+    CommandRequest,
     Event,
-    Found,
+    GoalAnswer,
+    GoalResult,
     Message,
     SendGoal,
+    ServersFound,
     Status,
-    Unsent,
-    Untaken,
+    UnusableMessage,
 )
-from arboleda.drivers.ros_action.joints import JointsSeen
+from arboleda.drivers.ros_action.joints import JointStateEvent
 from arboleda.model.plant_model import Evidence, Link
 from arboleda.testing.plants import shipped
 
@@ -53,12 +53,12 @@ class Rig:
         end = self.now + s
         while self.now < end:
             self.now += 0.05
-            self.tell(Found(servers=self.servers))
+            self.tell(ServersFound(servers=self.servers))
             if self.q is not None:
                 self.tell(self.joints(self.q))
 
-    def joints(self, q: tuple[float, ...]) -> JointsSeen:
-        return JointsSeen(names=NAMES, positions=q, stamp=(int(self.now * 1000), 0))
+    def joints(self, q: tuple[float, ...]) -> JointStateEvent:
+        return JointStateEvent(names=NAMES, positions=q, stamp=(int(self.now * 1000), 0))
 
     def tell(self, *events: Event) -> list[Message]:
         news = self.machine.step(self.now, events)
@@ -66,11 +66,11 @@ class Rig:
         return news
 
     def ask(self, command: MoveJoints | Stop | Home | SetEffector) -> list[Message]:
-        return self.tell(Asked(command=command))
+        return self.tell(CommandRequest(command=command))
 
     def under_way(self) -> None:
         self.ask(GO)
-        self.tell(Answered(id=GO.id, accepted=True))
+        self.tell(GoalAnswer(id=GO.id, accepted=True))
 
     @property
     def last(self) -> Report:
@@ -98,7 +98,7 @@ def test_it_is_done_once_the_result_and_later_joints_say_so(rig: Rig) -> None:
     rig.q = GOAL
     rig.wait(0.5)
     assert (rig.last.accepted, rig.last.done, rig.last.state) == (GO.id, None, MotionState.MOVING)
-    rig.tell(Ended(id=GO.id, status=Status.SUCCEEDED))
+    rig.tell(GoalResult(id=GO.id, status=Status.SUCCEEDED))
     assert rig.last.done is None
     rig.wait(0.05)
     assert (rig.last.done, rig.last.q) == (GO.id, GOAL)
@@ -106,7 +106,7 @@ def test_it_is_done_once_the_result_and_later_joints_say_so(rig: Rig) -> None:
 
 def test_a_server_that_lies_is_not_believed_while_the_arm_moves(rig: Rig) -> None:
     rig.under_way()
-    rig.tell(Ended(id=GO.id, status=Status.SUCCEEDED))
+    rig.tell(GoalResult(id=GO.id, status=Status.SUCCEEDED))
     for step in range(10):
         rig.q = (0.01 * step, *ZERO[1:])
         rig.wait(0.1)
@@ -119,13 +119,16 @@ def test_a_server_that_lies_is_not_believed_while_the_arm_moves(rig: Rig) -> Non
 @pytest.mark.parametrize(
     ("end", "failure"),
     [
-        (Ended(id=GO.id, status=Status.ABORTED, error=-4, text="elbow"), "path_tolerance_violated elbow"),
-        (Ended(id=GO.id, status=Status.ABORTED), "aborted"),
-        (Ended(id=GO.id, status=Status.SUCCEEDED, error=-5), "goal_tolerance_violated"),
-        (Ended(id=GO.id, status=Status.CANCELED), "cancelled_by_another_client"),
+        (
+            GoalResult(id=GO.id, status=Status.ABORTED, error=-4, text="elbow"),
+            "path_tolerance_violated elbow",
+        ),
+        (GoalResult(id=GO.id, status=Status.ABORTED), "aborted"),
+        (GoalResult(id=GO.id, status=Status.SUCCEEDED, error=-5), "goal_tolerance_violated"),
+        (GoalResult(id=GO.id, status=Status.CANCELED), "cancelled_by_another_client"),
     ],
 )
-def test_any_other_end_is_a_failure_with_its_word(rig: Rig, end: Ended, failure: str) -> None:
+def test_any_other_end_is_a_failure_with_its_word(rig: Rig, end: GoalResult, failure: str) -> None:
     rig.under_way()
     rig.tell(end)
     assert (rig.last.failed, rig.last.failure, rig.last.done) == (GO.id, failure, None)
@@ -133,7 +136,7 @@ def test_any_other_end_is_a_failure_with_its_word(rig: Rig, end: Ended, failure:
 
 def test_a_goal_that_is_refused_is_rejected(rig: Rig) -> None:
     rig.ask(GO)
-    rig.tell(Answered(id=GO.id, accepted=False))
+    rig.tell(GoalAnswer(id=GO.id, accepted=False))
     assert (rig.last.rejected, rig.last.refusal) == (GO.id, "goal_refused")
 
 
@@ -146,7 +149,7 @@ def test_a_second_goal_is_refused_while_one_is_open(rig: Rig) -> None:
 
 def test_the_end_of_another_goal_ends_none(rig: Rig) -> None:
     rig.under_way()
-    rig.tell(Ended(id="8-1", status=Status.SUCCEEDED))
+    rig.tell(GoalResult(id="8-1", status=Status.SUCCEEDED))
     rig.q = GOAL
     rig.wait(1)
     assert rig.last.done is None
@@ -155,10 +158,10 @@ def test_the_end_of_another_goal_ends_none(rig: Rig) -> None:
 def test_a_goal_that_is_stopped_before_it_is_accepted_is_cancelled_again_after(rig: Rig) -> None:
     rig.ask(GO)
     assert CancelAll() in rig.ask(HALT)
-    rig.tell(CancelAnswered(refused=False))
-    assert CancelAll() in rig.tell(Answered(id=GO.id, accepted=True))
+    rig.tell(CancelAnswer(refused=False))
+    assert CancelAll() in rig.tell(GoalAnswer(id=GO.id, accepted=True))
     assert rig.last.accepted == HALT.id and rig.last.state is MotionState.MOVING
-    rig.tell(CancelAnswered(refused=False), Ended(id=GO.id, status=Status.CANCELED))
+    rig.tell(CancelAnswer(refused=False), GoalResult(id=GO.id, status=Status.CANCELED))
     assert (rig.last.state, rig.last.done, rig.last.failed) == (MotionState.STOPPED, None, None)
 
 
@@ -166,13 +169,13 @@ def test_a_goal_accepted_after_it_was_given_up_is_cancelled(rig: Rig) -> None:
     rig.ask(GO)
     rig.wait(2.1)
     assert rig.last.failure == "goal_not_answered"
-    assert CancelAll() in rig.tell(Answered(id=GO.id, accepted=True))
+    assert CancelAll() in rig.tell(GoalAnswer(id=GO.id, accepted=True))
 
 
 def test_a_stop_that_is_refused_is_said_and_asked_for_again(rig: Rig) -> None:
     rig.under_way()
     rig.ask(HALT)
-    rig.tell(CancelAnswered(refused=True))
+    rig.tell(CancelAnswer(refused=True))
     assert (rig.last.rejected, rig.last.refusal) == (HALT.id, "cancel_refused")
     rig.wait(2.1)
     assert rig.count(CancelAll) == 2 and rig.last.state is MotionState.MOVING
@@ -187,7 +190,7 @@ def test_a_stop_that_is_not_answered_is_asked_for_again(rig: Rig) -> None:
 def test_a_stopped_goal_without_a_result_is_over_once_the_arm_rests(rig: Rig) -> None:
     rig.under_way()
     rig.ask(HALT)
-    rig.tell(CancelAnswered(refused=False))
+    rig.tell(CancelAnswer(refused=False))
     rig.wait(1)
     assert rig.last.state is MotionState.MOVING
     rig.wait(2)
@@ -196,7 +199,7 @@ def test_a_stopped_goal_without_a_result_is_over_once_the_arm_rests(rig: Rig) ->
 
 def test_a_latch_shows_until_it_is_cleared(rig: Rig) -> None:
     rig.ask(replace(HALT, mode=StopMode.LATCH))
-    rig.tell(CancelAnswered(refused=False))
+    rig.tell(CancelAnswer(refused=False))
     assert rig.last.state is MotionState.STOP_LATCHED
     rig.ask(replace(HALT, id="9-4", mode=StopMode.CLEAR))
     assert (rig.last.accepted, rig.last.state) == ("9-4", MotionState.STOPPED)
@@ -220,7 +223,7 @@ def test_a_server_that_vanishes_or_has_a_double_is_no_link(
     rig.servers = servers
     rig.wait(1.2)
     assert rig.last.state is MotionState.NO_LINK and why in str(rig.last.lost)
-    assert isinstance(rig.ask(AGAIN)[0], Unsent)
+    assert isinstance(rig.ask(AGAIN)[0], CommandNotSent)
 
 
 def test_joints_that_fall_silent_are_no_link_and_the_goal_is_cancelled_on_return(rig: Rig) -> None:
@@ -235,7 +238,7 @@ def test_joints_that_fall_silent_are_no_link_and_the_goal_is_cancelled_on_return
 
 def test_a_server_that_knows_no_such_goal_has_lost_it_where_no_other_is_found(rig: Rig) -> None:
     rig.under_way()
-    rig.tell(Ended(id=GO.id, status=Status.UNKNOWN))
+    rig.tell(GoalResult(id=GO.id, status=Status.UNKNOWN))
     rig.wait(0.9)
     assert (rig.last.failed, rig.last.state) == (None, MotionState.MOVING)
     rig.wait(0.2)
@@ -245,7 +248,7 @@ def test_a_server_that_knows_no_such_goal_has_lost_it_where_no_other_is_found(ri
 def test_a_server_that_knows_no_such_goal_and_is_another_one_is_a_boot(rig: Rig) -> None:
     """Asked for the end of a goal, a server that was started anew may answer before it is looked for."""
     rig.under_way()
-    rig.tell(Ended(id=GO.id, status=Status.UNKNOWN))
+    rig.tell(GoalResult(id=GO.id, status=Status.UNKNOWN))
     rig.servers = (SERVER + 1,)
     rig.wait(2)
     assert (rig.last.boot_id, rig.last.failed, rig.last.state) == (SERVER + 1, None, MotionState.STOPPED)
@@ -263,13 +266,13 @@ def test_a_server_that_is_started_anew_is_a_boot_and_knows_no_goal(rig: Rig) -> 
 @pytest.mark.parametrize(
     "seen",
     [
-        JointsSeen(names=NAMES[:5], positions=ZERO[:5], stamp=(1, 0)),
-        JointsSeen(names=NAMES, positions=ZERO[:5], stamp=(1, 0)),
-        JointsSeen(names=NAMES, positions=(math.nan, *ZERO[1:]), stamp=(1, 0)),
-        JointsSeen(names=(), positions=(), stamp=(1, 0)),
+        JointStateEvent(names=NAMES[:5], positions=ZERO[:5], stamp=(1, 0)),
+        JointStateEvent(names=NAMES, positions=ZERO[:5], stamp=(1, 0)),
+        JointStateEvent(names=NAMES, positions=(math.nan, *ZERO[1:]), stamp=(1, 0)),
+        JointStateEvent(names=(), positions=(), stamp=(1, 0)),
     ],
 )
-def test_a_joint_state_that_cannot_be_the_arms_changes_nothing(rig: Rig, seen: JointsSeen) -> None:
+def test_a_joint_state_that_cannot_be_the_arms_changes_nothing(rig: Rig, seen: JointStateEvent) -> None:
     rig.q = None
     for _ in range(12):
         rig.wait(0.1)
@@ -288,7 +291,7 @@ def test_a_joint_state_that_is_repeated_with_its_stamp_is_no_news(rig: Rig) -> N
 
 def test_joints_in_another_order_and_among_others_are_found(rig: Rig) -> None:
     names, q = ("gripper", *reversed(NAMES)), (9.0, *reversed(GOAL))
-    rig.tell(JointsSeen(names=names, positions=q, stamp=(1, 0)))
+    rig.tell(JointStateEvent(names=names, positions=q, stamp=(1, 0)))
     rig.q = None
     rig.wait(0.15)
     assert rig.last.q == GOAL
@@ -303,7 +306,7 @@ def test_home_is_done_with_the_next_joints(rig: Rig) -> None:
 
 def test_an_effector_is_not_what_it_moves(rig: Rig) -> None:
     news = rig.ask(SetEffector(id="9-6", robot=ARM.name, on=True))
-    assert "no word for SetEffector" in next(each.why for each in news if isinstance(each, Unsent))
+    assert "no word for SetEffector" in next(each.why for each in news if isinstance(each, CommandNotSent))
 
 
 def test_settings_that_do_not_fit_are_said() -> None:
@@ -315,9 +318,9 @@ def test_settings_that_do_not_fit_are_said() -> None:
 
 def test_what_cannot_be_taken_has_lost_the_goal_which_is_cancelled(rig: Rig) -> None:
     rig.under_way()
-    said = rig.tell(Untaken(why="it has said what cannot be taken, 7 (TypeError: no joints)"))
+    said = rig.tell(UnusableMessage(why="it has said what cannot be taken, 7 (TypeError: no joints)"))
     assert str(said[0].lost) == "it has said what cannot be taken, 7 (TypeError: no joints)"  # type: ignore[union-attr]
     assert rig.count(CancelAll) == 1
-    rig.tell(Ended(id=GO.id, status=Status.SUCCEEDED))
+    rig.tell(GoalResult(id=GO.id, status=Status.SUCCEEDED))
     rig.wait(0.5)
     assert rig.last.done is None

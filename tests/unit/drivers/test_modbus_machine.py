@@ -9,10 +9,10 @@ import pytest
 
 from arboleda.app.config import load
 from arboleda.drivers import MotionState, NotSent, Stop, StopMode
-from arboleda.drivers.modbus.machine import Block, ModbusDevice, Put, Raw, blocks, joined
+from arboleda.drivers.modbus.machine import Block, ModbusDevice, Raw, WriteRequest, blocks, joined
 from arboleda.drivers.modbus.registers import Register
 from arboleda.drivers.modbus.settings import Settings
-from arboleda.drivers.plc.plc_snapshot import Unreadable
+from arboleda.drivers.plc.plc_snapshot import UnreadableValue
 from arboleda.kinds.declared import Device
 from arboleda.model.commands import Command
 
@@ -46,12 +46,12 @@ def told(belt: Device, verb: str, id: str = "c1", **values: object) -> Command:
 
 def test_a_verb_its_values_and_its_number_leave_in_one_request(belt: Device, machine: ModbusDevice) -> None:
     puts = machine.order(told(belt, "advance", to="exit", speed_mm_s=200))
-    assert puts == (Put(table="holding", address=0, values=(2, 2, 200, 1)),)
+    assert puts == (WriteRequest(table="holding", address=0, values=(2, 2, 200, 1)),)
 
 
 def test_the_number_is_written_last(belt: Device, machine: ModbusDevice) -> None:
     *_, last = machine.order(told(belt, "load"))
-    assert last == Put(table="holding", address=3, values=(1,))
+    assert last == WriteRequest(table="holding", address=3, values=(1,))
 
 
 def test_accepted_and_done_name_the_command(belt: Device, machine: ModbusDevice) -> None:
@@ -84,24 +84,24 @@ def test_a_query_is_answered_with_its_number(belt: Device, machine: ModbusDevice
 
 
 def test_a_value_without_a_word_is_no_report(machine: ModbusDevice) -> None:
-    with pytest.raises(Unreadable, match="input 10 is 77, for which there is no word"):
+    with pytest.raises(UnreadableValue, match="input 10 is 77, for which there is no word"):
         machine.report(5.0, shown(i10=77))
 
 
 def test_a_program_that_stands_still_is_noticed(machine: ModbusDevice) -> None:
     machine.report(5.0, shown(i1=3))
     machine.report(5.9, shown(i1=3))
-    with pytest.raises(Unreadable, match="the program of the PLC stands still: input 1 is 3 for 1 s"):
+    with pytest.raises(UnreadableValue, match="the program of the PLC stands still: input 1 is 3 for 1 s"):
         machine.report(6.1, shown(i1=3))
 
 
 def test_stops_have_writes_of_their_own(machine: ModbusDevice) -> None:
-    def stop(mode: StopMode) -> tuple[Put, ...]:
+    def stop(mode: StopMode) -> tuple[WriteRequest, ...]:
         return machine.order(Stop(id="s", robot="belt", mode=mode))
 
-    assert stop(StopMode.HALT) == (Put(table="coil", address=0, values=(1,)),)
-    assert stop(StopMode.LATCH) == (Put(table="coil", address=1, values=(1,)),)
-    assert stop(StopMode.CLEAR) == (Put(table="coil", address=1, values=(0,)),)
+    assert stop(StopMode.HALT) == (WriteRequest(table="coil", address=0, values=(1,)),)
+    assert stop(StopMode.LATCH) == (WriteRequest(table="coil", address=1, values=(1,)),)
+    assert stop(StopMode.CLEAR) == (WriteRequest(table="coil", address=1, values=(0,)),)
 
 
 def test_what_the_mapping_does_not_know_is_not_sent(machine: ModbusDevice) -> None:
@@ -124,7 +124,10 @@ def test_what_says_that_it_is_done_is_read_before_the_facts(machine: ModbusDevic
 
 
 def test_writes_keep_their_order() -> None:
-    first, second = Put(table="holding", address=5, values=(1,)), Put(table="holding", address=4, values=(2,))
+    first, second = (
+        WriteRequest(table="holding", address=5, values=(1,)),
+        WriteRequest(table="holding", address=4, values=(2,)),
+    )
     assert joined([first, second]) == (first, second)
 
 
@@ -132,7 +135,7 @@ def test_without_numbers_facts_and_state_are_all_that_is_said(belt: Device) -> N
     assert belt.driver is not None and isinstance(belt.driver.settings, Settings)
     plain = ModbusDevice(belt, replace(belt.driver.settings, sequence=None))
     plain.begin(shown())
-    assert plain.order(told(belt, "load")) == (Put(table="holding", address=0, values=(1,)),)
+    assert plain.order(told(belt, "load")) == (WriteRequest(table="holding", address=0, values=(1,)),)
     report = plain.report(5.0, shown(i2=1, i3=1, i4=1, i10=1))
     assert (report.state, report.fact("part_at")) == (MotionState.MOVING, "entry")
     assert (report.accepted, report.done, report.rejected, report.failed) == (None, None, None, None)

@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 from arboleda.drivers.modbus.registers import Register, Write
-from arboleda.drivers.plc.plc_snapshot import Unreadable
+from arboleda.drivers.plc.plc_snapshot import UnreadableValue
 from arboleda.drivers.port import DriverError
 
 ONE_OF = "needs exactly one of coil, discrete, holding, input with its address, has "
@@ -53,7 +53,7 @@ def test_a_bit_of_a_register_is_read() -> None:
     ],
 )
 def test_what_has_no_meaning_is_unreadable(place: Register, raw: tuple[int, ...], of: type, why: str) -> None:
-    with pytest.raises(Unreadable) as raised:
+    with pytest.raises(UnreadableValue) as raised:
         place.read(raw, of)
     assert str(raised.value) == why
 

@@ -8,22 +8,22 @@ from dataclasses import replace
 import pytest
 
 from arboleda.drivers import FollowPath, Home, MotionState, MoveJoints, Report, Stop, StopMode
-from arboleda.drivers.nav2.localisation import Counted, Localised
+from arboleda.drivers.nav2.localisation import MapPose, OdometryPose
 from arboleda.drivers.nav2.machine import Route, to_pose, waypoints
 from arboleda.drivers.nav2.pose import Pose
 from arboleda.drivers.nav2.settings import ToPose, Waypoints
 from arboleda.drivers.ros_action.events import (
-    Answered,
-    Asked,
     CancelAll,
-    CancelAnswered,
-    Ended,
+    CancelAnswer,
+    CommandNotSent,
+    CommandRequest,
     Event,
-    Found,
+    GoalAnswer,
+    GoalResult,
     Message,
     SendGoal,
+    ServersFound,
     Status,
-    Unsent,
 )
 from arboleda.drivers.ros_action.machine import Machine
 from arboleda.kinds.floor import Placement
@@ -70,16 +70,16 @@ class Rig:
         end = self.now + s
         while self.now < end:
             self.now += 0.05
-            self.tell(Found(servers=(7,)))
+            self.tell(ServersFound(servers=(7,)))
             if self.counts:
-                self.tell(Counted(stamp=self.stamp, pose=self.odom_of_map @ self.at))
+                self.tell(OdometryPose(stamp=self.stamp, pose=self.odom_of_map @ self.at))
 
     @property
     def stamp(self) -> tuple[int, int]:
         return (int(self.now), int(self.now % 1 * 1e9))
 
     def localise(self) -> None:
-        self.tell(Localised(stamp=self.stamp, pose=self.at))
+        self.tell(MapPose(stamp=self.stamp, pose=self.at))
 
     def tell(self, *events: Event) -> list[Message]:
         news = self.machine.step(self.now, events)
@@ -87,7 +87,7 @@ class Rig:
         return news
 
     def ask(self, command: Command) -> list[Message]:
-        return self.tell(Asked(command=command))
+        return self.tell(CommandRequest(command=command))
 
     def sent(self) -> list[SendGoal]:
         return [each for each in self.said if isinstance(each, SendGoal)]
@@ -95,11 +95,11 @@ class Rig:
     def drives(self, node: float, status: Status = Status.SUCCEEDED) -> None:
         """The server has accepted the last goal, drives there, and ends it."""
         id = self.sent()[-1].id
-        self.tell(Answered(id=id, accepted=True))
+        self.tell(GoalAnswer(id=id, accepted=True))
         self.at = on_map(node)
         self.wait(0.1)
         self.localise()
-        self.tell(Ended(id=id, status=status))
+        self.tell(GoalResult(id=id, status=status))
         self.wait(0.1)
 
     @property
@@ -162,7 +162,7 @@ def test_a_success_on_another_node_is_compared_by_the_plant(rig: Rig) -> None:
 
 def test_a_base_that_drives_on_after_its_success_is_moving(rig: Rig) -> None:
     rig.ask(FollowPath(id="9-2", robot="cart", nodes=(1,)))
-    rig.tell(Answered(id="9-2", accepted=True), Ended(id="9-2", status=Status.SUCCEEDED))
+    rig.tell(GoalAnswer(id="9-2", accepted=True), GoalResult(id="9-2", status=Status.SUCCEEDED))
     for step in range(9):
         rig.at = on_map(step / 10)
         rig.wait(0.1)
@@ -171,9 +171,9 @@ def test_a_base_that_drives_on_after_its_success_is_moving(rig: Rig) -> None:
 
 def test_a_way_that_is_halted_between_two_nodes_goes_no_further(rig: Rig) -> None:
     rig.ask(WAY)
-    rig.tell(Answered(id=WAY.id, accepted=True))
+    rig.tell(GoalAnswer(id=WAY.id, accepted=True))
     assert CancelAll() in rig.ask(HALT)
-    rig.tell(CancelAnswered(refused=False), Ended(id=WAY.id, status=Status.CANCELED))
+    rig.tell(CancelAnswer(refused=False), GoalResult(id=WAY.id, status=Status.CANCELED))
     rig.wait(1)
     assert len(rig.sent()) == 1 and rig.last.state is MotionState.STOPPED
 
@@ -183,30 +183,30 @@ def test_waypoints_are_one_goal_and_a_missed_one_is_a_failure() -> None:
     rig.ask(WAY)
     goal: Route = rig.sent()[0].goal
     assert goal.nodes == (1, 4) and len(goal.poses) == 2
-    rig.tell(Answered(id=WAY.id, accepted=True))
+    rig.tell(GoalAnswer(id=WAY.id, accepted=True))
     rig.at = on_map(4)
-    rig.tell(Ended(id=WAY.id, status=Status.SUCCEEDED, missed=(0,)))
+    rig.tell(GoalResult(id=WAY.id, status=Status.SUCCEEDED, missed=(0,)))
     assert (rig.last.failed, rig.last.failure) == (WAY.id, "missed_waypoints node 1")
 
 
 def test_an_error_of_nav2_is_said_with_its_text(rig: Rig) -> None:
     rig.ask(WAY)
     id = rig.sent()[-1].id
-    rig.tell(Ended(id=id, status=Status.ABORTED, error=208, text="no valid path"))
+    rig.tell(GoalResult(id=id, status=Status.ABORTED, error=208, text="no valid path"))
     assert rig.last.failure == "error 208 no valid path"
 
 
 def test_without_localisation_it_is_nowhere() -> None:
     machine = to_pose([CART], SETTINGS)
-    said = machine.step(100.0, [Found(servers=(7,)), Counted(stamp=(1, 0), pose=BEGAN)])
+    said = machine.step(100.0, [ServersFound(servers=(7,)), OdometryPose(stamp=(1, 0), pose=BEGAN)])
     lost = [each.lost for each in said if isinstance(each, Report)]
     assert "amcl_pose has not said yet where the base is" in str(lost[0])
 
 
 def test_localisation_that_was_there_before_counts_from_the_first_odometry() -> None:
     machine = to_pose([CART], SETTINGS)
-    early = Localised(stamp=(50, 0), pose=on_map(4))
-    said = machine.step(100.0, [Found(servers=(7,)), early, Counted(stamp=(99, 0), pose=BEGAN)])
+    early = MapPose(stamp=(50, 0), pose=on_map(4))
+    said = machine.step(100.0, [ServersFound(servers=(7,)), early, OdometryPose(stamp=(99, 0), pose=BEGAN)])
     assert [each.node for each in said if isinstance(each, Report)] == [4]
 
 
@@ -224,7 +224,7 @@ def test_too_far_without_a_word_of_localisation_is_lost(rig: Rig) -> None:
         rig.at = replace(on_map(0), x=9.0 - step / 10)
         rig.wait(0.1)
     assert "amcl_pose has said nothing new over 2 m of way" in str(rig.last.lost)
-    assert isinstance(rig.ask(WAY)[0], Unsent)
+    assert isinstance(rig.ask(WAY)[0], CommandNotSent)
     rig.localise()
     rig.wait(0.1)
     assert rig.last.state is not MotionState.NO_LINK
@@ -232,7 +232,7 @@ def test_too_far_without_a_word_of_localisation_is_lost(rig: Rig) -> None:
 
 def test_odometry_that_is_silent_or_repeats_itself_is_lost(rig: Rig) -> None:
     rig.counts = False
-    same = Counted(stamp=rig.stamp, pose=BEGAN)
+    same = OdometryPose(stamp=rig.stamp, pose=BEGAN)
     for _ in range(12):
         rig.wait(0.1)
         rig.tell(same)
@@ -241,7 +241,7 @@ def test_odometry_that_is_silent_or_repeats_itself_is_lost(rig: Rig) -> None:
 
 @pytest.mark.parametrize("pose", [Pose(math.nan, 0), Pose(0, math.inf), Pose(0, 0, math.nan)])
 def test_a_pose_that_is_none_is_passed_over(rig: Rig, pose: Pose) -> None:
-    rig.tell(Localised(stamp=rig.stamp, pose=pose), Counted(stamp=(1, 1), pose=pose))
+    rig.tell(MapPose(stamp=rig.stamp, pose=pose), OdometryPose(stamp=(1, 1), pose=pose))
     rig.wait(0.2)
     assert rig.last.node == 0
 
@@ -255,7 +255,7 @@ def test_home_is_done_once_it_is_localised(rig: Rig) -> None:
 
 def test_joints_are_none_of_its_words(rig: Rig) -> None:
     said = rig.ask(MoveJoints(id="9-6", robot="cart", q=(0.0,)))
-    assert "no word for MoveJoints" in next(each.why for each in said if isinstance(each, Unsent))
+    assert "no word for MoveJoints" in next(each.why for each in said if isinstance(each, CommandNotSent))
 
 
 def test_settings_that_do_not_fit_are_said() -> None:

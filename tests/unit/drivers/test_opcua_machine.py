@@ -11,7 +11,7 @@ from arboleda.app.config import load
 from arboleda.drivers import MotionState, NotSent, Stop, StopMode
 from arboleda.drivers.opcua.machine import Call, OpcUaDevice
 from arboleda.drivers.opcua.settings import Settings
-from arboleda.drivers.plc.plc_snapshot import Unreadable
+from arboleda.drivers.plc.plc_snapshot import UnreadableValue
 from arboleda.kinds.declared import Device
 from arboleda.model.commands import Command
 
@@ -81,19 +81,21 @@ def test_a_query_is_answered_with_its_number(belt: Device, machine: OpcUaDevice)
 @pytest.mark.parametrize("name", ["part_at", "gate", "mm_s", "state", "boot", "alive", "done", "reason"])
 @pytest.mark.parametrize("value", [None, [1], True, 1.5, float("nan"), -1.5, b"\x00", {}, object()])
 def test_no_value_of_another_type_is_a_report(machine: OpcUaDevice, name: str, value: object) -> None:
-    with pytest.raises(Unreadable, match=f"^ns=2;s={name} is "):
+    with pytest.raises(UnreadableValue, match=f"^ns=2;s={name} is "):
         machine.report(5.0, shown(machine, **{name: value}))
 
 
 def test_a_value_without_a_word_is_no_report(machine: OpcUaDevice) -> None:
-    with pytest.raises(Unreadable, match="ns=2;s=part_at is 77, for which there is no word"):
+    with pytest.raises(UnreadableValue, match="ns=2;s=part_at is 77, for which there is no word"):
         machine.report(5.0, shown(machine, part_at=77))
 
 
 def test_a_program_that_stands_still_is_noticed(machine: OpcUaDevice) -> None:
     machine.report(5.0, shown(machine, alive=3))
     machine.report(5.9, shown(machine, alive=3))
-    with pytest.raises(Unreadable, match="the program of the PLC stands still: ns=2;s=alive is 3 for 1 s"):
+    with pytest.raises(
+        UnreadableValue, match="the program of the PLC stands still: ns=2;s=alive is 3 for 1 s"
+    ):
         machine.report(6.1, shown(machine, alive=3))
 
 

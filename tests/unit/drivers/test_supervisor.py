@@ -11,21 +11,21 @@ from arboleda.drivers import lost
 from arboleda.drivers.supervisor import (
     FIRST_RETRY_S,
     PLANT_GONE_S,
-    Asked,
-    Beaten,
     Begin,
-    Broken,
+    CommandRequest,
+    DeviceHalt,
+    DriverCrash,
+    DriverOutput,
     End,
     Event,
     Give,
-    Halted,
     Leaving,
     Life,
     Message,
-    Refused,
-    Said,
+    OutputRefused,
+    PlantBeat,
+    SendResult,
     Supervisor,
-    Taken,
 )
 from arboleda.model.commands import Command, Stop, StopMode
 from arboleda.model.messages import Report, Undelivered
@@ -61,14 +61,14 @@ class Driven:
         """The station reports something, stopped where nothing else is said."""
         at = self.now + after
         report = Report(at=at - late, robot="station", **{"state": MotionState.STOPPED, **said})  # type: ignore[arg-type]
-        return self.step(Said(at=at, life=self.life, report=report), after=after)
+        return self.step(DriverOutput(at=at, life=self.life, report=report), after=after)
 
     def beats(self, *, after: float = 0.0) -> list[Message]:
         """The plant is there."""
-        return self.step(Beaten(at=self.now + after), after=after)
+        return self.step(PlantBeat(at=self.now + after), after=after)
 
     def asks(self, command: Command) -> list[Message]:
-        return self.step(Asked(at=self.now, command=command))
+        return self.step(CommandRequest(at=self.now, command=command))
 
     def given(self, command: Command) -> Give:
         """What the driver gets of a command of now, where it waits behind no other."""
@@ -78,7 +78,7 @@ class Driven:
     def gives(self, command: Command) -> None:
         """The plant commands it, and the driver sends that."""
         assert self.asks(command) == [self.given(command)]
-        assert self.step(Taken(at=self.now, life=self.life, command=command)) == []
+        assert self.step(SendResult(at=self.now, life=self.life, command=command)) == []
 
 
 @pytest.fixture
@@ -143,23 +143,25 @@ def test_silence_means_nothing_at_state() -> None:
 
 def test_a_driver_that_knows_says_why_there_is_no_link(driven: Driven) -> None:
     report = lost("station", at=driven.now, why="the cable is out")
-    (gone,) = driven.step(Said(at=driven.now, life=driven.life, report=report))
+    (gone,) = driven.step(DriverOutput(at=driven.now, life=driven.life, report=report))
     assert isinstance(gone, Report)
     assert (gone.state, str(gone.lost)) == (MotionState.NO_LINK, "the cable is out")
-    assert driven.step(Said(at=driven.now, life=driven.life, report=report)) == []  # that is no news
+    assert driven.step(DriverOutput(at=driven.now, life=driven.life, report=report)) == []  # that is no news
 
 
 def test_another_reason_for_a_link_that_is_still_lost_is_told_once(driven: Driven) -> None:
     told: list[str] = []
     for why in ("nobody is there", "nobody is there", "it refuses us", "it refuses us"):
-        said = Said(at=driven.now, life=driven.life, report=lost("station", at=driven.now, why=why))
+        said = DriverOutput(at=driven.now, life=driven.life, report=lost("station", at=driven.now, why=why))
         told += [str(report.lost) for report in reports(driven.step(said))]
     assert told == ["nobody is there", "it refuses us"]
 
 
 def test_what_could_not_leave_is_told_and_the_link_stays(driven: Driven) -> None:
     driven.asks(GO)
-    (undelivered,) = driven.step(Taken(at=driven.now, life=driven.life, command=GO, error=OWN(text="cut")))
+    (undelivered,) = driven.step(
+        SendResult(at=driven.now, life=driven.life, command=GO, error=OWN(text="cut"))
+    )
     assert isinstance(undelivered, Undelivered) and (undelivered.id, undelivered.robot) == ("9-1", "station")
     assert str(undelivered.sentence) == "its driver plc could not send a command (cut)"
     assert driven.asks(LIGHT) == [driven.given(LIGHT)]
@@ -167,7 +169,9 @@ def test_what_could_not_leave_is_told_and_the_link_stays(driven: Driven) -> None
 
 def test_a_defect_in_send_also_loses_the_link_until_the_device_is_heard(driven: Driven) -> None:
     driven.asks(GO)
-    broken = Taken(at=driven.now, life=driven.life, command=GO, error=OWN(text="KeyError: 'go'"), broken=True)
+    broken = SendResult(
+        at=driven.now, life=driven.life, command=GO, error=OWN(text="KeyError: 'go'"), broken=True
+    )
     undelivered, gone = driven.step(broken)
     assert isinstance(undelivered, Undelivered) and isinstance(gone, Report)
     assert gone.lost == undelivered.sentence
@@ -182,14 +186,14 @@ def test_a_driver_that_does_not_come_back_from_send_has_lost_its_devices(driven:
     assert isinstance(gone, Report)
     assert str(gone.lost) == "its driver plc has not come back from send for 1.5 s"
     assert driven.says() == []  # its own thread still reads, but commands would not leave
-    driven.step(Taken(at=driven.now, life=driven.life, command=GO))
+    driven.step(SendResult(at=driven.now, life=driven.life, command=GO))
     assert len(reports(driven.says())) == 1
 
 
 def test_a_driver_that_broke_down_is_ended_and_started_again_later_and_later(driven: Driven) -> None:
     waits = []
     for _ in range(3):
-        gone, end = driven.step(Broken(at=driven.now, life=driven.life, error="ValueError: no"))
+        gone, end = driven.step(DriverCrash(at=driven.now, life=driven.life, error="ValueError: no"))
         assert isinstance(gone, Report) and end == End(life=driven.life)
         assert str(gone.lost) == "its driver plc broke down (ValueError: no), and is started again"
         due = driven.machine.next_deadline
@@ -202,7 +206,7 @@ def test_a_driver_that_broke_down_is_ended_and_started_again_later_and_later(dri
 
 
 def test_an_earlier_life_of_a_driver_counts_no_more(driven: Driven) -> None:
-    driven.step(Broken(at=driven.now, life=driven.life, error="ValueError: no", started=False))
+    driven.step(DriverCrash(at=driven.now, life=driven.life, error="ValueError: no", started=False))
     assert driven.says() == []
     (begin,) = driven.step(after=FIRST_RETRY_S)
     assert driven.says() == []
@@ -218,7 +222,7 @@ def test_a_latch_is_told_again_to_who_comes_back_or_boots(driven: Driven) -> Non
     again = Stop(id="", robot="station", mode=StopMode.LATCH)
     _, give = driven.says(boot_id=2)
     assert give == driven.given(again)
-    driven.step(Taken(at=driven.now, life=driven.life, command=again))
+    driven.step(SendResult(at=driven.now, life=driven.life, command=again))
     (refused,) = driven.asks(GO)
     assert isinstance(refused, Report) and refused.refusal == "paro"
     driven.gives(CLEAR)
@@ -274,8 +278,8 @@ def test_nobody_has_heard_of_what_is_to_come(driven: Driven) -> None:
 def test_nonsense_is_told_in_the_log_and_changes_nothing(driven: Driven, report: object, why: str) -> None:
     if isinstance(report, Report) and report.at == 0.0:
         report = replace(report, at=driven.now)
-    (refused,) = driven.step(Said(at=driven.now, life=driven.life, report=report))
-    assert isinstance(refused, Refused)
+    (refused,) = driven.step(DriverOutput(at=driven.now, life=driven.life, report=report))
+    assert isinstance(refused, OutputRefused)
     assert str(refused.sentence).startswith("the driver plc reported nonsense: ") and why in str(
         refused.sentence
     )
@@ -313,10 +317,10 @@ def test_whoever_works_is_halted_once_when_the_plant_is_not_heard_for_as_long_as
     give, failed, told = driven.step(after=0.1)
     assert give == driven.given(HALT)
     assert isinstance(failed, Report) and (failed.failed, failed.failure) == ("9-1", SILENCE)
-    assert isinstance(told, Halted)
+    assert isinstance(told, DeviceHalt)
     said = "the plant was not heard for 1 s; station is halted, whose driver is plc"
     assert str(told.sentence) == said
-    driven.step(Taken(at=driven.now, life=driven.life, command=HALT))
+    driven.step(SendResult(at=driven.now, life=driven.life, command=HALT))
     assert not any(isinstance(each, Give) for each in driven.says(after=1.0))
     assert PLANT_GONE_S == SILENCE_US / 1e6
 

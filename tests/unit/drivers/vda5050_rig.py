@@ -16,7 +16,7 @@ from arboleda.model.messages import Report
 from arboleda.model.plant_model import Robot
 from arboleda.virtual.faults import Faults
 from arboleda.virtual.vda5050.faults import FAULTS
-from arboleda.virtual.vda5050.loopback import Joined
+from arboleda.virtual.vda5050.loopback import Loopback
 from arboleda.virtual.vda5050.machine import VirtualAgv
 
 EXAMPLE = Path(__file__).parents[3] / "examples/agv/plant.yaml"
@@ -30,7 +30,7 @@ def devices() -> tuple[Robot, ...]:
     return tuple(load(EXAMPLE).robots.values())
 
 
-class Rig(Joined):
+class Rig(Loopback):
     """The cart of examples/agv with a virtual vehicle; `said` is the last report of each device."""
 
     def __init__(self, version: str = "2.1", **settings: Any) -> None:

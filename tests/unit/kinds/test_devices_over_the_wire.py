@@ -9,7 +9,7 @@ import pytest
 
 from arboleda.core.cell_states import CellState
 from arboleda.kinds.arm import SetEffector
-from arboleda.kinds.declared import DeviceKind, DeviceVerb, Effect, FactType, ToldMotion
+from arboleda.kinds.declared import DeviceKind, DeviceVerb, Effect, FactType, MotionCall
 from arboleda.model.commands import Command, Home, Stop, StopMode
 from arboleda.model.facts import Value
 from arboleda.model.messages import Heartbeat, Reason, Report, TaskState, Verb
@@ -270,7 +270,7 @@ def test_facts_are_told_as_the_kind_declares_them(alone: Alone) -> None:
             "home_cmd was refused (no_home): it has no homing routine",
         ),
         (
-            ToldMotion(id="5-1", robot="station", verb="fly", values=(), told=STATION.verbs["go"], made=()),
+            MotionCall(id="5-1", robot="station", verb="fly", values=(), told=STATION.verbs["go"], made=()),
             "formato",
             "order fly was refused (formato): it makes no sense for this robot",
         ),

@@ -23,7 +23,7 @@ from arboleda.app.urdf import robot_urdf
 from arboleda.core.text import parse
 from arboleda.dashboard.twin import bodies, kinematics
 from arboleda.kinds.arm import Arm, MoveJoints, SetEffector
-from arboleda.kinds.declared import Device, Told, ToldMotion
+from arboleda.kinds.declared import Device, MotionCall, VerbCall
 from arboleda.kinds.mobile import FollowPath, Mobile
 from arboleda.model.commands import Command, Position, Question
 from arboleda.model.facts import Value
@@ -207,7 +207,7 @@ class Shop(Bench):
         return arms + [name for name, fact in kinds.items() if fact and self.body(name).facts[fact]]
 
     def _said(self, command: Command) -> str | None:
-        if isinstance(command, Told):
+        if isinstance(command, VerbCall):
             return f"{command.robot} {command.verb}"
         if isinstance(command, SetEffector):
             return f"{command.robot} {'grips' if command.on else 'lets go'}"
@@ -375,7 +375,7 @@ def test_no_two_carts_meet_on_their_grid_and_none_is_below_a_lift_that_comes_dow
         met.extend([at] if len(set(at)) < len(at) else [])
         moved.update(at)
         work = here.plant.dispatcher.work_of("lift")
-        if work is not None and isinstance(work.command, ToldMotion) and platform in at:
+        if work is not None and isinstance(work.command, MotionCall) and platform in at:
             met.append(at)
         return here.changes[-1].state in ENDED
 

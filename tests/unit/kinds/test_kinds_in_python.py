@@ -9,7 +9,7 @@ import pytest
 
 import arboleda.kinds as public
 from arboleda.kinds import Kind, KindError, Number, WrittenKind, kind, motion, process, query, switch
-from arboleda.kinds.declared import Device, DeviceKind, Told, UseError
+from arboleda.kinds.declared import Device, DeviceKind, UseError, VerbCall
 from arboleda.kinds.shipped import SHIPPED
 from arboleda.model.facts import Value
 from arboleda.model.plant_model import Evidence, Link
@@ -49,9 +49,9 @@ def saw(settings: Saw) -> Kind:
 SAW = saw.of(Saw())
 
 
-def told(made: DeviceKind, verb: str, **values: Value) -> Told:
+def told(made: DeviceKind, verb: str, **values: Value) -> VerbCall:
     command = made.command(id="", robot="x", verb=verb, values=values)
-    assert isinstance(command, Told)
+    assert isinstance(command, VerbCall)
     return command
 
 
@@ -229,7 +229,7 @@ def test_a_gripper_closes_with_a_width_and_a_force_and_lets_go() -> None:
     assert body.facts == {"gripped": True, "width_mm": 30.0, "force_n": 40.0}
     device = Device(name="jaw", mqtt="jaw", link=Link.MQTT, evidence=Evidence.IDS, timeout_s=5.0, kind=made)
     off = device.let_go(id="1")
-    assert isinstance(off, Told) and off.verb == "open" and device.held_fact == "gripped"
+    assert isinstance(off, VerbCall) and off.verb == "open" and device.held_fact == "gripped"
     with pytest.raises(
         UseError, match=r"jaw is told more to take hold of a part: close\(width_mm=..., force_n="
     ):
@@ -259,7 +259,7 @@ def test_a_part_can_be_let_go_by_a_verb_that_has_other_parameters() -> None:
         name="vise", mqtt="vise", link=Link.MQTT, evidence=Evidence.IDS, timeout_s=5.0, kind=vise.declared
     )
     off = device.let_go(id="1")
-    assert isinstance(off, Told) and off.values == (("shut", False), ("force", 5)) and off.grips is False  # type: ignore[attr-defined]
+    assert isinstance(off, VerbCall) and off.values == (("shut", False), ("force", 5)) and off.grips is False  # type: ignore[attr-defined]
 
 
 def test_a_conveyor_advances_to_a_sensor_and_has_left_those_before_it() -> None:

@@ -12,7 +12,7 @@ from typer.testing import CliRunner
 
 from arboleda.app import config
 from arboleda.app.cli import cli, main
-from arboleda.dashboard.page_state import Story
+from arboleda.dashboard.page_state import PageState
 from arboleda.kinds.declared import Device
 from arboleda.model.errors import ConfigError, PayloadError
 from arboleda.model.messages import Report
@@ -94,7 +94,7 @@ def test_a_task_with_them_is_done_by_the_virtual_board(folder: Path) -> None:
 
 def test_the_page_and_the_view_show_them_as_they_are(folder: Path) -> None:
     here = Bench(plant(folder))
-    story = Story(view.layout(here.plant.model), [])
+    story = PageState(view.layout(here.plant.model), [])
     here.submit("taller cocer 炭")
     assert here.wait(10.0, lambda: here.told[-1:] == ["horno vaciar"])
     here.wait(0.3)

@@ -11,7 +11,7 @@ import pytest
 from arboleda.dashboard.wording import words
 from arboleda.model.messages import Reason, Report
 from arboleda.model.plant_model import MotionState
-from arboleda.recorder.cause import BY_KEY, BY_REASON, PHRASES, Evidence, Sent, cause_of
+from arboleda.recorder.cause import BY_KEY, BY_REASON, PHRASES, Evidence, TaskCommand, cause_of
 from arboleda.recorder.incident import Reader
 from arboleda.recorder.replay import plant_of
 from arboleda.recorder.tape import TapedPlant
@@ -21,8 +21,8 @@ from arboleda.simulator.world import World
 from arboleda.testing import shipped
 
 ARM = "ra1"
-SENT = Sent(id="7-1", robot=ARM, at=8.0, accepted_at=8.1)
-SWITCHED = Sent(id="7-0", robot=ARM, at=7.8, switch=True, accepted_at=7.9)
+SENT = TaskCommand(id="7-1", robot=ARM, at=8.0, accepted_at=8.1)
+SWITCHED = TaskCommand(id="7-0", robot=ARM, at=7.8, switch=True, accepted_at=7.9)
 
 
 def trouble(kind: str, at: float, seconds: float = 2.0, **more: Any) -> Trouble:
@@ -55,12 +55,12 @@ def named(**changes: Any) -> str:
         ("off_target", {"foreign": [(9.0, "ra2")], "reason": Reason.NOT_REACHED, "key": "x"}),
         ("unended", {"reason": Reason.DEADLINE}),
         ("short", {"reason": Reason.DEADLINE, "sent": [replace(SENT, moved=True, stands=True)]}),
-        ("unheard", {"reason": Reason.DEADLINE, "sent": [Sent(id="7-1", robot=ARM, at=8.0)]}),
+        ("unheard", {"reason": Reason.DEADLINE, "sent": [TaskCommand(id="7-1", robot=ARM, at=8.0)]}),
         (
             "switch",
             {
                 "reason": Reason.DEADLINE,
-                "sent": [Sent(id="7-1", robot=ARM, at=8.0, switch=True, accepted_at=8.1)],
+                "sent": [TaskCommand(id="7-1", robot=ARM, at=8.0, switch=True, accepted_at=8.1)],
             },
         ),
         ("no_part", {"reason": Reason.NO_PIECE, "key": "part.none"}),

@@ -9,7 +9,7 @@ import pytest
 
 from arboleda.model.messages import Fact, TaskState, Verb
 from arboleda.recorder import reader
-from arboleda.recorder.replay import Difference, Replayed, first_difference, plant_of, replayed
+from arboleda.recorder.replay import Difference, ReplayedStep, first_difference, plant_of, replayed
 from arboleda.testing.plants import shipped
 
 from .recorded import FILES, Site
@@ -20,7 +20,7 @@ def site(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Site:
     return Site(tmp_path, monkeypatch)
 
 
-def again(file: Path, **changes: object) -> list[Replayed]:
+def again(file: Path, **changes: object) -> list[ReplayedStep]:
     """All steps of a record, made once more."""
     record = reader.opened(file)
     model = replace(shipped(), **changes)  # type: ignore[arg-type]

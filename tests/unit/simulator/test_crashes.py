@@ -13,7 +13,7 @@ from arboleda.simulator.chance import Dice
 from arboleda.simulator.climate import Climate
 from arboleda.simulator.faults import KINDS, OF_CRASHES, Fault
 from arboleda.simulator.faults.crashes import IN_ONE_PROCESS
-from arboleda.simulator.judged_world import Watched
+from arboleda.simulator.judged_world import JudgedWorld
 from arboleda.simulator.people import Customers
 from arboleda.simulator.run import Simulation
 from arboleda.simulator.world import PLANT, Fuse, Side, World
@@ -115,7 +115,7 @@ def test_one_that_is_frozen_does_not_die() -> None:
 
 
 def test_a_power_cut_takes_the_bridge_along_and_what_nothing_has_synced() -> None:
-    watched = Watched(shipped("sis_a"))
+    watched = JudgedWorld(shipped("sis_a"))
     world = watched.world
     world.request_task("sis_a 0B 1")
     assert world.advance(60.0, lambda: world.memory.get(Fact.EFFECTOR, {}).get("ra1") == "on")
@@ -179,7 +179,7 @@ def test_what_cannot_be_kept_is_not_accepted_and_the_plant_ends() -> None:
 
 
 def test_of_a_plant_that_ends_only_stops_reach_its_robots() -> None:
-    watched = Watched(shipped("sis_a"))
+    watched = JudgedWorld(shipped("sis_a"))
     world = watched.world
     world.request_task("sis_a 0B 1 #lot")
     assert world.advance(30.0, lambda: world.boards["ra_1"].body.moving)
@@ -274,7 +274,7 @@ def test_what_hangs_on_a_commit_that_takes_long_leaves_after_it_in_order() -> No
 
 
 def test_a_command_that_the_disk_made_too_late_is_not_sent_and_its_cell_is_held_as_after_an_absence() -> None:
-    watched = Watched(shipped("sis_a"))
+    watched = JudgedWorld(shipped("sis_a"))
     world = watched.world
     world.request_task("sis_a palletizing #lot")
     assert world.advance(30.0, lambda: world.memory.get(Fact.EFFECTOR, {}).get("ra1") == "on")

@@ -7,7 +7,7 @@ from arboleda.model.messages import OperatorRequest, Verb
 from arboleda.recipes import Kit, parallel, recipe, work
 from arboleda.simulator.faults import KINDS, Fault
 from arboleda.simulator.general import GeneralTruth
-from arboleda.simulator.judged_world import Watched
+from arboleda.simulator.judged_world import JudgedWorld
 from arboleda.simulator.people import Attendant
 from arboleda.simulator.world import BRIDGE, World
 
@@ -26,7 +26,7 @@ def apart(cell: Kit):  # type: ignore[no-untyped-def]
 
 
 def test_who_stands_in_the_zone_that_a_homing_may_cross_is_homed_first() -> None:
-    watched = Watched(plant(apart))
+    watched = JudgedWorld(plant(apart))
     world = watched.world
     world.request_task("tending apart")
     assert world.advance(30.0, lambda: world.plant.zones.holder("vise") == "left")
@@ -40,7 +40,7 @@ def test_who_stands_in_the_zone_that_a_homing_may_cross_is_homed_first() -> None
 
 
 def test_what_work_needs_is_not_let_go_while_its_machine_says_that_it_works() -> None:
-    world = Watched(bench(bake)).world
+    world = JudgedWorld(bench(bake)).world
     world.boards["eye"].body.answer = lambda goal: "good"
     world.request_task("bench bake 5")
     assert world.advance(30.0, lambda: getattr(world.obeyed.get("oven"), "verb", None) == "bake")

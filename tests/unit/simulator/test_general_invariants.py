@@ -27,7 +27,7 @@ from arboleda.simulator.faults import OF_DEVICES as FAULTS_OF_DEVICES
 from arboleda.simulator.faults import Fault
 from arboleda.simulator.general import GENERAL, OF_DEVICES
 from arboleda.simulator.judged import judged_by
-from arboleda.simulator.judged_world import Broken, Watched
+from arboleda.simulator.judged_world import BrokenInvariant, JudgedWorld
 from arboleda.simulator.run import Simulation
 from arboleda.trees.context import Context
 from arboleda.wire.bridge import Bridge
@@ -125,7 +125,7 @@ def run(
     only: str = "",
     cycles: int = 4,
     model: PlantModel | None = None,
-) -> Broken | None:
+) -> BrokenInvariant | None:
     """What breaks; `only`: by this invariant alone."""
     model = model or shop(load, both, careless)
     if isinstance(weather, str):
@@ -148,14 +148,14 @@ def test_all_of_them_hold_where_devices_fail_in_this_way_alone(kind: str) -> Non
     assert run(1, {kind: 12.0}, cycles=3) is None
 
 
-def machine_of(watched: Watched, name: str = "mill") -> MachineBody:
+def machine_of(watched: JudgedWorld, name: str = "mill") -> MachineBody:
     body = watched.world.boards[name].body
     assert isinstance(body, MachineBody)
     return body
 
 
 def test_a_device_gives_up_until_all_such_faults_have_ended() -> None:
-    watched = Watched(shop(load))
+    watched = JudgedWorld(shop(load))
     for seconds in (5.0, 10.0):
         watched.begin(Fault(kind="gives_up", at=0.0, target="mill", word="atasco", seconds=seconds))
     order = OrderGoal(verb="open", values=(), seq=1, epoch=1)
@@ -167,7 +167,7 @@ def test_a_device_gives_up_until_all_such_faults_have_ended() -> None:
 
 
 def test_what_never_ends_ends_when_that_is_over() -> None:
-    watched = Watched(shop(load), invariants=())  # nobody has asked for what it does
+    watched = JudgedWorld(shop(load), invariants=())  # nobody has asked for what it does
     watched.begin(Fault(kind="never_ends", at=0.0, target="mill", seconds=30.0))
     mill = machine_of(watched)
     mill.start(round(watched.world.now * 1e6), OrderGoal(verb="close", values=(), seq=1, epoch=1))
@@ -178,7 +178,7 @@ def test_what_never_ends_ends_when_that_is_over() -> None:
 
 
 def test_no_day_passes_at_once_while_a_switch_is_late() -> None:
-    watched = Watched(shop(load), invariants=())  # nobody has asked for what it does
+    watched = JudgedWorld(shop(load), invariants=())  # nobody has asked for what it does
     watched.begin(Fault(kind="never_ends", at=0.0, target="jaw", seconds=30.0))
     watched.begin(
         Fault(kind="plant_freeze", at=0.0, target="plant", word="plant", seconds=2.0, amount=80_000.0)
@@ -333,10 +333,10 @@ def shared_with_all(patch: Patch) -> None:
     unguarded(patch)
 
 
-Scenario = Callable[[Watched], None]
+Scenario = Callable[[JudgedWorld], None]
 
 
-def at_work(watched: Watched, verb: str) -> None:
+def at_work(watched: JudgedWorld, verb: str) -> None:
     """A task is on its way until the mill carries out this verb."""
     watched.world.request_task("tending load")
     seen = watched.world.obeyed
@@ -345,7 +345,7 @@ def at_work(watched: Watched, verb: str) -> None:
 
 
 def stopped_at(verb: str) -> Scenario:
-    def scenario(watched: Watched) -> None:
+    def scenario(watched: JudgedWorld) -> None:
         at_work(watched, verb)
         watched.world.request_verb(Verb.STOP)
         watched.world.advance(10.0)
@@ -353,7 +353,7 @@ def stopped_at(verb: str) -> Scenario:
     return scenario
 
 
-def ordered_while_stopped(watched: Watched) -> None:
+def ordered_while_stopped(watched: JudgedWorld) -> None:
     """Somebody tells a stopped mill to shut its door, under a number that counts."""
     watched.world.request_verb(Verb.STOP)
     watched.world.advance(1.0)
@@ -363,7 +363,7 @@ def ordered_while_stopped(watched: Watched) -> None:
 
 
 def told(text: str) -> Scenario:
-    def scenario(watched: Watched) -> None:
+    def scenario(watched: JudgedWorld) -> None:
         watched.world.request_task(f"tending {text}")
         watched.world.advance(60.0)
 
@@ -411,8 +411,8 @@ LIKELY = {  # seeds that found them, tried first
 def test_it_bites(monkeypatch: Patch, name: str, bug: Bug, how: Scenario | Weather) -> None:
     bug(monkeypatch)
     if callable(how):
-        watched = Watched(shop(*RECIPES), invariants=[each for each in GENERAL if each.name == name])
-        with pytest.raises(Broken, match=name):
+        watched = JudgedWorld(shop(*RECIPES), invariants=[each for each in GENERAL if each.name == name])
+        with pytest.raises(BrokenInvariant, match=name):
             how(watched)
     else:
         model = SHARING if bug is shared_with_all else None
@@ -425,7 +425,7 @@ def test_it_bites(monkeypatch: Patch, name: str, bug: Bug, how: Scenario | Weath
     "how", [each for name, _, each in BITES if callable(each) and name != "nothing_is_dropped"]
 )
 def test_it_finds_nothing_where_there_is_no_bug(how: Scenario) -> None:
-    how(Watched(shop(*RECIPES)))
+    how(JudgedWorld(shop(*RECIPES)))
 
 
 def test_every_invariant_of_devices_has_a_bug() -> None:

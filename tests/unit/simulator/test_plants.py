@@ -12,7 +12,7 @@ import pytest
 from arboleda.app.plant_file import shapes
 from arboleda.app.plant_file.robot_models import arm_models, mobile_models
 from arboleda.app.simulate.plants import Plant
-from arboleda.app.simulate.random_plants import Drawn, loaded
+from arboleda.app.simulate.random_plants import RandomPlants, loaded
 from arboleda.model.errors import ConfigError
 from arboleda.model.plant_model import Evidence, Link, PlantModel
 from arboleda.simulator.plants import NOT_DRAWN, draw, smaller
@@ -29,7 +29,7 @@ def drawn(seed: int, attempt: int = 0) -> dict[str, Any]:
 
 @pytest.fixture(scope="module")
 def taken() -> list[Plant]:
-    return [Drawn().of(seed) for seed in SEEDS]
+    return [RandomPlants().of(seed) for seed in SEEDS]
 
 
 @pytest.fixture

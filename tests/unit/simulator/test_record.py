@@ -14,7 +14,7 @@ from arboleda.model.commands import Stop, StopMode
 from arboleda.model.messages import Report, TaskChanged, TaskState, Verb
 from arboleda.model.plant_model import Evidence, MotionState
 from arboleda.simulator.record import Record
-from arboleda.simulator.recorded.robots import KnownRobot, Obstacle, Stopped
+from arboleda.simulator.recorded.robots import KnownRobot, Obstacle, StopProgress
 from arboleda.simulator.recorded.scopes import Scopes
 from arboleda.simulator.recorded.tasks import KEPT, Tasks
 from arboleda.simulator.world import BRIDGE, PLANT, World
@@ -127,7 +127,7 @@ def test_a_stop_lasts_until_clear_and_reset_and_outlives_the_plant(world, record
         else:
             verb(world, act)
         stops.append((record.robots["ra1"].stop, record.cells["sis_a"].stopped))
-    latched, cleared = (Stopped.LATCHED, True), (Stopped.CLEARED, True)
+    latched, cleared = (StopProgress.LATCHED, True), (StopProgress.CLEARED, True)
     assert stops == [latched, latched, cleared, cleared, (None, False)]
 
 
@@ -141,7 +141,7 @@ def test_what_was_refused_changes_nothing(world, record):
 
 def test_the_stop_of_one_robot_stops_its_cell(world, record):
     verb(world, Verb.STOP, "ra1")
-    assert record.robots["ra1"].stop is Stopped.LATCHED
+    assert record.robots["ra1"].stop is StopProgress.LATCHED
     assert record.robots["rm_sis_a"].stop is None
     assert record.cells["sis_a"].stopped
 

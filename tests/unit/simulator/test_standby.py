@@ -13,9 +13,9 @@ from arboleda.model.messages import OperatorAnswer, TaskChanged, TaskState, Verb
 from arboleda.simulator.checks import BadFaults
 from arboleda.simulator.climate import Climate
 from arboleda.simulator.faults import NOT_WITH_STANDBY, OF_HOSTS, Fault
-from arboleda.simulator.hosts.former_leader import Said
+from arboleda.simulator.hosts.former_leader import LateMessage
 from arboleda.simulator.hosts.hosts import STARTS_S, Hosts
-from arboleda.simulator.judged_world import Broken, Watched
+from arboleda.simulator.judged_world import BrokenInvariant, JudgedWorld
 from arboleda.simulator.run import Simulation
 from arboleda.simulator.world import PLANT
 from arboleda.testing import shipped
@@ -25,10 +25,10 @@ SOON_S = LEASE_S + 3 * LOOK_S + STARTS_S
 
 
 @contextmanager
-def two_hosts(*faults: Fault) -> Iterator[tuple[Watched, Hosts, list[Said]]]:
+def two_hosts(*faults: Fault) -> Iterator[tuple[JudgedWorld, Hosts, list[LateMessage]]]:
     """A plant with a task at work, judged by every invariant; and what leaves leaders of before."""
-    watched = Watched(shipped("sis_a"), standby=True)
-    world, said = watched.world, list[Said]()
+    watched = JudgedWorld(shipped("sis_a"), standby=True)
+    world, said = watched.world, list[LateMessage]()
     assert world.hosts is not None
     world.watchers.append(lambda: said.extend(world.moment.former))
     world.advance(2.0)
@@ -43,7 +43,7 @@ def fault(kind: str, target: str = PLANT, **fields: object) -> Fault:
     return Fault(**{"kind": kind, "at": 0.0, "target": target, **fields})  # type: ignore[arg-type]
 
 
-def ends(watched: Watched) -> list[TaskState]:
+def ends(watched: JudgedWorld) -> list[TaskState]:
     found: list[TaskState] = []
     world = watched.world
     world.watchers.append(
@@ -112,7 +112,7 @@ def test_an_answer_of_the_store_that_is_lost_changes_nothing() -> None:
 
 def cut_off_with_a_slow_clock() -> None:
     """And the clock of who waits is fast."""
-    watched = Watched(shipped("sis_a"), standby=True)
+    watched = JudgedWorld(shipped("sis_a"), standby=True)
     watched.world.advance(2.0)
     watched.begin(fault("clock_drift", "host_a", seconds=90.0, word="slower", amount=0.035))
     watched.begin(fault("clock_drift", "host_b", seconds=90.0, word="faster", amount=0.035))
@@ -129,7 +129,7 @@ def test_a_leader_with_a_slow_clock_that_is_cut_off_is_no_second_leader(
     monkeypatch.setattr("arboleda.simulator.hosts.hosts.LOOK_S", 0.01)
     cut_off_with_a_slow_clock()
     monkeypatch.setattr(leading, "SURE_S", LEASE_S)  # without the margin for clocks it is one
-    with pytest.raises(Broken, match="one_leader_at_a_time"):
+    with pytest.raises(BrokenInvariant, match="one_leader_at_a_time"):
         cut_off_with_a_slow_clock()
 
 

@@ -21,7 +21,7 @@ from arboleda.simulator.general import GENERAL
 from arboleda.simulator.invariants import INVARIANTS
 from arboleda.simulator.invariants.starts import EVERYWHERE, STARTS
 from arboleda.simulator.judged import judged_by
-from arboleda.simulator.judged_world import Broken
+from arboleda.simulator.judged_world import BrokenInvariant
 from arboleda.simulator.run import Simulation
 from arboleda.testing import shipped
 from arboleda.trees.walk_back import WalkBack
@@ -34,7 +34,7 @@ WEATHER = {**dict.fromkeys(OF_CRASHES, 8.0), "double_submit": 6.0}
 OF_DEVICES = {name: rate for name, rate in WEATHER.items() if name in OF_CRASHES}
 
 
-def run(model: PlantModel, seed: int, *, only: str = "") -> Broken | None:
+def run(model: PlantModel, seed: int, *, only: str = "") -> BrokenInvariant | None:
     """What breaks; `only`: by this invariant alone."""
     rates = WEATHER if judged_by(model) is INVARIANTS else OF_DEVICES
     climate = Climate.from_file(model, seed, {"rates": rates})

@@ -8,25 +8,25 @@ import pytest
 
 from arboleda.model.messages import SystemStart
 from arboleda.simulator.faults import Fault
-from arboleda.simulator.invariants.invariant import Look, When, invariant
-from arboleda.simulator.judged_world import Broken, Watched
+from arboleda.simulator.invariants.invariant import Look, Trigger, invariant
+from arboleda.simulator.judged_world import BrokenInvariant, JudgedWorld
 from arboleda.testing import shipped
 
 
-@invariant(When.SENT)
+@invariant(Trigger.SENT)
 def no_start(look: Look) -> Iterable[str]:
     """No cell starts a task."""
     yield from (f"{each.cell} starts" for each in look.moment.sent if isinstance(each, SystemStart))
 
 
-@invariant(When.END)
+@invariant(Trigger.END)
 def nothing_muted(look: Look) -> Iterable[str]:
     """At rest, no line has troubles."""
     yield from (name for name, client in look.world.broker.clients.items() if client.up.troubles)
 
 
 def test_a_fault_begins_and_ends_in_its_time() -> None:
-    watched = Watched(shipped("sis_a"), keep=True)
+    watched = JudgedWorld(shipped("sis_a"), keep=True)
     watched.expect(Fault(kind="mute", at=1.0, seconds=2.0, target="ra_1"))
     watched.world.advance(0.9)
     assert (watched.faults, watched.world.faults_active) == ([], 0)
@@ -40,16 +40,16 @@ def test_a_fault_begins_and_ends_in_its_time() -> None:
 
 
 def test_a_breach_leaves_the_step_in_which_it_is_seen() -> None:
-    watched = Watched(shipped("sis_a"), invariants=[no_start])
+    watched = JudgedWorld(shipped("sis_a"), invariants=[no_start])
     watched.world.advance(1.0)
     watched.world.request_task("sis_a 0B 7")
-    with pytest.raises(Broken, match="no_start: sis_a starts"):
+    with pytest.raises(BrokenInvariant, match="no_start: sis_a starts"):
         watched.world.advance(1.0)
     assert watched.seconds == pytest.approx(1.0)
 
 
 def test_coming_to_rest_ends_what_lasts_and_judges_the_end() -> None:
-    watched = Watched(shipped("sis_a"), invariants=[nothing_muted])
+    watched = JudgedWorld(shipped("sis_a"), invariants=[nothing_muted])
     watched.begin(Fault(kind="mute", at=0.0, seconds=1e9, target="ra_1"))
     watched.world.advance(5.0)
     watched.come_to_rest()
@@ -57,15 +57,15 @@ def test_coming_to_rest_ends_what_lasts_and_judges_the_end() -> None:
 
 
 def test_what_never_comes_to_rest_is_a_breach() -> None:
-    watched = Watched(shipped("sis_a"), invariants=[nothing_muted])
+    watched = JudgedWorld(shipped("sis_a"), invariants=[nothing_muted])
     watched.world.broker.clients["ra_1"].up.troubles.append(lambda message: (0.0,))
-    with pytest.raises(Broken, match="nothing_muted: ra_1"):
+    with pytest.raises(BrokenInvariant, match="nothing_muted: ra_1"):
         watched.come_to_rest()
     assert watched.seconds >= 600.0
 
 
 def test_a_fault_of_later_does_not_begin_at_rest() -> None:
-    watched = Watched(shipped("sis_a"), invariants=[])
+    watched = JudgedWorld(shipped("sis_a"), invariants=[])
     watched.expect(Fault(kind="mute", at=5.0, seconds=1e9, target="ra_1"))
     watched.come_to_rest()
     assert watched.faults == []
@@ -75,7 +75,7 @@ def test_a_fault_of_later_does_not_begin_at_rest() -> None:
 
 
 def test_it_is_counted_how_often_each_invariant_was_looked_at() -> None:
-    watched = Watched(shipped("sis_a"), invariants=[no_start, nothing_muted])
+    watched = JudgedWorld(shipped("sis_a"), invariants=[no_start, nothing_muted])
     watched.world.advance(1.0)
     beats = watched.checks["no_start"]
     assert beats >= 4

@@ -11,7 +11,7 @@ from py_trees.composites import Sequence
 from arboleda.model.task import Order
 from arboleda.recipes import Kit, recipe, work
 from arboleda.recipes import storage as recipes
-from arboleda.simulator.invariants.invariant import Look, When, invariant
+from arboleda.simulator.invariants.invariant import Look, Trigger, invariant
 from arboleda.testing import Misuse, Sim, shipped
 from arboleda.trees.context import Context
 from arboleda.trees.leaves import Dwell
@@ -33,7 +33,7 @@ def sim() -> Sim:
     return sim
 
 
-@invariant(When.EXECUTED)
+@invariant(Trigger.EXECUTED)
 def nobody_moves(look: Look) -> Iterable[str]:
     """Nothing is ever carried out."""
     yield from (f"{board} does something" for board, _ in look.moment.executed)
@@ -234,7 +234,7 @@ def test_seeds_hold(sim: Sim) -> None:
 
 
 def test_a_seed_that_breaks_is_shrunk_and_told(monkeypatch: pytest.MonkeyPatch) -> None:
-    @invariant(When.SENT)
+    @invariant(Trigger.SENT)
     def nothing_fails(look: Look) -> Iterable[str]:
         """No task ever fails."""
         yield from (each.text for each in look.moment.sent if getattr(each, "reason", None))

@@ -10,7 +10,7 @@ from typing import Any
 
 import pytest
 
-from arboleda.viewers.groot2 import KEPT, Watched
+from arboleda.viewers.groot2 import KEPT, WatchedTree
 
 IDLE, RUNNING, SUCCESS, FAILURE = range(4)
 STATUSES = {IDLE: "INVALID", RUNNING: "RUNNING", SUCCESS: "SUCCESS", FAILURE: "FAILURE"}
@@ -39,7 +39,7 @@ class Client:
     """Asks a cell that saw `rows`, and takes replies apart."""
 
     def __init__(self, *rows: dict[str, Any], **facts: Any) -> None:
-        self.cell = Watched(lambda data: json.dumps(data).encode())
+        self.cell = WatchedTree(lambda data: json.dumps(data).encode())
         if rows:
             self.cell.saw(rows, facts, 0)
 

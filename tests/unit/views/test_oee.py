@@ -12,8 +12,8 @@ from arboleda.views.oee import (
     NEVER_RAN,
     NO_PLAN,
     NOTHING_ENDED,
-    Down,
-    Kept,
+    Downtime,
+    KeptFigures,
     Oee,
     Run,
     Shortest,
@@ -40,9 +40,9 @@ def figures(
     best: float | None = 50.0,
     since: float = 0.0,
 ) -> Oee:
-    stood = [Down(cell="a", since_s=begin, until_s=end) for begin, end in downs]
+    stood = [Downtime(cell="a", since_s=begin, until_s=end) for begin, end in downs]
     shortest = {} if best is None else {("a", "a 1"): Shortest(times=3, seconds=best)}
-    return oee("a", Kept(works=works, runs=runs, downs=stood, shortest=shortest), since, NOW)
+    return oee("a", KeptFigures(works=works, runs=runs, downs=stood, shortest=shortest), since, NOW)
 
 
 def test_a_cell_that_does_its_best_all_the_time_has_all_of_it() -> None:
@@ -139,7 +139,7 @@ def test_what_nobody_can_say_says_why(found: Oee, missing: object) -> None:
 
 def test_an_order_that_was_seldom_done_has_no_shortest_time() -> None:
     twice = {("a", "a 1"): Shortest(times=2, seconds=50.0)}
-    found = oee("a", Kept(works=[work(0, 0, 50)], runs=[ALL_DAY], downs=[], shortest=twice), 0.0, NOW)
+    found = oee("a", KeptFigures(works=[work(0, 0, 50)], runs=[ALL_DAY], downs=[], shortest=twice), 0.0, NOW)
     assert (found.performance, found.timed, found.quality) == (None, 0, 1.0)
 
 

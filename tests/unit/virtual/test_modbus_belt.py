@@ -10,7 +10,7 @@ from arboleda.app.config import load
 from arboleda.drivers import MotionState, Report, Stop, StopMode
 from arboleda.drivers.modbus.machine import ModbusDevice, Raw
 from arboleda.drivers.modbus.settings import Settings
-from arboleda.drivers.plc.plc_snapshot import Unreadable
+from arboleda.drivers.plc.plc_snapshot import UnreadableValue
 from arboleda.kinds.declared import Device
 from arboleda.model.commands import Command
 from arboleda.virtual.faults import Faults
@@ -141,7 +141,7 @@ def test_what_cannot_be_believed_is_no_report(belt: Device, fault: str, why: str
     line = Line(belt)
     line.after(0.2)
     line.faults.switch(fault, on=True)
-    with pytest.raises(Unreadable, match=why):
+    with pytest.raises(UnreadableValue, match=why):
         line.after(2.0)
 
 

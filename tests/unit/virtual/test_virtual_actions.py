@@ -7,16 +7,16 @@ from collections.abc import Collection
 
 import pytest
 
-from arboleda.drivers.nav2.localisation import Counted, Localised
+from arboleda.drivers.nav2.localisation import MapPose, OdometryPose
 from arboleda.drivers.nav2.pose import Pose
-from arboleda.drivers.ros_action.events import Answered, Ended, Seen, Status
-from arboleda.drivers.ros_action.joints import JointsSeen
+from arboleda.drivers.ros_action.events import GoalAnswer, GoalResult, Measurement, Status
+from arboleda.drivers.ros_action.joints import JointStateEvent
 from arboleda.virtual.faults import Faults
 from arboleda.virtual.gripper import machine as gripper
 from arboleda.virtual.gripper.machine import Grip, GripperBody
 from arboleda.virtual.nav2 import machine as nav2
 from arboleda.virtual.nav2.machine import BaseBody, Drive
-from arboleda.virtual.ros_action.machine import CancelAsked, CancelDecided, GoalAsked, VirtualServer
+from arboleda.virtual.ros_action.machine import CancelDecision, CancelRequest, GoalRequest, VirtualServer
 from arboleda.virtual.trajectory import machine as trajectory
 from arboleda.virtual.trajectory.machine import ArmBody, Points
 
@@ -39,10 +39,10 @@ class Rig:
             self.said += self.server.step(self.now, [])
 
     def ask(self, goal: object, id: str = "1") -> None:
-        self.said += self.server.step(self.now, [GoalAsked(id=id, goal=goal)])
+        self.said += self.server.step(self.now, [GoalRequest(id=id, goal=goal)])
 
     def cancel(self, id: str = "1") -> None:
-        self.said += self.server.step(self.now, [CancelAsked(id=id)])
+        self.said += self.server.step(self.now, [CancelRequest(id=id)])
 
     def of(self, kind: type) -> list[object]:
         return [each for each in self.said if isinstance(each, kind)]
@@ -60,13 +60,13 @@ def fingers(*faults: str) -> Rig:
 def test_a_trajectory_takes_its_time_and_passes_its_points_in_the_order_of_its_joints() -> None:
     rig = arm()
     rig.ask(AWAY)
-    assert rig.of(Answered) == [Answered(id="1", accepted=True)]
+    assert rig.of(GoalAnswer) == [GoalAnswer(id="1", accepted=True)]
     rig.wait(1.0)
     assert rig.server.body.position == pytest.approx((0.1, 0.2))
     rig.wait(1.9)
-    assert rig.of(Ended) == []
+    assert rig.of(GoalResult) == []
     rig.wait(0.2)
-    assert rig.of(Ended) == [Ended(id="1", status=Status.SUCCEEDED)]
+    assert rig.of(GoalResult) == [GoalResult(id="1", status=Status.SUCCEEDED)]
     assert rig.server.body.position == pytest.approx((0.2, 0.4))
 
 
@@ -84,7 +84,7 @@ def test_a_trajectory_takes_its_time_and_passes_its_points_in_the_order_of_its_j
 def test_a_trajectory_that_cannot_be_is_refused(goal: Points) -> None:
     rig = arm()
     rig.ask(goal)
-    assert rig.of(Answered) == [Answered(id="1", accepted=False)]
+    assert rig.of(GoalAnswer) == [GoalAnswer(id="1", accepted=False)]
 
 
 def test_a_cancel_stops_it_where_it_is_and_what_it_measures_says_so() -> None:
@@ -94,10 +94,10 @@ def test_a_cancel_stops_it_where_it_is_and_what_it_measures_says_so() -> None:
     rig.cancel()
     at = rig.server.body.position
     rig.wait(1)
-    assert rig.of(CancelDecided) == [CancelDecided(id="1", accepted=True)]
-    assert rig.of(Ended) == [Ended(id="1", status=Status.CANCELED)]
-    last = rig.of(Seen)[-1]
-    assert isinstance(last, JointsSeen) and last.positions == rig.server.body.position == at
+    assert rig.of(CancelDecision) == [CancelDecision(id="1", accepted=True)]
+    assert rig.of(GoalResult) == [GoalResult(id="1", status=Status.CANCELED)]
+    last = rig.of(Measurement)[-1]
+    assert isinstance(last, JointStateEvent) and last.positions == rig.server.body.position == at
 
 
 def test_a_second_goal_takes_the_place_of_the_first() -> None:
@@ -106,7 +106,7 @@ def test_a_second_goal_takes_the_place_of_the_first() -> None:
     rig.wait(1)
     rig.ask(Points(joints=NAMES, points=((1.0, (0.0, 0.0)),)), id="2")
     rig.wait(1.1)
-    assert [(each.id, each.status) for each in rig.of(Ended)] == [  # type: ignore[attr-defined]
+    assert [(each.id, each.status) for each in rig.of(GoalResult)] == [  # type: ignore[attr-defined]
         ("1", Status.CANCELED),
         ("2", Status.SUCCEEDED),
     ]
@@ -116,7 +116,7 @@ def test_fingers_stall_at_a_part_and_go_on_once_it_slips() -> None:
     rig = fingers()
     rig.ask(Grip(position=0.0))
     rig.wait(3)
-    assert rig.of(Ended) == [Ended(id="1", status=Status.ABORTED, stalled=True)]
+    assert rig.of(GoalResult) == [GoalResult(id="1", status=Status.ABORTED, stalled=True)]
     assert rig.server.body.position == (0.04,)
     assert isinstance(rig.server.faults, Faults)
     rig.server.faults.switch("slip", on=True)
@@ -128,7 +128,7 @@ def test_fingers_without_a_part_close() -> None:
     rig = fingers("empty")
     rig.ask(Grip(position=0.0))
     rig.wait(3)
-    assert rig.of(Ended) == [Ended(id="1", status=Status.SUCCEEDED)]
+    assert rig.of(GoalResult) == [GoalResult(id="1", status=Status.SUCCEEDED)]
 
 
 def test_one_that_vanishes_is_started_anew_and_knows_of_no_goal() -> None:
@@ -141,7 +141,7 @@ def test_one_that_vanishes_is_started_anew_and_knows_of_no_goal() -> None:
     assert rig.said == []
     faults.switch("vanish", on=False)
     rig.wait(5)
-    assert rig.of(Seen) and not rig.of(Ended)
+    assert rig.of(Measurement) and not rig.of(GoalResult)
 
 
 def base(*faults: str) -> Rig:
@@ -155,24 +155,24 @@ def test_a_base_drives_from_pose_to_pose_and_its_odometry_begins_where_it_began(
     rig.wait(1.9)
     assert rig.server.body.position == pytest.approx((2.0, 1.0, 0.0), abs=1e-3)
     rig.wait(2.1)
-    assert rig.of(Ended) == [Ended(id="1", status=Status.SUCCEEDED)]
-    last = rig.of(Counted)[-1]
-    assert isinstance(last, Counted) and last.pose == Pose(1.0, 1.0, 1.5)
-    assert 5 < len(rig.of(Localised)) < 15, "localisation speaks where it has gone some way"
+    assert rig.of(GoalResult) == [GoalResult(id="1", status=Status.SUCCEEDED)]
+    last = rig.of(OdometryPose)[-1]
+    assert isinstance(last, OdometryPose) and last.pose == Pose(1.0, 1.0, 1.5)
+    assert 5 < len(rig.of(MapPose)) < 15, "localisation speaks where it has gone some way"
 
 
 @pytest.mark.parametrize("frame", ["odom", "nowhere"])
 def test_poses_of_another_frame_are_refused(frame: str) -> None:
     rig = base()
     rig.ask(Drive(frame=frame, poses=(Pose(2.0, 1.0),)))
-    assert rig.of(Answered) == [Answered(id="1", accepted=False)]
+    assert rig.of(GoalAnswer) == [GoalAnswer(id="1", accepted=False)]
 
 
 def test_a_missed_waypoint_is_named_in_a_success() -> None:
     rig = base("missed")
     rig.ask(Drive(frame="map", poses=(Pose(2.0, 1.0), Pose(1.0, 1.5))))
     rig.wait(4)
-    assert rig.of(Ended) == [Ended(id="1", status=Status.SUCCEEDED, missed=(0,))]
+    assert rig.of(GoalResult) == [GoalResult(id="1", status=Status.SUCCEEDED, missed=(0,))]
 
 
 @pytest.mark.parametrize("known", [trajectory.FAULTS, gripper.FAULTS, nav2.FAULTS])

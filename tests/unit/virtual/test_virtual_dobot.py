@@ -6,7 +6,7 @@ import pytest
 
 from arboleda.drivers.dobot.frames import Feedback, FrameReader, Mode
 from arboleda.virtual.dobot.faults import FAULTS
-from arboleda.virtual.dobot.machine import Answer, Frame, HangUp, Message, Said, VirtualDobot
+from arboleda.virtual.dobot.machine import Answer, ClientText, Disconnect, Frame, Message, VirtualDobot
 from arboleda.virtual.faults import Faults
 
 GOAL = (10.0, 20.0, -30.0, 0.0, 5.0, 0.0)
@@ -31,7 +31,7 @@ class Client:
 
     def ask(self, text: str) -> str:
         """What is answered at once; empty where nothing is."""
-        found = self.dobot.step(self.now, [Said(client=1, text=text)])
+        found = self.dobot.step(self.now, [ClientText(client=1, text=text)])
         self.out += found
         return "".join(each.text for each in found if isinstance(each, Answer))
 
@@ -162,7 +162,7 @@ def test_a_controller_that_is_off_hangs_up_and_boots() -> None:
     client.faults.switch("power_cycle", on=True)
     client.out.clear()
     client.wait(0.1)
-    assert set(map(type, client.out)) == {HangUp}
+    assert set(map(type, client.out)) == {Disconnect}
     client.faults.switch("power_cycle", on=False)
     after = client.fed()
     assert (after.mode, after.command) == (Mode.DISABLED, 0) and after.run_ms < before.run_ms

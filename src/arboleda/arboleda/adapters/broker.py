@@ -24,7 +24,7 @@ from .mqtt_broker.client import Client
 from .mqtt_broker.packets import Answer, connack
 from .mqtt_broker.router import Router
 from .mqtt_broker.sessions import Sessions
-from .rate_limit import Seldom
+from .rate_limit import RateLimit
 
 if TYPE_CHECKING:  # it takes a while to load, and only who speaks TLS needs it
     import ssl
@@ -149,7 +149,7 @@ class EmbeddedBroker:
             return lambda: Client(sessions, router)
         from .tls_layer import TlsLayer
 
-        layered = partial(TlsLayer, self._tls.context, server="The plant's own broker", seldom=Seldom())
+        layered = partial(TlsLayer, self._tls.context, server="The plant's own broker", seldom=RateLimit())
         return lambda: layered(Client(sessions, router))
 
     async def _serve(self, listener: socket.socket, access: Access, ready: Future[None]) -> None:

@@ -10,18 +10,18 @@ from contextlib import suppress
 
 from arboleda.adapters.device_feed import taking
 from arboleda.drivers.dobot.machine import (
-    Answered,
-    Asked,
     Close,
     Closed,
+    CommandNotSent,
+    CommandRequest,
+    ConnectionsOpened,
+    DashboardReply,
     Event,
-    Fed,
+    FeedbackData,
     Machine,
     Message,
     Open,
-    Opened,
-    Say,
-    Unsent,
+    SendLine,
 )
 from arboleda.drivers.dobot.settings import Settings
 from arboleda.drivers.port import Clock, Hear, NotSent, driver
@@ -55,8 +55,8 @@ class Dobot:
         self._thread.start()
 
     def send(self, command: Command) -> None:
-        for message in self._step([Asked(command=command)]):
-            if isinstance(message, Unsent):
+        for message in self._step([CommandRequest(command=command)]):
+            if isinstance(message, CommandNotSent):
                 raise NotSent(message.why)
         self._waker.send(b"!")  # its deadlines have changed
 
@@ -94,7 +94,7 @@ class Dobot:
             self._hear(message)
         elif isinstance(message, Close):
             self._hang_up()
-        elif isinstance(message, Say) and self._dashboard is not None:
+        elif isinstance(message, SendLine) and self._dashboard is not None:
             with suppress(OSError):  # the thread that hears it finds it closed
                 self._dashboard.sendall(message.text.encode("ascii"))
 
@@ -118,7 +118,10 @@ class Dobot:
         """Both connections, or why there is none."""
         opened: list[socket.socket] = []
         try:
-            for port, event in ((self._settings.port, Answered), (self._settings.feedback_port, Fed)):
+            for port, event in (
+                (self._settings.port, DashboardReply),
+                (self._settings.feedback_port, FeedbackData),
+            ):
                 opened.append(socket.create_connection((self._settings.host, port), CONNECT_S))
                 opened[-1].setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
                 self._selector.register(opened[-1], selectors.EVENT_READ, event)
@@ -130,7 +133,7 @@ class Dobot:
             return Closed(why=f"port {port}: {error}")
         with self._lock:
             self._dashboard = opened[0]
-        return Opened()
+        return ConnectionsOpened()
 
     def _hang_up(self) -> None:
         self._dashboard = None
@@ -140,7 +143,7 @@ class Dobot:
                 key.fileobj.close()
 
 
-def _read(port: socket.socket, event: type[Answered] | type[Fed]) -> Event:
+def _read(port: socket.socket, event: type[DashboardReply] | type[FeedbackData]) -> Event:
     try:
         data = port.recv(AT_ONCE)
     except OSError as error:

@@ -20,7 +20,7 @@ from typing import Any
 import msgpack
 import zmq
 
-from arboleda.viewers.groot2 import Watched
+from arboleda.viewers.groot2 import WatchedTree
 
 DEFAULT_PORT = 1667
 LAST_PORT = 65534  # the one after it is the publisher's
@@ -45,9 +45,9 @@ class Desk:
         self._context = zmq.Context()
         self._context.set(zmq.MAX_SOCKETS, 2 * len(cells) + 16)
         self._host = host
-        self._watched = {cell: Watched(_pack) for cell in cells}
+        self._watched = {cell: WatchedTree(_pack) for cell in cells}
         self._poller = zmq.Poller()
-        self._desks: dict[Any, Watched] = {}
+        self._desks: dict[Any, WatchedTree] = {}
         self._publishers = []
         self.ports: dict[str, int] = {}
         free = _from(DEFAULT_PORT if port is None else port)

@@ -9,9 +9,9 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
 from arboleda.drivers import Clock, Command, Hear, NotSent, Report, Robot, driver, lost
-from arboleda.drivers.modbus.machine import Block, ModbusDevice, Put, Raw
+from arboleda.drivers.modbus.machine import Block, ModbusDevice, Raw, WriteRequest
 from arboleda.drivers.modbus.settings import Settings
-from arboleda.drivers.plc.plc_snapshot import Unreadable
+from arboleda.drivers.plc.plc_snapshot import UnreadableValue
 from arboleda.drivers.port import DriverError
 
 if TYPE_CHECKING:
@@ -37,7 +37,7 @@ WORDS = {
 """The exception codes of the standard."""
 
 
-class Refused(DriverError):
+class RequestRefused(DriverError):
     """A PLC has answered a request with an exception code."""
 
     def __init__(self, what: str, code: int) -> None:
@@ -60,7 +60,7 @@ class Line:
         try:
             with self._lock:
                 yield
-        except (Refused, Unreadable):
+        except (RequestRefused, UnreadableValue):
             raise
         except Exception:  # whatever it was: an answer may still be on its way
             self.close()
@@ -92,7 +92,7 @@ class Line:
             )
         return [int(value) for value in values[: block.length]]
 
-    def write(self, unit: int, put: Put) -> None:
+    def write(self, unit: int, put: WriteRequest) -> None:
         """Write the values of a put."""
         self.open()
         client: Any = self._client
@@ -186,7 +186,7 @@ class Modbus:
             try:
                 for put in self._device.order(command):
                     line.write(self._settings.unit, put)
-            except Refused as error:
+            except RequestRefused as error:
                 self._refuse(command, error)
         self._wake.set()
 
@@ -199,7 +199,7 @@ class Modbus:
             LINES.give_back(self._settings)
             self._line = None
 
-    def _refuse(self, command: Command, error: Refused) -> None:
+    def _refuse(self, command: Command, error: RequestRefused) -> None:
         """Said as of now: as of the command it would be older than a poll that came between."""
         if command.id:
             self._hear(Report(at=self._clock(), robot=self._name, rejected=command.id, refusal=error.word))
@@ -241,7 +241,9 @@ class Modbus:
         if place is not None:
             self._beats = (self._beats + 1) % BEATS
             value = self._beats % 2 if place.table == "coil" else self._beats
-            line.write(self._settings.unit, Put(table=place.table, address=place.address, values=(value,)))
+            line.write(
+                self._settings.unit, WriteRequest(table=place.table, address=place.address, values=(value,))
+            )
 
     def _say(self, report: Report) -> None:
         """Hand over what is new, and from time to time that nothing is."""
@@ -281,7 +283,7 @@ def _check(answer: Any, what: str, code: int) -> None:
             f"the PLC was asked {what}, and has answered with function {answer.function_code}"
         )
     if answer.isError():
-        raise Refused(what, answer.exception_code)
+        raise RequestRefused(what, answer.exception_code)
 
 
 def need_library() -> None:

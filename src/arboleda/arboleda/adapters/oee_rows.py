@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any, Protocol
 
 from arboleda.model.errors import ArboledaError
-from arboleda.views.oee import Down, Kept, Run, Shortest, Work
+from arboleda.views.oee import Downtime, KeptFigures, Run, Shortest, Work
 
 DAY_S = 86_400.0
 
@@ -32,7 +32,7 @@ class Database(Protocol):
     def execute(self, statement: str, values: tuple[object, ...] = ..., /) -> Iterable[tuple[Any, ...]]: ...
 
 
-def kept(db: Database, since_s: float, until_s: float) -> Kept:
+def kept(db: Database, since_s: float, until_s: float) -> KeptFigures:
     """What there is of that time."""
     begun = "started_s IS NOT NULL AND ended_s > started_s"
     works = db.execute(
@@ -50,13 +50,13 @@ def kept(db: Database, since_s: float, until_s: float) -> Kept:
         f" WHERE state = 'done' AND attempts <= 1 AND {begun} GROUP BY cell, text"
     )
     try:
-        return Kept(
+        return KeptFigures(
             works=[
                 Work(cell=cell, order=text, state=state, accepted_s=0.0 + at, started_s=begin, ended_s=end)
                 for cell, text, state, at, begin, end in works
             ],
             runs=[Run(since_s=0.0 + since, seen_s=0.0 + seen, ended=bool(end)) for since, seen, end in runs],
-            downs=[Down(cell=cell, since_s=0.0 + since, until_s=until) for cell, since, until in downs],
+            downs=[Downtime(cell=cell, since_s=0.0 + since, until_s=until) for cell, since, until in downs],
             shortest={
                 (cell, text): Shortest(times=times, seconds=best) for cell, text, times, best in shortest
             },

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any
 from arboleda.drivers import Clock, Command, Hear, NotSent, Report, Robot, Stop, driver, lost
 from arboleda.drivers.opcua.machine import Call, OpcUaDevice, Read
 from arboleda.drivers.opcua.settings import Settings
-from arboleda.drivers.plc.plc_snapshot import Unreadable
+from arboleda.drivers.plc.plc_snapshot import UnreadableValue
 from arboleda.drivers.port import DriverError
 
 from .opcua_login import Login, login
@@ -204,7 +204,7 @@ class OpcUa:
             if name in ENDS:
                 self._broken = error
             elif isinstance(command, Stop):
-                self._broken = Unreadable(f"{order.method} was refused: {name}")
+                self._broken = UnreadableValue(f"{order.method} was refused: {name}")
             else:
                 self._hear(Report(at=self._clock(), robot=self._name, rejected=command.id, refusal=name))
         except asyncio.TimeoutError:
@@ -245,11 +245,11 @@ class Changes:
 def values(nodes: Sequence[str], answers: Sequence[DataValue]) -> Read:
     """What a server has answered, by node; Unreadable where a value is not good."""
     if len(answers) != len(nodes):
-        raise Unreadable(f"the server has answered with {len(answers)} values, not {len(nodes)}")
+        raise UnreadableValue(f"the server has answered with {len(answers)} values, not {len(nodes)}")
     read: dict[str, object] = {}
     for node, answer in zip(nodes, answers, strict=True):
         if answer.StatusCode is not None and not answer.StatusCode.is_good():
-            raise Unreadable(f"{node} is {answer.StatusCode.name}")
+            raise UnreadableValue(f"{node} is {answer.StatusCode.name}")
         read[node] = None if answer.Value is None else answer.Value.Value
     return read
 
@@ -306,7 +306,7 @@ def need_library() -> None:
 
 
 def _why(settings: Settings, error: Exception) -> str:
-    if isinstance(error, Unreadable):
+    if isinstance(error, UnreadableValue):
         return str(error)
     if isinstance(error, ConnectionRefusedError):
         return f"{settings.url} is not there"

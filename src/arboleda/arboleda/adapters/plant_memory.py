@@ -39,7 +39,7 @@ class Superseded(ArboledaError):
     """Another process leads this plant now: this one writes nothing more, and must send nothing more."""
 
 
-class LedElsewhere(StartError):
+class OtherLeader(StartError):
     """Another process leads this plant, and is alive."""
 
 

@@ -8,7 +8,7 @@ EVERY_S = 5.0
 REMEMBERED = 200  # words; a stranger must not fill the memory
 
 
-class Seldom:
+class RateLimit:
     """Lets the same words through once in EVERY_S."""
 
     def __init__(self) -> None:

@@ -19,7 +19,7 @@ from arboleda.model.errors import ArboledaError
 from arboleda.model.messages import Check, Course, Reason, TaskAnswer, TaskState
 from arboleda.model.outside import quoted
 from arboleda.model.sentence import OWN, Sentence, retold
-from arboleda.views.oee import Kept, Oee, oee
+from arboleda.views.oee import KeptFigures, Oee, oee
 
 from .memory_file import VERSION, explained, read_only, refuse_damage, refuse_other, refuse_version, version
 from .oee_rows import Database, OeeQuery, kept
@@ -219,7 +219,7 @@ class History(ABC):
     def oee(self, query: OeeQuery, cells: Sequence[str] | None = None) -> list[Oee]:
         """The figures of these cells, or of all that had a task, up to now at the latest."""
         since_s, until_s = query.span(time.time())
-        found = Kept(works=[], runs=[], downs=[], shortest={})
+        found = KeptFigures(works=[], runs=[], downs=[], shortest={})
         with self._reading() as db:
             if db is not None:
                 found = kept(db, since_s, until_s)

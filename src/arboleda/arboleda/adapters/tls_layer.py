@@ -15,7 +15,7 @@ from typing import Any
 
 from arboleda.model.outside import plain
 
-from .rate_limit import Seldom
+from .rate_limit import RateLimit
 
 LOG = logging.getLogger(__name__)
 HANDSHAKE = 0x16  # how TLS begins
@@ -45,7 +45,7 @@ class TlsLayer(asyncio.BufferedProtocol):
         inner: Any,
         *,
         server: str,
-        seldom: Seldom,
+        seldom: RateLimit,
         plain_answer: bytes = b"",
     ) -> None:
         self.inner = inner
@@ -63,7 +63,7 @@ class TlsLayer(asyncio.BufferedProtocol):
     def connection_made(self, transport: asyncio.BaseTransport) -> None:
         assert isinstance(transport, asyncio.Transport)
         self._raw = transport
-        self.inner.connection_made(Secured(self, transport))
+        self.inner.connection_made(TlsTransport(self, transport))
 
     def connection_lost(self, exc: Exception | None) -> None:
         self.inner.connection_lost(exc)
@@ -164,7 +164,7 @@ class TlsLayer(asyncio.BufferedProtocol):
         self._raw.close()
 
 
-class Secured(asyncio.Transport):
+class TlsTransport(asyncio.Transport):
     """What a protocol with TLS under it has for a transport."""
 
     def __init__(self, layer: TlsLayer, raw: asyncio.Transport) -> None:

@@ -14,11 +14,11 @@ TIMEOUT_S = 5.0
 NOT_THIS_ONE = frozenset({400, 413, 422})  # what was posted is refused, and would be again
 
 
-class NotTaken(ArboledaError):
+class NotDelivered(ArboledaError):
     """It did not arrive, as far as anybody knows; it may the next time."""
 
 
-class Refused(ArboledaError):
+class DeliveryRefused(ArboledaError):
     """The receiver does not want this one, and will not the next time."""
 
 
@@ -76,17 +76,17 @@ class Webhook:
             with self._http.stream("POST", self._hook.url, json=what) as answer:
                 status = answer.status_code
         except httpx.TimeoutException as error:
-            raise NotTaken(f"no answer within {self._timeout_s:g} s") from error
+            raise NotDelivered(f"no answer within {self._timeout_s:g} s") from error
         except (httpx.HTTPError, httpx.InvalidURL, OSError) as error:
-            raise NotTaken(str(error) or type(error).__name__) from error
+            raise NotDelivered(str(error) or type(error).__name__) from error
         if status in NOT_THIS_ONE:
-            raise Refused(f"it answers {status}")
+            raise DeliveryRefused(f"it answers {status}")
         if 300 <= status < 400:
-            raise NotTaken(f"it answers {status}: name the address that it leads to in ${URL}")
+            raise NotDelivered(f"it answers {status}: name the address that it leads to in ${URL}")
         if status in (401, 403):
-            raise NotTaken(f"it answers {status}: see ${TOKEN}")
+            raise NotDelivered(f"it answers {status}: see ${TOKEN}")
         if not 200 <= status < 300:
-            raise NotTaken(f"it answers {status}")
+            raise NotDelivered(f"it answers {status}")
 
     def close(self) -> None:
         """Idempotent."""

@@ -43,7 +43,7 @@ from .parts.demo import DemoPart
 from .parts.devices import DevicesPart
 from .parts.drivers import DriversPart
 from .parts.groot2 import Groot2Options, Groot2Part
-from .parts.handover import GoingOn, hold_all
+from .parts.handover import CellResumption, hold_all
 from .parts.lease import LeasePart
 from .parts.linux_boards import LinuxBoards, on_linux
 from .parts.memory_pace import MemoryPace
@@ -400,7 +400,7 @@ class App:
             self.watch(self._demo.saw)
             self._parts.append(self._demo)
         if self.orchestrator is not None and self._store.renew_s is not None:
-            self._parts.append(GoingOn(self, self._store.going, epoch))
+            self._parts.append(CellResumption(self, self._store.going, epoch))
         self._join(bridge, drivers, self._link)
         if self.orchestrator is not None:
             systemd = systemd_part(os.environ, lambda: self._plant.stepped_at)

@@ -53,10 +53,10 @@ from . import (
     virtual_command,
 )
 from .alarm_options import alarm_options
-from .client import Gone, PlantClient
+from .client import PlantClient, PlantGone
 from .conformance import command as conformance
 from .firmware_config import command as firmware_config
-from .line import Refused, Silent
+from .line import PlantSilent, VerbRefused
 from .overview import Overview
 from .plant_options import PlantFile, StateFolder, StoreAddress, TokensFile, client, folder
 from .rate import check_rate
@@ -276,7 +276,7 @@ def up(
 ) -> None:
     """Run the plant until Ctrl-C; tasks come from here, `arboleda submit` or ROS 2 (/task_request)."""
     model, recording = _model(plant, tasks or [])
-    shown = _Shown(tls_cert, tls_key, broker_tls=broker_tls, broker_ca=broker_ca)
+    shown = _Certificates(tls_cert, tls_key, broker_tls=broker_tls, broker_ca=broker_ca)
     web = WebOptions(host=host, port=port, public_url=public_url, tls=shown.by_web)
     options = _options(broker, broker_host, broker_users, shown, rate, state, store, web, recording)
     options = replace(options, groot2=groot2, demo=demo)
@@ -313,7 +313,7 @@ def run(
     """
     model, recording = _model(plant, tasks)
     _refuse_beside(tasks, plant, state)
-    shown = _Shown(tls_cert, tls_key, broker_tls=broker_tls, broker_ca=broker_ca)
+    shown = _Certificates(tls_cert, tls_key, broker_tls=broker_tls, broker_ca=broker_ca)
     web = WebOptions(host=host, port=port, public_url=public_url, tls=shown.by_web)
     options = _options(broker, broker_host, broker_users, shown, rate, state, store, web, recording)
     options = replace(options, groot2=groot2)
@@ -385,14 +385,14 @@ def status(
 
 def _watch(reached: PlantClient, *, as_json: bool) -> None:
     """Show what changes until the plant ends."""
-    with suppress(Gone):
+    with suppress(PlantGone):
         if as_json:
             for kind, row in reached.changes():
                 print(json.dumps({"kind": kind, "row": row}, ensure_ascii=False), flush=True)
             return
         with Live(console=Console(highlight=False), auto_refresh=False) as live:
             for _ in reached.changes():
-                with suppress(Silent):  # it may end between a change and the table of it
+                with suppress(PlantSilent):  # it may end between a change and the table of it
                     live.update(table(reached.status()), refresh=True)
 
 
@@ -521,7 +521,7 @@ def _refuse_beside(tasks: list[str], plant: Path | None, state: Path | None) -> 
     )
 
 
-class _Shown:
+class _Certificates:
     """The certificates that the servers of this plant show, as the options say; StartError where one is of no
     use."""
 
@@ -552,7 +552,7 @@ def _options(
     broker: str | None,
     host: str | None,
     users: Path | None,
-    shown: _Shown,
+    shown: _Certificates,
     rate: float,
     state: Path | None,
     store: str,
@@ -658,7 +658,7 @@ def main() -> None:
     """The entry point: whatever goes wrong is one sentence on standard error."""
     try:
         cli(prog_name="arboleda")
-    except (ConfigError, NoRecord, TextError, QueueFull, Refused) as error:
+    except (ConfigError, NoRecord, TextError, QueueFull, VerbRefused) as error:
         _complain(error)
         sys.exit(BAD_INPUT)
     except ArboledaError as error:

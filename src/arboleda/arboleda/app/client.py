@@ -17,8 +17,8 @@ from arboleda.model.outside import plain
 
 from . import endpoints
 from .leader import of_standby
-from .line import TIMEOUT_S, Answer, FarLine, Line, Silent
-from .remote_plant import Elsewhere, Nobody
+from .line import TIMEOUT_S, Answer, FarLine, Line, PlantSilent
+from .remote_plant import NoLeader, RemotePlant
 from .state import Running, find_running, running_plants
 
 LONGEST = 500  # characters of a line
@@ -34,7 +34,7 @@ LOST_TASK = (
 )
 
 
-class Gone(ArboledaError):
+class PlantGone(ArboledaError):
     """The plant was there, and is no more."""
 
     def __init__(self) -> None:
@@ -47,9 +47,9 @@ class PlantClient:
     Whom it asks on another host it says once, on standard error.
     """
 
-    def __init__(self, state: Path, elsewhere: Elsewhere | None = None) -> None:
+    def __init__(self, state: Path, elsewhere: RemotePlant | None = None) -> None:
         self._state = state
-        self._elsewhere = elsewhere or Elsewhere(state, lambda: ("", ""), dict)
+        self._elsewhere = elsewhere or RemotePlant(state, lambda: ("", ""), dict)
         self._listening: Line | None = None  # whoever tells changes is asked, too
         self._said = ""
 
@@ -58,10 +58,10 @@ class PlantClient:
         try:
             # An id makes it one task, however often it is sent; without one it is never sent again.
             return self._ask("POST", "/api/tasks", {"text": text}, repeatable="#" in text)
-        except Silent as error:
+        except PlantSilent as error:
             if not error.may_have_heard:
                 raise
-            raise Silent(f"{error} {LOST_TASK}", may_have_heard=True) from error
+            raise PlantSilent(f"{error} {LOST_TASK}", may_have_heard=True) from error
 
     def status(self) -> dict[str, Any]:
         """The view of the plant."""
@@ -112,14 +112,14 @@ class PlantClient:
                 self._listening = None
             cut_at = cut_at or time.monotonic()
             if time.monotonic() - cut_at > self._patience_s(running, trouble):
-                raise Gone from trouble
+                raise PlantGone from trouble
             time.sleep(LOOK_S)
 
     def _patience_s(self, before: Running | None, trouble: ArboledaError | None) -> float:
         """For how long after a cut somebody may tell on."""
         if not self._elsewhere.is_known:
             return NEXT_S if trouble is None and find_running(self._state) == before else 0.0
-        return NOBODY_S if isinstance(trouble, Nobody) and not trouble.awaited else NEXT_S
+        return NOBODY_S if isinstance(trouble, NoLeader) and not trouble.awaited else NEXT_S
 
     def follow(self, task: dict[str, Any]) -> Iterator[dict[str, Any]]:
         """The task each time that its state changes, until it has ended; ArboledaError where the plant ends
@@ -132,7 +132,7 @@ class PlantClient:
                     yield (task := now)
                 if TaskState(task["state"]) in ENDED:
                     return
-        except Gone as error:
+        except PlantGone as error:
             raise ArboledaError(
                 f"the plant has ended, and #{task['id']} has not: its next start has it again"
             ) from error
@@ -163,7 +163,7 @@ class PlantClient:
         hurries = urgent and self._elsewhere.is_known and not isinstance(line, FarLine)
         try:
             answer = line.ask(method, path, body, within_s=URGENT_S if hurries else TIMEOUT_S)
-        except Silent as error:
+        except PlantSilent as error:
             other = self._instead(line, error, repeatable=repeatable or method == "GET")
             if other is None and not hurries:
                 raise
@@ -214,13 +214,13 @@ class PlantClient:
             led = self._elsewhere.led()
             if led is not None:
                 return self._elsewhere.line(led)
-        except Nobody as error:
-            raise Nobody(f"{here}. {error}", awaited=error.awaited or running is not None) from error
+        except NoLeader as error:
+            raise NoLeader(f"{here}. {error}", awaited=error.awaited or running is not None) from error
         except ArboledaError as error:
             raise ArboledaError(f"{here}. {error}") from error
         raise ArboledaError(f"{here}; {_others()}." if running is None else f"{here}.")
 
-    def _instead(self, line: Line, silent: Silent, *, repeatable: bool) -> Line | None:
+    def _instead(self, line: Line, silent: PlantSilent, *, repeatable: bool) -> Line | None:
         """To another process that leads the plant, where one on this host was silent; None where none does,
         Silent where it must not be asked as well."""
         led, running = None, find_running(self._state)
@@ -231,7 +231,7 @@ class PlantClient:
             return None
         if silent.may_have_heard and not repeatable:
             sentence = f"{silent} Plant {led.plant} is led on {led.host} now."
-            raise Silent(sentence, may_have_heard=True) from silent
+            raise PlantSilent(sentence, may_have_heard=True) from silent
         return self._elsewhere.line(led)
 
     def _say(self, line: Line, done: str) -> None:

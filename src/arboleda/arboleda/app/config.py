@@ -29,7 +29,7 @@ from .plant_file.names import check_names
 from .plant_file.paths import check_nodes_show, paths
 from .plant_file.pickups import default_pickup, pickups
 from .plant_file.poses import PoseReader
-from .plant_file.python_uses import Used, Watch
+from .plant_file.python_uses import PythonUses, Watch
 from .plant_file.recipe_check import MOST, Trial, combinations
 from .plant_file.robot_models import ArmModel
 from .plant_file.robots import arm, arm_model, check_absence, mobile
@@ -99,7 +99,7 @@ def _parsed(name: str, content: bytes, folder: Path | None, *, recipes: bool) ->
     elif own_kinds.needs_python(document):
         plant = _named(document)
     else:
-        plant = _plant(document, Used(), _nothing)
+        plant = _plant(document, PythonUses(), _nothing)
     document.finish()
     if plant is None:
         raise ConfigError((f"{document.name}: the file cannot be read as a plant",))
@@ -202,7 +202,7 @@ def _named(document: Document) -> PlantModel | None:
     return None if shape is None else PlantModel(name=shape.name, cells=())
 
 
-def _plant(document: Document, used: Used, recipes: Offers) -> PlantModel | None:
+def _plant(document: Document, used: PythonUses, recipes: Offers) -> PlantModel | None:
     shape = document.read(FileShape)
     own_kinds.complete(document, used)
     known = Kinds(declared=kinds(document), names=document.keys(("kinds",)), used=used)

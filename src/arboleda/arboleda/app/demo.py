@@ -28,7 +28,7 @@ class Task:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Enough:
+class DemoEnded:
     """Somebody ends the demonstration; the plant stays up."""
 
 
@@ -53,11 +53,11 @@ class Demo:
     def next_deadline(self) -> float | None:
         return min((*self._repairs.values(), *(self._rested.values() if self.is_on else ())), default=None)
 
-    def step(self, now: float, events: Sequence[Snapshot | Enough]) -> list[Task | Reboot | Alarm]:
+    def step(self, now: float, events: Sequence[Snapshot | DemoEnded]) -> list[Task | Reboot | Alarm]:
         """See what is new; the tasks and faults that are due."""
         out: list[Task | Reboot | Alarm] = []
         for event in events:
-            if isinstance(event, Enough):
+            if isinstance(event, DemoEnded):
                 self.is_on = False
             elif self.is_on:
                 self._rest(now, event)

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Led:
+class LeaderInfo:
     """The process and its host, the address of its page, "" where it has said none that is one, and the
     number of its start."""
 
@@ -42,9 +42,9 @@ class Led:
         return way_to(self.host, self.url)
 
 
-def of_leader(plant: str, leader: Leader) -> Led:
+def of_leader(plant: str, leader: Leader) -> LeaderInfo:
     """As the database says it."""
-    return Led(
+    return LeaderInfo(
         plant=plant,
         host=leader.host,
         process=leader.process,
@@ -53,16 +53,16 @@ def of_leader(plant: str, leader: Leader) -> Led:
     )
 
 
-def said_of(led: Led | None) -> dict[str, Any]:
+def said_of(led: LeaderInfo | None) -> dict[str, Any]:
     """What a process that stands by says of it, for `of_standby`."""
     if led is None:
         return {"leader": "", "host": "", "process": 0, "epoch": 0}
     return {"leader": led.url, "host": led.host, "process": led.process, "epoch": led.epoch}
 
 
-def of_standby(said: Mapping[str, Any]) -> Led:
+def of_standby(said: Mapping[str, Any]) -> LeaderInfo:
     """As a process that stands by says it."""
-    return Led(
+    return LeaderInfo(
         plant=plain(str(said.get("plant", ""))),
         host=plain(str(said.get("host", ""))),
         process=_number(said.get("process")),

@@ -24,11 +24,11 @@ LONGEST = 300  # characters of what another host says that are shown
 UNAUTHORIZED, UNAVAILABLE = 401, 503
 
 
-class Refused(ArboledaError):
+class VerbRefused(ArboledaError):
     """The plant does not do now what an operator asks for; the sentence says why."""
 
 
-class Silent(ArboledaError):
+class PlantSilent(ArboledaError):
     """No answer of a plant; `may_have_heard` where what was asked may have been done all the same."""
 
     def __init__(self, sentence: str, *, may_have_heard: bool) -> None:
@@ -36,7 +36,7 @@ class Silent(ArboledaError):
         self.may_have_heard = may_have_heard
 
 
-ERRORS = {403: ArboledaError, 404: ArboledaError, 409: Refused, 422: TextError}
+ERRORS = {403: ArboledaError, 404: ArboledaError, 409: VerbRefused, 422: TextError}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -116,11 +116,11 @@ class Line:
         """How it gave no answer, as its name goes on."""
         return " did not answer."
 
-    def _silent(self, error: Exception) -> Silent:
+    def _silent(self, error: Exception) -> PlantSilent:
         import httpx
 
         was_sent = not isinstance(error, httpx.ConnectError | httpx.ConnectTimeout)
-        return Silent(f"{self._name}{self._how(error)}", may_have_heard=was_sent)
+        return PlantSilent(f"{self._name}{self._how(error)}", may_have_heard=was_sent)
 
     def _http(self, *, silence_s: float = TIMEOUT_S) -> httpx.Client:
         import httpx

@@ -18,7 +18,7 @@ Message = TypeVar("Message")
 Result = TypeVar("Result")
 
 
-class UnderWay(Exception):
+class StepInFlight(Exception):
     """What came out of the last step is still being sent."""
 
 
@@ -123,7 +123,7 @@ class Loop(Generic[Event, Message]):
             while (since := self._handing_on_since) is not None:
                 left_s = since + within_s - self._clock()
                 if left_s <= 0:
-                    raise UnderWay
+                    raise StepInFlight
                 self._readers += 1
                 self._handed_on.wait(left_s)
                 self._readers -= 1

@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from arboleda.bt_xml import leaves, writing
-from arboleda.bt_xml.nodes import Kind, Way
+from arboleda.bt_xml.nodes import Kind, PortDirection
 from arboleda.bt_xml.recipe import TreeRecipe
 from arboleda.model.plant_model import PlantModel
 
@@ -51,7 +51,7 @@ def of_plant(model: PlantModel, cell: str | None) -> Mapping[str, Kind]:
 def _line(kind: Kind) -> str:
     ports = (kind.ports or {}).values()
     said = [
-        f"{'gives ' if each.way is Way.OUT else ''}{each.name} ({_what(each.words, each.about)})"
+        f"{'gives ' if each.way is PortDirection.OUT else ''}{each.name} ({_what(each.words, each.about)})"
         for each in ports
     ]
     about = [f"  {kind.about}"] if kind.about else []

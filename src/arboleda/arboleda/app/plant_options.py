@@ -14,7 +14,7 @@ from arboleda.model.outside import plain
 from . import config
 from .client import PlantClient
 from .endpoints import tokens_of
-from .remote_plant import Elsewhere
+from .remote_plant import RemotePlant
 from .state import default_state, find_running, last_run, plants_of_databases, running_plants
 from .stores import history_of, leadership_of
 
@@ -71,7 +71,7 @@ def client(
     """The client of the plant that runs on `state`, or where that plant file keeps its state; on whatever
     host it is led."""
     where = located(plant, state)
-    elsewhere = Elsewhere(
+    elsewhere = RemotePlant(
         where,
         kept_in=lambda: _kept_in(plant, where, store),
         known=lambda: {} if tokens is None else tokens_of(tokens),

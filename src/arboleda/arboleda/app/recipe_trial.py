@@ -22,7 +22,7 @@ from .plant_file import drivers, own_kinds, own_recipes
 from .plant_file.devices import CELLS, is_of_devices
 from .plant_file.document import Document
 from .plant_file.problems import Kept
-from .plant_file.python_uses import Spot, Used, unwatched
+from .plant_file.python_uses import PythonUses, Spot, unwatched
 
 LONGEST_S = 10.0  # for the import of a file, and for each build of a recipe
 STUCK_S = 60.0  # after which not even the watch in the other process has done its work
@@ -43,11 +43,11 @@ class Verdict:
 
 
 @dataclass
-class Brought:
+class PlantPython:
     """What a plant has of Python, and which recipes each of its cells offers."""
 
     document: Document
-    used: Used = field(default_factory=Used)
+    used: PythonUses = field(default_factory=PythonUses)
     offers: dict[str, list[str]] = field(default_factory=dict)
 
     def offered(self, cells: Sequence[Cell]) -> dict[str, tuple[Recipe, ...]]:
@@ -58,7 +58,7 @@ class Brought:
         return {name: _marked(self.document, name, each, beside[name]) for name, each in rows.items() if each}
 
 
-def brought(document: Document, content: bytes) -> Brought:
+def brought(document: Document, content: bytes) -> PlantPython:
     """What of Python a plant file uses, tried before; nothing, with the problems kept, where it is wrong."""
     places = [(*CELLS, name) for name in document.keys(CELLS)]
     of_devices = [place for place in places if is_of_devices(document, place)]
@@ -68,18 +68,18 @@ def brought(document: Document, content: bytes) -> Brought:
             how = 'name a file that has one at the top of this one: "uses: [recipes.py]"'
             document.problem(place, f"offers no recipe; {how}", at=place)
     if not (words or own_kinds.needs_python(document) or any(drivers.named(document))):
-        return Brought(document)
+        return PlantPython(document)
     found = verdict(document.name, document.folder, content)
     document.keep_all(found.here, found.elsewhere)
     if any(document.kept):
-        return Brought(document, Used(is_whole=False, may_import=False))
+        return PlantPython(document, PythonUses(is_whole=False, may_import=False))
     used = own_recipes.imported(document, words, unwatched)
     if any(document.kept):  # a file may do another thing the second time
-        return Brought(document, used)
+        return PlantPython(document, used)
     has_effect = of_devices or used.recipes or any(drivers.named(document))
     if words and not has_effect:
         document.problem(own_recipes.SECTION, "brings no recipe, so this has no effect; delete it")
-    return Brought(document, used, found.offers)
+    return PlantPython(document, used, found.offers)
 
 
 def _marked(

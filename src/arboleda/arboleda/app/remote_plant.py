@@ -13,12 +13,12 @@ from arboleda.model.errors import ArboledaError
 
 from . import tokens
 from .endpoints import Place, with_tokens
-from .leader import Led, of_leader
+from .leader import LeaderInfo, of_leader
 from .line import FarLine
 from .stores import leadership_of
 
 
-class Nobody(ArboledaError):
+class NoLeader(ArboledaError):
     """Nobody leads the plant; `awaited` where somebody stands by, who will."""
 
     def __init__(self, sentence: str, *, awaited: bool) -> None:
@@ -26,7 +26,7 @@ class Nobody(ArboledaError):
         self.awaited = awaited
 
 
-class Elsewhere:
+class RemotePlant:
     """Of the plant of the state directory `state`. `kept_in()` is the database of its memory, "" for a file,
     and its name; `known()` are tokens by address or by plant. Both are asked only where they are needed: what
     is wrong with them keeps nobody from the plant that runs here."""
@@ -47,7 +47,7 @@ class Elsewhere:
     def _memory(self) -> tuple[str, str]:
         return self._kept_in()
 
-    def led(self) -> Led | None:
+    def led(self) -> LeaderInfo | None:
         """Who leads it, as its database says; None where its memory is a file. Nobody; ArboledaError where
         the database does not say."""
         store, plant = self._memory
@@ -59,10 +59,10 @@ class Elsewhere:
         finally:
             others.close()
         if not leader.leads:
-            raise Nobody(f"Nobody leads the plant of {others.name} now.", awaited=bool(leader.standbys))
+            raise NoLeader(f"Nobody leads the plant of {others.name} now.", awaited=bool(leader.standbys))
         return of_leader(plant, leader)
 
-    def line(self, led: Led) -> FarLine:
+    def line(self, led: LeaderInfo) -> FarLine:
         """To who leads it; ArboledaError where no address of his leads there from here."""
         named = f"Plant {led.plant} is led on {led.host}"
         if led.is_far:
@@ -80,7 +80,7 @@ class Elsewhere:
         )
         return FarLine(place, named, led.host, advice)
 
-    def _place(self, led: Led) -> Place:
+    def _place(self, led: LeaderInfo) -> Place:
         """With a token of the file of tokens, of a plant of this machine that has the address, or of this
         state directory: hosts that lead a plant in turns may have the same ones."""
         (place,) = with_tokens(lambda: [Place(url=led.way, plant=led.plant)], self._known())()

@@ -27,8 +27,8 @@ from .recorded_plant import model_of
 
 if TYPE_CHECKING:
     from arboleda.recorder.reader import Record
-    from arboleda.recorder.replay import Replayed
-    from arboleda.recorder.steps import Recorded
+    from arboleda.recorder.replay import ReplayedStep
+    from arboleda.recorder.steps import RecordedStep
 
     from .fork.command import Options
 
@@ -188,7 +188,7 @@ def _show(record: Record, until: str | None, task: str | None, port: int | None)
     replay_page.show(record, model_of(record.first.beginning, None), query | of_task, port)
 
 
-def _finish(record: Record, last: Replayed) -> None:
+def _finish(record: Record, last: ReplayedStep) -> None:
     """Say what came of it."""
     if last.difference is not None:
         for line in _difference(last):
@@ -218,11 +218,11 @@ def _time(option: str, text: str, began_ns: int) -> int:
     raise ConfigError((f"{option} {plain(text, 40)}: is no time; write 2026-11-22T03:15:00, or 03:15:00",))
 
 
-def _run(record: Record, model: PlantModel, chosen: Chosen) -> Replayed | None:
+def _run(record: Record, model: PlantModel, chosen: Chosen) -> ReplayedStep | None:
     """Make the steps again and tell what becomes of tasks; the last of them."""
     from arboleda.recorder.replay import plant_of, replayed
 
-    last: Replayed | None = None
+    last: ReplayedStep | None = None
     pace = Pace(chosen.speed)
     known = False
     for last in replayed(plant_of(record.first.beginning, model), _until(record, chosen.until_ns)):
@@ -238,7 +238,7 @@ def _run(record: Record, model: PlantModel, chosen: Chosen) -> Replayed | None:
     return last
 
 
-def _until(record: Record, end_ns: int | None) -> Iterator[Recorded]:
+def _until(record: Record, end_ns: int | None) -> Iterator[RecordedStep]:
     for step in record.steps():
         if end_ns is not None and step.unix_ns > end_ns:
             return
@@ -275,7 +275,7 @@ def sentence_of(data: Any) -> str:
         return ""
 
 
-def _difference(last: Replayed) -> Iterator[str]:
+def _difference(last: ReplayedStep) -> Iterator[str]:
     step, found = last.recorded, last.difference
     assert found is not None
     asked = ", ".join(_event(each) for each in step.events) or "no event, a deadline"

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from arboleda.recorder.reader import Record
 
 
-class Recorded:
+class RecordedPast:
     """`arboleda.dashboard.past.side.PastSide`; NoRecord where the record has nothing to see."""
 
     def __init__(self, record: Record, model: PlantModel) -> None:
@@ -55,7 +55,7 @@ class Recorded:
 class RecordServer:
     """Serves the page from `start`, which returns its address, to `stop`."""
 
-    def __init__(self, side: Recorded, port: int | None) -> None:
+    def __init__(self, side: RecordedPast, port: int | None) -> None:
         app = FastAPI(docs_url=None, redoc_url=None, openapi_url=None, redirect_slashes=False)
         app.add_exception_handler(ArboledaError, refuse)
         app.add_exception_handler(HTTPException, refuse)
@@ -72,7 +72,7 @@ class RecordServer:
 
 def show(record: Record, model: PlantModel, query: dict[str, str], port: int | None) -> None:
     """Serve the page until Ctrl-C; `query` is where in the record its address leads."""
-    server = RecordServer(Recorded(record, model), port)
+    server = RecordServer(RecordedPast(record, model), port)
     with interruptible():
         try:
             address = server.start()

@@ -12,14 +12,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from arboleda.adapters.own_addresses import other_address
-from arboleda.adapters.plant_memory import LedElsewhere
+from arboleda.adapters.plant_memory import OtherLeader
 from arboleda.core.leading import LOOK_S
 from arboleda.model.errors import ArboledaError, StartError
 from arboleda.model.plant_model import PlantModel
 from arboleda.wire.status import OK, WARN
 
 from .build import App, Options, build
-from .leader import Led, of_leader
+from .leader import LeaderInfo, of_leader
 from .parts.waiting_room import WaitingRoom
 from .state import StateDir, default_state
 from .waiting import heed, interruptible
@@ -57,7 +57,7 @@ def take_over(model: PlantModel, parts: set[str], options: Options, tell: Callab
         options = replace(options, web=replace(options.web, usual_port=port))  # pages that are open find it
         try:
             return build(model, parts, options)
-        except LedElsewhere:
+        except OtherLeader:
             tell("another process was first; this one goes on waiting")
 
 
@@ -76,7 +76,7 @@ def _wait(model: PlantModel, store: str, state: Path, options: Options, tell: Ca
         try:
             tell(f"Page of the standby: {room.url}")
             own = partial(options.web.origin, room.port, lambda: others.own_address() or other_address())
-            _until_free(others, model.name, own, _Told(room, voice, tell))
+            _until_free(others, model.name, own, _StandbyNotices(room, voice, tell))
             return room.port
         finally:
             room.stop()
@@ -85,14 +85,14 @@ def _wait(model: PlantModel, store: str, state: Path, options: Options, tell: Ca
                 voice.close()
 
 
-class _Told:
+class _StandbyNotices:
     """Whom it tells what it waits for: its page, `/diagnostics` each second, people where it changes."""
 
     def __init__(self, room: WaitingRoom, voice: Any | None, tell: Callable[[str], None]) -> None:
         self._room, self._voice, self._tell = room, voice, tell
         self._said, self._said_at = "", 0.0
 
-    def waits(self, sentence: str, level: int, led: Led | None = None) -> None:
+    def waits(self, sentence: str, level: int, led: LeaderInfo | None = None) -> None:
         """`led` is who leads, None where nobody knows it."""
         self._room.show(sentence, led)
         now = time.monotonic()
@@ -104,7 +104,7 @@ class _Told:
             self._said = sentence
 
 
-def _until_free(others: Leadership, plant: str, own: Callable[[], str], told: _Told) -> None:
+def _until_free(others: Leadership, plant: str, own: Callable[[], str], told: _StandbyNotices) -> None:
     """Look again and again; a database that is away says nothing of who leads. `own()` is where the page of
     who waits is."""
     said_at = 0.0

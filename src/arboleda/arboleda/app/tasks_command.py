@@ -39,7 +39,7 @@ HEADINGS = ("accepted", "by", "id", "task", "state", "tries", "took", "why")
 ANSWERS = "answers"  # where a task of the list has any
 
 
-class Kept(str, Enum):
+class KeptState(str, Enum):
     """The states that a kept task can be in."""
 
     QUEUED = "queued"
@@ -68,7 +68,7 @@ def tasks(
         str, typer.Argument(metavar="WORDS", help="Only tasks with these words in their text or id.")
     ] = "",
     cell: Annotated[str, typer.Option(metavar="CELL", help="Only tasks of this cell.")] = "",
-    status: Annotated[Kept | None, typer.Option(help="Only tasks in this state.")] = None,
+    status: Annotated[KeptState | None, typer.Option(help="Only tasks in this state.")] = None,
     recipe: Annotated[str, typer.Option(metavar="NAME", help="Only tasks of this recipe.")] = "",
     since: Annotated[
         str | None, typer.Option(metavar="TIME", help="Accepted since then: 2h ago, or 2026-11-21T14:30.")

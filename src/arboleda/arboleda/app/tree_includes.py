@@ -6,7 +6,7 @@ import os
 from pathlib import Path
 
 from arboleda.bt_xml.markup import LARGEST
-from arboleda.bt_xml.reading import NotHere
+from arboleda.bt_xml.reading import MissingInclude
 from arboleda.model.errors import ConfigError
 from arboleda.model.outside import quoted
 
@@ -29,7 +29,9 @@ def _placed(file: str, path: str, package: str) -> Path:
     """As BehaviorTree.CPP has it, an absolute path counts also where a package is named."""
     if Path(path).is_absolute():
         if not Path(path).exists():
-            raise NotHere((f"{quoted(path)} is an absolute path, and there is no such file here; {HOW}",))
+            raise MissingInclude(
+                (f"{quoted(path)} is an absolute path, and there is no such file here; {HOW}",)
+            )
         return Path(path)
     return _share(path, package) / path if package else Path(file).parent / path
 
@@ -46,4 +48,4 @@ def _share(path: str, package: str) -> Path:
         else "cannot be found: no ROS 2 is sourced here"
     )
     named = f"{quoted(path)} lies in the ROS package {quoted(package)}, which {why}"
-    raise NotHere((f"{named}; {HOW}",))
+    raise MissingInclude((f"{named}; {HOW}",))

@@ -13,7 +13,7 @@ from arboleda.model.outside import plain
 from arboleda.views.verb_words import ABOUT, PLANT, VerbWords
 
 from .client import LONGEST, PlantClient
-from .line import Refused
+from .line import VerbRefused
 from .plant_options import PlantFile, StateFolder, StoreAddress, TokensFile, client
 
 STATUS = "Exit status: 0 done, 1 no plant, 2 refused, 3 failed, 4 still under way."
@@ -145,7 +145,7 @@ def _ask(verb: Verb, scope: str | None, reached: PlantClient, *, by_hand: bool =
         if answer.get("outcome") == Outcome.UNDER_WAY.value:
             answer = reached.outcome(answer["act"])
     except ArboledaError as error:
-        if verb is not Verb.STOP or isinstance(error, Refused | TextError):
+        if verb is not Verb.STOP or isinstance(error, VerbRefused | TextError):
             raise
         raise ArboledaError(f"The stop was not confirmed, use the hard-wired button: {error}") from error
     did = LABELS.get(verb, verb.value) + (" by hand" if by_hand else "")

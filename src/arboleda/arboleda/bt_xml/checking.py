@@ -13,7 +13,7 @@ from . import endings, names, nodes, script, values, variable_types, variables
 from .findings import Findings, Place
 from .forest import Forest, Node
 from .markup import Attribute
-from .nodes import OF_LIBRARY, Category, Kind, Port, Way
+from .nodes import OF_LIBRARY, Category, Kind, Port, PortDirection
 from .values import Variable
 
 MOST_LOOPS = 20
@@ -181,7 +181,7 @@ class _Checker:
                 sentence = f"{_named(node)} needs {port.name}{_what(port)}"
                 if self.knows(node):
                     self._mistake(node, sentence)
-                elif port.way is not Way.OUT:
+                elif port.way is not PortDirection.OUT:
                     self.findings.warning(node.place, sentence)
 
     def _check_thresholds(self, node: Node) -> None:
@@ -208,7 +208,7 @@ class _Checker:
         place = Place(node.place.file, attribute.mark)
         if isinstance(said, Variable):
             return
-        if port.way is Way.OUT:
+        if port.way is PortDirection.OUT:
             how = f'version 4 wants {port.name}="{{...}}"'
             self.findings.warning(place, f"{port.name} of {node.kind} names a variable; {how}")
         elif (wanted := values.objection(port.type, said)) is not None:

@@ -16,7 +16,7 @@ from arboleda.model.plant_model import Cell, Robot
 from arboleda.recipes.nodes import Taken, WrittenNode
 
 from . import values
-from .nodes import MANY, Category, Kind, Port, Way, by_name, children
+from .nodes import MANY, Category, Kind, Port, PortDirection, by_name, children
 
 TYPES: Mapping[type, str] = {bool: "bool", int: "int", float: "double", str: "string"}
 ANSWER = "answer"
@@ -79,14 +79,14 @@ def _of_verb(role: str, verb: DeviceVerb) -> Kind:
     ports = [_port(name, type, is_needed=True) for name, type in verb.parameters]
     if verb.effect is Effect.QUERY:
         answers = ", ".join(map(shown, verb.answers))
-        ports.append(Port(name=ANSWER, type="string", way=Way.OUT, about=f"one of {answers}"))
+        ports.append(Port(name=ANSWER, type="string", way=PortDirection.OUT, about=f"one of {answers}"))
     return _kind(Category.ACTION, f"{role}_{verb.name}", *ports)
 
 
 def _of_facts(role: str, facts: Mapping[str, FactType]) -> Iterator[Kind]:
     ports = [_port(name, type, is_needed=False) for name, type in facts.items()]
     within = Port(name="at_most_s", type="double", is_needed=True, about="how long it is waited for, in s")
-    told = [replace(each, way=Way.OUT) for each in ports]
+    told = [replace(each, way=PortDirection.OUT) for each in ports]
     yield _kind(Category.CONDITION, f"{role}_says", *ports)
     yield _kind(Category.ACTION, f"{role}_{TELLS}", *told)
     yield _kind(Category.ACTION, f"{role}_becomes", *ports, within)
@@ -128,7 +128,7 @@ def _taken(cell: Cell, taken: Taken) -> Port:
 
 
 def _given(row: tuple[str, type]) -> Port:
-    return Port(name=row[0], type=TYPES[row[1]], way=Way.OUT, about=_said(row[1]))
+    return Port(name=row[0], type=TYPES[row[1]], way=PortDirection.OUT, about=_said(row[1]))
 
 
 def _said(type: type) -> str:
@@ -149,7 +149,7 @@ def _ask(role: str) -> Kind:
             default=f"{PATIENCE_S:g}",
             about="how long it is waited for, in s",
         ),
-        Port(name=ANSWER, type="string", way=Way.OUT, about="what was answered"),
+        Port(name=ANSWER, type="string", way=PortDirection.OUT, about="what was answered"),
     )
 
 

@@ -23,7 +23,7 @@ class Category(str, Enum):
     SUBTREE = "SubTree"
 
 
-class Way(str, Enum):
+class PortDirection(str, Enum):
     """Which way a port's value goes; the words are those of a TreeNodesModel."""
 
     IN = "input_port"
@@ -39,7 +39,7 @@ class Port:
 
     name: str
     type: str = ""
-    way: Way = Way.IN
+    way: PortDirection = PortDirection.IN
     default: str | None = None
     is_needed: bool = False
     words: tuple[str, ...] = ()
@@ -70,7 +70,13 @@ def children(category: Category) -> tuple[int, int]:
 
 def _port(text: str) -> Port:
     """`name:type`, with `=value` where it has a default, `>` or `<>` before it where it gives a value."""
-    way = Way.BOTH if text.startswith("<>") else Way.OUT if text.startswith(">") else Way.IN
+    way = (
+        PortDirection.BOTH
+        if text.startswith("<>")
+        else PortDirection.OUT
+        if text.startswith(">")
+        else PortDirection.IN
+    )
     declared, _, default = text.lstrip("<>").partition("=")
     name, _, type = declared.partition(":")
     is_needed = "=" not in text and not name.endswith("?")

@@ -13,7 +13,7 @@ from arboleda.model.recipe import Limits, Parameter
 from . import nodes, values
 from .findings import Findings, Place
 from .forest import Forest, Node
-from .nodes import Kind, Port, Way
+from .nodes import Kind, Port, PortDirection
 from .values import NUMBERS, WHOLE, Variable
 
 MOST_LEVELS = 50
@@ -31,7 +31,7 @@ class _Allowed:
 
 
 @dataclass(frozen=True)
-class _Use:
+class _ParameterUse:
     """A port that is given a parameter."""
 
     node: Node
@@ -43,7 +43,7 @@ def of_tree(forest: Forest, main: str) -> list[Port]:
     """The ports of a tree that are its parameters."""
     model = forest.models.get(main)
     ports = (model.ports or {}).values() if model is not None else ()
-    return [each for each in ports if each.way is Way.IN]
+    return [each for each in ports if each.way is PortDirection.IN]
 
 
 def parameter(forest: Forest, main: str, port: Port, kinds: KindsOf) -> Parameter:
@@ -122,7 +122,9 @@ def _limits(ports: Sequence[Port]) -> Limits:
     return Limits(lower=float(lower), upper=float(upper))
 
 
-def _uses(forest: Forest, kinds: Mapping[str, Kind], tree: str, name: str, level: int) -> Iterator[_Use]:
+def _uses(
+    forest: Forest, kinds: Mapping[str, Kind], tree: str, name: str, level: int
+) -> Iterator[_ParameterUse]:
     """Each port that is given a variable, in a tree and in those within."""
     if level > MOST_LEVELS or tree not in forest.trees:
         return
@@ -133,8 +135,8 @@ def _uses(forest: Forest, kinds: Mapping[str, Kind], tree: str, name: str, level
                 continue
             kind = nodes.built_in(node.kind) or kinds.get(node.kind)
             port = (kind.ports or {}).get(port_name) if kind is not None else None
-            if port is not None and port.way is not Way.OUT:
-                yield _Use(node, port, Place(node.place.file, node.ports[port_name].mark))
+            if port is not None and port.way is not PortDirection.OUT:
+                yield _ParameterUse(node, port, Place(node.place.file, node.ports[port_name].mark))
 
 
 def _given(node: Node, variable: str) -> Iterator[str]:

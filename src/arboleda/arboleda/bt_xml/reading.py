@@ -13,7 +13,7 @@ from . import names, nodes
 from .findings import Findings, Mark, Place, XmlFault
 from .forest import Forest, Node, Tree
 from .markup import Element, Markup, parse
-from .nodes import Category, Kind, Port, Way
+from .nodes import Category, Kind, Port, PortDirection
 from .values import plain_type
 
 MOST_FILES = 50
@@ -25,7 +25,7 @@ Fetch = Callable[[str, str, str], tuple[str, bytes]]
 which that lies, "" for none: its own name and its content; NotHere or ConfigError where it cannot be read."""
 
 
-class NotHere(ConfigError):
+class MissingInclude(ConfigError):
     """A file of another machine, or of a package that is not installed: what is in it is not missed."""
 
 
@@ -111,7 +111,7 @@ class _Reader:
             return
         try:
             file, content = self.fetch(page.file, path.value, "" if package is None else package.value)
-        except NotHere as error:
+        except MissingInclude as error:
             page.warning(path.mark, str(error))
             self.is_whole = False
             return
@@ -217,10 +217,15 @@ class _Page:
 
     def _kind(self, element: Element, name: str, category: Category) -> Kind:
         fewest, most = nodes.children(category)
-        ports = [port for way in Way for each in element.all(way.value) if (port := self._port(each, way))]
+        ports = [
+            port
+            for way in PortDirection
+            for each in element.all(way.value)
+            if (port := self._port(each, way))
+        ]
         return Kind(name=name, category=category, ports=nodes.by_name(ports), fewest=fewest, most=most)
 
-    def _port(self, element: Element, way: Way) -> Port | None:
+    def _port(self, element: Element, way: PortDirection) -> Port | None:
         name = element.value("name")
         if name is None:
             self.mistake(element.mark, f'which? <{way.value} name="...">')

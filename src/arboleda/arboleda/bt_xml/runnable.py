@@ -12,7 +12,7 @@ from arboleda.model.outside import among, quoted
 from . import checking, nodes, parameters, values, variables
 from .findings import Findings, Place
 from .forest import Forest, Node
-from .nodes import Kind, Way
+from .nodes import Kind, PortDirection
 from .running.errors import NoDeviceError, TreeMistakes
 from .values import Variable
 
@@ -48,7 +48,7 @@ def check(forest: Forest, findings: Findings) -> None:
     main = forest.trees[forest.main or ""]
     model = forest.models.get(main.name)
     for port in (model.ports or {}).values() if model is not None else ():
-        if port.way is not Way.IN:
+        if port.way is not PortDirection.IN:
             sentence = f"the port {quoted(port.name)} gives a value; a recipe takes values: input_port"
             findings.mistake(main.place, sentence)
     many, levels = _size(forest, main.name)

@@ -18,7 +18,7 @@ MOST_PASSED = 100_000  # variables of trees that trees around them are held agai
 
 
 @dataclass(frozen=True, kw_only=True)
-class Use:
+class VariableUse:
     """A port that is given a variable; `type` is "" where nobody here knows it, or it takes any."""
 
     node: Node
@@ -38,8 +38,8 @@ class Clash:
     """A variable with the use that gives it its type, and one of another type."""
 
     variable: str
-    first: Use
-    other: Use
+    first: VariableUse
+    other: VariableUse
 
     def __str__(self) -> str:
         there = f"{self.first} at {self.first.place}"
@@ -51,18 +51,18 @@ class Clash:
 class _Uses:
     """The first use of a variable, which decides what it is, and the first of each type."""
 
-    first: Use
-    typed: dict[str, Use] = field(default_factory=dict)
+    first: VariableUse
+    typed: dict[str, VariableUse] = field(default_factory=dict)
 
-    def all(self) -> Iterator[Use]:
+    def all(self) -> Iterator[VariableUse]:
         yield self.first
         yield from self.typed.values()
 
-    def add(self, use: Use) -> None:
+    def add(self, use: VariableUse) -> None:
         if use.type:
             self.typed.setdefault(use.type, use)
 
-    def clashes(self, use: Use) -> bool:
+    def clashes(self, use: VariableUse) -> bool:
         """BehaviorTree.CPP takes anything where a text, or a port of any type, came first."""
         return bool(self.first.type and use.type) and self.first.type not in (TEXT, use.type)
 
@@ -102,7 +102,7 @@ def _inner_first(forest: Forest) -> list[str]:
 
 def _in_order(
     tree: Tree, forest: Forest, kind: KindOf, known: Mapping[str, Mapping[str, _Uses]]
-) -> Iterator[tuple[str, Use]]:
+) -> Iterator[tuple[str, VariableUse]]:
     """Each use of a variable of a tree in the order in which BehaviorTree.CPP makes the nodes."""
     for node in tree.root.iterate():
         if not node.is_subtree:
@@ -114,13 +114,13 @@ def _in_order(
                 yield from ((outer, use) for use in uses.all())
 
 
-def _of_node(node: Node, kind: Kind | None) -> Iterator[tuple[str, Use]]:
+def _of_node(node: Node, kind: Kind | None) -> Iterator[tuple[str, VariableUse]]:
     ports = {} if kind is None or kind.ports is None else kind.ports
     for name, attribute in node.ports.items():
         said = values.read(name, attribute.value)
         if isinstance(said, Variable):
             type = ports[name].type if name in ports else ""
-            yield said.name, Use(node=node, port=name, type=SAME.get(type, type))
+            yield said.name, VariableUse(node=node, port=name, type=SAME.get(type, type))
 
 
 def _outside(node: Node, inner: str, forest: Forest) -> str | None:

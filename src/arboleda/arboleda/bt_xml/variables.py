@@ -9,14 +9,14 @@ from dataclasses import dataclass, field
 from . import names, script, values
 from .findings import Place
 from .forest import Forest, Node, Tree
-from .nodes import Category, Kind, Way
+from .nodes import Category, Kind, PortDirection
 from .values import OUTER, Variable
 
 KindOf = Callable[[Node], "Kind | None"]
 
 
 @dataclass
-class _Use:
+class _TreeVariables:
     """The variables of one tree; `passed`: which of them it hands to subtrees, under which names there."""
 
     read: dict[str, Place] = field(default_factory=dict)
@@ -44,7 +44,7 @@ def unwritten(forest: Forest, kind: KindOf) -> Iterator[tuple[Place, str]]:
                 yield place, variable
 
 
-def _given(forest: Forest, uses: Mapping[str, _Use]) -> dict[str, set[str]]:
+def _given(forest: Forest, uses: Mapping[str, _TreeVariables]) -> dict[str, set[str]]:
     """What each tree gets from those around it, and what its own model says that it gets."""
     given: dict[str, set[str]] = defaultdict(set)
     for tree in forest.trees.values():
@@ -61,14 +61,14 @@ def _given(forest: Forest, uses: Mapping[str, _Use]) -> dict[str, set[str]]:
     return given
 
 
-def _written_below(use: _Use, forest: Forest, uses: Mapping[str, _Use]) -> set[str]:
+def _written_below(use: _TreeVariables, forest: Forest, uses: Mapping[str, _TreeVariables]) -> set[str]:
     """Those that a subtree may give a value: it writes them, or hands them further in."""
     found = set()
     for own, tree, there in use.passed:
         below = uses.get(tree)
         model = forest.models.get(tree)
         port = (model.ports or {}).get(there) if model is not None else None
-        is_given = port is not None and port.way is not Way.IN
+        is_given = port is not None and port.way is not PortDirection.IN
         if (
             below is None
             or is_given
@@ -79,8 +79,8 @@ def _written_below(use: _Use, forest: Forest, uses: Mapping[str, _Use]) -> set[s
     return found
 
 
-def _use(tree: Tree, kind: KindOf) -> _Use:
-    use = _Use()
+def _use(tree: Tree, kind: KindOf) -> _TreeVariables:
+    use = _TreeVariables()
     for node in tree.root.iterate():
         for name in names.SCRIPTS:
             if name in node.own:
@@ -89,7 +89,7 @@ def _use(tree: Tree, kind: KindOf) -> _Use:
     return use
 
 
-def _add_ports(use: _Use, node: Node, kind: Kind | None) -> None:
+def _add_ports(use: _TreeVariables, node: Node, kind: Kind | None) -> None:
     known = {} if kind is None or kind.ports is None else kind.ports
     for name, attribute in node.ports.items():
         place = Place(node.place.file, attribute.mark)
@@ -103,15 +103,15 @@ def _add_ports(use: _Use, node: Node, kind: Kind | None) -> None:
         elif node.is_subtree and isinstance(said, Variable):
             use.passed.append((said.name, node.own["ID"].value, name))
             use.read.setdefault(said.name, place)
-        elif isinstance(said, Variable) and (port is None or port.way is not Way.IN):
+        elif isinstance(said, Variable) and (port is None or port.way is not PortDirection.IN):
             use.written.add(said.name)  # of a leaf that nobody knows, too: it may
         elif isinstance(said, Variable):
             use.read.setdefault(said.name, place)
-        elif port is not None and port.way is Way.OUT:
+        elif port is not None and port.way is PortDirection.OUT:
             use.written.add(said)
 
 
-def _add_script(use: _Use, text: str, place: Place) -> None:
+def _add_script(use: _TreeVariables, text: str, place: Place) -> None:
     if isinstance(said := values.read("code", text), Variable):
         use.read.setdefault(said.name, place)
         return

@@ -14,7 +14,7 @@ from arboleda.adapters.task_rows import TaskRow
 
 from .faces import Face
 from .frames import Frames, Viewer
-from .page_state import Story
+from .page_state import PageState
 from .plant_side import PlantSide
 
 FRAMES_HZ = 10.0
@@ -30,7 +30,7 @@ class Feed:
     def __init__(self, plant: PlantSide) -> None:
         self._plant = plant
         self._told: deque[tuple[float, dict[str, Any]]] = deque(maxlen=WAITING)
-        self._story: Story | None = None
+        self._story: PageState | None = None
         self._frames = Frames()
         self._loop: asyncio.AbstractEventLoop | None = None
         self._news: asyncio.Event | None = None
@@ -65,7 +65,7 @@ class Feed:
 
     def begin(self) -> None:
         """Have the plant tell what is new; `turn` takes it in."""
-        self._story = Story(self._plant.layout(), self._plant.past_acts())
+        self._story = PageState(self._plant.layout(), self._plant.past_acts())
         self._unwatch = self._plant.watch(self._tell)
         self._tell(self._plant.snapshot())
 

@@ -27,7 +27,7 @@ class Viewer(Protocol):
         """Send one frame: its number among those that it was sent, and what changed as JSON."""
 
 
-class Seen:
+class ViewerProgress:
     """How far one viewer is, in the frames that it was sent."""
 
     def __init__(self) -> None:
@@ -40,7 +40,7 @@ class Frames:
     """Who looks, and what was shown last in each language."""
 
     def __init__(self) -> None:
-        self._viewers: dict[Viewer, Seen] = {}
+        self._viewers: dict[Viewer, ViewerProgress] = {}
         self._shown: dict[str, Face] = {}
 
     @property
@@ -50,7 +50,7 @@ class Frames:
 
     def add(self, viewer: Viewer) -> None:
         """A page was opened, or is back: it will be told everything."""
-        self._viewers[viewer] = Seen()
+        self._viewers[viewer] = ViewerProgress()
 
     def remove(self, viewer: Viewer) -> None:
         self._viewers.pop(viewer, None)
@@ -78,7 +78,7 @@ class Frames:
             viewer.show(seen.sent, everything if seen.whole else text)
             seen.whole = False
 
-    def _ready(self, viewer: Viewer, seen: Seen) -> bool:
+    def _ready(self, viewer: Viewer, seen: ViewerProgress) -> bool:
         """Whether a viewer takes a frame; one that is away or behind is told everything later."""
         if viewer.connected and seen.sent - seen.seen <= BEHIND:
             return True

@@ -20,7 +20,7 @@ from .faces import history, oee
 from .feed import Feed
 from .frames import Background
 from .past import page as past_page
-from .past.frame_queue import BESIDE_S, Turns
+from .past.frame_queue import BESIDE_S, FrameQueue
 from .past.stills import Stills
 from .plant_side import PlantSide
 from .shell import Parts, language_of, role_shown
@@ -44,7 +44,7 @@ Most = Annotated[int, Query(ge=1, le=200)]
 def mount(server: FastAPI, plant: PlantSide) -> None:
     """Put the page at `/` of this app; StartError where this process shows a page already."""
     feed, show = Feed(plant), Show(plant)
-    stills, turns = Stills(), Turns(BESIDE_S)
+    stills, turns = Stills(), FrameQueue(BESIDE_S)
     layout = plant.layout()
 
     @cache

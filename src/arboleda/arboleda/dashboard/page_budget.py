@@ -7,7 +7,7 @@ from nicegui import Client
 MOST = 40  # a browser opens its page within a second or two
 
 
-class Unopened:
+class PageBudget:
     """Forgets the oldest page where too many wait. NiceGUI keeps each for a minute, however many come."""
 
     def __init__(self, most: int = MOST) -> None:

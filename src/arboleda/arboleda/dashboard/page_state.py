@@ -16,7 +16,7 @@ from .wording import words
 Row = dict[str, Any]
 
 
-class Story:
+class PageState:
     """Trees and events of a plant; pure: `see` each snapshot in order, then ask for a `face`."""
 
     def __init__(self, layout: Row, past_acts: list[Row]) -> None:

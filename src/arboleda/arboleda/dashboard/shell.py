@@ -15,7 +15,7 @@ from arboleda.adapters.web.api import refuse
 from arboleda.model.errors import StartError
 
 from . import trees
-from .page_budget import Unopened
+from .page_budget import PageBudget
 from .plant_side import Layout
 from .tags import markup, tag
 from .wording import LANGUAGES, Words
@@ -34,7 +34,7 @@ def serve(server: FastAPI, layout: Layout, build: Callable[[Request, Client], No
             "This process shows the page of another plant already; NiceGUI has one page a process."
         )
     _here.append(server)
-    unopened = Unopened()
+    unopened = PageBudget()
     app.add_static_files(assets(), str(resources.files(__package__).joinpath("assets")), max_cache_age=3600)
 
     @ui.page("/", title=f"{layout['plant']} · Arboleda")

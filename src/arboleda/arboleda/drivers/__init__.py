@@ -1,7 +1,7 @@
 """What drivers of one's own are written with; `@driver` makes one of a class with `start`, `send`, `stop`."""
 
 from arboleda.kinds.arm import MoveJoints, SetEffector
-from arboleda.kinds.declared import Told as VerbCommand
+from arboleda.kinds.declared import VerbCall as VerbCommand
 from arboleda.kinds.mobile import FollowPath
 from arboleda.model.commands import Command, Home, Stop, StopMode
 from arboleda.model.messages import Report

@@ -47,7 +47,7 @@ class Life:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Asked:
+class CommandRequest:
     """The plant commands a device."""
 
     at: float
@@ -55,14 +55,14 @@ class Asked:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Beaten:
+class PlantBeat:
     """The plant is there."""
 
     at: float
 
 
 @dataclass(frozen=True, kw_only=True)
-class Said:
+class DriverOutput:
     """A driver handed something over that should be a Report."""
 
     at: float
@@ -71,7 +71,7 @@ class Said:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Broken:
+class DriverCrash:
     """A driver raised what it should not, or a thread of it died; `started`: its start was over by then."""
 
     at: float
@@ -81,7 +81,7 @@ class Broken:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Taken:
+class SendResult:
     """A driver came back from `send`; `error` says why the command did not leave.
 
     `broken`: that was no refusal but a defect, and nobody knows what it has left behind.
@@ -126,7 +126,7 @@ class End:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Refused:
+class OutputRefused:
     """Something that a driver said was not used; `sentence` is for the log."""
 
     at: float
@@ -134,15 +134,15 @@ class Refused:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Halted:
+class DeviceHalt:
     """A device was halted since the plant was not heard; `sentence` is for the log."""
 
     at: float
     sentence: Sentence
 
 
-Event = Asked | Beaten | Said | Broken | Taken | Leaving
-Message = Begin | Give | End | Refused | Halted | Report | Undelivered
+Event = CommandRequest | PlantBeat | DriverOutput | DriverCrash | SendResult | Leaving
+Message = Begin | Give | End | OutputRefused | DeviceHalt | Report | Undelivered
 
 
 class SupervisedDriver:
@@ -181,7 +181,7 @@ class SupervisedDriver:
         word = device.refusal(command)
         return [device.refuse(at, command, word)] if word else [self._give(at, device, command)]
 
-    def taken(self, event: Taken) -> list[Message]:
+    def taken(self, event: SendResult) -> list[Message]:
         """It came back from `send`."""
         if self._given:
             self._given.popleft()
@@ -193,7 +193,7 @@ class SupervisedDriver:
         news: list[Message] = [Undelivered(at=event.at, id=event.command.id, robot=name, sentence=why)]
         return [*news, *(self.devices[name].lose(event.at, why) if event.broken else [])]
 
-    def broken(self, event: Broken) -> list[Message]:
+    def broken(self, event: DriverCrash) -> list[Message]:
         """It is ended, and made anew after a while: the longer, the sooner it broke down."""
         what = FAILED if event.started else NOT_STARTED
         held = event.at - self._began_at > LAST_RETRY_S
@@ -206,11 +206,11 @@ class SupervisedDriver:
         why = what(driver=self.name, error=event.error)
         return [*(device.no_link(event.at, why) for device in self.devices.values()), ended]
 
-    def said(self, event: Said) -> list[Message]:
+    def said(self, event: DriverOutput) -> list[Message]:
         """What counts as heard; the rest is told in the log."""
         why = objection(event.report, self.robots)
         if why is not None:
-            return [Refused(at=event.at, sentence=NONSENSE(driver=self.name, why=why))]
+            return [OutputRefused(at=event.at, sentence=NONSENSE(driver=self.name, why=why))]
         assert isinstance(event.report, Report)
         device = self.devices[event.report.robot]
         report = event.report.again(min(event.report.at, event.at))  # nobody has heard of what is to come
@@ -246,7 +246,7 @@ class SupervisedDriver:
     def _unwatched(self, now: float, device: DrivenDevice) -> list[Message]:
         failed, stop = device.give_up(now)
         said = UNWATCHED(seconds=PLANT_GONE_S, robot=device.robot.name, driver=self.name)
-        return [self._give(now, device, stop), failed, Halted(at=now, sentence=said)]
+        return [self._give(now, device, stop), failed, DeviceHalt(at=now, sentence=said)]
 
     def leave(self, leaving: Leaving) -> list[Message]:
         """Whatever may still move is halted before the driver ends."""
@@ -310,19 +310,19 @@ class Supervisor:
         if isinstance(event, Leaving):
             self._leaving = True
             return [message for driver in self._drivers for message in driver.leave(event)]
-        if isinstance(event, Beaten | Asked):
+        if isinstance(event, PlantBeat | CommandRequest):
             return self._hear_plant(event)
         driver = self._drivers[event.life.driver]
         if event.life != driver.life:
             return []
-        if isinstance(event, Said):
+        if isinstance(event, DriverOutput):
             return driver.said(event)
-        return driver.taken(event) if isinstance(event, Taken) else driver.broken(event)
+        return driver.taken(event) if isinstance(event, SendResult) else driver.broken(event)
 
-    def _hear_plant(self, event: Beaten | Asked) -> list[Message]:
+    def _hear_plant(self, event: PlantBeat | CommandRequest) -> list[Message]:
         """Its silence counts from its first beat on."""
-        if isinstance(event, Beaten) or self._plant_gone_at < math.inf:
+        if isinstance(event, PlantBeat) or self._plant_gone_at < math.inf:
             self._plant_gone_at = event.at + PLANT_GONE_S
-        if isinstance(event, Beaten):
+        if isinstance(event, PlantBeat):
             return []
         return self._of_device[event.command.robot].command(event.at, event.command)

@@ -198,7 +198,7 @@ class DeviceKind:
             self._check_facts(f"{verb} sets", sets)
         return COMMANDS[known.effect](id=id, robot=robot, verb=verb, values=in_order, told=known, made=sets)
 
-    def shown_by(self, told: Told, facts: Facts) -> Facts:
+    def shown_by(self, told: VerbCall, facts: Facts) -> Facts:
         """What a virtual device shows besides once it has done this; UseError for what it cannot show."""
         if told.told.virtual is None:
             return ()
@@ -207,7 +207,7 @@ class DeviceKind:
         self._check_facts(what, found)
         return found
 
-    def answer_of(self, told: Told, facts: Facts) -> Value:
+    def answer_of(self, told: VerbCall, facts: Facts) -> Value:
         """What a virtual device answers to a query; UseError where that is none of its answers."""
         answers = told.told.answers
         if told.told.virtual is None:
@@ -248,7 +248,7 @@ class DeviceKind:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Told(Command):
+class VerbCall(Command):
     """A verb with its values."""
 
     verb: str
@@ -278,21 +278,21 @@ class Told(Command):
         return self.told.at_most_s
 
 
-class ToldWork(Told, Work):
+class WorkCall(VerbCall, Work):
     @property
     def on_stop(self) -> OnStop:
         return self.told.on_stop
 
 
-class ToldMotion(ToldWork, Motion):
+class MotionCall(WorkCall, Motion):
     """It moves something of the device."""
 
 
-class ToldProcess(ToldWork, Process):
+class ProcessCall(WorkCall, Process):
     """The device works by itself."""
 
 
-class ToldSwitch(Told, Switch):
+class SwitchCall(VerbCall, Switch):
     """It sets something that stays as it is set."""
 
     @property
@@ -300,7 +300,7 @@ class ToldSwitch(Told, Switch):
         return bool(dict(self.sets)[self.told.held[0]]) if self.told.holds else None
 
 
-class ToldQuery(Told, Query):
+class QueryCall(VerbCall, Query):
     """It asks the device for an answer."""
 
 
@@ -392,10 +392,10 @@ def _facts(what: str, found: object) -> Facts:
     return tuple(found.items())
 
 
-COMMANDS: dict[Effect, type[Told]] = {
-    Effect.MOTION: ToldMotion,
-    Effect.PROCESS: ToldProcess,
-    Effect.SWITCH: ToldSwitch,
-    Effect.QUERY: ToldQuery,
+COMMANDS: dict[Effect, type[VerbCall]] = {
+    Effect.MOTION: MotionCall,
+    Effect.PROCESS: ProcessCall,
+    Effect.SWITCH: SwitchCall,
+    Effect.QUERY: QueryCall,
 }
 TYPES: dict[type, str] = {bool: "true or false", int: "a whole number", float: "a number", str: "a text"}

@@ -10,7 +10,7 @@ from arboleda.model.facts import Value
 from arboleda.model.outside import among, quoted
 
 from . import rules
-from .declared import DeviceKind, DeviceVerb, Effect, FactType, Slot, Told, UseError
+from .declared import DeviceKind, DeviceVerb, Effect, FactType, Slot, UseError, VerbCall
 from .rules import SLOT
 from .verbs import KindError, Number, Verb
 
@@ -143,7 +143,7 @@ def _longest_s(made: DeviceKind, verb: DeviceVerb) -> float:
     for values in _combinations(verb):
         try:
             told = made.command(id="", robot="", verb=verb.name, values=values)
-            assert isinstance(told, Told)
+            assert isinstance(told, VerbCall)
             longest = max(longest, told.takes_s)
             if verb.effect is Effect.QUERY:
                 made.answer_of(told, tuple(first.items()))

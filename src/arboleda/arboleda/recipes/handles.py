@@ -9,7 +9,7 @@ from typing import Any
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
-from arboleda.kinds.declared import Device, ToldQuery, UseError
+from arboleda.kinds.declared import Device, QueryCall, UseError
 from arboleda.kinds.person import PATIENCE_S, Person
 from arboleda.model.by_class import nearest
 from arboleda.model.facts import Value, shown
@@ -151,7 +151,7 @@ class DeviceHandle(Handle):
             told = make("")  # wrong words are told at once
             zones = steps.interlocked(self._context, told)
             words = " ".join([verb, *map(shown, given.values())])
-            if not isinstance(told, ToldQuery):
+            if not isinstance(told, QueryCall):
                 act = self._of(Act(f"{name} {words}", self._context, make, DOING(order=words)))
                 return steps.sequence(act.title, *zones, act) if zones else act
             asked = Ask(f"{name} {words}", self._context, make, DOING(order=words))

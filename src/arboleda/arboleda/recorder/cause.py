@@ -21,7 +21,7 @@ AWAY_S = 2.0  # so long after the plant was away, what fails may fail of that
 
 
 @dataclass(frozen=True, kw_only=True)
-class Sent:
+class TaskCommand:
     """A command of a task, and what its robot made of it; `switch`: it sets what the robot holds with.
 
     `moved`: it was seen to move for it; `stands`: after that it was seen to stand, and not to have done it.
@@ -49,7 +49,7 @@ class Evidence:
     doing: Sentence | str = ""
     word: str = ""
     inner: str = ""
-    sent: Sequence[Sent] = ()
+    sent: Sequence[TaskCommand] = ()
     troubles: Sequence[Trouble] = ()
     acts: Sequence[tuple[float, str]] = ()
     absences: Sequence[tuple[float, float]] = ()
@@ -76,17 +76,17 @@ class Evidence:
         return before[-1] if before and self.reason is Reason.NOT_HOMED else None
 
     @property
-    def mine(self) -> list[Sent]:
+    def mine(self) -> list[TaskCommand]:
         """The commands of the robot before the failure, in their order."""
         return sorted((each for each in self.sent if each.robot == self.robot), key=_at)
 
     @property
-    def last(self) -> Sent | None:
+    def last(self) -> TaskCommand | None:
         """The last of them."""
         return self.mine[-1] if self.mine else None
 
 
-def _at(sent: Sent) -> float:
+def _at(sent: TaskCommand) -> float:
     return sent.at
 
 

@@ -16,7 +16,7 @@ At = tuple[int, Rows]
 
 
 @dataclass(frozen=True)
-class Looked:
+class CellMoment:
     """A cell at a moment at which something of its tree or its tasks had changed: its name, state, task and
     tree, whose spans are moments on the plant's clock; and its tasks."""
 
@@ -25,7 +25,7 @@ class Looked:
     tasks: list[Row]
 
 
-def followed(views: Views, cell: str, after_ns: int, until_ns: int) -> Iterator[Looked]:
+def followed(views: Views, cell: str, after_ns: int, until_ns: int) -> Iterator[CellMoment]:
     """Each change of a cell in that time, in order.
 
     Where a long time begins and ends with the same rows, nothing is looked for in between: each has the
@@ -35,7 +35,7 @@ def followed(views: Views, cell: str, after_ns: int, until_ns: int) -> Iterator[
     yield from _between(views, cell, (after_ns, first), (until_ns, _of(views.rows(until_ns), cell)))
 
 
-def _between(views: Views, cell: str, first: At, last: At) -> Iterator[Looked]:
+def _between(views: Views, cell: str, first: At, last: At) -> Iterator[CellMoment]:
     """`first` and `last` are the ends of a time, each with the rows of then."""
     (after_ns, before), (until_ns, after) = first, last
     if until_ns - after_ns <= AT_ONCE_NS:
@@ -47,7 +47,7 @@ def _between(views: Views, cell: str, first: At, last: At) -> Iterator[Looked]:
         yield from _between(views, cell, middle, last)
 
 
-def _changes(views: Views, cell: str, first: At, until_ns: int) -> Iterator[Looked]:
+def _changes(views: Views, cell: str, first: At, until_ns: int) -> Iterator[CellMoment]:
     after_ns, known = first[0], dict(first[1])
     made = {key: value_from(row) for key, row in known.items()}
     for told in views.told(after_ns, until_ns):
@@ -62,12 +62,12 @@ def _changes(views: Views, cell: str, first: At, until_ns: int) -> Iterator[Look
             yield _looked(told.unix_ns, made, cell)
 
 
-def _looked(unix_ns: int, made: Rows, cell: str) -> Looked:
+def _looked(unix_ns: int, made: Rows, cell: str) -> CellMoment:
     row = made[f"cells/{cell}"]
     tree = [made[f"tree/{cell}/{path}"] for path in row["tree"]]
     tasks = [each for key, each in made.items() if key.startswith("tasks/") and each["cell"] == cell]
     task = next((each for each in tasks if each["id"] == row["task"]), None)
-    return Looked(unix_ns, {"name": cell, "state": row["state"], "task": task, "tree": tree}, tasks)
+    return CellMoment(unix_ns, {"name": cell, "state": row["state"], "task": task, "tree": tree}, tasks)
 
 
 def _of(rows: Rows, cell: str) -> Rows:

@@ -24,7 +24,7 @@ from arboleda.model.plant_model import Link, MotionState, PlantModel
 from arboleda.model.sentence import Sentence
 from arboleda.views import tree_view, twin_view
 
-from .cause import BY_KEY, Cause, Evidence, Sent, cause_of
+from .cause import BY_KEY, Cause, Evidence, TaskCommand, cause_of
 from .troubles import Trouble, Troubles
 
 FRAMES_S, FRAME_S = 10.0, 0.2  # how far back places of devices are kept, and how far apart
@@ -54,7 +54,7 @@ class Incident:
     messages: dict[str, list[tuple[float, str]]] = field(default_factory=dict)
     acts: list[tuple[float, str]] = field(default_factory=list)
     troubles: list[Trouble] = field(default_factory=list)
-    sent: dict[str, Sent] = field(default_factory=dict)
+    sent: dict[str, TaskCommand] = field(default_factory=dict)
     absences: list[tuple[float, float]] = field(default_factory=list)
     foreign: list[tuple[float, str]] = field(default_factory=list)
 
@@ -164,7 +164,7 @@ class Reader:
         found = self.incident
         if isinstance(message, Command) and not isinstance(message, Stop):
             switch = isinstance(message, Switch)
-            found.sent[message.id] = Sent(id=message.id, robot=message.robot, at=now, switch=switch)
+            found.sent[message.id] = TaskCommand(id=message.id, robot=message.robot, at=now, switch=switch)
             given = " ".join(
                 f"{key}={_short(value)}" for key, value in message.given.items() if key != "robot"
             )
@@ -213,7 +213,7 @@ class Reader:
             found.messages = {name: [*said] for name, said in self._said.items() if said}
 
 
-def _after(sent: Sent, report: Report) -> Sent:
+def _after(sent: TaskCommand, report: Report) -> TaskCommand:
     """What a report of its robot says of a command that it has taken."""
     moves = report.state is MotionState.MOVING
     stands = sent.moved and report.state is MotionState.STOPPED and report.done != sent.id

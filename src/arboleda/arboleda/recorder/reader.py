@@ -34,7 +34,7 @@ from arboleda.model.outside import quoted
 from .errors import NoRecord
 from .files import BEGINNING, METADATA, OF_PLANT, Part, part_at, parts_in
 from .preamble import FORMAT, Beginning, beginning_from
-from .steps import TOPIC, Recorded, from_json
+from .steps import TOPIC, RecordedStep, from_json
 
 LARGEST = 64 * 1024 * 1024  # bytes of one piece of a file, also once it is unpacked; ours are much smaller
 HEAD = struct.Struct("<BQ")  # what a piece begins with: what it is, and its length
@@ -288,7 +288,7 @@ class Record:
                 self.broken = f"{path.name} is damaged"
                 return
 
-    def steps(self) -> Iterator[Recorded]:
+    def steps(self) -> Iterator[RecordedStep]:
         """All steps, in order."""
         for unix_ns, data in self.raw():
             yield from_json(unix_ns, data)

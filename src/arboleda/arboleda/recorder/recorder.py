@@ -13,7 +13,7 @@ from arboleda.core.plant import Plant
 
 from .state import state_of
 from .steps import Step
-from .view_log import Seen
+from .view_log import ViewSnapshot
 from .writing import Writing
 
 LOG = logging.getLogger(__name__)
@@ -35,7 +35,7 @@ class Recorder:
         self.trouble = ""
         self._writing = writing
         self._unix_ns = unix_ns
-        self._waiting: deque[Step | Seen] = deque()
+        self._waiting: deque[Step | ViewSnapshot] = deque()
         self._turn = 0
         self._seen_in = self._seen_out = 0  # snapshots that were told, and that were looked at
         self._see_after = 0.0
@@ -68,9 +68,9 @@ class Recorder:
         """Take in a snapshot and the twin's positions, as screens get them; likewise in its thread."""
         if not self._over:
             self._seen_in += 1
-            self._wait(Seen(self._unix_ns(), snapshot, drawn))
+            self._wait(ViewSnapshot(self._unix_ns(), snapshot, drawn))
 
-    def _wait(self, item: Step | Seen) -> None:
+    def _wait(self, item: Step | ViewSnapshot) -> None:
         if len(self._waiting) < MOST_WAITING:
             self._waiting.append(item)
         else:
@@ -104,7 +104,7 @@ class Recorder:
         if not self._over:
             self._writing.tend()
 
-    def _put(self, item: Step | Seen) -> Iterator[None]:
+    def _put(self, item: Step | ViewSnapshot) -> Iterator[None]:
         """Where that takes more than its share of the time, a snapshot is passed over for the next one."""
         if isinstance(item, Step):
             yield from self._writing.put(item)

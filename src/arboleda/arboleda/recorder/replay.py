@@ -12,7 +12,7 @@ from arboleda.model.plant_model import PlantModel
 from .plain_data import TYPE
 from .preamble import Beginning
 from .state import state_of
-from .steps import Recorded, hash_of, outcome
+from .steps import RecordedStep, hash_of, outcome
 
 
 @dataclass(frozen=True)
@@ -25,11 +25,11 @@ class Difference:
 
 
 @dataclass(frozen=True)
-class Replayed:
+class ReplayedStep:
     """A step that was made once more; `number` counts from 1. `difference` where it did something else."""
 
     number: int
-    recorded: Recorded
+    recorded: RecordedStep
     difference: Difference | None = None
 
 
@@ -40,18 +40,18 @@ def plant_of(beginning: Beginning, model: PlantModel) -> Plant:
     )
 
 
-def replayed(plant: Plant, steps: Iterable[Recorded]) -> Iterator[Replayed]:
+def replayed(plant: Plant, steps: Iterable[RecordedStep]) -> Iterator[ReplayedStep]:
     """Make each step again, up to the first that does something else: what is after it says nothing."""
     for number, step in enumerate(steps, start=1):
         try:
             said = outcome(plant.step(step.now, step.events), state_of(plant, number))
         except Exception as error:  # noqa: BLE001 - the plant that was recorded went on: it is a difference
-            yield Replayed(number, step, Difference("step", "made", f"{type(error).__name__}: {error}"))
+            yield ReplayedStep(number, step, Difference("step", "made", f"{type(error).__name__}: {error}"))
             return
         if hash_of(said) != step.hash:
-            yield Replayed(number, step, first_difference(step.said, said))
+            yield ReplayedStep(number, step, first_difference(step.said, said))
             return
-        yield Replayed(number, step)
+        yield ReplayedStep(number, step)
 
 
 def first_difference(recorded: Any, now: Any, field: str = "") -> Difference:

@@ -18,7 +18,7 @@ from arboleda.wire.joints import joint_names, joint_states_topic, measured_joint
 
 from . import cdr, ros_types
 from .steps import Step
-from .view_log import Message, Seen
+from .view_log import Message, ViewSnapshot
 
 TASK_STATUS, DIAGNOSTICS = "/task_status", "/diagnostics"
 DIAGNOSED_NS = 1_000_000_000  # between two looks at the diagnostics
@@ -53,7 +53,7 @@ class RosLog:
             self._diagnosed_ns = step.unix_ns
             yield from self._diagnosed(snapshot)
 
-    def saw(self, seen: Seen) -> Iterator[Message | None]:
+    def saw(self, seen: ViewSnapshot) -> Iterator[Message | None]:
         """A snapshot, of which the diagnostics are made later."""
         self._snapshot = seen.snapshot
         yield None

@@ -13,12 +13,12 @@ from arboleda.views import twin_view, view
 from .preamble import Limits, PlantFiles
 from .ros_log import RosLog
 from .steps import Step
-from .tape import SECOND, ToldPlant
-from .view_log import Seen
+from .tape import SECOND, RecordingPlant
+from .view_log import ViewSnapshot
 from .writing import Writing
 
 
-class Unwritten(BaseException):
+class RecordNotWritten(BaseException):
     """The record cannot be written, `error` says why; an Exception would be laid to the plant."""
 
     def __init__(self, error: OSError) -> None:
@@ -39,14 +39,14 @@ class SimulatedRecorder:
         self._began_ns = began_ns
         self._now_ns = began_ns
         self._shown = -1
-        self._plant: ToldPlant | None = None
+        self._plant: RecordingPlant | None = None
         self._writing: Writing | None = None
 
     def plant(self, model: PlantModel, **made_of: Any) -> Plant:
         """The plant of a start that begins now; the record of the one before ends."""
         self.close()
         self._now_ns, self._shown = self._began_ns + round(made_of["now"] * SECOND), -1
-        told = partial(ToldPlant, tell=self._stepped, files=self._files, began_ns=self._began_ns)
+        told = partial(RecordingPlant, tell=self._stepped, files=self._files, began_ns=self._began_ns)
         self._plant = told(model, **made_of)
         return self._plant
 
@@ -66,11 +66,13 @@ class SimulatedRecorder:
             self._put(writing, step)
             if plant.version != self._shown:
                 self._shown = plant.version
-                self._put(writing, Seen(step.unix_ns, view.snapshot(plant), twin_view.positions(plant)))
+                self._put(
+                    writing, ViewSnapshot(step.unix_ns, view.snapshot(plant), twin_view.positions(plant))
+                )
         except OSError as error:
-            raise Unwritten(error) from error
+            raise RecordNotWritten(error) from error
 
-    def _opened(self, plant: ToldPlant) -> Writing:
+    def _opened(self, plant: RecordingPlant) -> Writing:
         logs = [RosLog(plant.model)]
         self._writing = Writing(
             self._folder, plant.beginning, self._limits, logs, unix_ns=lambda: self._now_ns
@@ -78,7 +80,7 @@ class SimulatedRecorder:
         self._writing.open()
         return self._writing
 
-    def _put(self, writing: Writing, item: Step | Seen) -> None:
+    def _put(self, writing: Writing, item: Step | ViewSnapshot) -> None:
         for _ in writing.put(item):
             pass
         writing.tend()

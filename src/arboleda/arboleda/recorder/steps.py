@@ -43,7 +43,7 @@ class Step:
 
 
 @dataclass(frozen=True)
-class Recorded:
+class RecordedStep:
     """A step as it was read: `said` is what came out and the state, as the hash has them."""
 
     unix_ns: int
@@ -78,12 +78,12 @@ def _hash(text: str) -> str:
     return blake2b(text.encode(), digest_size=8).hexdigest()
 
 
-def from_json(unix_ns: int, data: bytes) -> Recorded:
+def from_json(unix_ns: int, data: bytes) -> RecordedStep:
     """The step of such a message; NoRecord for anything else."""
     try:
         rows = json.loads(data)
         events = tuple(event_from(each) for each in rows["events"])
         said = {"messages": rows["messages"], "state": rows["state"]}
-        return Recorded(unix_ns, float(rows["now"]), events, said, str(rows["hash"]))
+        return RecordedStep(unix_ns, float(rows["now"]), events, said, str(rows["hash"]))
     except (KeyError, TypeError, ValueError, RecursionError) as error:
         raise NoRecord("it has a step that is not as a plant writes it") from error

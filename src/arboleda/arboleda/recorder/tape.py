@@ -12,12 +12,12 @@ from arboleda.model.plant_model import PlantModel
 
 from .preamble import NO_FILES, Beginning, PlantFiles
 from .state import state_of
-from .steps import Recorded, Step, hash_of, outcome
+from .steps import RecordedStep, Step, hash_of, outcome
 
 SECOND = 1_000_000_000
 
 
-class ToldPlant(Plant):
+class RecordingPlant(Plant):
     """A simulated plant that tells what each of its steps was made of and what it did.
 
     `beginning` is what a record of it begins with; `began_ns` what the clock on the wall says where its own
@@ -48,18 +48,18 @@ class ToldPlant(Plant):
         return messages
 
 
-class TapedPlant(ToldPlant):
+class TapedPlant(RecordingPlant):
     """A plant that keeps its steps."""
 
     def __init__(self, model: PlantModel, *, files: PlantFiles = NO_FILES, **made_of: Any) -> None:
         self.tape: list[Step] = []
         super().__init__(model, tell=self.tape.append, files=files, **made_of)
 
-    def steps(self) -> Iterator[Recorded]:
+    def steps(self) -> Iterator[RecordedStep]:
         """All of them, as they are read from a file; their Unix time is the plant's own."""
         for step in self.tape:
             said = outcome(step.messages, step.state)
-            yield Recorded(step.unix_ns, step.now, tuple(step.events), said, hash_of(said))
+            yield RecordedStep(step.unix_ns, step.now, tuple(step.events), said, hash_of(said))
 
 
 def _began(model: PlantModel, files: PlantFiles, **made_of: Any) -> Beginning:

@@ -35,7 +35,7 @@ class Trouble:
 
 
 @dataclass
-class _Heard:
+class _RobotState:
     """A robot as it was heard last."""
 
     at: float
@@ -52,7 +52,7 @@ class Troubles:
     supervised: frozenset[str]
     stale_after_s: float
     found: list[Trouble] = field(default_factory=list)
-    _heard: dict[str, _Heard] = field(default_factory=dict)
+    _heard: dict[str, _RobotState] = field(default_factory=dict)
 
     def take(self, events: Iterable[object]) -> None:
         for event in events:
@@ -72,13 +72,13 @@ class Troubles:
                 known.lost_at = report.at
             return
         if known is None:
-            self._heard[report.robot] = known = _Heard(report.at, report)
+            self._heard[report.robot] = known = _RobotState(report.at, report)
         else:
             self.found += _between(known.report, report, self._silence(known, report.at))
         self._mind_alarm(known, report)
         known.at, known.report, known.lost_at = report.at, report, None
 
-    def _mind_alarm(self, known: _Heard, report: Report) -> None:
+    def _mind_alarm(self, known: _RobotState, report: Report) -> None:
         if report.state is MotionState.FAULT:
             known.alarm_at = report.at if known.alarm_at is None else known.alarm_at
         elif known.alarm_at is not None:
@@ -92,7 +92,7 @@ class Troubles:
             if known.lost_at is not None or now - known.at > SILENT_S:
                 yield self._silence(known, math.inf)
 
-    def _silence(self, known: _Heard, until: float) -> Trouble:
+    def _silence(self, known: _RobotState, until: float) -> Trouble:
         at, lost_at = known.at, known.lost_at
         cut = lost_at is not None and lost_at - at < self.stale_after_s - ROUNDING_S
         robot = known.report.robot

@@ -27,7 +27,7 @@ Message = tuple[str, int, bytes]  # topic, ns of Unix time, content
 
 
 @dataclass(frozen=True)
-class Seen:
+class ViewSnapshot:
     """A snapshot as screens got it, and the twin's positions of that moment."""
 
     unix_ns: int
@@ -61,7 +61,7 @@ class ViewLog:
             self._looked_at = step.now
             yield from self._news(step.unix_ns, step.now, self._motion.rows(step.now))
 
-    def saw(self, seen: Seen) -> Iterator[Message | None]:
+    def saw(self, seen: ViewSnapshot) -> Iterator[Message | None]:
         """What of a snapshot is new."""
         for robot in seen.drawn["robots"]:
             self._motion.seen(robot)

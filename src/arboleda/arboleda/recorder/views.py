@@ -28,7 +28,7 @@ EXACT_NS = 1000  # a time as a float of Unix seconds, as events have it, is not 
 
 
 @dataclass(frozen=True)
-class Told:
+class ViewChange:
     """What was told at a moment: of everything, or what had changed."""
 
     unix_ns: int
@@ -41,7 +41,7 @@ class Told:
 class Window:
     """What was told from one whole view to the next; `ended` where that one is there already."""
 
-    told: list[Told]
+    told: list[ViewChange]
     ended: bool
     chunks: int  # of its file, when it was read
 
@@ -49,7 +49,7 @@ class Window:
     def times(self) -> list[int]:
         return [each.unix_ns for each in self.told]
 
-    def between(self, after_ns: int, until_ns: int) -> list[Told]:
+    def between(self, after_ns: int, until_ns: int) -> list[ViewChange]:
         """What was told after a moment and up to another."""
         return self.told[bisect_right(self.times, after_ns) : bisect_right(self.times, until_ns)]
 
@@ -111,7 +111,7 @@ class Views:
         with _legible(self._files):
             return self._moment(unix_ns - EXACT_NS)[0]
 
-    def told(self, after_ns: int, until_ns: int) -> Iterator[Told]:
+    def told(self, after_ns: int, until_ns: int) -> Iterator[ViewChange]:
         """All that was told after a moment and up to another, in order."""
         with _legible(self._files):
             for window in self._windows_from(after_ns, until_ns):
@@ -200,7 +200,7 @@ class Views:
             self._windows.popitem(last=False)
         return known
 
-    def _told(self, file: ChunkFile, number: int, place: int) -> Iterator[Told | None]:
+    def _told(self, file: ChunkFile, number: int, place: int) -> Iterator[ViewChange | None]:
         """What was told from a place on, up to the next whole view: None, where there is one."""
         view, changes = (self._channels.get(topic, NONE) for topic in (VIEW, CHANGES))
         first = True
@@ -254,6 +254,6 @@ def _digest(content: bytes) -> list[Row]:
     return rows
 
 
-def _told(unix_ns: int, data: bytes) -> Told:
+def _told(unix_ns: int, data: bytes) -> ViewChange:
     rows: dict[str, Any] = json.loads(data)
-    return Told(unix_ns, float(rows["at"]), rows.get("gone", ()), rows["rows"])
+    return ViewChange(unix_ns, float(rows["at"]), rows.get("gone", ()), rows["rows"])

@@ -12,7 +12,7 @@ from .channels import OURS, Channel
 from .files import DIGEST, PartFile, part_bytes, part_path, prune
 from .preamble import Beginning, Limits
 from .steps import TOPIC, Step, as_json
-from .view_log import Message, Seen, ViewLog
+from .view_log import Message, ViewLog, ViewSnapshot
 
 FLUSH_S = 1.0  # what a killed process or a power cut loses at most
 LEAST_FREE = 200_000_000  # bytes that the disk keeps for the plant's memory and for whatever else is on it
@@ -24,7 +24,7 @@ class Log(Protocol):
     @property
     def channels(self) -> Sequence[Channel]: ...
     def stepped(self, step: Step) -> Iterator[Message | None]: ...
-    def saw(self, seen: Seen) -> Iterator[Message | None]: ...
+    def saw(self, seen: ViewSnapshot) -> Iterator[Message | None]: ...
     def whole(self) -> Iterator[Message | None]:
         """All that was told so far, for the beginning of a file."""
 
@@ -71,7 +71,7 @@ class Writing:
             for message in filter(None, log.whole()):
                 self._part.put(*message)
 
-    def put(self, item: Step | Seen) -> Iterator[None]:
+    def put(self, item: Step | ViewSnapshot) -> Iterator[None]:
         """Write what was told; in pieces, between which others may work."""
         for message in self._messages(item):
             if message is not None and self._part is not None:
@@ -101,7 +101,7 @@ class Writing:
         if self._part is not None:
             self._part.drop()
 
-    def _messages(self, item: Step | Seen) -> Iterator[Message | None]:
+    def _messages(self, item: Step | ViewSnapshot) -> Iterator[Message | None]:
         if isinstance(item, Step):
             yield TOPIC, item.unix_ns, as_json(item)
             for log in self._logs:

@@ -11,7 +11,7 @@ from arboleda.wire.payloads import JointsGoal
 from arboleda.wire.topics import Channel
 
 from .axis import Axis
-from .body import Robotic, Told
+from .body import BodyReport, Robotic
 
 FASTEST = 1e6  # steps/s: one per microsecond of the board's clock
 STEEPEST = 9e11  # steps/s2: beyond it the ramp's first interval falls below a microsecond
@@ -38,7 +38,7 @@ class ArmBody(Robotic):
         self._axes = tuple(_axis(joint) for joint in arm.joints)
         self._drift = self._steps(start)  # true position minus counted position, per joint
         self._seen: tuple[object, ...] = ()  # what the next was made of
-        self._told = Told()
+        self._told = BodyReport()
         self.reset()
         self._count_anew()
 
@@ -131,7 +131,7 @@ class ArmBody(Robotic):
         drift[joint] += steps
         self._drift = tuple(drift)
 
-    def place(self, told: Told, *, holds: bool) -> None:
+    def place(self, told: BodyReport, *, holds: bool) -> None:
         if told.q is not None:
             self.put_at_reference()
             for axis, steps in zip(self._axes, self._steps(told.q), strict=True):
@@ -143,12 +143,12 @@ class ArmBody(Robotic):
         self._axes = tuple(_axis(joint) for joint in self._joints)
         self._drift = (0,) * len(self._joints)
 
-    def tell(self) -> Told:
+    def tell(self) -> BodyReport:
         seen = (self.position, self._drift, self.next_change_us, self.effector, self.holding, self.supplied)
         if seen != self._seen:
             self._seen = seen
             q = tuple([steps * step for steps, step in zip(seen[0], self._step_deg, strict=True)])
-            self._told = Told(q, None, self.effector, self.holding or self._piece_lies_here())
+            self._told = BodyReport(q, None, self.effector, self.holding or self._piece_lies_here())
         return self._told
 
     def _steps(self, q: tuple[float, ...]) -> tuple[int, ...]:

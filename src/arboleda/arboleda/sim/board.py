@@ -26,7 +26,7 @@ from arboleda.wire.payloads import (
 from arboleda.wire.topics import Channel, topic
 from arboleda.wire.transport import Delivery, Publication
 
-from .body import Body, Told
+from .body import Body, BodyReport
 from .freshness import Freshness
 from .receipts import Receipts
 from .uplink import Uplink
@@ -121,7 +121,7 @@ class Board:
         self.body.put_at_reference()
         self.homed = self.homed or not self._numbered
 
-    def place(self, told: Told, *, holds: bool, homed: bool | None, latched: bool) -> None:
+    def place(self, told: BodyReport, *, holds: bool, homed: bool | None, latched: bool) -> None:
         """Have the still robot be as another one has told of itself, `told` in SI units."""
         self.body.place(told, holds=holds)
         self.homed = self.homed if homed is None else homed
@@ -319,7 +319,7 @@ class Board:
         if self._uplink.connected:
             self._freshness.tell(self._now_us, self._uplink.told)
 
-    def _telemetry(self, told: Told) -> Telemetry:
+    def _telemetry(self, told: BodyReport) -> Telemetry:
         receipts = self._receipts
         if not self._numbered:
             facts = told.facts if self._tells_facts else None

@@ -11,7 +11,7 @@ from arboleda.wire.payloads import Goal, OrderGoal
 from arboleda.wire.topics import Channel
 
 
-class Told(NamedTuple):
+class BodyReport(NamedTuple):
     """What a body can say of itself: the angles of an arm, the node of a mobile or the facts of a machine,
     and what it holds."""
 
@@ -115,7 +115,7 @@ class Body(Protocol):
 
     def switch_effector(self, on: bool) -> None: ...
 
-    def place(self, told: Told, *, holds: bool) -> None:
+    def place(self, told: BodyReport, *, holds: bool) -> None:
         """Be, still, as somebody else's body has told of itself; what it has not told stays as it is."""
 
     def set_by_hand(self, facts: Facts) -> None:
@@ -130,5 +130,5 @@ class Body(Protocol):
     def reset(self) -> None:
         """Everything as a board without memory comes up; what is moved stays where it is."""
 
-    def tell(self) -> Told:
+    def tell(self) -> BodyReport:
         """Where it is and what it holds."""

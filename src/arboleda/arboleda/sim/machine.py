@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
-from arboleda.kinds.declared import DeviceKind, DeviceVerb, Effect, Told, UseError
+from arboleda.kinds.declared import DeviceKind, DeviceVerb, Effect, UseError, VerbCall
 from arboleda.model.commands import OnStop
 from arboleda.model.facts import Facts, Value
 from arboleda.wire.payloads import DEVICE, OrderGoal
@@ -20,11 +20,11 @@ UNSHOWN = "virtual"  # the word for what ends in an error of the function that i
 
 
 @dataclass(frozen=True, kw_only=True)
-class Deed:
+class RunningOrder:
     """An order that it carries out, until `ends_us`."""
 
     goal: OrderGoal
-    command: Told
+    command: VerbCall
     ends_us: int
     is_late: bool = False  # it takes longer than it should
     is_said_again: bool = False  # a question that was answered, and is answered once more
@@ -65,7 +65,7 @@ class MachineBody:
         self.does: Callable[[OrderGoal], bool] = _always
         self.lasts: Callable[[OrderGoal], float] = _as_long_as_it_should
         self.ends: list[End] = []
-        self._deeds: list[Deed] = []
+        self._deeds: list[RunningOrder] = []
         self.next_change_us: int | None = None
 
     def reset(self) -> None:
@@ -92,7 +92,7 @@ class MachineBody:
         if self.kind.held_fact is not None:
             self.set_by_hand(((self.kind.held_fact, False),))
 
-    def place(self, told: body.Told, *, holds: bool) -> None:
+    def place(self, told: body.BodyReport, *, holds: bool) -> None:
         self.facts.update(told.facts or ())
 
     @property
@@ -132,13 +132,13 @@ class MachineBody:
         met = all(self.facts[name] == value for name, value in command.needs)
         return None if met and not self._breaks_its_work(command) else "condicion"
 
-    def _breaks_its_work(self, command: Told) -> bool:
+    def _breaks_its_work(self, command: VerbCall) -> bool:
         """Whether a command would end what the work under way needs."""
         needs = (need for deed in self._deeds if deed.is_work for need in deed.command.needs)
         sets = dict(command.sets)
         return any(sets.get(name, value) != value for name, value in needs)
 
-    def command(self, goal: OrderGoal) -> Told | None:
+    def command(self, goal: OrderGoal) -> VerbCall | None:
         verb = self.kind.verbs.get(goal.verb)
         types = dict(verb.parameters) if verb else {}
         read = {name: types[name].read(value) if name in types else None for name, value in goal.values}
@@ -149,7 +149,7 @@ class MachineBody:
             command = self.kind.command(id="", robot="", verb=goal.verb, values=values)
         except UseError:
             return None
-        assert isinstance(command, Told)
+        assert isinstance(command, VerbCall)
         return command
 
     def is_work(self, goal: OrderGoal) -> bool:
@@ -162,7 +162,7 @@ class MachineBody:
         self._supersede(command)
         late_s = self.lasts(goal)
         ends_us = now_us + max(1, round((command.takes_s + late_s) * 1e6))
-        self._deeds.append(Deed(goal=goal, command=command, ends_us=ends_us, is_late=late_s > 0))
+        self._deeds.append(RunningOrder(goal=goal, command=command, ends_us=ends_us, is_late=late_s > 0))
         self._plan()
 
     def stop(self, now_us: int) -> None:
@@ -181,9 +181,9 @@ class MachineBody:
         taken, self.ends = self.ends, []
         return taken
 
-    def tell(self) -> body.Told:
+    def tell(self) -> body.BodyReport:
         facts: Facts = tuple(self.facts.items())
-        return body.Told(facts=facts)
+        return body.BodyReport(facts=facts)
 
     def admits(self, goal: object) -> bool:
         raise NotImplementedError("a machine takes orders only")
@@ -197,7 +197,7 @@ class MachineBody:
     def put_at_reference(self) -> None:
         """It has none."""
 
-    def _supersede(self, command: Told) -> None:
+    def _supersede(self, command: VerbCall) -> None:
         """Forget the query that was asked before, and give up the switches whose facts this one sets."""
         effect, sets = command.told.effect, {name for name, _ in command.sets}
         for deed in [deed for deed in self._deeds if deed.verb.effect is effect and not deed.is_said_again]:
@@ -207,7 +207,7 @@ class MachineBody:
             elif effect is Effect.QUERY:
                 self._deeds.remove(deed)
 
-    def _end(self, deed: Deed, now_us: int) -> None:
+    def _end(self, deed: RunningOrder, now_us: int) -> None:
         word = None if deed.is_said_again else self.fails(deed.goal)
         if word is not None:
             self.ends.append(End(deed.goal, failure=word))
@@ -217,7 +217,7 @@ class MachineBody:
         except UseError:
             self.ends.append(End(deed.goal, failure=UNSHOWN))
 
-    def _become(self, deed: Deed, now_us: int) -> None:
+    def _become(self, deed: RunningOrder, now_us: int) -> None:
         """What an order leaves behind; UseError where its kind has a function that does not say it."""
         if deed.verb.effect is Effect.QUERY:
             self.ends.append(End(deed.goal, answer=self.answer(deed.goal)))
@@ -227,7 +227,7 @@ class MachineBody:
             besides = self.kind.shown_by(deed.command, tuple((self.facts | sets).items()))
             self.facts.update(dict(besides) | sets)
 
-    def _say_again(self, deed: Deed, now_us: int) -> None:
+    def _say_again(self, deed: RunningOrder, now_us: int) -> None:
         after_s = None if deed.is_said_again else self.repeats(deed.goal)
         if after_s is not None:
             self._deeds.append(
@@ -238,7 +238,7 @@ class MachineBody:
         self.next_change_us = min((deed.ends_us for deed in self._deeds), default=None)
 
 
-def _goes_on_while_stopped(command: Told) -> bool:
+def _goes_on_while_stopped(command: VerbCall) -> bool:
     """A query, or what lets go of a part."""
     return command.told.effect is Effect.QUERY or getattr(command, "grips", None) is False
 

@@ -9,7 +9,7 @@ from arboleda.model.facts import Value
 from arboleda.wire.payloads import PathGoal
 from arboleda.wire.topics import Channel
 
-from .body import Robotic, Told
+from .body import BodyReport, Robotic
 
 
 class MobileBody(Robotic):
@@ -23,7 +23,7 @@ class MobileBody(Robotic):
 
     def __init__(self, mobile: Mobile, *, start_node: int) -> None:
         self._grid = mobile.grid
-        self._told = tuple(Told(node=node) for node in range(mobile.grid.size))
+        self._told = tuple(BodyReport(node=node) for node in range(mobile.grid.size))
         self._edge_us = max(1, round(mobile.grid.pitch / mobile.speed * 1e6))
         self._start_node = self.true_node = start_node
         self.reset()
@@ -62,7 +62,7 @@ class MobileBody(Robotic):
             self.node = self.true_node
         self._drive(now_us, self._grid.route(self._next_node, self._start_node)[1:])
 
-    def place(self, told: Told, *, holds: bool) -> None:
+    def place(self, told: BodyReport, *, holds: bool) -> None:
         if told.node is not None:
             self.node = self.true_node = told.node
 
@@ -83,7 +83,7 @@ class MobileBody(Robotic):
     def switch_effector(self, on: bool) -> None:
         raise NotImplementedError("a mobile robot has no effector and no topic for one")
 
-    def tell(self) -> Told:
+    def tell(self) -> BodyReport:
         return self._told[self.node]
 
     @property

@@ -26,7 +26,7 @@ from .invariants.advice import ADVICE
 from .invariants.beliefs import BELIEFS
 from .invariants.choices import CHOICES
 from .invariants.done import tiny_moves_succeed
-from .invariants.invariant import Invariant, Look, When, invariant
+from .invariants.invariant import Invariant, Look, Trigger, invariant
 from .invariants.memory import MEMORY
 from .invariants.memory_bounds import BOOKS
 from .invariants.oee import OEE
@@ -34,7 +34,7 @@ from .invariants.proofs import PROOFS
 from .invariants.starts import EVERYWHERE as OVER_ALL_STARTS
 from .invariants.stop import STOP
 from .invariants.zones import ZONES
-from .truth.ended_commands import Booked
+from .truth.ended_commands import EndedCommand
 from .truth.robot import RobotTruth
 from .truth.robots import RobotsTruth
 from .truth.stops import is_order_of, robots_of
@@ -61,7 +61,7 @@ class GeneralTruth(RobotsTruth):
         self._facts = {name: dict(robot.body.true_facts) for name, robot in self.robots.items()}
         self._left: dict[tuple[str, object], float] = {}  # when a fact ceased to be so, a target was left
         self._released: dict[str, float] = {}  # when an operator had a robot let go
-        self._last: dict[str, Booked] = {}  # the last command of each robot, if it is called done
+        self._last: dict[str, EndedCommand] = {}  # the last command of each robot, if it is called done
         self._asked: dict[tuple[str, int, int], str] = {}  # (robot, epoca, seq) -> the question
         self._answers: dict[str, set[Value]] = {}  # what was truly answered to it
         self._began: dict[str, float] = {}
@@ -88,7 +88,7 @@ class GeneralTruth(RobotsTruth):
         """What a device has truly answered to the query with this id."""
         return self._answers.get(question, set())
 
-    def last_done(self, robot: str) -> Booked | None:
+    def last_done(self, robot: str) -> EndedCommand | None:
         """The last command of a robot but questions, if it is called done."""
         return self._last.get(robot)
 
@@ -123,7 +123,7 @@ class GeneralTruth(RobotsTruth):
             self._facts[name] = facts
             self._left.update({(name, pose): now for pose in robot.stood})
 
-    def _end(self, booked: Booked) -> None:
+    def _end(self, booked: EndedCommand) -> None:
         command = booked.command
         if booked.done and not isinstance(command, Query):
             self._last[command.robot] = booked
@@ -171,7 +171,7 @@ class GeneralTruth(RobotsTruth):
             self._released.update(dict.fromkeys(robots_of(self.world.model, answer.scope), self.world.now))
 
 
-@invariant(When.BOOKED)
+@invariant(Trigger.BOOKED)
 def what_is_done_was_so(look: Look) -> Iterator[str]:
     """A command that counts as done was done since it was given: its facts were so, its goal was reached;
     where its board lies about that, nobody could know.
@@ -190,7 +190,7 @@ def what_is_done_was_so(look: Look) -> Iterator[str]:
             yield f"{command.robot} never stood at the goal of {what}"
 
 
-def _unprovable(truth: GeneralTruth, booked: Booked, robot: RobotTruth) -> bool:
+def _unprovable(truth: GeneralTruth, booked: EndedCommand, robot: RobotTruth) -> bool:
     """Whether what a robot may say, at its level and as its board lies, proves nothing.
 
     At `ids` work shows in two ways, its number and what it sets, and both must be lies; a switch shows in
@@ -207,7 +207,7 @@ def _unprovable(truth: GeneralTruth, booked: Booked, robot: RobotTruth) -> bool:
     return booked.late or lies(robot.PLACE) or lies("effector") or lies("state")
 
 
-@invariant(When.DONE_TASKS)
+@invariant(Trigger.DONE_TASKS)
 def what_a_task_left_is_so(look: Look) -> Iterator[str]:
     """When a task is called done, what the last command of each of its devices has set is still so, unless
     its power, somebody's hand or a lie has changed that.
@@ -226,7 +226,7 @@ def what_a_task_left_is_so(look: Look) -> Iterator[str]:
                     yield f"{task} is called done, and {name} of {robot.name} is not {value}"
 
 
-@invariant(When.CHANGED)
+@invariant(Trigger.CHANGED)
 def needs_hold(look: Look) -> Iterator[str]:
     """What a verb needs is so when it begins, and as long as it is work that goes on."""
     for robot in look.truth.changed:
@@ -234,7 +234,7 @@ def needs_hold(look: Look) -> Iterator[str]:
             yield f"{robot.robot.name} carries out {command.given}: {why}"
 
 
-@invariant(When.COMMANDED)
+@invariant(Trigger.COMMANDED)
 def no_command_against_a_need(look: Look) -> Iterator[str]:
     """No command leaves whose device has said last that what it needs is not so, or that it is at work that
     needs the contrary of what the command sets.
@@ -252,7 +252,7 @@ def no_command_against_a_need(look: Look) -> Iterator[str]:
                 yield f"{sent} leaves, and {sent.robot} said that it is at {work}, which needs {name} {value}"
 
 
-@invariant(When.CHANGED)
+@invariant(Trigger.CHANGED)
 def finishing_work_is_finished(look: Look) -> Iterator[str]:
     """Work that goes on through a stop ends in its own time, unless power, an alarm or an order ends it."""
     for robot in look.truth.changed:
@@ -260,7 +260,7 @@ def finishing_work_is_finished(look: Look) -> Iterator[str]:
             yield f"{robot.robot.name} was cut short in what it was to finish"
 
 
-@invariant(When.CHANGED)
+@invariant(Trigger.CHANGED)
 def nothing_is_dropped(look: Look) -> Iterator[str]:
     """What a robot carries is let go only where it stands at a target, or on an operator's word; where its
     tool has said too early that it had let go, nobody could know.
@@ -283,7 +283,7 @@ def _is_said_too_early(truth: GeneralTruth, hand: RobotTruth) -> bool:
     return booked is not None and truth.deceived_since(hand.robot.mqtt, hand.PLACE, booked.sent_at)
 
 
-@invariant(When.BOOKED)
+@invariant(Trigger.BOOKED)
 def an_answer_is_to_its_question(look: Look) -> Iterator[str]:
     """The answer that counts for a question is one that its device has given to this very question."""
     truth = look.truth
@@ -298,14 +298,14 @@ def an_answer_is_to_its_question(look: Look) -> Iterator[str]:
             yield f"{booked.command.robot} has not answered {told!r} to {booked.command.id}"
 
 
-@invariant(When.BRIDGED)
+@invariant(Trigger.BRIDGED)
 def commands_of_others_are_told(look: Look) -> Iterator[str]:
     """Of each command of another node that reaches a bridge that hears its plant, people are told."""
     for command in look.record.others.untold:
         yield f"nobody is told of {command}, which another node gave"
 
 
-@invariant(When.COMMANDED)
+@invariant(Trigger.COMMANDED)
 def a_shared_device_serves_one_cell(look: Look) -> Iterator[str]:
     """What cells share is told something by the cell that holds it, once its work for another one ended."""
     plant, shared = look.world.plant, look.world.model.shared

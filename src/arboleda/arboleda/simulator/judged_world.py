@@ -27,7 +27,7 @@ REST_S = 600.0  # after the last fault, or the end of a task since, everything m
 STAYS_S = 10.0  # and stay there
 
 
-class Broken(Exception):
+class BrokenInvariant(Exception):
     """An invariant does not hold."""
 
     def __init__(self, invariant: str, sentence: str) -> None:
@@ -36,7 +36,7 @@ class Broken(Exception):
         self.sentence = sentence
 
 
-class Watched:
+class JudgedWorld:
     """A world in which every step is judged: Broken leaves the one that breaks an invariant.
 
     `faults` are those that have begun; their times are in s since `start`. `standby`: a second host waits to
@@ -141,7 +141,7 @@ class Watched:
 
     def _raise(self, breaches: Iterable[tuple[str, str]]) -> None:
         for name, sentence in breaches:
-            raise Broken(name, sentence)
+            raise BrokenInvariant(name, sentence)
 
 
 def _told(fault: Fault) -> str:

@@ -41,14 +41,14 @@ from .recorded.foreign import ForeignCommands
 from .recorded.proofs import Proofs
 from .recorded.racks import Racks
 from .recorded.refusals import differences
-from .recorded.robots import KnownRobot, Obstacle, Stopped
+from .recorded.robots import KnownRobot, Obstacle, StopProgress
 from .recorded.scopes import Scopes
 from .recorded.starts import Starts, Step, turn_of
 from .recorded.stops import EarlyStops
 from .recorded.tasks import Tasks
 from .recorded.time_line import TimeLine
 from .recorded.times import Times
-from .recorded.verbs import Before
+from .recorded.verbs import EarlierState
 from .recorded.work import Works
 from .world import BRIDGE, World
 
@@ -92,7 +92,7 @@ class Record:
         self.racks = Racks([known.cell for known in self._storage], self.scopes)
         self._people = [robot.name for robot in model.robots.values() if robot.link is Link.SCREEN]
         self.works = Works(storage, self.robots, model.timing.dwell_s)
-        self.asked = Before()
+        self.asked = EarlierState()
         self.acts = Acts()
         world.before_asking.append(lambda: self.asked.look(self._cells, self.tasks, world))
         self.courses = Courses()
@@ -311,7 +311,7 @@ class Record:
         self._clear_news()
         self._kept = {fact: dict(rows) for fact, rows in self.world.found.facts.items()}
         kept = self._kept.get(Fact.LATCH, {})
-        stopped = [name for name, known in self.robots.items() if known.stop is Stopped.LATCHED]
+        stopped = [name for name, known in self.robots.items() if known.stop is StopProgress.LATCHED]
         undone = any(each.verb in (Verb.CLEAR, Verb.RESET) for each in self._unanswered)
         self.lost_stops = [name for name in stopped if kept.get(name) != "on" and not undone]
         if words:
@@ -516,7 +516,7 @@ class Record:
         self.commands.take(SentCommand(command, self._plant.now, obstacles, verbs, known.halts), known)
         if isinstance(command, Stop) and command.mode is StopMode.CLEAR:
             known.barred = False
-            known.stop = Stopped.CLEARED if known.stop is Stopped.LATCHED else known.stop
+            known.stop = StopProgress.CLEARED if known.stop is StopProgress.LATCHED else known.stop
 
     def _missed(self, command: Stop, known: KnownRobot, verbs: frozenset[Verb]) -> frozenset[Verb]:
         """An operator's clear of a robot that was offline counts once more, when it is back."""
@@ -569,7 +569,7 @@ class Record:
 
     def _stopped(self, scope: str) -> None:
         for name in self.scopes.commanded(scope):
-            self.robots[name].stop = Stopped.LATCHED
+            self.robots[name].stop = StopProgress.LATCHED
         for name in self.scopes.cells(scope):
             self.cells[name].stopped = True
 
@@ -634,7 +634,7 @@ class Record:
                 task.cancelled = None
 
 
-STOPS = {"on": Stopped.LATCHED, "cleared": Stopped.CLEARED}
+STOPS = {"on": StopProgress.LATCHED, "cleared": StopProgress.CLEARED}
 TAKES: dict[type, Callable[[Record, Any], None]] = {
     Command: Record._on_command,
     TaskChanged: Record._on_task,

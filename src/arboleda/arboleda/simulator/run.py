@@ -13,9 +13,9 @@ from arboleda.model.recipe import Builders
 
 from .faults import Fault
 from .invariants import Invariant
-from .judged_world import Broken, Watched
+from .judged_world import BrokenInvariant, JudgedWorld
 from .people import Attendant, Customers, answer_anything
-from .scripted_people import Script, Told
+from .scripted_people import Script, ScriptedPeople
 from .split_reports import come_apart
 
 MINUTE_S = 60.0
@@ -37,7 +37,7 @@ class Result:
     outcomes: dict[str, int] = field(default_factory=dict)
     checks: Counter[str] = field(default_factory=Counter)
     minutes: int = 0
-    broken: Broken | None = None
+    broken: BrokenInvariant | None = None
     lines: list[str] = field(default_factory=list)
 
 
@@ -65,7 +65,7 @@ class Simulation:
         any_of: bool = False,
         standby: bool = False,
     ) -> None:
-        self.watched = Watched(
+        self.watched = JudgedWorld(
             model,
             invariants=invariants,
             keep=keep,
@@ -87,8 +87,8 @@ class Simulation:
         Attendant(self.world, seed)
         return customers
 
-    def _told(self, script: Script, seed: int) -> Told:
-        return Told(self.world, script, lambda: Attendant(self.world, seed))
+    def _told(self, script: Script, seed: int) -> ScriptedPeople:
+        return ScriptedPeople(self.world, script, lambda: Attendant(self.world, seed))
 
     def run(self, *, cycles: int | None = None, seconds: float | None = None) -> Result:
         """Minute by minute until `cycles` or `seconds` are reached, then to rest; a breach ends it."""
@@ -99,16 +99,16 @@ class Simulation:
                 self._minute(self.result.minutes, math.inf if seconds is None else seconds)
             self._people.go()
             self.watched.come_to_rest()
-        except Broken as broken:
+        except BrokenInvariant as broken:
             self.result.broken = broken
         except Exception as error:  # noqa: BLE001 - that none escapes is one of the invariants
-            self.result.broken = Broken(NO_EXCEPTION, f"{type(error).__name__}: {error}")
+            self.result.broken = BrokenInvariant(NO_EXCEPTION, f"{type(error).__name__}: {error}")
         return self._finished()
 
     def _enough(self, cycles: int | None, seconds: float | None) -> bool:
         if seconds is not None:
             return self.result.minutes * MINUTE_S >= seconds
-        if isinstance(self._people, Told) and self._script is not None:
+        if isinstance(self._people, ScriptedPeople) and self._script is not None:
             patience = PATIENCE + math.ceil(self._script.ends / MINUTE_S)
             return self._people.over or self.result.minutes >= patience
         wanted = cycles or 0

@@ -118,7 +118,7 @@ def _check_scope(model: PlantModel, act: Act, ids: set[str]) -> None:
         raise BadFaults(f"{word!r} is nothing of this plant, and no task of the file; there are {allowed}")
 
 
-class Told:
+class ScriptedPeople:
     """Does what is told, as `Customers` does what is drawn: `cycles` and `outcomes` are of tasks that ended.
 
     `attend` is called once, when it is over or they `go`.

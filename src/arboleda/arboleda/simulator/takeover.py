@@ -11,7 +11,7 @@ from arboleda.dispatch.ledger import Entry, State
 from arboleda.model.commands import Command, Position, Stop, StopMode
 from arboleda.model.messages import Heartbeat, Report
 from arboleda.model.plant_model import MotionState, PlantModel, Robot
-from arboleda.sim.body import Told
+from arboleda.sim.body import BodyReport
 from arboleda.wire.hop import FromPlant
 from arboleda.wire.transport import Publication
 
@@ -63,7 +63,7 @@ def _place(world: World, plant: Plant, robot: Robot, began: Position | None) -> 
     belief, board = plant.dispatcher.beliefs[robot.name], world.boards[robot.mqtt]
     q = began if isinstance(began, tuple) else belief.q
     node = began if isinstance(began, int) else belief.node
-    told = Told(q, node, belief.effector, belief.piece, tuple(belief.facts.items()) or None)
+    told = BodyReport(q, node, belief.effector, belief.piece, tuple(belief.facts.items()) or None)
     holds = (
         robot.held_fact is not None
         and plant.dispatcher.grips.holding(robot.name)

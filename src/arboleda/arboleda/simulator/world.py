@@ -76,7 +76,7 @@ class Fuse:
         return self.count <= 0 and side is self.side
 
 
-class _Died(Exception):
+class _PlantDeath(Exception):
     """The plant died in the middle of its step."""
 
 
@@ -90,7 +90,7 @@ class Ending:
 
 
 @dataclass(slots=True, eq=False)
-class Left:
+class SupersededProcess:
     """A process that another one has superseded: its plant with what it was told, its bridge with its client,
     and until when it is frozen.
     """
@@ -103,7 +103,7 @@ class Left:
 
 
 @dataclass(slots=True)
-class Passed:
+class BridgeStep:
     """One step of the bridge: what it took in, in order, and what it gave out."""
 
     bridge: Bridge
@@ -132,7 +132,7 @@ class Moment:
     writes: list[Any] = field(default_factory=list)  # what a store took that two hosts reach
     executed: list[tuple[str, Goal]] = field(default_factory=list)  # (board, command it carries out)
     opened: list[str] = field(default_factory=list)  # boards whose effectors somebody else opened
-    bridged: list[Passed] = field(default_factory=list)  # what the bridge took in, and gave out
+    bridged: list[BridgeStep] = field(default_factory=list)  # what the bridge took in, and gave out
     put_right: list[str] = field(default_factory=list)  # boards whose robots somebody moved by hand
     last_words: list[Any] = field(default_factory=list)
     unkept: list[Any] = field(default_factory=list)
@@ -330,7 +330,7 @@ class World:
             if self.plant.now != self.now:
                 self.plant = self._new_plant()
 
-    def change_leaders(self, epoch: int) -> Left | None:
+    def change_leaders(self, epoch: int) -> SupersededProcess | None:
         """Another process leads from now on, plant and bridge, under that number and on what is kept; what is
         left of the one before, where that runs."""
         self._be_gone(self._ending)
@@ -339,7 +339,7 @@ class World:
         if PLANT in self._off or bridge is None:
             self.broker.leave(client)
         else:
-            left = Left(self.plant, bridge, client, self._plant_inbox, until)
+            left = SupersededProcess(self.plant, bridge, client, self._plant_inbox, until)
             self.broker.rename(client, f"{BRIDGE} before {epoch}")
             self._stalled[client.name] = math.inf  # whoever has it steps it
         self.fuses.clear()
@@ -352,7 +352,7 @@ class World:
         self.start_bridge(epoch)
         return left
 
-    def bury(self, left: Left) -> None:
+    def bury(self, left: SupersededProcess) -> None:
         """Nothing is left of a process that led."""
         self.broker.leave(left.client)
         del self._stalled[left.client.name]
@@ -591,7 +591,7 @@ class World:
         now = self.now
         clear = self.to_plant.is_clear(now)
         out = bridge.step(now, inbox)
-        self.moment.bridged.append(Passed(bridge, now, inbox, out))
+        self.moment.bridged.append(BridgeStep(bridge, now, inbox, out))
         for message in out:
             if isinstance(message, Report):
                 if message.robot in self.partings:
@@ -626,7 +626,7 @@ class World:
             while said:
                 self._let_out(said[0])
                 said.popleft()
-        except _Died:
+        except _PlantDeath:
             return
         except DiskFull as full:
             self._end(said, full)
@@ -659,7 +659,7 @@ class World:
         self._burn_fuses(side)
         if PLANT in self._off:
             self._make_last_words()
-            raise _Died
+            raise _PlantDeath
 
     def _burn_fuses(self, side: Side) -> None:
         for fuse in [each for each in self.fuses if each.burns(side)]:

@@ -14,7 +14,7 @@ from arboleda.model.recipe import Build
 from arboleda.simulator.faults import Fault
 from arboleda.simulator.invariants import Invariant
 from arboleda.simulator.judged import judged_by
-from arboleda.simulator.judged_world import Broken, Watched
+from arboleda.simulator.judged_world import BrokenInvariant, JudgedWorld
 from arboleda.simulator.levels import LEVELS
 from arboleda.simulator.people import Attendant
 from arboleda.simulator.run import NO_EXCEPTION
@@ -197,8 +197,8 @@ class Sim:
         return "_watched" in vars(self)
 
     @cached_property
-    def _watched(self) -> Watched:
-        return Watched(self._chosen, invariants=self._invariants, keep=True, recipes=self._recipes)
+    def _watched(self) -> JudgedWorld:
+        return JudgedWorld(self._chosen, invariants=self._invariants, keep=True, recipes=self._recipes)
 
     @property
     def _chosen(self) -> PlantModel:
@@ -223,11 +223,11 @@ class Sim:
         self._asking = False
         try:
             return act()
-        except Broken as broken:
+        except BrokenInvariant as broken:
             breach, cause = broken, None
         except Exception as error:
             if self._asking:
                 raise
-            breach, cause = Broken(NO_EXCEPTION, f"{type(error).__name__}: {error}"), error
+            breach, cause = BrokenInvariant(NO_EXCEPTION, f"{type(error).__name__}: {error}"), error
         self._told = True
         raise AssertionError(wording.breach(breach, self._watched)) from cause

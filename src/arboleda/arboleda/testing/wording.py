@@ -8,7 +8,7 @@ from collections.abc import Iterable
 from arboleda.app.simulate.words import told
 from arboleda.model.counting import counted
 from arboleda.simulator.invariants import Invariant
-from arboleda.simulator.judged_world import Broken, Watched
+from arboleda.simulator.judged_world import BrokenInvariant, JudgedWorld
 from arboleda.simulator.run import Result
 from arboleda.views import view
 
@@ -19,7 +19,7 @@ LAST = 40  # lines of the timeline
 LONG_NUMBER = re.compile(r"-?\d+\.\d{5,}(?:e-?\d+)?")
 
 
-def breach(broken: Broken, watched: Watched) -> str:
+def breach(broken: BrokenInvariant, watched: JudgedWorld) -> str:
     """A broken invariant, the rule it stands for, and what led to it."""
     return "\n".join(
         [_broken(broken, watched.seconds, watched.invariants), "", *timeline(watched.trace.lines)]
@@ -45,13 +45,13 @@ def seed(result: Result, seeds: Seeds, injected: int) -> str:
     )
 
 
-def never(seconds: float, tasks: Iterable[Handle], watched: Watched) -> str:
+def never(seconds: float, tasks: Iterable[Handle], watched: JudgedWorld) -> str:
     """What a test waited for did not come true: where its tasks and the cells are by now."""
     first = f"what the test waits for did not come true in {seconds:g} s"
     return "\n".join([first, *standing(tasks, watched), "", *timeline(watched.trace.lines)])
 
 
-def standing(tasks: Iterable[Handle], watched: Watched) -> list[str]:
+def standing(tasks: Iterable[Handle], watched: JudgedWorld) -> list[str]:
     """One line per task of the test and per cell."""
     lines = [f"task {task.text!r}: {_joined(task.state, task.reason, task.sentence)}" for task in tasks]
     for cell in view.snapshot(watched.world.plant)["cells"]:
@@ -67,7 +67,7 @@ def timeline(lines: list[str]) -> list[str]:
     return [f"the last {counted(len(shown), 'thing')} that happened, with the time in s{older}:", *shown]
 
 
-def _broken(broken: Broken, seconds: float, invariants: Iterable[Invariant]) -> str:
+def _broken(broken: BrokenInvariant, seconds: float, invariants: Iterable[Invariant]) -> str:
     rules = {each.name: " ".join(each.sentence.split()) for each in invariants}
     rule = f"\nmust hold: {rules[broken.invariant]}" if broken.invariant in rules else ""
     return f"{broken.invariant} is broken at {seconds:.3f} s: {broken.sentence}{rule}"

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Sequence
 
 from . import groot2_messages as messages
 from .groot2_messages import Transition
-from .groot2_tree import Row, ShownTree, form_of
+from .groot2_tree import CellTree, Row, form_of
 
 MAGIC = b"BTCPP4-FileLogger2"
 FORMAT = 1
@@ -22,7 +22,7 @@ def btlog(looks: Iterable[Look], *, has_succeeded: bool) -> bytes:
     every = list(looks)
     form = next(form_of(rows) for _, rows in reversed(every) if rows)
     mine = [(at_us, rows) for at_us, rows in every if not rows or form_of(rows) == form]
-    tree = ShownTree(next(rows for _, rows in mine if rows))
+    tree = CellTree(next(rows for _, rows in mine if rows))
     began_us = mine[0][0]
     changes = [
         Transition(at_us=at_us - began_us, node=node, status=status)

@@ -8,19 +8,19 @@ from typing import Any
 
 from . import groot2_messages as messages
 from .groot2_messages import NoAnswer, Request, Transition, Type
-from .groot2_tree import NONE_YET, Row, ShownTree
+from .groot2_tree import NONE_YET, CellTree, Row
 
 KEPT = 1000  # transitions between two requests for them, as BehaviorTree.CPP keeps
 READ_ONLY = "read only: breakpoints and hooks would change what robots do"
 Pack = Callable[[Any], bytes]  # plain data as MessagePack
 
 
-class Watched:
+class WatchedTree:
     """The tree of a cell for those who watch it; times are Unix time in microseconds."""
 
     def __init__(self, pack: Pack) -> None:
         self._pack = pack
-        self._tree = ShownTree(NONE_YET)
+        self._tree = CellTree(NONE_YET)
         self._rows: Sequence[Row] = ()
         self._facts: Mapping[str, Any] = {}
         self._recorded_from: int | None = None
@@ -35,7 +35,7 @@ class Watched:
         """
         self._rows, self._facts = rows, facts
         if rows and not self._tree.is_of(rows):
-            self._tree = ShownTree(rows)
+            self._tree = CellTree(rows)
             self._transitions.clear()  # their numbers are those of the tree before
         for node, status in self._tree.stand(rows, has_succeeded=has_succeeded):
             if self._recorded_from is not None:

@@ -15,7 +15,7 @@ STATUSES = {status.name: status for status in NodeStatus} | {"INVALID": NodeStat
 NONE_YET: tuple[Row, ...] = ({"path": "root", "name": "no task yet", "kind": "idle", "status": "INVALID"},)
 
 
-class ShownTree:
+class CellTree:
     """The tree that a cell runs, or ran last. Nodes that are idle again keep how they ended.
 
     A tree whose nodes are the same is the same tree: it keeps its name of 16 bytes, and nobody loads it anew.

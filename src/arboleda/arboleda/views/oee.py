@@ -49,7 +49,7 @@ class Run:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Down:
+class Downtime:
     """A time in which a cell stood in a state in which it does no work; open where it lasts."""
 
     cell: str
@@ -66,12 +66,12 @@ class Shortest:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Kept:
+class KeptFigures:
     """What a plant's memory has of a time; `shortest` is by cell and order, of all that it remembers."""
 
     works: Sequence[Work]
     runs: Sequence[Run]
-    downs: Sequence[Down]
+    downs: Sequence[Downtime]
     shortest: Mapping[tuple[str, str], Shortest]
 
 
@@ -102,7 +102,7 @@ class Oee:
         return {**vars(self), "missing": None if self.missing is None else str(self.missing)}
 
 
-def oee(cell: str, kept: Kept, since_s: float, until_s: float) -> Oee:
+def oee(cell: str, kept: KeptFigures, since_s: float, until_s: float) -> Oee:
     """The figures of a cell from `since_s` to `until_s`, which is not later than now."""
     known = min((run.since_s for run in kept.runs), default=until_s)
     begin = min(max(since_s, known), until_s)

@@ -17,7 +17,15 @@ from typing import Protocol
 
 from arboleda.core.advice import Hand
 from arboleda.core.plant import Plant
-from arboleda.drivers.supervisor import Asked, Begin, Give, Life, Said, Supervisor, Taken
+from arboleda.drivers.supervisor import (
+    Begin,
+    CommandRequest,
+    DriverOutput,
+    Give,
+    Life,
+    SendResult,
+    Supervisor,
+)
 from arboleda.model.commands import Command
 from arboleda.model.messages import (
     ENDED,
@@ -44,7 +52,7 @@ Hear = Callable[[Report], None]
 Causes = Mapping[str, set[Reason]]
 
 
-class Joined(Protocol):
+class Loopback(Protocol):
     """A driver and its virtual device: what one says the other hears at once."""
 
     @property
@@ -84,7 +92,7 @@ class Trial(ABC):
         """The text of a task."""
 
     @abstractmethod
-    def join(self, hear: Hear, now: float) -> Joined:
+    def join(self, hear: Hear, now: float) -> Loopback:
         """A new driver, which says so to `hear` what it hears."""
 
     @abstractmethod
@@ -104,7 +112,7 @@ class Trial(ABC):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Drawn:
+class FaultPeriod:
     """A fault that is on for a while."""
 
     name: str
@@ -117,17 +125,19 @@ class Result:
     """What came of a seed; `breaches` is empty where all was well."""
 
     seed: int
-    faults: tuple[Drawn, ...]
+    faults: tuple[FaultPeriod, ...]
     ended: list[TaskChanged] = field(default_factory=list)
     breaches: list[str] = field(default_factory=list)
 
 
-def drawn(seed: int, names: Sequence[str], between_s: float) -> tuple[Drawn, ...]:
+def drawn(seed: int, names: Sequence[str], between_s: float) -> tuple[FaultPeriod, ...]:
     """Two to six faults, each at a random time for a random while."""
     chance = Random(f"faults/{seed}")
     begins = [START_S + 3 + chance.random() * TASKS * between_s for _ in range(2 + int(chance.random() * 5))]
     return tuple(
-        Drawn(name=names[int(chance.random() * len(names))], begins=at, ends=at + 0.1 + chance.random() * 6)
+        FaultPeriod(
+            name=names[int(chance.random() * len(names))], begins=at, ends=at + 0.1 + chance.random() * 6
+        )
         for at in sorted(begins)
     )
 
@@ -150,9 +160,9 @@ class World:
         self._supervisor = Supervisor(
             [(trial.driver, trial.robots)], epoch=EPOCH, stale_after_s=trial.model.timing.stale_after_s
         )
-        self._driver: Joined | None = None
+        self._driver: Loopback | None = None
         self._inbox: list[Event] = []
-        self._heard: list[Said | Asked | Taken] = []
+        self._heard: list[DriverOutput | CommandRequest | SendResult] = []
         self._seen: list[Hashable] = []  # since a task began
         self._looked_at = self.now
 
@@ -210,20 +220,20 @@ class World:
             for out in self.plant.step(self.now, inbox):
                 if isinstance(out, Command):
                     if out.robot in self._names:
-                        self._heard.append(Asked(at=self.now, command=out))
+                        self._heard.append(CommandRequest(at=self.now, command=out))
                 elif isinstance(out, TaskChanged):
                     self._judge(out)
             if not self._heard and not self._inbox:
                 return
 
     def _hear(self, life: Life, report: Report) -> None:
-        self._heard.append(Said(at=self.now, life=life, report=report))
+        self._heard.append(DriverOutput(at=self.now, life=life, report=report))
 
     def _give(self, give: Give) -> None:
         assert self._driver is not None
         why = self._driver.ask(give.command)
         error = None if why is None else OWN(text=why)
-        self._heard.append(Taken(at=self.now, life=give.life, command=give.command, error=error))
+        self._heard.append(SendResult(at=self.now, life=give.life, command=give.command, error=error))
 
     def _attend(self) -> None:
         """Somebody does what is advised."""

@@ -17,7 +17,7 @@ from .copies import Copies
 from .forms import form_of
 from .hop import is_stop, shown
 from .labels import Labels
-from .link import BoardLink, Heard
+from .link import BoardLink, LinkUpdate
 from .motion import OpenMotion
 from .payloads import Beat, Payload, Presence, Telemetry, decode, encode, read_angles
 from .rejections import OTHER_BRIDGE, ForeignCommand, Rejection
@@ -43,7 +43,7 @@ class Counters:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Foreign:
+class ForeignCommandCount:
     """How many commands of others were refused and obeyed while a plant commands; the last in a sentence."""
 
     refused: int = 0
@@ -62,7 +62,7 @@ class Board:
         self.rivals = Rivals()
         self.copies = Copies()
         self.counters = Counters()
-        self._foreign = Foreign()
+        self._foreign = ForeignCommandCount()
         self._foreign_told_at = 0.0
         self._plant: int | None = None
         self._last: Report | None = None
@@ -145,7 +145,7 @@ class Board:
 
     def _count_foreign(self, sentence: Sentence, *, refused: bool) -> None:
         known, self._words = self._foreign, None
-        self._foreign = Foreign(
+        self._foreign = ForeignCommandCount(
             refused=known.refused + refused, obeyed=known.obeyed + (not refused), last=sentence
         )
 
@@ -240,13 +240,13 @@ class Board:
     def _telemetry(self, delivery: Delivery, said: Telemetry) -> list[Message]:
         at = delivery.at
         heard = self.link.hear(at, said)
-        if heard is Heard.OLD:
+        if heard is LinkUpdate.OLD:
             self.counters = replace(self.counters, old=self.counters.old + 1)
-        if heard is Heard.ABSENT:
+        if heard is LinkUpdate.ABSENT:
             self._count(ABSENT())
-        if heard in (Heard.LATE, Heard.ABSENT, Heard.OLD):
+        if heard in (LinkUpdate.LATE, LinkUpdate.ABSENT, LinkUpdate.OLD):
             return []
-        if heard is Heard.REBOOT:
+        if heard is LinkUpdate.REBOOT:
             self.labels.reboot()
             self._motion = None
         q, facts, ended = self._joints(said), self._form.told(said.facts), self.labels.hear(said)
@@ -254,7 +254,7 @@ class Board:
             self._motion = None
         out = [*self._objections(at), *self._given_up_before(at)]
         self._last, self._words = self._told(at, said, q, facts), Words.of(delivery.payload, said)
-        return [*out, self._last, *([] if heard is Heard.NEWS else self._stop_again(at))]
+        return [*out, self._last, *([] if heard is LinkUpdate.NEWS else self._stop_again(at))]
 
     def _objections(self, at: float) -> list[Message]:
         """What telemetry has newly told of refused commands, and of commands that are not from here."""

@@ -39,7 +39,7 @@ class Leaving:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Unsure:
+class UnconfirmedCopy:
     """A command without an id that is told of at `due`, if it has not turned out to be a copy by then.
 
     `told`: there is nothing to tell, or it was told at once.
@@ -84,7 +84,7 @@ class Bridge:
         self._plant_beats = False
         self._plant_heard_at = -math.inf
         self._refuses_others = model.foreign_commands is ForeignCommands.REFUSE
-        self._unsure: list[Unsure] = []
+        self._unsure: list[UnconfirmedCopy] = []
         self._beat_at = math.inf
         self._strays = Counters()
         self.connected = False  # to the broker
@@ -189,7 +189,7 @@ class Bridge:
         refused = commanded and self._refuses_others and not is_stop(command)
         out = [] if refused else board.command(at, command, sender)
         told = not commanded or any(isinstance(each, Rejection) for each in out)
-        unsure = Unsure(due=at + UNSURE_S, board=board, event=event, refused=refused, told=told)
+        unsure = UnconfirmedCopy(due=at + UNSURE_S, board=board, event=event, refused=refused, told=told)
         if not told and not board.copies.flow:
             out += self._told_of(unsure)
             unsure = replace(unsure, told=True)
@@ -205,7 +205,7 @@ class Bridge:
         self._unsure = [each for each in self._unsure if each.due > now]
         return [message for each in due for message in self._told_of(each)]
 
-    def _told_of(self, unsure: Unsure) -> list[Message]:
+    def _told_of(self, unsure: UnconfirmedCopy) -> list[Message]:
         if unsure.told:
             return []
         board, event = unsure.board, unsure.event

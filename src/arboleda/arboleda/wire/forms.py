@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from arboleda.kinds.arm import Arm, Joint, MoveJoints, SetEffector
-from arboleda.kinds.declared import Device, FactType, Told, UseError
+from arboleda.kinds.declared import Device, FactType, UseError, VerbCall
 from arboleda.kinds.mobile import FollowPath, Mobile
 from arboleda.model.by_class import nearest
 from arboleda.model.commands import Command, Home, Stop, StopMode
@@ -34,7 +34,7 @@ UNDONE = Phrase("why.undone", "it has not ended its last work, or is in fault")
 
 
 @dataclass(frozen=True, kw_only=True)
-class Way:
+class CommandForm:
     """One class of commands on its way to a board: its channel, its payload, and the word that refuses it."""
 
     channel: Channel
@@ -53,7 +53,7 @@ class Form:
     of a refusal than its word does, where there is more.
     """
 
-    ways: Mapping[type[Command], Way]
+    ways: Mapping[type[Command], CommandForm]
     axes: int | None  # as `decode` wants it
     joints: tuple[Joint, ...] = ()
     nodes: int = 0
@@ -61,7 +61,7 @@ class Form:
     missing: Mapping[type[Command], str] = field(default_factory=dict)
     why: Callable[[Any, Any, str, bool], Sentence | None] = lambda robot, command, word, by_board: None
 
-    def way(self, kind: type[Command]) -> Way | None:
+    def way(self, kind: type[Command]) -> CommandForm | None:
         """How commands of this class go, or of its nearest base that has a way."""
         return nearest(self.ways, kind)
 
@@ -110,7 +110,7 @@ def _begins_elsewhere(mobile: Mobile, command: FollowPath, said: Report) -> Sent
     return ELSEWHERE(node=said.node, expected=", ".join(map(str, expected)))
 
 
-def _check_order(device: Device, command: Told) -> str | None:
+def _check_order(device: Device, command: VerbCall) -> str | None:
     try:
         device.kind.command(id="", robot=device.name, verb=command.verb, values=dict(command.values))
     except UseError:
@@ -150,23 +150,25 @@ def _why_of_devices(device: Device, command: Command, word: str, by_board: bool)
     return UNDONE() if word == "ocupado" else None
 
 
-STOP = Way(
+STOP = CommandForm(
     channel=Channel.STOP,
     goal=StopGoal,
     body=lambda robot, command: {"mode": StopMode(command.mode)},
     refusal=_check_stop,
 )
-HOME = Way(channel=Channel.HOME, goal=HomeGoal, body=lambda robot, command: {})
-OF_ARMS: dict[type[Command], Way] = {
-    MoveJoints: Way(channel=Channel.JOINTS, goal=JointsGoal, body=_wire_joints, refusal=_check_joints),
-    SetEffector: Way(
+HOME = CommandForm(channel=Channel.HOME, goal=HomeGoal, body=lambda robot, command: {})
+OF_ARMS: dict[type[Command], CommandForm] = {
+    MoveJoints: CommandForm(
+        channel=Channel.JOINTS, goal=JointsGoal, body=_wire_joints, refusal=_check_joints
+    ),
+    SetEffector: CommandForm(
         channel=Channel.EFFECTOR, goal=EffectorGoal, body=lambda robot, command: {"on": command.on}
     ),
     Stop: STOP,
     Home: HOME,
 }
-OF_MOBILES: dict[type[Command], Way] = {
-    FollowPath: Way(
+OF_MOBILES: dict[type[Command], CommandForm] = {
+    FollowPath: CommandForm(
         channel=Channel.PATH,
         goal=PathGoal,
         body=lambda robot, command: {"nodes": command.nodes},
@@ -176,8 +178,8 @@ OF_MOBILES: dict[type[Command], Way] = {
     Stop: STOP,
     Home: HOME,
 }
-OF_DEVICES: dict[type[Command], Way] = {
-    Told: Way(
+OF_DEVICES: dict[type[Command], CommandForm] = {
+    VerbCall: CommandForm(
         channel=Channel.ORDER,
         goal=OrderGoal,
         body=lambda robot, command: {"verb": command.verb, "values": command.values},

@@ -10,7 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 from arboleda.kinds.arm import MoveJoints, SetEffector
-from arboleda.kinds.declared import Told
+from arboleda.kinds.declared import VerbCall
 from arboleda.kinds.mobile import FollowPath
 from arboleda.model.commands import Command, Home, Stop, StopMode
 from arboleda.model.facts import shown as shown_value
@@ -25,7 +25,7 @@ PLAIN: dict[type[Command], str] = {
     SetEffector: "effector_cmd",
     Stop: "stop_cmd",
     Home: "home_cmd",
-    Told: ORDER,
+    VerbCall: ORDER,
 }
 """The plain topic of each kind of command, below the robot's name."""
 
@@ -78,7 +78,7 @@ def without_id(command: Command) -> Command:
 
 def shown(command: Command) -> str:
     """The command as people publish it: `stop_cmd 2`, `joint_goals_q`, `order run program=1001`."""
-    if isinstance(command, Told):
+    if isinstance(command, VerbCall):
         values = (f"{name}={shown_value(value)}" for name, value in command.values)
         return " ".join((ORDER, command.verb, *values))
     name = PLAIN[kind_of(command)]

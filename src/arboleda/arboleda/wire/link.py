@@ -8,7 +8,7 @@ from enum import Enum
 from .payloads import Telemetry
 
 
-class Heard(Enum):
+class LinkUpdate(Enum):
     """What a telemetry message means for the link."""
 
     LATE = "late"  # it left the broker before the connection was lost
@@ -52,22 +52,22 @@ class BoardLink:
         was_up, self.up, self.stale_at, self._below = self.up, False, math.inf, None
         return was_up
 
-    def hear(self, at: float, said: Telemetry) -> Heard:
+    def hear(self, at: float, said: Telemetry) -> LinkUpdate:
         """Take over one telemetry message."""
         if not self._connected:
-            return Heard.LATE
+            return LinkUpdate.LATE
         if self._absent:
-            return Heard.ABSENT
+            return LinkUpdate.ABSENT
         if self._overtaken(said) and not self._counts_anew(at, said.seq):
-            return Heard.OLD
+            return LinkUpdate.OLD
         rebooted = said.boot_id != self.boot_id and None not in (said.boot_id, self.boot_id)
         arrived, self.up = not self.up, True
         self.stale_at = at + self._stale_after_s
         self.number = said.seq
         self.boot_id = self.boot_id if said.boot_id is None else said.boot_id
         if rebooted:
-            return Heard.REBOOT
-        return Heard.ARRIVAL if arrived else Heard.NEWS
+            return LinkUpdate.REBOOT
+        return LinkUpdate.ARRIVAL if arrived else LinkUpdate.NEWS
 
     def hear_again(self, at: float, seq: int) -> bool:
         """Take over telemetry that repeats the last one; whether it is surely news, else `hear` decides."""

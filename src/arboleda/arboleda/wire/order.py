@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from arboleda.kinds.declared import Device, Told, UseError
+from arboleda.kinds.declared import Device, UseError, VerbCall
 from arboleda.model.commands import Command, Stop, StopMode
 from arboleda.model.errors import PayloadError
 
@@ -20,7 +20,7 @@ from .status import command_id
 def write(command: Command, *, copied: bool = False) -> str:
     """The text of a command; `copied`: whether a copy without its id comes on its plain topic."""
     said: dict[str, object] = {"id": command.id} if command.id else {}
-    if isinstance(command, Told):
+    if isinstance(command, VerbCall):
         said |= {"verb": command.verb, "values": dict(command.values)}
         said |= {} if command.heard is None else {"heard": command.heard}
     elif isinstance(command, Stop):

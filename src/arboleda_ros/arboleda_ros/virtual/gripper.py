@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from arboleda.drivers.ros_action.events import Ended
+from arboleda.drivers.ros_action.events import GoalResult
 from arboleda.virtual.faults import Faults
 from arboleda.virtual.gripper.machine import Grip, GripperBody
 from arboleda.virtual.ros_action.machine import VirtualServer
@@ -47,5 +47,5 @@ def _parallel_goal(goal: Any) -> Grip:
     return Grip(position=positions[0] if positions else float("nan"), effort=efforts[0] if efforts else 0.0)
 
 
-def _result(result: Any, end: Ended) -> None:
+def _result(result: Any, end: GoalResult) -> None:
     result.stalled, result.reached_goal = end.stalled, not end.stalled

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from arboleda.drivers.nav2.localisation import Counted
+from arboleda.drivers.nav2.localisation import OdometryPose
 from arboleda.drivers.nav2.pose import Pose
-from arboleda.drivers.ros_action.events import Ended, Seen
+from arboleda.drivers.ros_action.events import GoalResult, Measurement
 from arboleda.virtual.faults import Faults
 from arboleda.virtual.nav2.machine import BaseBody, Drive
 from arboleda.virtual.ros_action.machine import VirtualServer
@@ -51,11 +51,11 @@ def _waypoints(goal: Any) -> Drive:
     return Drive(frame=frame, poses=tuple(pose_of(each.pose) for each in goal.poses))
 
 
-def _nothing(result: Any, end: Ended) -> None:
+def _nothing(result: Any, end: GoalResult) -> None:
     """A result of NavigateToPose without an error is empty."""
 
 
-def _missed(result: Any, end: Ended) -> None:
+def _missed(result: Any, end: GoalResult) -> None:
     from nav2_msgs import msg
 
     if hasattr(msg, "MissedWaypoint"):  # releases of Nav2 differ
@@ -66,7 +66,7 @@ def _missed(result: Any, end: Ended) -> None:
         result.missed_waypoints = list(end.missed)
 
 
-def _sensors(node: Any, odometry: str, localisation: str, frame: str) -> Callable[[Seen], None]:
+def _sensors(node: Any, odometry: str, localisation: str, frame: str) -> Callable[[Measurement], None]:
     from geometry_msgs.msg import PoseWithCovarianceStamped
     from nav_msgs.msg import Odometry
 
@@ -76,7 +76,7 @@ def _sensors(node: Any, odometry: str, localisation: str, frame: str) -> Callabl
     localised = node.create_publisher(PoseWithCovarianceStamped, localisation, VIEW)
 
     def publish(seen: Any) -> None:
-        counts = isinstance(seen, Counted)
+        counts = isinstance(seen, OdometryPose)
         message = Odometry(child_frame_id="base_link") if counts else PoseWithCovarianceStamped()
         message.header.frame_id = "odom" if counts else frame
         message.header.stamp.sec, message.header.stamp.nanosec = seen.stamp

@@ -10,9 +10,9 @@ from functools import partial
 from typing import Any
 
 from arboleda.drivers.port import DriverError
-from arboleda.drivers.ros_action.events import Answered, Ended, Seen, Status
+from arboleda.drivers.ros_action.events import GoalAnswer, GoalResult, Measurement, Status
 from arboleda.model.errors import StartError
-from arboleda.virtual.ros_action.machine import CancelAsked, CancelDecided, GoalAsked, VirtualServer
+from arboleda.virtual.ros_action.machine import CancelDecision, CancelRequest, GoalRequest, VirtualServer
 
 from ..action_client import action_type
 
@@ -30,8 +30,8 @@ class Protocol:
     package: str
     type_name: str
     goal: Callable[[Any], Any]
-    result: Callable[[Any, Ended], None]
-    sensors: Callable[[Any], Callable[[Seen], None]]
+    result: Callable[[Any, GoalResult], None]
+    sensors: Callable[[Any], Callable[[Measurement], None]]
 
 
 class ActionController:
@@ -134,13 +134,13 @@ class Life:
         elif not self._machine.is_doubled and len(self._servers) == 2:
             self._servers.pop().destroy()
 
-    def _step(self, *events: GoalAsked | CancelAsked) -> None:
+    def _step(self, *events: GoalRequest | CancelRequest) -> None:
         for message in self._machine.step(time.monotonic(), events):
-            if isinstance(message, Seen):
+            if isinstance(message, Measurement):
                 self._publish(message)
-            elif isinstance(message, Answered):
+            elif isinstance(message, GoalAnswer):
                 self._answers[message.id].set_result(message.accepted)
-            elif isinstance(message, CancelDecided):
+            elif isinstance(message, CancelDecision):
                 self._cancels[message.id].set_result(message.accepted)
             else:
                 self._results[message.id].set_result(message)
@@ -152,7 +152,7 @@ class Life:
         self._count += 1
         id = str(self._count)
         self._answers[id], self._results[id] = Future(), Future()
-        self._step(GoalAsked(id=id, goal=self._protocol.goal(goal)))
+        self._step(GoalRequest(id=id, goal=self._protocol.goal(goal)))
         accepted = await self._answers.pop(id)
         self._accepted = id  # rclpy makes its handle before it does anything else
         return GoalResponse.ACCEPT if accepted else GoalResponse.REJECT
@@ -162,7 +162,7 @@ class Life:
         handle.execute()
 
     async def _execute(self, handle: Any) -> Any:
-        end: Ended = await self._results[self._id_of(handle)]
+        end: GoalResult = await self._results[self._id_of(handle)]
         result = self._type.Result()
         self._protocol.result(result, end)
         ways = {Status.SUCCEEDED: handle.succeed, Status.CANCELED: handle.canceled}
@@ -178,7 +178,7 @@ class Life:
 
         id = self._id_of(handle)
         self._cancels[id] = Future()
-        self._step(CancelAsked(id=id))
+        self._step(CancelRequest(id=id))
         accepted = await self._cancels.pop(id)
         return CancelResponse.ACCEPT if accepted else CancelResponse.REJECT
 
@@ -186,12 +186,12 @@ class Life:
         return self._handles[bytes(handle.goal_id.uuid).hex()]
 
 
-def joint_sensors(topic: str) -> Callable[[Any], Callable[[Seen], None]]:
+def joint_sensors(topic: str) -> Callable[[Any], Callable[[Measurement], None]]:
     """What publishes joint states there."""
     return partial(_joint_sensors, topic)
 
 
-def _joint_sensors(topic: str, node: Any) -> Callable[[Seen], None]:
+def _joint_sensors(topic: str, node: Any) -> Callable[[Measurement], None]:
     from sensor_msgs.msg import JointState
 
     publisher = node.create_publisher(JointState, topic, 10)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from arboleda.drivers.ros_action.events import Ended
+from arboleda.drivers.ros_action.events import GoalResult
 from arboleda.virtual.faults import Faults
 from arboleda.virtual.ros_action.machine import VirtualServer
 from arboleda.virtual.trajectory.machine import ArmBody, Points
@@ -33,5 +33,5 @@ def _goal(goal: Any) -> Points:
     return Points(joints=tuple(goal.trajectory.joint_names), points=tuple(rows))
 
 
-def _result(result: Any, end: Ended) -> None:
+def _result(result: Any, end: GoalResult) -> None:
     result.error_code, result.error_string = end.error, end.text

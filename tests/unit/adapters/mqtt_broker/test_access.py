@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from arboleda.adapters.mqtt_broker.access import Access, Role, Who
+from arboleda.adapters.mqtt_broker.access import Access, ClientIdentity, Role
 from arboleda.adapters.mqtt_broker.limits import Bucket
 
 USERS = {"ra_1": "one", "ana": "look"}
@@ -24,7 +24,7 @@ def access(*, guests: bool = False) -> Access:
     [("arboleda", b"secret", Role.PLANT), ("ra_1", b"one", Role.BOARD), ("ana", b"look", Role.READER)],
 )
 def test_each_user_has_a_role(user: str, password: bytes, role: Role) -> None:
-    assert access().login(user, password) == Who(role=role, user=user)
+    assert access().login(user, password) == ClientIdentity(role=role, user=user)
 
 
 @pytest.mark.parametrize(
@@ -45,9 +45,9 @@ def test_strangers_are_nobody(user: str | None, password: bytes | None) -> None:
 
 def test_where_nobody_needs_a_password_only_the_plant_itself_is_the_plant() -> None:
     open_door = access(guests=True)
-    assert open_door.login("arboleda", b"secret") == Who(role=Role.PLANT, user="arboleda")
+    assert open_door.login("arboleda", b"secret") == ClientIdentity(role=Role.PLANT, user="arboleda")
     for user, password in ((None, None), ("arboleda", b"guess"), ("ra_1", b"x")):
-        assert open_door.login(user, password) == Who(role=Role.GUEST)
+        assert open_door.login(user, password) == ClientIdentity(role=Role.GUEST)
 
 
 def test_a_bucket_gives_a_seconds_worth_at_once_and_then_its_rate() -> None:

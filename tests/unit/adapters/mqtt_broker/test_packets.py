@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from arboleda.adapters.mqtt_broker import packets
 from arboleda.adapters.mqtt_broker.limits import PACKET_BYTES, TOPIC_BYTES
-from arboleda.adapters.mqtt_broker.packets import Answer, Kind, Message, ProtocolError, Refused, Stream
+from arboleda.adapters.mqtt_broker.packets import Answer, ConnectRefused, Kind, Message, ProtocolError, Stream
 
 READERS = {
     Kind.CONNECT: lambda packet: packets.read_connect(packet.body),
@@ -75,7 +75,7 @@ def test_it_does_not_matter_in_which_pieces_bytes_come(data: bytes, cuts: list[i
 @given(kind=st.sampled_from(sorted(READERS)), flags=st.integers(0, 15), body=st.binary(max_size=80))
 def test_nonsense_is_a_protocol_error_and_nothing_worse(kind: Kind, flags: int, body: bytes) -> None:
     packet = packets.Packet(kind=kind, flags=flags, body=body)
-    with suppress(ProtocolError, Refused):
+    with suppress(ProtocolError, ConnectRefused):
         READERS[kind](packet)
 
 
@@ -108,7 +108,7 @@ def test_connect_says_who_it_is_and_what_it_leaves() -> None:
 
 @pytest.mark.parametrize("body", [connect(text("x"), level=5), connect(text("x"), name="MQIsdp", level=3)])
 def test_another_version_of_mqtt_is_told_so(body: bytes) -> None:
-    with pytest.raises(Refused) as refused:
+    with pytest.raises(ConnectRefused) as refused:
         packets.read_connect(body)
     assert refused.value.answer is Answer.PROTOCOL
 

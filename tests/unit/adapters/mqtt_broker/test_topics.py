@@ -6,7 +6,7 @@ import pytest
 
 from arboleda.adapters.mqtt_broker import limits
 from arboleda.adapters.mqtt_broker.packets import Message
-from arboleda.adapters.mqtt_broker.topics import Retained, Subscriptions, is_filter, matches
+from arboleda.adapters.mqtt_broker.topics import RetainedMessages, Subscriptions, is_filter, matches
 
 
 def message(topic: str, payload: bytes = b"1") -> Message:
@@ -68,7 +68,7 @@ def test_all_subscriptions_together_are_limited(monkeypatch: pytest.MonkeyPatch)
 
 
 def test_retained_messages_are_limited_and_presence_is_kept_in_any_case() -> None:
-    retained = Retained(frozenset({"ra_1/conexion"}))
+    retained = RetainedMessages(frozenset({"ra_1/conexion"}))
     kept = [retained.keep(message(f"t/{n}", b"x" * 1000)) for n in range(60_000)]
     assert 0 < sum(kept) < limits.RETAINED_BYTES / 1000
     assert retained.keep(message("ra_1/conexion"))
@@ -78,7 +78,7 @@ def test_retained_messages_are_limited_and_presence_is_kept_in_any_case() -> Non
 
 
 def test_an_empty_message_makes_room() -> None:
-    retained = Retained(frozenset())
+    retained = RetainedMessages(frozenset())
     big = b"x" * (limits.RETAINED_BYTES - 200)
     assert retained.keep(message("a", big)) and not retained.keep(message("b", big))
     assert retained.keep(message("a", b"")) and retained.keep(message("b", big))

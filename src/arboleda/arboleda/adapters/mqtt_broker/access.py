@@ -33,7 +33,7 @@ ALLOWED = {
 
 
 @dataclass(frozen=True, kw_only=True)
-class Who:
+class ClientIdentity:
     """A client that is logged in. A client id belongs to its user: another's is another id."""
 
     role: Role
@@ -52,26 +52,26 @@ class Access:
     guests: bool
     certified: bool = False
 
-    def login(self, user: str | None, password: bytes | None, shown: str = "") -> Who | None:
+    def login(self, user: str | None, password: bytes | None, shown: str = "") -> ClientIdentity | None:
         """Who that is, with a certificate in the name of `shown`; None for a stranger."""
         given = password or b""
         if user == self.plant[0] and hmac.compare_digest(self.plant[1].encode(), given):
-            return Who(role=Role.PLANT, user=user)
+            return ClientIdentity(role=Role.PLANT, user=user)
         if self.guests:
-            return Who(role=Role.GUEST)
+            return ClientIdentity(role=Role.GUEST)
         expected = self.passwords.get(user) if user is not None else None
         if user is None or expected is None or not hmac.compare_digest(expected.encode(), given):
             return None
         if self.certified and shown != user:
             return None
-        return Who(role=Role.BOARD if user in self.boards else Role.READER, user=user)
+        return ClientIdentity(role=Role.BOARD if user in self.boards else Role.READER, user=user)
 
-    def may_write(self, who: Who, name: str) -> bool:
+    def may_write(self, who: ClientIdentity, name: str) -> bool:
         """Whether `who` may publish to the topic `name`, be it as a last will."""
         if who.role is Role.BOARD:
             return name in {topic(who.user, channel) for channel in BOARDS_WRITE}
         return who.role is not Role.READER
 
-    def may_read(self, who: Who, pattern: str) -> bool:
+    def may_read(self, who: ClientIdentity, pattern: str) -> bool:
         """Whether `who` may subscribe to the filter `pattern`."""
         return who.role is not Role.BOARD or pattern.split("/")[0] == who.user

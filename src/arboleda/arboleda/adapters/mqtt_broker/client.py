@@ -8,7 +8,7 @@ import socket
 from collections.abc import Callable
 
 from . import limits, packets
-from .access import ALLOWED, Who
+from .access import ALLOWED, ClientIdentity
 from .limits import Allowance, Bucket
 from .packets import Answer, Kind, Message, Packet, ProtocolError
 from .router import Router
@@ -29,7 +29,7 @@ class Client(asyncio.BufferedProtocol):
     """
 
     def __init__(self, sessions: Sessions, router: Router) -> None:
-        self.who: Who | None = None  # until it has logged in
+        self.who: ClientIdentity | None = None  # until it has logged in
         self.idle = True  # it has neither published nor subscribed
         self._sessions = sessions
         self._router = router
@@ -147,9 +147,9 @@ class Client(asyncio.BufferedProtocol):
         try:
             said = packets.read_connect(packet.body)
             if len(said.client_id.encode()) > limits.CLIENT_ID_BYTES or not (said.client_id or said.clean):
-                raise packets.Refused(Answer.CLIENT_ID)
+                raise packets.ConnectRefused(Answer.CLIENT_ID)
             who = self._sessions.log_in(self, said, self._shown)
-        except packets.Refused as refused:
+        except packets.ConnectRefused as refused:
             self._refuse(refused.answer)
             return
         self.who, self._client_id, self._will = who, said.client_id, said.will
@@ -247,7 +247,7 @@ class Client(asyncio.BufferedProtocol):
         return next((value for part in subject for name, value in part if name == "commonName"), "")
 
     @property
-    def _known(self) -> Who:
+    def _known(self) -> ClientIdentity:
         assert self.who is not None
         return self.who
 

@@ -49,7 +49,7 @@ class ProtocolError(Exception):
     """A client said what MQTT or the limits do not allow; it is cut off."""
 
 
-class Refused(Exception):
+class ConnectRefused(Exception):
     """A CONNECT that is answered with `answer`."""
 
     def __init__(self, answer: Answer) -> None:
@@ -182,7 +182,7 @@ def read_connect(body: bytes) -> Connect:
     fields = Fields(body)
     name, level = fields.text(), fields.byte()
     if (name, level) != ("MQTT", LEVEL):
-        raise Refused(Answer.PROTOCOL)
+        raise ConnectRefused(Answer.PROTOCOL)
     flags, keep_alive_s = fields.byte(), fields.number()
     if flags & 1:
         raise ProtocolError("a reserved flag of CONNECT is set")

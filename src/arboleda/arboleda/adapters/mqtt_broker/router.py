@@ -10,9 +10,9 @@ from typing import Protocol
 
 from arboleda.wire.topics import Channel, topic
 
-from .access import Access, Who
+from .access import Access, ClientIdentity
 from .packets import Message
-from .topics import Retained, Subscriptions
+from .topics import RetainedMessages, Subscriptions
 
 LOG = logging.getLogger(__name__)
 
@@ -30,11 +30,13 @@ class Router:
     def __init__(self, access: Access) -> None:
         self._access = access
         self._subscriptions: Subscriptions[Receiver] = Subscriptions()
-        self._retained = Retained(frozenset(topic(board, Channel.PRESENCE) for board in access.boards))
+        self._retained = RetainedMessages(
+            frozenset(topic(board, Channel.PRESENCE) for board in access.boards)
+        )
         self._unsent: dict[Receiver, None] = {}
-        self._wills: deque[tuple[Who, Message]] = deque()
+        self._wills: deque[tuple[ClientIdentity, Message]] = deque()
 
-    def publish(self, who: Who, message: Message) -> None:
+    def publish(self, who: ClientIdentity, message: Message) -> None:
         """Send it to whoever subscribed; dropped where `who` may not write there."""
         if not self._access.may_write(who, message.topic):
             LOG.debug("%r may not write to %.80a", who.user, message.topic)
@@ -66,7 +68,7 @@ class Router:
         self._subscriptions.remove(receiver, patterns)
         self._unsent.pop(receiver, None)
 
-    def publish_will(self, who: Who, will: Message) -> None:
+    def publish_will(self, who: ClientIdentity, will: Message) -> None:
         """The last will of one that is gone."""
         self._wills.append((who, will))
         if len(self._wills) == 1:  # else this was called from the loop below: a will can end another client

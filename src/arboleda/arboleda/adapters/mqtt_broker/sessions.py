@@ -7,9 +7,9 @@ from itertools import count
 from typing import Protocol
 
 from . import limits
-from .access import ALLOWED, Access, Role, Who
+from .access import ALLOWED, Access, ClientIdentity, Role
 from .limits import Bucket
-from .packets import Answer, Connect, Refused
+from .packets import Answer, Connect, ConnectRefused
 
 Key = tuple[str, str]  # user and client id
 
@@ -18,7 +18,7 @@ class Connection(Protocol):
     """What this file knows of a client."""
 
     @property
-    def who(self) -> Who | None: ...
+    def who(self) -> ClientIdentity | None: ...
     @property
     def idle(self) -> bool: ...
     def cut(self, why: str) -> None: ...
@@ -47,12 +47,12 @@ class Sessions:
         elif len(self._waiting) > self._may_wait:
             next(iter(self._waiting)).cut("others want to log in")
 
-    def log_in(self, client: Connection, said: Connect, shown: str = "") -> Who:
+    def log_in(self, client: Connection, said: Connect, shown: str = "") -> ClientIdentity:
         """Let it in, by what it says and the name that its certificate has (`shown`), in the place of an
         earlier connection of its user with its client id; Refused."""
         who = self.access.login(said.user, said.password, shown)
         if who is None or (said.will is not None and not self.access.may_write(who, said.will.topic)):
-            raise Refused(Answer.NOT_AUTHORIZED)
+            raise ConnectRefused(Answer.NOT_AUTHORIZED)
         # No client can send an id like the one that stands for none.
         key = who.user, said.client_id or f"\0{next(self._nameless)}"
         if key in self._clients:
@@ -75,7 +75,7 @@ class Sessions:
         for client in (*self._waiting, *self._clients.values()):
             client.cut("the broker ends")
 
-    def bucket(self, who: Who) -> Bucket | None:
+    def bucket(self, who: ClientIdentity) -> Bucket | None:
         """What counts the messages of this user; each guest has one of its own, the plant itself none."""
         allowed = ALLOWED.get(who.role)
         if allowed is None:
@@ -83,7 +83,7 @@ class Sessions:
         fresh = Bucket(allowed.rate, get_running_loop().time())
         return fresh if who.role is Role.GUEST else self._buckets.setdefault(who.user, fresh)
 
-    def _make_room(self, who: Who) -> None:
+    def _make_room(self, who: ClientIdentity) -> None:
         """Refused where this user, or all together, have as many connections as they may and none is idle.
         For the plant itself somebody else goes, idle or not."""
         allowed = ALLOWED.get(who.role)
@@ -102,4 +102,4 @@ def _cut_oldest(clients: list[Connection], *, or_any: bool) -> None:
     if leaving:
         leaving[0].cut("it did nothing, and others want in" if idle else "the plant itself wants in")
     elif not or_any:
-        raise Refused(Answer.BUSY)
+        raise ConnectRefused(Answer.BUSY)

@@ -79,7 +79,7 @@ class Subscriptions(Generic[Client]):
         return found
 
 
-class Retained:
+class RetainedMessages:
     """The last retained message of each topic. Of the topics in `always` a small one is kept in any case, of
     all others no more than RETAINED_BYTES."""
 

@@ -17,7 +17,7 @@ from arboleda.core.leading import AGAIN_S, LEASE_S, RENEW_S, WANTED_S, Lease, Si
 from arboleda.model.errors import ArboledaError, StartError
 from arboleda.model.outside import plain
 
-from ..plant_memory import LedElsewhere, PlantMemory, Standby, Statement, Superseded
+from ..plant_memory import OtherLeader, PlantMemory, Standby, Statement, Superseded
 from .leader_row import END_LEASE, LAST_SEEN, lately
 from .schema import SUPERSEDED, prepare, schema_of
 from .server import Impatient, checked, connected, explained, own_address, plain_values, translated
@@ -201,7 +201,7 @@ class PostgresMemory(PlantMemory):
         return row
 
     def _refuse_second(self) -> NoReturn:
-        raise LedElsewhere(
+        raise OtherLeader(
             f"The plant of {self.name} is led by another process{_leader(self._connection())}: end it first,"
             " or have this one wait with --standby."
         )

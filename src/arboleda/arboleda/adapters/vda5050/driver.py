@@ -10,14 +10,14 @@ from collections.abc import Iterable, Sequence
 from arboleda.adapters.broker_login import address, login
 from arboleda.adapters.device_feed import taking
 from arboleda.adapters.mqtt import MqttClient, NotConnected
-from arboleda.adapters.rate_limit import Seldom
+from arboleda.adapters.rate_limit import RateLimit
 from arboleda.drivers import Clock, Command, Hear, NotSent, Report, Robot, driver
 from arboleda.drivers.vda5050.machine import Message, Publish, Vehicle
 from arboleda.drivers.vda5050.settings import Settings
 from arboleda.model.outside import plain, quoted
 from arboleda.wire.transport import Connection, Delivery, Publication
 
-from .messages import Headers, Unfit, from_bytes, to_bytes
+from .messages import Headers, SchemaMismatch, from_bytes, to_bytes
 
 LOG = logging.getLogger("arboleda.drivers.vda5050")
 LONGEST_TOPIC = 300
@@ -33,7 +33,7 @@ class Vda5050:
         self._settings = settings
         self._lock = threading.Lock()  # around the machine, and the order of what it says
         self._ending = threading.Event()
-        self._seldom = Seldom()
+        self._seldom = RateLimit()
         self._client: MqttClient | None = None
         self._ticking: threading.Thread | None = None
 
@@ -65,7 +65,7 @@ class Vda5050:
         with self._lock:
             try:
                 self._do(self._vehicle.command(self._clock(), command))
-            except (NotConnected, Unfit) as error:
+            except (NotConnected, SchemaMismatch) as error:
                 self._vehicle.unsent(command)
                 raise NotSent(str(error)) from error
 
@@ -107,8 +107,10 @@ class Vda5050:
         try:
             said = from_bytes(settings.version, topic, delivery.payload)
             if (said["manufacturer"], said["serialNumber"]) != (settings.manufacturer, settings.serial):
-                raise Unfit(f"it says to be of {quoted(said['manufacturer'])} {quoted(said['serialNumber'])}")
-        except Unfit as error:
+                raise SchemaMismatch(
+                    f"it says to be of {quoted(said['manufacturer'])} {quoted(said['serialNumber'])}"
+                )
+        except SchemaMismatch as error:
             self._warn(f"a message on {delivery.topic} is refused: {error}")
             if topic == "state":
                 self._vehicle.refused(str(error))
@@ -127,7 +129,7 @@ class Vda5050:
         """Do what was not asked for by a command: what cannot leave will be missed soon enough."""
         try:
             self._do(messages)
-        except (NotConnected, Unfit) as error:
+        except (NotConnected, SchemaMismatch) as error:
             LOG.debug("%s", error)
 
     def _do(self, messages: Iterable[Message]) -> None:

@@ -24,7 +24,7 @@ DIGITS = 20  # of a whole number
 FULL = {"2.0": "2.0.0", "2.1": "2.1.0", "3.0": "3.0.0"}
 
 
-class Unfit(ArboledaError):
+class SchemaMismatch(ArboledaError):
     """A message that does not fit the schema of its topic; the sentence says where."""
 
 
@@ -37,7 +37,7 @@ def to_bytes(version: str, topic: str, message: Mapping[str, Any]) -> bytes:
 def from_bytes(version: str, topic: str, payload: bytes) -> dict[str, Any]:
     """A message that was received; Unfit for whatever the standard does not allow."""
     if len(payload) > LARGEST:
-        raise Unfit(f"it has {len(payload)} bytes")
+        raise SchemaMismatch(f"it has {len(payload)} bytes")
     try:
         said = json.loads(
             payload,
@@ -47,7 +47,7 @@ def from_bytes(version: str, topic: str, payload: bytes) -> dict[str, Any]:
             object_pairs_hook=_without_nulls,
         )
     except (ValueError, RecursionError) as error:
-        raise Unfit(plain(f"it is no JSON: {error}")) from error
+        raise SchemaMismatch(plain(f"it is no JSON: {error}")) from error
     _check(version, topic, said)
     assert isinstance(said, dict)
     return said
@@ -75,10 +75,12 @@ def _check(version: str, topic: str, message: object) -> None:
     try:
         _checks(version)[topic](message)
     except fastjsonschema.JsonSchemaValueException as error:
-        raise Unfit(plain(f"{error.message.replace('data.', '', 1)}{_shown(error.value)}")) from error
+        raise SchemaMismatch(
+            plain(f"{error.message.replace('data.', '', 1)}{_shown(error.value)}")
+        ) from error
     assert isinstance(message, Mapping)
     if message["version"].split(".")[:2] != version.split("."):
-        raise Unfit(plain(f"it is of version {message['version']}, not {version}"))
+        raise SchemaMismatch(plain(f"it is of version {message['version']}, not {version}"))
 
 
 @cache

@@ -28,7 +28,7 @@ from ..task_rows import COMMAND, HTTP, TaskRow, answers_of, choice_of, table, un
 from . import limits, login, metrics, openapi, stream
 from .auth import SUBMIT, Forbidden, require
 from .limits import LATER_S
-from .not_found import NothingElse
+from .not_found import NotFound
 from .plain_json import PlainJson, explained
 from .plant_side import COMMAND_LINE, PlantSide
 from .schema import (
@@ -37,16 +37,16 @@ from .schema import (
     CellOee,
     Done,
     KeptTask,
+    OeeFilter,
     Offer,
     Promise,
+    PromiseFilter,
     Sentence,
     Snapshot,
     Task,
+    TaskFilter,
     TaskForm,
     TaskText,
-    Wanted,
-    WantedOee,
-    WantedPromises,
 )
 
 log = logging.getLogger(__name__)
@@ -105,7 +105,7 @@ def make_app(
     routers += [metrics.routes(counts)] if counts is not None else []
     for router in routers:
         app.include_router(router, responses=OTHERS)
-    app.router.routes.append(NothingElse([route for router in routers for route in router.routes]))
+    app.router.routes.append(NotFound([route for router in routers for route in router.routes]))
     return app
 
 
@@ -131,26 +131,26 @@ def _look(api: APIRouter, side: PlantSide) -> None:
         seen = await run_in_threadpool(side.latest)
         return PlainJson([explained(task) for task in seen["tasks"]])
 
-    wanted: dict[str, Any] = {"responses": WRONG, "openapi_extra": _query(Wanted)}
+    wanted: dict[str, Any] = {"responses": WRONG, "openapi_extra": _query(TaskFilter)}
 
     @api.get("/history", response_model=list[KeptTask], **wanted)
     async def history(request: Request) -> JSONResponse:
         """Tasks of all starts, the last accepted first; the next page is `before` the last `number`."""
-        rows = await run_in_threadpool(side.history, asked(request, Wanted).query())
+        rows = await run_in_threadpool(side.history, asked(request, TaskFilter).query())
         return PlainJson([_kept(row) for row in rows])
 
     @api.get("/history.csv", response_class=PlainTextResponse, **wanted)
     async def history_as_table(request: Request) -> PlainTextResponse:
         """The same as a table for other programs, with a line of names."""
-        rows = await run_in_threadpool(side.history, asked(request, Wanted).query())
+        rows = await run_in_threadpool(side.history, asked(request, TaskFilter).query())
         return PlainTextResponse(table(rows), media_type="text/csv; charset=utf-8")
 
-    about: dict[str, Any] = {"responses": WRONG, "openapi_extra": _query(WantedOee)}
+    about: dict[str, Any] = {"responses": WRONG, "openapi_extra": _query(OeeFilter)}
 
     @api.get("/oee", response_model=list[CellOee], **about)
     async def oee(request: Request) -> JSONResponse:
         """The OEE of the cells, of the last 24 hours where no time is asked for; docs/how-to/oee.md."""
-        rows = await run_in_threadpool(side.oee, asked(request, WantedOee).query())
+        rows = await run_in_threadpool(side.oee, asked(request, OeeFilter).query())
         return PlainJson([row.data() for row in rows])
 
     @api.get("/recipes", response_model=list[Offer])
@@ -158,10 +158,10 @@ def _look(api: APIRouter, side: PlantSide) -> None:
         """What each cell can be asked for: its recipes, their parameters, and what these can be."""
         return PlainJson(side.offers())
 
-    @api.get("/promises", response_model=list[Promise], responses=WRONG, openapi_extra=_query(WantedPromises))
+    @api.get("/promises", response_model=list[Promise], responses=WRONG, openapi_extra=_query(PromiseFilter))
     async def promises(request: Request) -> JSONResponse:
         """When each cell that a task text names would have done it; nothing is asked of them."""
-        return PlainJson(side.promises(asked(request, WantedPromises).text))
+        return PlainJson(side.promises(asked(request, PromiseFilter).text))
 
     @api.get("/tasks/{task_id}", response_model=Task, responses=UNKNOWN)
     async def task(task_id: str) -> JSONResponse:

@@ -7,17 +7,17 @@ import asyncio
 from starlette.types import Message, Receive
 
 from . import limits
-from .http_errors import Gone, Turned
-from .request_head import Asked
+from .http_errors import ClientGone, HttpError
+from .request_head import RequestHead
 
 
-async def whole_body(asked: Asked, receive: Receive) -> Receive:
+async def whole_body(asked: RequestHead, receive: Receive) -> Receive:
     """A `receive` that hands out the body; Turned where it is too long or slow, Gone where it breaks off."""
     most = limits.PAGE_BODY_BYTES if asked.for_page else limits.API_BODY_BYTES
     try:
         body = await asyncio.wait_for(_read(receive, most), limits.BODY_S)
     except asyncio.TimeoutError:
-        raise Turned(408, f"The body did not come within {limits.BODY_S:.0f} s.") from None
+        raise HttpError(408, f"The body did not come within {limits.BODY_S:.0f} s.") from None
     waiting: list[Message] = [{"type": "http.request", "body": body, "more_body": False}]
 
     async def next_message() -> Message:
@@ -31,9 +31,9 @@ async def _read(receive: Receive, most: int) -> bytes:
     while more:
         message = await receive()
         if message["type"] == "http.disconnect":
-            raise Gone
+            raise ClientGone
         body += message.get("body", b"")
         more = message.get("more_body", False)
         if len(body) > most:
-            raise Turned(413, f"The body may have {most} bytes.")
+            raise HttpError(413, f"The body may have {most} bytes.")
     return body

@@ -13,11 +13,11 @@ from . import limits
 from .auth import LOCAL, Door, Login
 from .body import whole_body
 from .headers import with_headers
-from .http_errors import Gone, Turned
+from .http_errors import ClientGone, HttpError
 from .limits import Buckets
 from .names import Names
-from .request_head import LOGIN, PLANT, Asked
-from .serial_requests import OneByOne
+from .request_head import LOGIN, PLANT, RequestHead
+from .serial_requests import SerialRequests
 from .sockets import Sockets
 
 IN_URL = {"token", "access_token", "bearer", "authorization"}
@@ -40,7 +40,7 @@ class Guard:
         self._plant = plant
         self._names = names
         self._door = door
-        self._pages = OneByOne(app)
+        self._pages = SerialRequests(app)
         self._sockets = Sockets(app, most=sockets)
         self._reads, self._changes = Buckets(limits.READ), Buckets(limits.CHANGE)
         self._files, self._opens = Buckets(limits.PAGE), Buckets(limits.OPEN)
@@ -51,13 +51,13 @@ class Guard:
             return await self._app(scope, receive, send)
         send = with_headers(scope, send)
         try:
-            return await self._serve(Asked(scope), receive, send)
-        except Turned as turned:
+            return await self._serve(RequestHead(scope), receive, send)
+        except HttpError as turned:
             return await turned.answer(scope, receive, send)
-        except Gone:
+        except ClientGone:
             return None
 
-    async def _serve(self, asked: Asked, receive: Receive, send: Send) -> None:
+    async def _serve(self, asked: RequestHead, receive: Receive, send: Send) -> None:
         self._check_shape(asked)
         self._check_names(asked)
         peer = asked.peer(proxied=self._names.public is not None)
@@ -78,41 +78,45 @@ class Guard:
             return await self._pages.run(scope, body, send, receive)
         return await self._app(scope, body, send)
 
-    def _check_shape(self, asked: Asked) -> None:
+    def _check_shape(self, asked: RequestHead) -> None:
         if asked.header_bytes > limits.HEADER_BYTES:
-            raise Turned(431, f"Address and headers may have {limits.HEADER_BYTES} bytes.")
+            raise HttpError(431, f"Address and headers may have {limits.HEADER_BYTES} bytes.")
         if asked.ambiguous:
-            raise Turned(400, "A header that counts once is there twice, or the body has two lengths.")
+            raise HttpError(400, "A header that counts once is there twice, or the body has two lengths.")
         query = parse_qsl(asked.scope["query_string"].decode("latin-1"), keep_blank_values=True)
         if any(name.lower() in IN_URL for name, _ in query):
-            raise Turned(400, "A token does not belong into an address: it stays in logs and histories.")
+            raise HttpError(400, "A token does not belong into an address: it stays in logs and histories.")
 
-    def _check_names(self, asked: Asked) -> None:
+    def _check_names(self, asked: RequestHead) -> None:
         host = asked.header("host")
         if not self._names.knows_host(host):
-            raise Turned(403, f"This plant is not called {quoted(host, 80)}; --public-url gives it a name.")
+            raise HttpError(
+                403, f"This plant is not called {quoted(host, 80)}; --public-url gives it a name."
+            )
         if self._door.open and asked.forwarded:
-            raise Turned(403, "A proxy asks, and this plant is for its own machine; see --public-url.")
+            raise HttpError(403, "A proxy asks, and this plant is for its own machine; see --public-url.")
 
-    def _check_plant(self, asked: Asked) -> None:
+    def _check_plant(self, asked: RequestHead) -> None:
         meant = asked.header(PLANT)
         if meant and self._plant and meant != self._plant:
-            raise Turned(421, f"This is the plant {self._plant}, and {quoted(meant, 80)} is meant.")
+            raise HttpError(421, f"This is the plant {self._plant}, and {quoted(meant, 80)} is meant.")
 
-    def _check_origin(self, asked: Asked, login: Login | None) -> None:
+    def _check_origin(self, asked: RequestHead, login: Login | None) -> None:
         if asked.has("origin"):
             if not self._names.knows_origin(asked.header("origin"), asked.header("host")):
-                raise Turned(403, NOT_OURS)
+                raise HttpError(403, NOT_OURS)
             return
         if asked.from_elsewhere:
-            raise Turned(403, NOT_OURS)
+            raise HttpError(403, NOT_OURS)
         if login is None and not asked.logs_in:
             return  # turned away in any case, and told that a token is missing
         by_token = asked.bearer is not None and login is not None
         if not (asked.reads or by_token or (self._door.open and asked.for_api)):
-            raise Turned(403, "The browser must name the page this comes from (Origin); tools send a token.")
+            raise HttpError(
+                403, "The browser must name the page this comes from (Origin); tools send a token."
+            )
 
-    def _login(self, asked: Asked, peer: str) -> Login | None:
+    def _login(self, asked: RequestHead, peer: str) -> Login | None:
         """Who asks, None for nobody known; Turned for a wrong token."""
         if self._door.open:
             return LOCAL
@@ -120,13 +124,13 @@ class Guard:
             # A right token passes whoever else guesses from that address: it may be about to stop something.
             return self._door.by_token(asked.bearer) or self._guessed(peer)
         if asked.logs_in and not asked.reads and self._guesses.empty(peer):
-            raise Turned(429, GUESSED, retry_after="60")
+            raise HttpError(429, GUESSED, retry_after="60")
         return self._door.by_cookie(asked.session) if asked.session is not None else None
 
     def _guessed(self, peer: str) -> Login | None:
         if not self._guesses.take(peer):
-            raise Turned(429, GUESSED, retry_after="60")
-        raise Turned(401, "This token is not valid.", www_authenticate="Bearer")
+            raise HttpError(429, GUESSED, retry_after="60")
+        raise HttpError(401, "This token is not valid.", www_authenticate="Bearer")
 
     def _counting_guesses(self, peer: str, send: Send) -> Send:
         async def counting(message: Message) -> None:
@@ -136,11 +140,11 @@ class Guard:
 
         return counting
 
-    def _check_rate(self, asked: Asked, key: str) -> None:
+    def _check_rate(self, asked: RequestHead, key: str) -> None:
         if not self._rate(asked).take(key):
-            raise Turned(429, "Too many requests; wait a second.", retry_after="1")
+            raise HttpError(429, "Too many requests; wait a second.", retry_after="1")
 
-    def _rate(self, asked: Asked) -> Buckets:
+    def _rate(self, asked: RequestHead) -> Buckets:
         if not asked.reads:
             return self._changes
         if asked.opens_page:
@@ -157,8 +161,8 @@ class Guard:
         return {**scope, "headers": kept, **known}
 
 
-def _unknown(asked: Asked) -> Turned:
-    turned = Turned(401, "This plant wants a token or a login.", www_authenticate="Bearer")
+def _unknown(asked: RequestHead) -> HttpError:
+    turned = HttpError(401, "This plant wants a token or a login.", www_authenticate="Bearer")
     if asked.wants_page:
         turned.answer = RedirectResponse(asked.at(LOGIN) if asked.opens_page else LOGIN, status_code=303)
     return turned

@@ -5,7 +5,7 @@ from __future__ import annotations
 from starlette.responses import JSONResponse, Response
 
 
-class Turned(Exception):
+class HttpError(Exception):
     """Turned away with this answer: a status, one sentence, and headers such as `retry_after="1"`."""
 
     def __init__(self, status: int, sentence: str, **headers: str) -> None:
@@ -16,5 +16,5 @@ class Turned(Exception):
         )
 
 
-class Gone(Exception):
+class ClientGone(Exception):
     """The client went away before it had asked; there is nobody to answer."""

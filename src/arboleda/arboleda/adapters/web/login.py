@@ -10,7 +10,7 @@ from fastapi.responses import HTMLResponse, RedirectResponse, Response
 
 from .auth import SESSION_S
 from .plain_page import page
-from .request_head import LOGIN, LOGOUT, Asked, cookie_name
+from .request_head import LOGIN, LOGOUT, RequestHead, cookie_name
 
 WORDS = {
     "en": {
@@ -37,7 +37,7 @@ def routes() -> APIRouter:
     @pages.get(LOGIN)
     async def form(request: Request) -> Response:
         known = request.scope["arboleda.login"]
-        return RedirectResponse(Asked(request.scope).at("/"), 303) if known else _form(request)
+        return RedirectResponse(RequestHead(request.scope).at("/"), 303) if known else _form(request)
 
     @pages.post(LOGIN)
     async def log_in(request: Request) -> Response:
@@ -46,13 +46,13 @@ def routes() -> APIRouter:
         session = door.log_in(token) if token and not door.open else None
         if session is None:
             return _form(request, wrong=True)
-        answer = RedirectResponse(Asked(request.scope).at("/"), 303)
+        answer = RedirectResponse(RequestHead(request.scope).at("/"), 303)
         answer.set_cookie(value=session, max_age=int(SESSION_S), **_cookie(request))
         return answer
 
     @pages.post(LOGOUT)
     async def log_out(request: Request) -> Response:
-        session = Asked(request.scope).session
+        session = RequestHead(request.scope).session
         if session is not None:
             request.scope["arboleda.door"].log_out(session)
         answer = RedirectResponse(LOGIN, 303)
@@ -82,7 +82,7 @@ def _form(request: Request, *, wrong: bool = False) -> HTMLResponse:
     language = "es" if asked.lower().startswith("es") else "en"
     words = {key: escape(value) for key, value in WORDS[language].items()}
     trouble = f'<p role="alert">{words["wrong"]}</p>' if wrong else ""
-    to = escape(Asked(request.scope).at(LOGIN))
+    to = escape(RequestHead(request.scope).at(LOGIN))
     body = f"""<h1>{words["title"]}</h1>{trouble}<form method="post" action="{to}">
 <p><label>{words["token"]}
 <input name="token" type="password" autocomplete="current-password" required autofocus></label></p>

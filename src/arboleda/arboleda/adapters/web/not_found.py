@@ -11,7 +11,7 @@ from starlette.types import Receive, Scope, Send
 from .request_head import is_api
 
 
-class NothingElse(BaseRoute):
+class NotFound(BaseRoute):
     """The last of the `routes`. Pages are mounted after it, and take every path; without it they would
     answer for a route of ours that was asked with another method."""
 

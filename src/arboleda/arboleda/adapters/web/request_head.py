@@ -22,7 +22,7 @@ def is_api(path: str) -> bool:
     return path in (API.rstrip("/"), METRICS) or path.startswith(API)
 
 
-class Asked:
+class RequestHead:
     """One http request or websocket handshake; header values are latin-1, "" where there is none."""
 
     def __init__(self, scope: Scope) -> None:

@@ -14,19 +14,19 @@ from ..oee_rows import OeeQuery
 from ..task_rows import TaskQuery
 
 
-class _Asked(BaseModel):
+class _RequestModel(BaseModel):
     """What a client sends: these keys and no others, of exactly these types."""
 
     model_config = ConfigDict(extra="forbid", strict=True)
 
 
-class _Told(BaseModel):
+class _ResponseModel(BaseModel):
     """What a client gets; more keys may come."""
 
     model_config = ConfigDict(extra="allow")
 
 
-class Wanted(BaseModel):
+class TaskFilter(BaseModel):
     """Which tasks of the history: all of what is asked; nothing asks for the last `limit`."""
 
     model_config = ConfigDict(extra="forbid")
@@ -54,7 +54,7 @@ class Wanted(BaseModel):
         )
 
 
-class WantedOee(BaseModel):
+class OeeFilter(BaseModel):
     """Of which time the figures are; nothing asks for the last 24 hours of all cells."""
 
     model_config = ConfigDict(extra="forbid")
@@ -68,7 +68,7 @@ class WantedOee(BaseModel):
         return OeeQuery(cell=self.cell, since_s=self.since, until_s=self.until)
 
 
-class WantedPromises(BaseModel):
+class PromiseFilter(BaseModel):
     """Of which task."""
 
     model_config = ConfigDict(extra="forbid")
@@ -76,14 +76,14 @@ class WantedPromises(BaseModel):
     text: str = Field(max_length=200, examples=["sis_a,sis_b 0B 7"])
 
 
-class TaskText(_Asked):
+class TaskText(_RequestModel):
     text: str = Field(examples=["sis_a 0B 7"], description="A task, as on the command line.")
     why: str = Field(
         default="", max_length=500, description="Why it is given to this cell, by who chose between plants."
     )
 
 
-class TaskForm(_Asked):
+class TaskForm(_RequestModel):
     """A task as a form of `/api/recipes` has it; either for a `cell`, or for `any_of` several."""
 
     model_config = ConfigDict(json_schema_extra={"oneOf": [{"required": ["cell"]}, {"required": ["any_of"]}]})
@@ -110,7 +110,7 @@ class TaskForm(_Asked):
         return named | {"cell": self.cell or BETWEEN_CELLS.join(self.any_of)}
 
 
-class ByHand(_Asked):
+class ByHand(_RequestModel):
     by_hand: bool = Field(
         default=False,
         description="Nothing moves, you declare what was done by hand: for home, that the robot is at its "
@@ -118,7 +118,7 @@ class ByHand(_Asked):
     )
 
 
-class Sentence(_Told):
+class Sentence(_ResponseModel):
     """What went wrong, for a person and as data."""
 
     sentence: str = Field(examples=["'sis_z' is not a cell of this plant; there are sis_a, sis_b, sis_c"])
@@ -128,7 +128,7 @@ class Sentence(_Told):
     values: dict[str, Any] | None = Field(default=None, description="What stands in it, by name.")
 
 
-class TaskAnswer(_Told):
+class TaskAnswer(_ResponseModel):
     """What a device or a person answered while a task ran."""
 
     by: str
@@ -144,7 +144,7 @@ CHOICE = "Why it is done in this cell, where several were allowed."
 UNCHECKED = "Of one that is done what no device confirmed: grip, release; its sentence says it for people."
 
 
-class Task(_Told):
+class Task(_ResponseModel):
     id: str
     text: str
     cell: str | None
@@ -158,7 +158,7 @@ class Task(_Told):
     unchecked: list[str] = Field(default=[], description=UNCHECKED)
 
 
-class Promise(_Told):
+class Promise(_ResponseModel):
     """What a cell promises of a task that it was not given."""
 
     cell: str
@@ -168,7 +168,7 @@ class Promise(_Told):
     full: bool = Field(description="Whether its queue has no room.")
 
 
-class KeptTask(_Told):
+class KeptTask(_ResponseModel):
     """A task of this start or of an earlier one; times are Unix times, in seconds."""
 
     number: int = Field(description="Grows by one with each task that the plant accepts.")
@@ -193,7 +193,7 @@ class KeptTask(_Told):
     unchecked: list[str] = Field(default=[], description=UNCHECKED)
 
 
-class CellOee(_Told):
+class CellOee(_ResponseModel):
     """OEE of one cell; shares from 0 to 1, null where `missing` says why nobody can say."""
 
     cell: str
@@ -211,7 +211,7 @@ class CellOee(_Told):
     missing: str | None
 
 
-class Parameter(_Told):
+class Parameter(_ResponseModel):
     """What a recipe wants to know; more types may come."""
 
     name: str
@@ -222,7 +222,7 @@ class Parameter(_Told):
     upper: float | None = None
 
 
-class Recipe(_Told):
+class Recipe(_ResponseModel):
     name: str
     about: str = Field(description="What it does, in a line.")
     default: bool = Field(description="A task that names no recipe means this one.")
@@ -231,12 +231,12 @@ class Recipe(_Told):
     parameters: list[Parameter]
 
 
-class Offer(_Told):
+class Offer(_ResponseModel):
     cell: str
     recipes: list[Recipe]
 
 
-class Done(_Told):
+class Done(_ResponseModel):
     """A verb that is not refused; where it is `under_way`, `GET /api/acts/<act>` tells its end."""
 
     verb: Verb
@@ -246,7 +246,7 @@ class Done(_Told):
     why: str | None = Field(default=None, description="Why it failed, cannot be checked, or is not kept.")
 
 
-class Act(_Told):
+class Act(_ResponseModel):
     """What an operator did, and what has become of it."""
 
     number: int = Field(description="Grows by one with each act; of this start of the plant.")
@@ -261,7 +261,7 @@ class Act(_Told):
     ended: str | None = Field(description="Its end in words, then.")
 
 
-class Advice(_Told):
+class Advice(_ResponseModel):
     """One thing to do that leads a cell out of its state."""
 
     do: str = Field(description="A verb; or, where `hand`: bring_back, repair, reference, check or free.")
@@ -278,7 +278,7 @@ class Advice(_Told):
     refusal: str | None = Field(description="Why it would be refused now.")
 
 
-class Device(_Told):
+class Device(_ResponseModel):
     role: str
     name: str
     kind: str = Field(description="arm, mobile, or a kind of your own.")
@@ -287,7 +287,7 @@ class Device(_Told):
     asked: bool = Field(description="Whether it is a person, who answers on the plant's own screens.")
 
 
-class Cell(_Told):
+class Cell(_ResponseModel):
     """Cells of storage also have the names of their `arm` and `mobile` under these keys."""
 
     name: str
@@ -306,7 +306,7 @@ class Cell(_Told):
     tree: list[dict[str, Any]] = Field(description="The behavior tree, depth first.")
 
 
-class Asking(_Told):
+class Asking(_ResponseModel):
     """What a person is being asked; `POST /api/cells/<person> <answer>/answer` answers it."""
 
     id: str
@@ -315,7 +315,7 @@ class Asking(_Told):
     left_s: float = Field(description="Until the question ends unanswered.")
 
 
-class Robot(_Told):
+class Robot(_ResponseModel):
     """A device of any kind."""
 
     name: str
@@ -339,7 +339,7 @@ class Robot(_Told):
     refused: dict[str, str] = Field(description="The verbs that would be refused for it now, and why.")
 
 
-class Snapshot(_Told):
+class Snapshot(_ResponseModel):
     """The plant as of its last step."""
 
     plant: str

@@ -11,7 +11,7 @@ from typing import Any, TypeVar
 
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-from .request_head import Asked
+from .request_head import RequestHead
 
 Result = TypeVar("Result")
 Call = Callable[..., Awaitable[Result]]
@@ -21,7 +21,7 @@ OVER: Message = {"type": "lifespan.shutdown.complete"}
 LOG = logging.getLogger(__name__)
 
 
-class Apart:
+class SecondLoop:
     """Runs `app` in a second event loop; a stop it runs in the loop of the server.
 
     A page or a snapshot of a large plant takes a tenth of a second. In the server's loop nothing is made that
@@ -36,7 +36,7 @@ class Apart:
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         if scope["type"] == "lifespan":
             return await self._live(scope, receive, send)
-        if Asked(scope).stops:
+        if RequestHead(scope).stops:
             return await self._app(scope, receive, send)
         return await self._run_there(scope, receive, send)
 

@@ -7,7 +7,7 @@ import asyncio
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 
-class OneByOne:
+class SerialRequests:
     """Runs requests of `app` so that only one is being worked on. Sending an answer is no work: a client
     that reads slowly keeps nobody waiting."""
 

@@ -16,7 +16,7 @@ from starlette.types import ASGIApp
 from arboleda.model.errors import StartError
 
 from .. import descriptors
-from ..rate_limit import Seldom
+from ..rate_limit import RateLimit
 from . import limits
 from .admission import Admission
 from .connections import HEAD_BYTES, Connection, Socket
@@ -109,7 +109,7 @@ def _protocol(admission: Admission, tls: ServerTls | None) -> Callable[..., asyn
     from ..tls_layer import TlsLayer
 
     layered = partial(
-        TlsLayer, tls.context, server="The HTTP server", seldom=Seldom(), plain_answer=SPEAKS_TLS
+        TlsLayer, tls.context, server="The HTTP server", seldom=RateLimit(), plain_answer=SPEAKS_TLS
     )
     return lambda **options: layered(Connection(**options, admission=admission))
 

@@ -10,7 +10,7 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from . import limits
 from .auth import Login
-from .http_errors import Turned
+from .http_errors import HttpError
 from .limits import Buckets
 
 LOGGED_OUT: Message = {"type": "websocket.close", "code": 1008, "reason": "logged out"}
@@ -37,7 +37,7 @@ class Sockets:
         """One websocket until its end; Turned where too many are open."""
         if self._open >= self._most:
             many = f"No more than {self._most} may be open at a time; close a page."
-            raise Turned(503, many, retry_after=limits.LATER_S)
+            raise HttpError(503, many, retry_after=limits.LATER_S)
         one = _Socket(receive, send, login, self._pace())
         self._open += 1
         try:

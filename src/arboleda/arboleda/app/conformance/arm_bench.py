@@ -11,11 +11,11 @@ from arboleda.wire.topics import Channel
 from arboleda.wire.transport import Delivery
 from arboleda.wire.units import to_wire
 
-from .bench import Bench, Said, Send
+from .bench import Bench, BoardTelemetry, Send
 
 
 @dataclass(frozen=True, kw_only=True)
-class ArmSaid(Said):
+class ArmTelemetry(BoardTelemetry):
     """One telemetry message, angles in degrees; None for what it does not say."""
 
     q: tuple[float, ...] | None
@@ -27,7 +27,7 @@ class ArmSaid(Said):
         return self.q
 
 
-class ArmBench(Bench[ArmSaid]):
+class ArmBench(Bench[ArmTelemetry]):
     """An arm's board on trial."""
 
     def __init__(self, arm: Arm, epoch: int) -> None:
@@ -69,11 +69,11 @@ class ArmBench(Bench[ArmSaid]):
     def _middle(self) -> tuple[int, ...]:
         return tuple(joint.steps((joint.lower + joint.upper) / 2) for joint in self.arm.joints)
 
-    def _read(self, delivery: Delivery) -> ArmSaid:
+    def _read(self, delivery: Delivery) -> ArmTelemetry:
         fields = strict.read(delivery.payload)
         keys = [f"q{at + 1}_mov" for at in range(len(self.arm.joints))]
         spoken = any(key in fields for key in keys)
-        return ArmSaid(
+        return ArmTelemetry(
             at=delivery.at,
             state=fields.integer("estado", 4),
             q=tuple(fields.number(key, MAX_ANGLE_DEG) for key in keys) if spoken else None,

@@ -41,16 +41,16 @@ class Wait:
 Steps = Generator[Send | Jostle | Wait, bool, Any]
 
 
-class Wrong(Exception):
+class CheckFailed(Exception):
     """A check found the board in the wrong; the sentence says how."""
 
 
-class NotTried(Exception):
+class CheckSkipped(Exception):
     """A check cannot be made on this board; the sentence says why."""
 
 
 @dataclass(frozen=True, kw_only=True)
-class Said:
+class BoardTelemetry:
     """One telemetry message; None for what it does not say."""
 
     at: float
@@ -70,7 +70,7 @@ class Said:
         raise NotImplementedError
 
 
-SaidT = TypeVar("SaidT", bound=Said)
+SaidT = TypeVar("SaidT", bound=BoardTelemetry)
 
 
 class Bench(ABC, Generic[SaidT]):

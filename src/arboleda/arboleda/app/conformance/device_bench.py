@@ -7,14 +7,14 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from itertools import islice, product
 
-from arboleda.kinds.declared import Device, DeviceKind, DeviceVerb, Effect, Told
+from arboleda.kinds.declared import Device, DeviceKind, DeviceVerb, Effect, VerbCall
 from arboleda.model.facts import Facts, Value
 from arboleda.model.plant_model import MotionState
 from arboleda.wire.payloads import DEVICE, Telemetry, decode
 from arboleda.wire.topics import Channel
 from arboleda.wire.transport import Delivery
 
-from .bench import Bench, Said, Send
+from .bench import Bench, BoardTelemetry, Send
 
 WORK = frozenset({Effect.MOTION, Effect.PROCESS})
 MOST_VALUES = 12  # so many combinations of values of one verb are tried
@@ -22,7 +22,7 @@ MOST_STATES = 2000  # so many ways for the facts to be are looked at on the sear
 
 
 @dataclass(frozen=True, kw_only=True)
-class DeviceSaid(Said):
+class DeviceTelemetry(BoardTelemetry):
     """One telemetry message; `place` has the facts that are no measured numbers."""
 
     facts: Facts | None
@@ -36,7 +36,7 @@ class DeviceSaid(Said):
         return self.firm
 
 
-class DeviceBench(Bench[DeviceSaid]):
+class DeviceBench(Bench[DeviceTelemetry]):
     """A declared device's board on trial; `facts` are the last that it said of each."""
 
     def __init__(self, device: Device, epoch: int) -> None:
@@ -53,7 +53,7 @@ class DeviceBench(Bench[DeviceSaid]):
     def place(self) -> tuple[tuple[str, Value], ...]:
         return self.last.firm if self.said else ()
 
-    def order(self, told: Told, **numbers: int) -> Send:
+    def order(self, told: VerbCall, **numbers: int) -> Send:
         """The order of a verb with its values."""
         values = {"valores": dict(told.values)} if told.values else {}
         return self.send(Channel.ORDER, verbo=told.verb, **values, **numbers)
@@ -62,15 +62,15 @@ class DeviceBench(Bench[DeviceSaid]):
         """Whether it said last that all of these are so."""
         return all(self.facts.get(name) == value for name, value in facts)
 
-    def way(self, wanted: Callable[[Told], bool]) -> list[Told] | None:
+    def way(self, wanted: Callable[[VerbCall], bool]) -> list[VerbCall] | None:
         """The shortest row of orders that ends in one that is wanted, as the kind declares what each sets
         and needs; one that changes a fact rather than one that changes none. None: there is no way."""
         changing = self._search(lambda told, facts: wanted(told) and not _so(facts, told.sets))
         return changing or self._search(lambda told, facts: wanted(told))
 
-    def _search(self, wanted: Callable[[Told, dict[str, Value]], bool]) -> list[Told] | None:
+    def _search(self, wanted: Callable[[VerbCall, dict[str, Value]], bool]) -> list[VerbCall] | None:
         first = self.facts or {name: type.first for name, type in self.kind.facts.items()}
-        seen, ahead = {_frozen(first)}, deque([(first, list[Told]())])
+        seen, ahead = {_frozen(first)}, deque([(first, list[VerbCall]())])
         while ahead and len(seen) < MOST_STATES:
             facts, row = ahead.popleft()
             for told in self._possible(facts):
@@ -82,7 +82,7 @@ class DeviceBench(Bench[DeviceSaid]):
                     ahead.append((after, [*row, told]))
         return None
 
-    def _possible(self, facts: dict[str, Value]) -> Iterator[Told]:
+    def _possible(self, facts: dict[str, Value]) -> Iterator[VerbCall]:
         return (
             told
             for verb in self.kind.verbs.values()
@@ -90,11 +90,11 @@ class DeviceBench(Bench[DeviceSaid]):
             if _so(facts, told.needs)
         )
 
-    def _read(self, delivery: Delivery) -> DeviceSaid:
+    def _read(self, delivery: Delivery) -> DeviceTelemetry:
         said = decode(Channel.TELEMETRY, delivery.payload, axes=DEVICE)
         assert isinstance(said, Telemetry)
         self.facts |= dict(said.facts or ())
-        return DeviceSaid(
+        return DeviceTelemetry(
             at=delivery.at,
             state=MotionState(said.state).value,
             number=said.seq,
@@ -117,16 +117,16 @@ class DeviceBench(Bench[DeviceSaid]):
         return type is None or type.type is not float or bool(type.words)
 
 
-def commands(kind: DeviceKind, verb: DeviceVerb) -> Iterator[Told]:
+def commands(kind: DeviceKind, verb: DeviceVerb) -> Iterator[VerbCall]:
     """A verb with samples of its values."""
     names = [name for name, _ in verb.parameters]
     for values in islice(product(*(type.samples for _, type in verb.parameters)), MOST_VALUES):
         told = kind.command(id="", robot="", verb=verb.name, values=dict(zip(names, values, strict=True)))
-        assert isinstance(told, Told)
+        assert isinstance(told, VerbCall)
         yield told
 
 
-def is_work(told: Told) -> bool:
+def is_work(told: VerbCall) -> bool:
     """Whether it is a motion or a process."""
     return told.told.effect in WORK
 

@@ -6,7 +6,7 @@ from __future__ import annotations
 from arboleda.kinds.declared import Effect, UseError
 from arboleda.wire.topics import Channel
 
-from .bench import MOVING, NotTried, Send, Steps, Wait
+from .bench import MOVING, CheckSkipped, Send, Steps, Wait
 from .device_bench import DeviceBench, is_work
 from .device_procedures import at_rest, carry_out, lasting, lead_to
 from .procedures import ANSWER_S, accepted, demand, rest, stop, unmoved
@@ -68,7 +68,7 @@ def halts(bench: DeviceBench) -> Steps:
     yield stop(bench, 2)
     yield from at_rest(bench, HALT_S, "paro 2")
     if told.sets and bench.holds(told.sets) and bench.last.boot_id is None:
-        raise NotTried(f"{told.verb} was over when paro 2 came")
+        raise CheckSkipped(f"{told.verb} was over when paro 2 came")
     yield from unmoved(bench, bench.place, "a halt had ended its work")
 
 

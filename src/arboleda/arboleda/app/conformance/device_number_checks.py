@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from arboleda.kinds.declared import Effect, Told
+from arboleda.kinds.declared import Effect, VerbCall
 from arboleda.wire.topics import Channel
 
-from .bench import LATCHED, MOVING, NotTried, Send, Steps, Wait
+from .bench import LATCHED, MOVING, CheckSkipped, Send, Steps, Wait
 from .device_bench import DeviceBench, commands, is_work
 from .device_procedures import LEAST_S, at_rest, carry_out, lasting, lead_to, named
 from .number_checks import SILENCE_S
@@ -124,7 +124,7 @@ def needs(bench: DeviceBench) -> Steps:
     if told is None:
         row = bench.way(lambda told: any(_breaks(told, other) for other in _every(bench)))
         if row is None:
-            raise NotTried("nothing that its verbs need can be made not so")
+            raise CheckSkipped("nothing that its verbs need can be made not so")
         for step in row:
             yield from carry_out(bench, step)
         told = next((told for told in _every(bench) if told.needs and not bench.holds(told.needs)), None)
@@ -137,10 +137,10 @@ def busy(bench: DeviceBench) -> Steps:
     yield from lasting(bench)
     other = next((told for told in _every(bench) if is_work(told) and bench.holds(told.needs)), None)
     if other is None:
-        raise NotTried("no other work is possible meanwhile")
+        raise CheckSkipped("no other work is possible meanwhile")
     yield from answer(bench, bench.order(other))
     if bench.last.state != MOVING:
-        raise NotTried("its work was over before it could be seen")
+        raise CheckSkipped("its work was over before it could be seen")
     demand(
         bench.last.refusal == "ocupado", f"a second work is refused with {bench.last.refusal}, not ocupado"
     )
@@ -150,7 +150,7 @@ def queries(bench: DeviceBench) -> Steps:
     """Each query is answered by its number, with one of the declared answers."""
     asked = [told for told in _every(bench) if told.told.effect is Effect.QUERY]
     if not asked:
-        raise NotTried("its kind has no query")
+        raise CheckSkipped("its kind has no query")
     for told in asked:
         yield from lead_to(bench, lambda each, wanted=told: each == wanted, f"way to {told.verb}")  # type: ignore[misc]
         yield from carry_out(bench, told)
@@ -212,14 +212,14 @@ def silence(bench: DeviceBench) -> Steps:
     demand((number, "silencio") in bench.last.failures, f"fallos is {bench.last.failures}, without silencio")
 
 
-def _any(told: Told) -> bool:
+def _any(told: VerbCall) -> bool:
     return told.told.effect is not Effect.QUERY
 
 
-def _every(bench: DeviceBench) -> list[Told]:
+def _every(bench: DeviceBench) -> list[VerbCall]:
     return [told for verb in bench.kind.verbs.values() for told in commands(bench.kind, verb)]
 
 
-def _breaks(told: Told, other: Told) -> bool:
+def _breaks(told: VerbCall, other: VerbCall) -> bool:
     sets = dict(told.sets)
     return any(sets.get(name, value) != value for name, value in other.needs)

@@ -4,22 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from arboleda.kinds.declared import Effect, Told
+from arboleda.kinds.declared import Effect, VerbCall
 from arboleda.model.commands import OnStop
 
-from .bench import MOVING, NotTried, Steps, Wait
+from .bench import MOVING, CheckSkipped, Steps, Wait
 from .device_bench import DeviceBench, is_work
 from .procedures import ANSWER_S, demand
 
 LEAST_S = 0.4  # what takes less cannot be caught in the middle
 
 
-def named(told: Told) -> str:
+def named(told: VerbCall) -> str:
     """An order as its recipe writes it."""
     return f"{told.verb}({', '.join(f'{name}={value}' for name, value in told.values)})"
 
 
-def carry_out(bench: DeviceBench, told: Told) -> Steps:
+def carry_out(bench: DeviceBench, told: VerbCall) -> Steps:
     """One order, beating, until the board has proved it."""
     bench.beating = True
     yield bench.order(told)
@@ -27,7 +27,7 @@ def carry_out(bench: DeviceBench, told: Told) -> Steps:
     bench.beating = False
 
 
-def outcome(bench: DeviceBench, told: Told) -> Steps:
+def outcome(bench: DeviceBench, told: VerbCall) -> Steps:
     """Wait until the last order has come to its end, by what a board of its level can say."""
     number, before = bench.seq, len(bench.said)
     if bench.last.boot_id is None:
@@ -40,11 +40,11 @@ def outcome(bench: DeviceBench, told: Told) -> Steps:
     demand(over, f"{named(told)}: {wanted} was not said within {told.at_most_s:g} s")
 
 
-def lead_to(bench: DeviceBench, wanted: Callable[[Told], bool], what: str) -> Steps:
+def lead_to(bench: DeviceBench, wanted: Callable[[VerbCall], bool], what: str) -> Steps:
     """Carry out what has to come before an order that is wanted; the order is what `yield from` is worth."""
     row = bench.way(wanted)
     if row is None:
-        raise NotTried(f"its kind has no {what}")
+        raise CheckSkipped(f"its kind has no {what}")
     for told in row[:-1]:
         yield from carry_out(bench, told)
     return row[-1]
@@ -53,7 +53,7 @@ def lead_to(bench: DeviceBench, wanted: Callable[[Told], bool], what: str) -> St
 def lasting(bench: DeviceBench, least_s: float = LEAST_S) -> Steps:
     """Begin, beating, a motion or process that lasts and that a stop ends; worth the order."""
 
-    def wanted(told: Told) -> bool:
+    def wanted(told: VerbCall) -> bool:
         return is_work(told) and told.told.on_stop is OnStop.HALT and told.takes_s >= least_s
 
     told = yield from lead_to(bench, wanted, f"motion or process of {least_s:g} s and more that a stop ends")
@@ -62,7 +62,7 @@ def lasting(bench: DeviceBench, least_s: float = LEAST_S) -> Steps:
     number = bench.seq
     began = yield Wait(seconds=ANSWER_S, until=lambda: bench.last.state == MOVING)
     if not began and bench.last.done == number:
-        raise NotTried(f"{named(told)} was over before it could be seen")
+        raise CheckSkipped(f"{named(told)} was over before it could be seen")
     demand(began, f"it does not report moving (1) after {named(told)}")
     yield Wait(seconds=0.1)
     return told
@@ -74,7 +74,7 @@ def at_rest(bench: DeviceBench, within_s: float, after: str) -> Steps:
     demand(rested, f"it still reports moving (1) {within_s:g} s after {after}")
 
 
-def _ended(bench: DeviceBench, told: Told, number: int) -> bool:
+def _ended(bench: DeviceBench, told: VerbCall, number: int) -> bool:
     last = bench.last
     if last.boot_id is None:
         return last.state != MOVING and bench.holds(told.sets)

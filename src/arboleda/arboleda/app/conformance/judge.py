@@ -21,7 +21,7 @@ from . import motion_checks as motion
 from . import number_checks as number
 from .arm_bench import ArmBench
 from .arm_procedures import ready
-from .bench import Bench, Jostle, NotTried, Send, Steps, Wait, Wrong
+from .bench import Bench, CheckFailed, CheckSkipped, Jostle, Send, Steps, Wait
 from .device_bench import DeviceBench
 from .procedures import settle
 
@@ -207,9 +207,9 @@ class Judge:
         wrong = untried = None
         try:
             yield from check.steps(self.bench)
-        except Wrong as found:
+        except CheckFailed as found:
             wrong = str(found)
-        except NotTried as reason:
+        except CheckSkipped as reason:
             untried = str(reason)
         if self.bench.said:
             wrong = (yield from self._settled(check)) or wrong
@@ -219,6 +219,6 @@ class Judge:
         try:
             yield from settle(self.bench)
             yield from self._ready(self.bench)
-        except Wrong as found:
+        except CheckFailed as found:
             return f"afterwards {found}"
         return None

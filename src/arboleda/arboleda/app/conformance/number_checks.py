@@ -6,7 +6,7 @@ from arboleda.wire.topics import Channel
 
 from .arm_bench import ArmBench
 from .arm_procedures import drive, set_off
-from .bench import MOVING, NotTried, Send, Steps, Wait
+from .bench import MOVING, CheckSkipped, Send, Steps, Wait
 from .procedures import (
     accepted,
     answer,
@@ -169,7 +169,7 @@ def silence(bench: ArmBench) -> Steps:
     bench.beating = False
     yield Wait(seconds=SILENCE_S + RAMP_S, until=lambda: bench.last.state != MOVING)
     if bench.at(far):
-        raise NotTried("its longest way takes too little time to tell")
+        raise CheckSkipped("its longest way takes too little time to tell")
     demand(bench.last.state != MOVING, f"it still moves {SILENCE_S + RAMP_S:g} s after the last beat")
     demand(bench.last.done != bench.seq, "it says hecho for a move that silence has ended")
 

@@ -8,7 +8,7 @@ from typing import Any
 
 from arboleda.wire.topics import Channel
 
-from .bench import MOVING, Bench, Jostle, NotTried, Send, Steps, Wait, Wrong
+from .bench import MOVING, Bench, CheckFailed, CheckSkipped, Jostle, Send, Steps, Wait
 
 ANSWER_S = 2.0
 BACK_S = 10.0  # so long it may take to connect again
@@ -24,7 +24,7 @@ WAITED = (
 def demand(truth: bool, sentence: str) -> None:
     """Wrong with this sentence, unless it is true."""
     if not truth:
-        raise Wrong(sentence)
+        raise CheckFailed(sentence)
 
 
 def rest(bench: Bench[Any]) -> Steps:
@@ -130,5 +130,5 @@ def refused_as_retained(bench: Bench[Any], message: Send, what: str) -> Steps:
     yield Send(channel=message.channel, payload=b"", retain=True)
     yield Wait(seconds=0.3)
     if not back:
-        raise NotTried("its MQTT client id is not its name, so it could not be made to reconnect")
+        raise CheckSkipped("its MQTT client id is not its name, so it could not be made to reconnect")
     demand(refusal == "retenido", f"it came back, heard a retained {what} and says rechazo {refusal}")

@@ -10,7 +10,7 @@ from arboleda.model.facts import Value, shown
 from ..plant_file.document import Document, Place
 from .naming import unknown
 from .shapes import Wiring
-from .tables import Action, Given
+from .tables import Action, TableValue
 from .values import encoded
 
 
@@ -22,7 +22,7 @@ class Driving:
         self._problem = document.problem
         self._facts = {name: at for at, name in enumerate(kind.facts)}
 
-    def sets(self, place: Place, verb: DeviceVerb) -> Iterator[tuple[int, Given]]:
+    def sets(self, place: Place, verb: DeviceVerb) -> Iterator[tuple[int, TableValue]]:
         for name, value in verb.sets:
             type = self._kind.facts[name]
             wired = self._wiring.facts.get(name)
@@ -34,7 +34,7 @@ class Driving:
             if isinstance(value, Slot):
                 yield self._facts[name], self._passed_on(place, verb, value.name, type)
             else:
-                yield self._facts[name], Given(constant=encoded(type, value))
+                yield self._facts[name], TableValue(constant=encoded(type, value))
 
     def actions(self, place: Place, verb: DeviceVerb, wanted: Mapping[str, object]) -> Iterator[Action]:
         outputs, servos = list(self._wiring.outputs), list(self._wiring.servos)
@@ -54,36 +54,38 @@ class Driving:
             else:
                 unknown(self._document, (*place, name), name, [*outputs, *servos], "output or servo")
 
-    def _passed_on(self, place: Place, verb: DeviceVerb, parameter: str, type: FactType) -> Given:
+    def _passed_on(self, place: Place, verb: DeviceVerb, parameter: str, type: FactType) -> TableValue:
         """The value of a parameter as one of a fact."""
         names = [name for name, _ in verb.parameters]
         at, given = names.index(parameter), dict(verb.parameters)[parameter]
         if given.words:
-            return Given(parameter=at, map=tuple(encoded(type, _as(type, word)) for word in given.words))
+            return TableValue(parameter=at, map=tuple(encoded(type, _as(type, word)) for word in given.words))
         if given.type not in (bool, int):
             self._problem(
                 place,
                 f"this board cannot prove any {given.allowed()}: list the values of {parameter} in the kind",
             )
-        return Given(parameter=at)
+        return TableValue(parameter=at)
 
-    def _driven(self, place: Place, verb: DeviceVerb, value: object, limits: list[float] | None) -> Given:
+    def _driven(
+        self, place: Place, verb: DeviceVerb, value: object, limits: list[float] | None
+    ) -> TableValue:
         """What an output or a servo is given: fixed, a parameter, or something for each value of one."""
         if isinstance(value, dict):
             if len(value) == 1 and (parameter := self._parameter(place, verb, next(iter(value)))) is not None:
                 at, type = parameter
-                return Given(
+                return TableValue(
                     parameter=at,
                     map=tuple(self._mapped(place, type, value[f"${verb.parameters[at][0]}"], limits)),
                 )
             self._problem(place, "must be on, off, a number, $parameter or {$parameter: {value: ...}}")
-            return Given()
+            return TableValue()
         if isinstance(value, str) and value.startswith("$"):
             parameter = self._parameter(place, verb, value)
-            return self._straight(place, *parameter, limits) if parameter else Given()
-        return Given(constant=self._level(place, value, limits))
+            return self._straight(place, *parameter, limits) if parameter else TableValue()
+        return TableValue(constant=self._level(place, value, limits))
 
-    def _straight(self, place: Place, at: int, type: FactType, limits: list[float] | None) -> Given:
+    def _straight(self, place: Place, at: int, type: FactType, limits: list[float] | None) -> TableValue:
         if limits is None and type.type is not bool:
             self._problem(
                 place, "an output is on or off: the parameter must be bool, or its values be listed"
@@ -95,7 +97,7 @@ class Driving:
             if not fits:
                 self._problem(place, f"its values must be numbers from {limits[0]:g} to {limits[1]:g}")
         words = tuple(float(word) for word in type.words if isinstance(word, int | float))
-        return Given(parameter=at, map=words if type.type is not bool else ())
+        return TableValue(parameter=at, map=words if type.type is not bool else ())
 
     def _mapped(
         self, place: Place, type: FactType, table: Mapping[str, object], limits: list[float] | None

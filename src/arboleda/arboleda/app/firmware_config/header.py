@@ -10,7 +10,7 @@ from arboleda.model.facts import Value
 from arboleda.wire.strict import LARGEST, UINT32
 
 from .shapes import AnalogShape, InputShape, OutputShape, ServoShape
-from .tables import Action, Fact, Given, Reading, Row, Tables, Verb
+from .tables import Action, Fact, Reading, Row, Tables, TableValue, Verb
 from .values import encoded
 
 HEAD = """\
@@ -95,7 +95,7 @@ class Header:
         when = self._list("Condition", [f"{{{input}, {_bool(on)}}}" for input, on in row.when])
         return f"{{{row.value!r}, {when}}}"
 
-    def _given(self, given: Given) -> str:
+    def _given(self, given: TableValue) -> str:
         name = self._array("double", [repr(value) for value in given.map]) or "nullptr"
         return f"{{{given.constant!r}, {given.parameter}, {name}}}"
 

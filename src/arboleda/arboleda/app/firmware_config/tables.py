@@ -10,7 +10,7 @@ from .shapes import Wiring
 
 
 @dataclass(frozen=True, kw_only=True)
-class Given:
+class TableValue:
     """A value: fixed, or that of a parameter, looked up in `map` where that is not empty."""
 
     constant: float = 0.0
@@ -47,13 +47,13 @@ class Fact:
 class Action:
     drive: str  # kOutput, kServo
     index: int
-    value: Given
+    value: TableValue
 
 
 @dataclass(frozen=True, kw_only=True)
 class Verb:
     told: DeviceVerb
-    sets: tuple[tuple[int, Given], ...]
+    sets: tuple[tuple[int, TableValue], ...]
     needs: tuple[tuple[int, float], ...]
     start: tuple[Action, ...]
     end: tuple[Action, ...]

@@ -8,7 +8,7 @@ from arboleda.model.plant_model import PlantModel
 from arboleda.model.recipe import Build, Builders
 
 
-class Switched(Mapping[str, Build]):
+class LateLookup(Mapping[str, Build]):
     """What a plant looks up: nothing before `switch`, then what that was given."""
 
     def __init__(self) -> None:

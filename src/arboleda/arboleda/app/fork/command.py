@@ -19,7 +19,7 @@ from ..record_command import changes, moment
 from ..recorded_plant import as_it_ran, loaded, model_of, with_content
 from .builders import builders_of
 from .plant_events import TASK, Pair, beside
-from .run import Asked, Forked
+from .run import ForkRequest, ForkResult
 from .settings import with_settings
 
 ROWS = 60  # from the first difference on
@@ -40,7 +40,7 @@ class Options:
     until_ns: int | None = None
 
 
-def asked(record: Record, options: Options) -> Asked:
+def asked(record: Record, options: Options) -> ForkRequest:
     """The fork that these options mean; ConfigError says what is missing or wrong."""
     beginning = record.first.beginning
     changed = bool(options.settings or options.plant)
@@ -51,7 +51,7 @@ def asked(record: Record, options: Options) -> Asked:
         raise ConfigError(("a fork needs --fork-at TIME, or --task ID: from when that task begins",))
     recipe = _with_recipe(beginning.files, options.recipe) if options.recipe else None
     recorded = model_of(beginning)
-    return Asked(
+    return ForkRequest(
         at_ns=at_ns,
         model=_changed(beginning, options) if changed else recorded,
         recorded=recorded,
@@ -91,7 +91,7 @@ def _began_ns(record: Record, task: str) -> int:
     raise ConfigError((f"--task {plain(task, 80)}: there is no such task in this record that ran",))
 
 
-def lines(found: Forked, options: Options) -> Iterator[str]:
+def lines(found: ForkResult, options: Options) -> Iterator[str]:
     """What came of a fork, for people; `differs` says whether anything was otherwise."""
     at = _clock(found)
     yield f"{found.steps} steps are executed as they were; from {at(found.at)} on its devices are virtual"
@@ -110,7 +110,7 @@ def lines(found: Forked, options: Options) -> Iterator[str]:
     yield from _ends(pairs, at)
 
 
-def compared(found: Forked, task: str | None) -> list[Pair]:
+def compared(found: ForkResult, task: str | None) -> list[Pair]:
     """Both runs beside each other; of a task and the robots of its cell, where one is named."""
     pairs = beside(found.recorded, found.fork, found.until)
     if task is None or found.world is None:
@@ -121,7 +121,7 @@ def compared(found: Forked, task: str | None) -> list[Pair]:
     return [pair for pair in pairs if pair.either.stream in {mine, *robots}]
 
 
-def _clock(found: Forked) -> Callable[[float], str]:
+def _clock(found: ForkResult) -> Callable[[float], str]:
     """Times of the plant's clock as the clock on the wall had them."""
     return lambda at: moment(found.unix_ns + round((at - found.at) * 1e9), "milliseconds")
 

@@ -18,7 +18,7 @@ NUMBERS = 4  # digits of a number
 
 
 @dataclass(frozen=True, kw_only=True)
-class Happening:
+class PlantEvent:
     """Something that a plant did at a time of its clock.
 
     `stream`: whose row it stands in, as a robot or a task, and of a task its `cell`; `what` is compared,
@@ -36,15 +36,15 @@ class Happening:
 class Pair:
     """The same in both runs, or what only one of them did."""
 
-    recorded: Happening | None
-    fork: Happening | None
+    recorded: PlantEvent | None
+    fork: PlantEvent | None
 
     @property
     def at(self) -> float:
         return min(each.at for each in (self.recorded, self.fork) if each is not None)
 
     @property
-    def either(self) -> Happening:
+    def either(self) -> PlantEvent:
         found = self.recorded or self.fork
         assert found is not None
         return found
@@ -54,7 +54,7 @@ class Pair:
         return None not in (self.recorded, self.fork)
 
 
-def happenings(at: float, messages: Iterable[Mapping[str, Any]], words: Words) -> Iterator[Happening]:
+def happenings(at: float, messages: Iterable[Mapping[str, Any]], words: Words) -> Iterator[PlantEvent]:
     """What messages, as plain data, say that the plant did: commands, changes of tasks, answers to operators.
 
     `words` makes a sentence of one that is plain data.
@@ -64,22 +64,22 @@ def happenings(at: float, messages: Iterable[Mapping[str, Any]], words: Words) -
             why = words(row.get("sentence"))
             said = f"{row['state']} {row['text']} (id {row['task']})" + (f": {why}" if why else "")
             what = f"{row['state']} {row.get('reason', '')}"
-            yield Happening(at=at, stream=f"{TASK}{row['task']}", what=what, said=said, cell=row["cell"])
+            yield PlantEvent(at=at, stream=f"{TASK}{row['task']}", what=what, said=said, cell=row["cell"])
         elif row[TYPE] == "OperatorAnswer":
             why = words(row.get("refusal"))
             said = f"{row['verb']} {row['scope']}" + (f" is refused: {why}" if why else " is done")
             what = f"refused {(row.get('refusal') or {}).get('key')}"
-            yield Happening(at=at, stream=f"{row['verb']} {row['scope']}", what=what, said=said)
+            yield PlantEvent(at=at, stream=f"{row['verb']} {row['scope']}", what=what, said=said)
         elif "robot" in row and "id" in row:
             yield _command(at, row)
 
 
-def _command(at: float, row: Mapping[str, Any]) -> Happening:
+def _command(at: float, row: Mapping[str, Any]) -> PlantEvent:
     values = {key: value for key, value in row.items() if key not in UNTOLD}
     shown = " ".join(f"{key}={_short(value)}" for key, value in values.items())
     what = json.dumps([row[TYPE], values], sort_keys=True)
     said = f"{row['robot']} {row[TYPE]} {shown}".strip()
-    return Happening(at=at, stream=row["robot"], what=what, said=said)
+    return PlantEvent(at=at, stream=row["robot"], what=what, said=said)
 
 
 def _short(value: Any) -> str:
@@ -90,7 +90,7 @@ def _short(value: Any) -> str:
     return str(value)
 
 
-def beside(recorded: Iterable[Happening], fork: Iterable[Happening], until: float) -> list[Pair]:
+def beside(recorded: Iterable[PlantEvent], fork: Iterable[PlantEvent], until: float) -> list[Pair]:
     """Both runs beside each other, in the order of their times.
 
     In each stream they are the same up to the first that is another one; when they happened is no part of it.
@@ -103,14 +103,14 @@ def beside(recorded: Iterable[Happening], fork: Iterable[Happening], until: floa
     return sorted(pairs, key=lambda pair: pair.at)
 
 
-def _streams(happened: Iterable[Happening]) -> dict[str, list[Happening]]:
-    streams: dict[str, list[Happening]] = {}
+def _streams(happened: Iterable[PlantEvent]) -> dict[str, list[PlantEvent]]:
+    streams: dict[str, list[PlantEvent]] = {}
     for each in happened:
         streams.setdefault(each.stream, []).append(each)
     return streams
 
 
-def _beside(recorded: list[Happening], fork: list[Happening], until: float) -> Iterator[Pair]:
+def _beside(recorded: list[PlantEvent], fork: list[PlantEvent], until: float) -> Iterator[Pair]:
     same = True
     for ours, theirs in zip_longest(recorded, fork):
         if same and ours is None and theirs.at > until:

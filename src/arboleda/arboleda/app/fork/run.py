@@ -15,9 +15,9 @@ from arboleda.model.plant_model import Evidence, Link, PlantModel
 from arboleda.model.recipe import Builders
 from arboleda.recorder.plain_data import plain
 from arboleda.recorder.preamble import Beginning
-from arboleda.recorder.replay import Replayed, first_difference
+from arboleda.recorder.replay import ReplayedStep, first_difference
 from arboleda.recorder.state import state_of
-from arboleda.recorder.steps import Recorded, hash_of, outcome
+from arboleda.recorder.steps import RecordedStep, hash_of, outcome
 from arboleda.recorder.troubles import Trouble, Troubles
 from arboleda.simulator.takeover import taken_over
 from arboleda.simulator.world import World
@@ -25,14 +25,14 @@ from arboleda.simulator.world import World
 from ..record_command import moment
 from ..simulate.plants import ELSEWHERE
 from . import device_replay
-from .builders import Switched
-from .plant_events import Happening, Words, happenings
+from .builders import LateLookup
+from .plant_events import PlantEvent, Words, happenings
 
 AFTER_S = 600.0  # after the end of the record, tasks have so long to end
 
 
 @dataclass(frozen=True, kw_only=True)
-class Asked:
+class ForkRequest:
     """From when on (Unix time in ns) the fork goes on, and as what.
 
     `model` is the plant of the fork: the `recorded` one, or a changed one, which is given the recorded inputs
@@ -53,24 +53,26 @@ class Asked:
 
 
 @dataclass
-class Forked:
+class ForkResult:
     """What came of it. `difference`: the record cannot be executed up to the fork, and nothing is forked."""
 
     at: float = 0.0  # on the plant's clock
     unix_ns: int = 0
     steps: int = 0  # executed before it
     early: bool = False  # the changed plant did otherwise before the time that was asked for
-    difference: Replayed | None = None
+    difference: ReplayedStep | None = None
     until: float = 0.0  # the last step of the record
-    recorded: list[Happening] = field(default_factory=list)
-    fork: list[Happening] = field(default_factory=list)
+    recorded: list[PlantEvent] = field(default_factory=list)
+    fork: list[PlantEvent] = field(default_factory=list)
     troubles: list[Trouble] = field(default_factory=list)
     world: World | None = None
 
 
-def forked(beginning: Beginning, steps: Iterable[Recorded], asked: Asked, words: Words) -> Forked:
+def forked(
+    beginning: Beginning, steps: Iterable[RecordedStep], asked: ForkRequest, words: Words
+) -> ForkResult:
     """Execute the record up to the fork, go on from there, and collect what either did since."""
-    found, builders = Forked(), Switched()
+    found, builders = ForkResult(), LateLookup()
     plant = Plant(
         asked.model,
         epoch=beginning.epoch,
@@ -115,7 +117,7 @@ def _supervised(model: PlantModel) -> frozenset[str]:
 
 
 def _execute(
-    plant: Plant, steps: Iterator[Recorded], asked: Asked, found: Forked, troubles: Troubles
+    plant: Plant, steps: Iterator[RecordedStep], asked: ForkRequest, found: ForkResult, troubles: Troubles
 ) -> list[Any]:
     """Make steps up to the fork. The first step after it; where the fork is early, that in which the plant
     did otherwise, and its messages instead."""
@@ -136,7 +138,7 @@ def _execute(
             continue
         said = outcome(messages, state_of(plant, found.steps))
         if hash_of(said) != step.hash:
-            found.difference = Replayed(found.steps, step, first_difference(step.said, said))
+            found.difference = ReplayedStep(found.steps, step, first_difference(step.said, said))
             return [step]
     return [None]
 
@@ -150,7 +152,7 @@ def _leaves(messages: Iterable[dict[str, Any]]) -> list[tuple[str, str]]:
     return [(each.stream, each.what) for each in happenings(0.0, messages, lambda _: "")]
 
 
-def _until(steps: Iterable[Recorded], until_ns: int | None) -> Iterator[Recorded]:
+def _until(steps: Iterable[RecordedStep], until_ns: int | None) -> Iterator[RecordedStep]:
     for step in steps:
         if until_ns is not None and step.unix_ns > until_ns:
             return
@@ -158,7 +160,11 @@ def _until(steps: Iterable[Recorded], until_ns: int | None) -> Iterator[Recorded
 
 
 def _go_on(
-    plant: Plant, found: Forked, inputs: Iterable[tuple[float, tuple[Event, ...]]], asked: Asked, words: Words
+    plant: Plant,
+    found: ForkResult,
+    inputs: Iterable[tuple[float, tuple[Event, ...]]],
+    asked: ForkRequest,
+    words: Words,
 ) -> World:
     world = taken_over(plant, asked.model.on_boards(*ELSEWHERE))
     for now, events in inputs:

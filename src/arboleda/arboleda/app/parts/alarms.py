@@ -12,7 +12,7 @@ from typing import Any
 from uuid import uuid4
 
 from arboleda.adapters.mqtt import MqttClient, NotConnected
-from arboleda.adapters.webhook import NotTaken, Webhook
+from arboleda.adapters.webhook import NotDelivered, Webhook
 from arboleda.core.plant import Plant
 from arboleda.model.messages import TaskChanged, TaskState
 from arboleda.model.plant_model import PlantModel
@@ -150,7 +150,7 @@ class OnTopic:
         try:
             self._client.deliver(Publication(topic=self._topic, payload=payload), TAKES_S)
         except NotConnected as error:
-            raise NotTaken(str(error)) from error
+            raise NotDelivered(str(error)) from error
 
     def close(self) -> None:
         if self._client is not None:

@@ -10,7 +10,7 @@ from uuid import uuid4
 
 from arboleda.adapters import clock
 from arboleda.adapters.mqtt import MqttClient
-from arboleda.adapters.rate_limit import Seldom
+from arboleda.adapters.rate_limit import RateLimit
 from arboleda.model.commands import Command
 from arboleda.model.messages import Heartbeat, Notice, Report
 from arboleda.model.plant_model import PlantModel
@@ -45,7 +45,7 @@ class BridgePart:
         self._report: Callable[[Report], None] = lambda report: None
         self._tell_link: Callable[[bool, str], None] = _nobody
         self._tell: Callable[[Rejection | ForeignCommand], None] = lambda news: None
-        self._seldom = Seldom()
+        self._seldom = RateLimit()
         self.loop: Loop[Any, Any] = Loop(
             "bridge", self._bridge, self._send, on_crash=crash, on_send_error=not_sent
         )

@@ -16,7 +16,7 @@ from .part import BrokerAddress, Crash
 LOOK_S = 0.6  # boards that live send telemetry every 0.1 s
 
 
-class Lookout:
+class BrokerSurvey:
     """Listens on a broker for boards that live there already; calls `clear` once if there are none."""
 
     def __init__(

@@ -12,7 +12,7 @@ from arboleda.model.errors import ArboledaError
 from arboleda.model.messages import TaskChanged
 from arboleda.sim.devices import Alarm, Reboot
 
-from ..demo import Demo, Enough, Task
+from ..demo import Demo, DemoEnded, Task
 from ..loop import Loop
 from .part import Crash
 
@@ -55,7 +55,7 @@ class DemoPart:
 
     def end(self) -> None:
         """Give no more tasks and have nothing fail any more; from any thread."""
-        self._loop.post(Enough())
+        self._loop.post(DemoEnded())
 
     def _send(self, message: Task | Reboot | Alarm) -> None:
         if isinstance(message, Task):

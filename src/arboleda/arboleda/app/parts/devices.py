@@ -18,7 +18,7 @@ from arboleda.wire.topics import Channel, topic
 from arboleda.wire.transport import Publication
 
 from ..loop import Loop
-from .broker_survey import Lookout
+from .broker_survey import BrokerSurvey
 from .part import BrokerAddress, Crash, not_sent
 
 
@@ -48,7 +48,7 @@ class DevicesPart:
         self._devices = Devices(model, now=clock.seconds(), boot_ids=boot_ids, elsewhere=elsewhere)
         self._clients: dict[str, MqttClient] = {}
         self._lock = threading.Lock()
-        self._lookout: Lookout | None = None
+        self._lookout: BrokerSurvey | None = None
         self.loop: Loop[Any, Any] = Loop(
             "devices", self._devices, self._send, on_crash=crash, on_send_error=not_sent
         )
@@ -57,7 +57,7 @@ class DevicesPart:
         """Join the broker; with `scout`, only after it was seen that no real board has these names."""
         self.loop.start()
         if self._scout:
-            self._lookout = Lookout(self._broker, tuple(self._devices.boards), self._join, self._crash)
+            self._lookout = BrokerSurvey(self._broker, tuple(self._devices.boards), self._join, self._crash)
             self._lookout.start()
         else:
             self._join()

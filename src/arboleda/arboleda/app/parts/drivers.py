@@ -12,21 +12,21 @@ from traceback import walk_tb
 from typing import Any
 
 from arboleda.adapters import clock
-from arboleda.adapters.rate_limit import Seldom
+from arboleda.adapters.rate_limit import RateLimit
 from arboleda.drivers import supervisor
 from arboleda.drivers.port import Driver, NotSent
 from arboleda.drivers.supervisor import (
     Begin,
-    Broken,
+    DeviceHalt,
+    DriverCrash,
+    DriverOutput,
     End,
     Give,
-    Halted,
     Leaving,
     Life,
-    Refused,
-    Said,
+    OutputRefused,
+    SendResult,
     Supervisor,
-    Taken,
 )
 from arboleda.model.commands import Command
 from arboleda.model.messages import Heartbeat, Notice, Report, Undelivered
@@ -48,7 +48,7 @@ class DriversPart:
         groups = list(_groups(model))
         self._workers = [Worker(use, robots, self._post) for use, robots in groups]
         self._hear: Callable[[Report | Undelivered], None] = lambda event: None
-        self._seldom = Seldom()
+        self._seldom = RateLimit()
         named = [(use.name, robots) for use, robots in groups]
         machine = Supervisor(named, epoch=epoch, stale_after_s=model.timing.stale_after_s)
         self.loop: Loop[Any, Any] = Loop("drivers", machine, self._send, on_crash=crash)
@@ -61,9 +61,9 @@ class DriversPart:
     def send(self, message: Command | Notice) -> None:
         """The plant's port to the devices behind drivers; of notices only its heartbeat is for them."""
         if isinstance(message, Command):
-            self.loop.post(supervisor.Asked(at=clock.seconds(), command=message))
+            self.loop.post(supervisor.CommandRequest(at=clock.seconds(), command=message))
         elif isinstance(message, Heartbeat):
-            self.loop.post(supervisor.Beaten(at=clock.seconds()))
+            self.loop.post(supervisor.PlantBeat(at=clock.seconds()))
 
     def start(self) -> None:
         self._threads.watch()
@@ -90,7 +90,7 @@ class DriversPart:
     def _send(self, message: supervisor.Message) -> None:
         if isinstance(message, Report | Undelivered):
             self._hear(message)
-        elif isinstance(message, Refused | Halted):
+        elif isinstance(message, OutputRefused | DeviceHalt):
             if self._seldom.is_due(message.sentence, message.at):
                 LOG.warning("%s", message.sentence)
         else:
@@ -186,7 +186,7 @@ class Worker:
         except (Exception, SystemExit) as error:  # noqa: BLE001 - it is user code: whatever it raises is told
             self._log(in_words(error), error)
             back = {"error": OWN(text=in_words(error)), "broken": True}
-        self._post(Taken(at=clock.seconds(), life=life, command=command, **back))
+        self._post(SendResult(at=clock.seconds(), life=life, command=command, **back))
 
     def _end(self) -> None:
         self._life = None
@@ -199,11 +199,11 @@ class Worker:
 
     def _hear(self, life: Life, report: object) -> None:
         """What the driver of this life was given as `hear`."""
-        self._post(Said(at=clock.seconds(), life=life, report=report))
+        self._post(DriverOutput(at=clock.seconds(), life=life, report=report))
 
     def _broke(self, life: Life, why: str, error: BaseException, *, started: bool = True) -> None:
         self._log(why, error)
-        self._post(Broken(at=clock.seconds(), life=life, error=why, started=started))
+        self._post(DriverCrash(at=clock.seconds(), life=life, error=why, started=started))
 
     def _log(self, why: str, error: BaseException) -> None:
         LOG.warning("the driver %s: %s", self._use.name, why)

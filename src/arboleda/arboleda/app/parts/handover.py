@@ -21,14 +21,14 @@ LOOK_S = 0.05
 PATIENCE_S = 3.0
 
 
-class Operated(Protocol):
+class OperatedPlant(Protocol):
     """The plant as it is operated."""
 
     def operate(self, verb: Verb, scope: str = "") -> Future[OperatorAnswer]: ...
     def snapshot(self) -> dict[str, Any]: ...
 
 
-def hold_all(plant: Operated) -> list[str]:
+def hold_all(plant: OperatedPlant) -> list[str]:
     """Hold every cell that is at work, and wait until all of them stand; their names."""
     working = at_work(_states(plant))
     held = [name for name in working if plant.operate(Verb.HOLD, name).result(HELD_S).refusal is None]
@@ -38,14 +38,14 @@ def hold_all(plant: Operated) -> list[str]:
     return held
 
 
-def _states(plant: Operated) -> dict[str, str]:
+def _states(plant: OperatedPlant) -> dict[str, str]:
     return {row["name"]: row["state"] for row in plant.snapshot()["cells"]}
 
 
-class GoingOn:
+class CellResumption:
     """Resumes the cells that the leader before held for the change alone, once their robots are heard."""
 
-    def __init__(self, plant: Operated, cells: Sequence[str], epoch: int) -> None:
+    def __init__(self, plant: OperatedPlant, cells: Sequence[str], epoch: int) -> None:
         self._plant = plant
         self._cells = cells
         self._epoch = epoch

@@ -15,7 +15,7 @@ from arboleda.model.outside import plain, quoted
 from arboleda.model.plant_model import Evidence, Link, PlantModel
 from arboleda.wire.units import to_wire
 
-from .broker_survey import Lookout
+from .broker_survey import BrokerSurvey
 from .part import BrokerAddress, Crash
 
 LOG = logging.getLogger(__name__)
@@ -48,7 +48,7 @@ class LinuxBoards:
         self._crash = crash
         self._scout = scout
         self._program = _program()
-        self._lookout: Lookout | None = None
+        self._lookout: BrokerSurvey | None = None
         self._lock = threading.Lock()
         self._stopping = False
         self._running: list[tuple[subprocess.Popen[str], threading.Thread]] = []
@@ -59,7 +59,7 @@ class LinuxBoards:
             self._join()
             return
         names = tuple(robot.mqtt for robot in self._robots)
-        self._lookout = Lookout(self._broker, names, self._join, self._crash)
+        self._lookout = BrokerSurvey(self._broker, names, self._join, self._crash)
         self._lookout.start()
 
     def stop(self) -> None:

@@ -55,12 +55,12 @@ from arboleda.model.plant_model import PlantModel
 from arboleda.model.sentence import Phrase, as_sentence
 from arboleda.views import diagnostics, forms, twin_view, view
 
-from ..loop import Loop, UnderWay
+from ..loop import Loop, StepInFlight
 from ..memory import kept_task, kept_tasks, remembered
 from .part import Crash
 from .router import PlantPort
 from .slices import PAUSE_S, Slices
-from .stops import Overtaken, Stops, StopsAway
+from .stops import CommandOvertaken, Stops, StopsAway
 from .urgency import Urgency
 
 LOG = logging.getLogger(__name__)
@@ -106,7 +106,7 @@ class RosPort(PlantPort, Protocol):
     def publish_diagnostics(self, statuses: Iterable[diagnostics.Diagnostic]) -> Iterator[None]: ...
 
 
-class Began(NamedTuple):
+class StartState(NamedTuple):
     """What a plant was made of beside its file and its epoch: its clock's time, and what was remembered."""
 
     now: float
@@ -114,14 +114,14 @@ class Began(NamedTuple):
     kept: Sequence[KeptTask]
 
 
-class NotKept(ArboledaError):
+class KeptStateUnknown(ArboledaError):
     """Nobody can say now what of the plant is kept."""
 
     def __init__(self) -> None:
         super().__init__(NOT_KEPT())
 
 
-class TooLate(ArboledaError):
+class CommandTooLate(ArboledaError):
     """A command was not sent: it is older than a robot's silence may be."""
 
 
@@ -148,7 +148,7 @@ class Orchestrator:
         now, memory = clock.seconds(), remembered(store) if store is not None else {}
         kept = kept_tasks(store, clock_s=now, unix_s=time.time()) if store is not None else []
         self.plant = Plant(model, epoch=epoch, now=now, memory=memory, kept=kept)
-        self.began = Began(now, memory, kept)
+        self.began = StartState(now, memory, kept)
         self.loop: Loop[Any, Any] = Loop(
             "orchestrator",
             self.plant,
@@ -292,7 +292,7 @@ class Orchestrator:
         try:
             while not self._read(lambda _plant: slices.cut(clock.seconds()), within_s):
                 time.sleep(PAUSE_S)
-        except UnderWay:
+        except StepInFlight:
             return self._last_kept
         return slices.result
 
@@ -301,7 +301,7 @@ class Orchestrator:
 
         def look(plant: Plant) -> Any:
             if self._amnesia is not None:
-                raise UnderWay
+                raise StepInFlight
             return fn(plant)
 
         return self.loop.read_handed_on(look, within_s)
@@ -310,7 +310,7 @@ class Orchestrator:
     def _last_kept(self) -> dict[str, Any]:
         """The last snapshot that screens got; NotKept where there is none."""
         if not self._kept:
-            raise NotKept
+            raise KeptStateUnknown
         return self._kept if self._amnesia is None else {**self._kept, "ending": True}
 
     @property
@@ -326,10 +326,10 @@ class Orchestrator:
         """A task as it is kept; NotKept where that cannot be said now."""
         try:
             found: dict[str, Any] | None = self._read(lambda plant: view.task_by_id(plant, task), READ_S)
-        except UnderWay:
+        except StepInFlight:
             found = next((row for row in self._last_kept["tasks"] if row["id"] == task), None)
             if found is None:
-                raise NotKept from None
+                raise KeptStateUnknown from None
         return found
 
     def halt(self) -> None:
@@ -435,7 +435,7 @@ class Orchestrator:
         """A process that was stopped in the middle of a step must not send what was right before."""
         now = clock.seconds()
         if is_too_late(message, self.plant, now):
-            raise TooLate(SENT_TOO_LATE(seconds=now - self.plant.now))
+            raise CommandTooLate(SENT_TOO_LATE(seconds=now - self.plant.now))
 
     def _arrange(self, messages: Sequence[Any]) -> Sequence[Any]:
         """The messages of a step in the order in which they leave: its stops wait for no commit."""
@@ -443,7 +443,7 @@ class Orchestrator:
         if Stop in map(type, messages):
             stops, messages, overtaken = departure(messages)
             for command in overtaken:
-                self._not_sent(command, Overtaken(command))
+                self._not_sent(command, CommandOvertaken(command))
         if self.stops.ahead and (away := self.stops.stepped(messages)) is not None:
             stops = [*stops, away]
         self._writes = _writes(messages)

@@ -8,7 +8,7 @@ from collections import deque
 from collections.abc import Callable
 from typing import Any, Protocol
 
-from arboleda.adapters.webhook import NotTaken, Refused
+from arboleda.adapters.webhook import DeliveryRefused, NotDelivered
 
 LOG = logging.getLogger(__name__)
 LIMIT = 1000  # alarms that may wait
@@ -112,9 +112,9 @@ class Outbox:
         """Whether the receiver is done with it, be it that it refuses it."""
         try:
             self._receiver.post(alarm)
-        except Refused as error:
+        except DeliveryRefused as error:
             LOG.warning("%s refuses the alarm %s (%s): it is dropped", self._receiver, alarm["id"], error)
-        except NotTaken as error:
+        except NotDelivered as error:
             self._tell(error)
             return False
         except Exception as error:  # noqa: BLE001 - whatever a library raises, the next try may do

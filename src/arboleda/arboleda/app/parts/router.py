@@ -17,7 +17,7 @@ class PlantPort(Protocol):
     def send(self, message: Command | Notice) -> None: ...
 
 
-class NoWay(ArboledaError):
+class NoRoute(ArboledaError):
     """A command for a robot that nothing in this process reaches; it will not be sent later."""
 
 
@@ -41,5 +41,5 @@ class Router:
         link = self._links[robot]
         port = self._ports.get(link)
         if port is None:
-            raise NoWay(f"nothing in this process reaches {robot} (link: {link.value})")
+            raise NoRoute(f"nothing in this process reaches {robot} (link: {link.value})")
         return port

@@ -18,7 +18,7 @@ from arboleda.model.plant_model import PlantModel
 from ..loop import Loop
 
 
-class Overtaken(ArboledaError):
+class CommandOvertaken(ArboledaError):
     """A command was not sent: a stop of its robot left before it."""
 
     def __init__(self, command: Command) -> None:
@@ -78,7 +78,7 @@ class Stops:
     def refuse_overtaken(self, message: Command | Notice) -> None:
         """Overtaken for a command that must not leave any more."""
         if self._overtake(message):
-            raise Overtaken(message)
+            raise CommandOvertaken(message)
 
     def stop_again(self, message: Command | Notice) -> None:
         """Stop a robot once more that was sent this command while a stop was leaving beside it."""

@@ -19,7 +19,7 @@ from arboleda.adapters.web.request_head import API
 from arboleda.adapters.web.server import Server
 
 from .. import tokens
-from ..leader import Led, said_of
+from ..leader import LeaderInfo, said_of
 from ..web_options import WebOptions
 from .web import Announce
 
@@ -95,7 +95,7 @@ class WaitingRoom:
         """Its origin, for this machine."""
         return f"{self._options.scheme}://{self._options.near}:{self.port}"
 
-    def show(self, sentence: str, led: Led | None) -> None:
+    def show(self, sentence: str, led: LeaderInfo | None) -> None:
         """What it waits for, and who leads, None where that is not known."""
         self._sentence, self._led = sentence, led
 
@@ -140,7 +140,7 @@ def _target(request: Request) -> str:
     return quote(sent.decode("latin-1"), safe=IN_AN_ADDRESS)
 
 
-def _way(led: Led | None) -> str:
+def _way(led: LeaderInfo | None) -> str:
     """The way to the plant's page."""
     if led is None or not led.url:
         return ""

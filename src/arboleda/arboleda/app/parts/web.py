@@ -20,7 +20,7 @@ from arboleda.adapters.web.api import make_app
 from arboleda.adapters.web.guard import Guard
 from arboleda.adapters.web.names import DEFAULT_PORT, is_loopback, names_for
 from arboleda.adapters.web.plant_side import Snapshot
-from arboleda.adapters.web.second_loop import Apart
+from arboleda.adapters.web.second_loop import SecondLoop
 from arboleda.adapters.web.server import Server
 from arboleda.model.errors import QueueFull
 from arboleda.model.facts import Value
@@ -36,7 +36,7 @@ LOG = logging.getLogger(__name__)
 CLEAR = "No TLS: the token travels in clear on {host}; see docs/how-to/network.md"
 
 
-class Asked(Protocol):
+class PlantAccess(Protocol):
     """What the part asks of the plant it belongs to."""
 
     def snapshot(self, within_s: float = READ_S) -> Snapshot: ...
@@ -60,7 +60,7 @@ class Announce(Protocol):
 class Side:
     """The plant side of the API and of pages."""
 
-    def __init__(self, plant: Asked) -> None:
+    def __init__(self, plant: PlantAccess) -> None:
         self._plant = plant
         self._watchers: tuple[Callable[[Snapshot], None], ...] = ()
         self._changing = threading.Lock()
@@ -104,7 +104,7 @@ class WebPart:
 
     def __init__(
         self,
-        plant: Asked,
+        plant: PlantAccess,
         name: str,
         state: Path,
         announce: Announce,
@@ -125,7 +125,7 @@ class WebPart:
             mount(app, self.side)
         sockets = limits.lasting(limits.SOCKETS, connections)
         names = names_for(options.address, options.public_url, scheme=options.scheme)
-        guarded = Guard(Apart(app), names, options.door_of(state), sockets=sockets, plant=name)
+        guarded = Guard(SecondLoop(app), names, options.door_of(state), sockets=sockets, plant=name)
         self._server = Server(
             guarded,
             host=options.address,

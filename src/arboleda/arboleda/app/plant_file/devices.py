@@ -16,7 +16,7 @@ from .arrays import arrays
 from .deadlines import ROUNDING_S, SHOWN_S
 from .document import Document, Place, choice, nearest, shown
 from .drivers import OF_DEVICES, link
-from .python_uses import KindInPython, Used
+from .python_uses import KindInPython, PythonUses
 from .registry import COME_WITH_IT, RESERVED
 from .robot_kind import RobotKind
 from .robots import check_absence
@@ -32,7 +32,7 @@ class Kinds:
 
     declared: Mapping[str, DeviceKind]
     names: Collection[str]  # of those that it declares, be they right or wrong
-    used: Used
+    used: PythonUses
 
     def in_python(self, name: object) -> KindInPython | None:
         """The kind in Python of that name; what the plant file declares may have the name before it."""

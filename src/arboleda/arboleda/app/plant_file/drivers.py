@@ -17,7 +17,7 @@ from arboleda.recipes.storage_cell import StorageCell
 
 from . import settings
 from .document import Document, Place, choice, nearest, shown
-from .python_uses import LONGEST, Spot, Used, refused, said
+from .python_uses import LONGEST, PythonUses, Spot, refused, said
 from .shared import SECTION as SHARED
 
 KEY, SHORT = "driver", "link"
@@ -40,7 +40,7 @@ def link(document: Document, place: Place, written: str, known: Sequence[str]) -
     return Link(value)
 
 
-def found(document: Document, used: Used) -> dict[str, DriverUse]:
+def found(document: Document, used: PythonUses) -> dict[str, DriverUse]:
     """The driver of each place that names one of somebody's own, by the device's name; problems are kept."""
     uses: dict[str, DriverUse] = {}
     for name, place in named(document):
@@ -50,7 +50,7 @@ def found(document: Document, used: Used) -> dict[str, DriverUse]:
     return uses
 
 
-def with_drivers(document: Document, plant: PlantModel | None, used: Used) -> PlantModel | None:
+def with_drivers(document: Document, plant: PlantModel | None, used: PythonUses) -> PlantModel | None:
     """The plant whose devices know their drivers, where nothing else is wrong with it."""
     if plant is None or any(document.kept):
         return plant
@@ -81,7 +81,7 @@ def _comes_with_it(value: object) -> bool:
     return isinstance(value, str) and value in COME_WITH_IT
 
 
-def _use(document: Document, place: Place, used: Used) -> DriverUse | None:
+def _use(document: Document, place: Place, used: PythonUses) -> DriverUse | None:
     value = document.value(place)
     if isinstance(value, dict) and len(value) == 1:
         name = str(next(iter(value)))
@@ -113,7 +113,7 @@ def _check(document: Document, place: Place, use: DriverUse, device: Robot) -> N
         document.problem((*place, use.name, *inside), plain(sentence, LONGEST))
 
 
-def _installed(document: Document, place: Place, name: str, used: Used) -> DriverSpec | None:
+def _installed(document: Document, place: Place, name: str, used: PythonUses) -> DriverSpec | None:
     """The driver of that name that an installed package brings; None, with the problem kept."""
     points = {point.name: point for point in entry_points(group=GROUP)}
     point = points.get(name)
@@ -135,7 +135,7 @@ def _installed(document: Document, place: Place, name: str, used: Used) -> Drive
     return spec
 
 
-def _settings(document: Document, place: Place, spec: DriverSpec, used: Used) -> Any:
+def _settings(document: Document, place: Place, spec: DriverSpec, used: PythonUses) -> Any:
     """The settings as the driver is given them; FAULTY, with the problems kept, where they are wrong."""
     has = document.has(place) and not isinstance(document.value(place), str)
     if spec.settings is None:
@@ -160,7 +160,7 @@ def _settings(document: Document, place: Place, spec: DriverSpec, used: Used) ->
             return FAULTY
     try:
         read = settings.read(document, place, fits, spec.settings) if has else spec.settings(**dict(fits()))
-    except settings.Unfit as unfit:
+    except settings.SettingsRefused as unfit:
         document.problem(unfit.place, plain(refused(unfit.error), LONGEST))
         return FAULTY
     except Exception as error:  # noqa: BLE001 - it is user code: whatever it raises is told

@@ -19,7 +19,7 @@ from arboleda.wire import mqtt_limits
 
 from .document import Document, Place, shown
 from .kinds import OF_FACTS, OF_STEPS, name_objection
-from .python_uses import LONGEST, KindInPython, Spot, Used, refused, said
+from .python_uses import LONGEST, KindInPython, PythonUses, Spot, refused, said
 from .registry import COME_WITH_IT, IN_PYTHON, RESERVED
 from .robot_kind import RobotKind
 from .settings import TYPES, keys
@@ -44,7 +44,7 @@ def needs_python(document: Document) -> bool:
     return uses or (bool(names) and not names.isdisjoint(registered()))
 
 
-def complete(document: Document, used: Used) -> None:
+def complete(document: Document, used: PythonUses) -> None:
     """Adds the kinds that devices name and that come with Arboleda, or from an installed package."""
     entries = registered() if any(name not in used.kinds for name, _ in _named(document)) else {}
     for name, place in _named(document):
@@ -60,7 +60,7 @@ def complete(document: Document, used: Used) -> None:
     used.installed = tuple(entries)
 
 
-def robot(document: Document, place: Place, kind: RobotKind, used: Used) -> Robot | None:
+def robot(document: Document, place: Place, kind: RobotKind, used: PythonUses) -> Robot | None:
     """The device as its kind reads it; None, with the problems kept, where something is wrong with it."""
     if kind is COME_WITH_IT.get(kind.name):
         return kind.read(document, place)
@@ -78,7 +78,7 @@ def robot(document: Document, place: Place, kind: RobotKind, used: Used) -> Robo
 
 
 def device(
-    document: Document, place: Place, kind: WrittenKind, used: Used
+    document: Document, place: Place, kind: WrittenKind, used: PythonUses
 ) -> tuple[DeviceShape, DeviceKind] | None:
     """What the plant file says of a device of that kind, and the kind with its settings."""
     spot = used.spot(kind)
@@ -118,7 +118,9 @@ def _named(document: Document) -> Iterator[tuple[str, Place]]:
                 yield name, place
 
 
-def _installed(document: Document, place: Place, rows: list[EntryPoint], used: Used) -> KindInPython | None:
+def _installed(
+    document: Document, place: Place, rows: list[EntryPoint], used: PythonUses
+) -> KindInPython | None:
     name, packages = rows[0].name, [_package(each) for each in rows]
     if name in COME_WITH_IT:
         owner = f"comes with Arboleda, and {' and '.join(packages)} registers another one"
@@ -158,7 +160,9 @@ def _shape(kind: WrittenKind) -> type[DeviceShape]:
     return create_model(f"Device_{kind.name}", __base__=DeviceShape, **keys(kind.settings))
 
 
-def _settings(document: Document, place: Place, kind: WrittenKind, shape: DeviceShape, used: Used) -> Any:
+def _settings(
+    document: Document, place: Place, kind: WrittenKind, shape: DeviceShape, used: PythonUses
+) -> Any:
     """The settings of a device; None, with the problem kept, where the kind's own rules refuse them."""
     if kind.settings is None:
         return None
@@ -172,14 +176,16 @@ def _settings(document: Document, place: Place, kind: WrittenKind, shape: Device
     return None
 
 
-def _tell(document: Document, place: Place, kind: KindInPython, error: BaseException, used: Used) -> None:
+def _tell(
+    document: Document, place: Place, kind: KindInPython, error: BaseException, used: PythonUses
+) -> None:
     """Keeps what a kind raised: at its line, or at the device where no file of a user has that."""
     spot = used.where(error.__cause__ or error, used.where(error, used.spot(kind)))
     what = f"{kind.name}: {error}" if isinstance(error, KindError) else f"{kind.name}: {said(error)}"
     _keep(document, place, spot, what, used)
 
 
-def _keep(document: Document, place: Place, spot: Spot, what: str, used: Used) -> None:
+def _keep(document: Document, place: Place, spot: Spot, what: str, used: PythonUses) -> None:
     if spot.file in used.files.values():
         used.keep(document, spot.problem(what))
     else:

@@ -28,7 +28,7 @@ from arboleda.recipes.storage import RECIPES
 
 from .. import tree_includes, user_file
 from .document import Document, Place, nearest, shown
-from .python_uses import LONGEST, Spot, Used, Watch, Written, said
+from .python_uses import LONGEST, PythonUses, Spot, Watch, Written, said
 from .registry import IN_PYTHON, RESERVED
 from .shapes import NAME_RULE, WORDS, is_name
 
@@ -50,9 +50,9 @@ def listed(document: Document) -> tuple[str, ...]:
     return tuple(dict.fromkeys(words))
 
 
-def imported(document: Document, words: Sequence[str], watch: Watch) -> Used:
+def imported(document: Document, words: Sequence[str], watch: Watch) -> PythonUses:
     """What all of them bring; the problems of those that cannot be imported are kept."""
-    used = Used(watch=watch)
+    used = PythonUses(watch=watch)
     for index, word in enumerate(words):
         place = (*SECTION, index)
         if word.endswith(TREES):
@@ -67,7 +67,7 @@ def imported(document: Document, words: Sequence[str], watch: Watch) -> Used:
     return used
 
 
-def _file(document: Document, place: Place, word: str, used: Used, watch: Watch) -> ModuleType | None:
+def _file(document: Document, place: Place, word: str, used: PythonUses, watch: Watch) -> ModuleType | None:
     if document.folder is None:
         document.problem(place, "this plant file lies in no folder, so no recipes can lie beside it")
         return None
@@ -97,7 +97,7 @@ def _file(document: Document, place: Place, word: str, used: Used, watch: Watch)
     return module
 
 
-def _trees(document: Document, place: Place, word: str, used: Used) -> None:
+def _trees(document: Document, place: Place, word: str, used: PythonUses) -> None:
     """The recipe of a file of trees; nothing of it is executed."""
     if document.folder is None:
         document.problem(place, "this plant file lies in no folder, so no trees can lie beside it")
@@ -136,7 +136,7 @@ def _trees(document: Document, place: Place, word: str, used: Used) -> None:
         used.keep(document, problem)
 
 
-def _module(document: Document, place: Place, word: str, used: Used, watch: Watch) -> ModuleType | None:
+def _module(document: Document, place: Place, word: str, used: PythonUses, watch: Watch) -> ModuleType | None:
     watch(Spot(file=word), "importing this")
     try:
         module = importlib.import_module(word)
@@ -191,7 +191,7 @@ def _importing(folder: Path, files: dict[Path, bytes]) -> Iterator[None]:
                 del sys.modules[name]
 
 
-def _collect(document: Document, place: Place, module: ModuleType, used: Used) -> None:
+def _collect(document: Document, place: Place, module: ModuleType, used: PythonUses) -> None:
     recipes = {id(each): each for each in vars(module).values() if isinstance(each, Recipe)}
     kinds = {id(each): each for each in vars(module).values() if isinstance(each, IN_PYTHON)}
     drivers = {id(spec): spec for each in vars(module).values() if (spec := spec_of(each)) is not None}
@@ -225,7 +225,7 @@ def _collect(document: Document, place: Place, module: ModuleType, used: Used) -
 
 
 def _objection(
-    what: str, found: Written, there: Mapping[str, Any], taken: Sequence[str], used: Used
+    what: str, found: Written, there: Mapping[str, Any], taken: Sequence[str], used: PythonUses
 ) -> str | None:
     """Why it cannot be one beside those that there are."""
     name = found.name
@@ -236,7 +236,7 @@ def _objection(
     return _twice(what, found, there, used)
 
 
-def _objection_to_node(found: WrittenNode, used: Used) -> str | None:
+def _objection_to_node(found: WrittenNode, used: PythonUses) -> str | None:
     """Why trees of XML cannot have a node."""
     if not isinstance(found.name, str) or not NODE.fullmatch(found.name):
         return f"{shown(found.name)} cannot be the name of a node; it must be letters, digits and _"
@@ -245,7 +245,7 @@ def _objection_to_node(found: WrittenNode, used: Used) -> str | None:
     return _twice("node", found, used.nodes, used)
 
 
-def _twice(what: str, found: Written, there: Mapping[str, Any], used: Used) -> str | None:
+def _twice(what: str, found: Written, there: Mapping[str, Any], used: PythonUses) -> str | None:
     other = there.get(found.name)
     if other is None or other is found:
         return None

@@ -18,7 +18,7 @@ Pair = frozenset[str]  # of names of poses
 
 
 @dataclass(frozen=True, kw_only=True)
-class Confusion:
+class PoseConfusion:
     """Why a zone cannot have what is `named` for it: one pose, or the two ends of a move."""
 
     zone: str
@@ -35,23 +35,23 @@ def alike_crossings(space: Workspace) -> tuple[Crossing, ...]:
     return tuple(Crossing(a=a, b=b, zones=zones) for (a, b), zones in rows)
 
 
-def confusions(space: Workspace) -> list[Confusion]:
+def confusions(space: Workspace) -> list[PoseConfusion]:
     """Everything in the zones of a robot of which nobody would know whether it is in it."""
     return list(_at_reference(space)) or list(_between_poses(space))
 
 
-def _between_poses(space: Workspace) -> Iterator[Confusion]:
+def _between_poses(space: Workspace) -> Iterator[PoseConfusion]:
     for a, b in _alike(space):
         for inside, outside in permutations((a, b)):
             for zone in sorted(inside.zones - outside.zones):
                 what = f"{inside.name} lies in the zone and {outside.name} does not"
-                yield Confusion(zone=zone, named=(inside.name,), sentence=f"{what}; {WHY}")
+                yield PoseConfusion(zone=zone, named=(inside.name,), sentence=f"{what}; {WHY}")
         for zone in sorted(_across(space, a, b)):
             what = f"a move between {a.name} and {b.name} crosses the zone"
-            yield Confusion(zone=zone, named=(a.name, b.name), sentence=f"{what}; {WHY}")
+            yield PoseConfusion(zone=zone, named=(a.name, b.name), sentence=f"{what}; {WHY}")
 
 
-def _at_reference(space: Workspace) -> Iterator[Confusion]:
+def _at_reference(space: Workspace) -> Iterator[PoseConfusion]:
     """Homing ends at the reference, so it lies outside all zones."""
     reference = space.robot.reference
     for pose in space.poses if reference is not None else ():
@@ -59,7 +59,7 @@ def _at_reference(space: Workspace) -> Iterator[Confusion]:
             for zone in sorted(pose.zones):
                 what = f"{pose.name} looks like the reference (all joints 0) to the arm"
                 rule = "homing ends there, so it must be outside all zones"
-                yield Confusion(zone=zone, named=(pose.name,), sentence=f"{what}; {rule}")
+                yield PoseConfusion(zone=zone, named=(pose.name,), sentence=f"{what}; {rule}")
 
 
 def _grown(space: Workspace, crossed: dict[Pair, frozenset[str]]) -> dict[Pair, frozenset[str]]:

@@ -43,7 +43,7 @@ def unwatched(spot: Spot, doing: str) -> None:
 
 
 @dataclass
-class Used:
+class PythonUses:
     """What `uses` has brought, by name, and the files that problems can be found in."""
 
     recipes: dict[str, Recipe] = field(default_factory=dict)

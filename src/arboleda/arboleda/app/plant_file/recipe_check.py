@@ -26,7 +26,7 @@ from arboleda.views import tree_view
 
 from .document import Document, Place, choice, nearest, shown
 from .own_recipes import SECTION
-from .python_uses import LONGEST, Used, Watch, said
+from .python_uses import LONGEST, PythonUses, Watch, said
 
 MOST = 200  # combinations of parameters that are tried
 HOW_TO_CHOOSE = "; give it to a node that lists its values, or its port a type: int, double, bool"
@@ -53,7 +53,7 @@ class Trial:
     """The recipes of a plant in its cells: what each offers, and the problems, kept in the document."""
 
     document: Document
-    used: Used
+    used: PythonUses
     watch: Watch
     offers: dict[str, list[str]] = field(default_factory=dict)
     misfits: dict[str, list[str]] = field(default_factory=dict)  # by recipe: why not

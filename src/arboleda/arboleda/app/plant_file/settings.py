@@ -19,7 +19,7 @@ from .robot_models import Shape
 TYPES = "give bool, int, float, str, Literal, an Enum, and tuples of them"
 
 
-class Unfit(Exception):
+class SettingsRefused(Exception):
     """A dataclass of settings refused its values: where, and what it raised."""
 
     def __init__(self, place: Place, error: Exception) -> None:
@@ -55,7 +55,7 @@ def _made(document: Document, place: Place, settings: type, values: dict[str, An
     try:
         return settings(**made)
     except Exception as error:  # it is user code: whatever it raises is told
-        raise Unfit(place, error) from error
+        raise SettingsRefused(place, error) from error
 
 
 def _inside(document: Document, place: Place, hint: Any, value: Any) -> Any:

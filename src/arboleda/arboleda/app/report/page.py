@@ -19,7 +19,7 @@ from arboleda.recorder.cause import Cause
 from arboleda.recorder.incident import Incident
 
 from .scene import scene
-from .tries import Try
+from .tries import ForkTrial
 from .words import WORDS
 
 LANGUAGES = ("en", "es")
@@ -33,7 +33,7 @@ class Report:
     incident: Incident
     cause: Cause
     model: PlantModel
-    tries: list[Try]
+    tries: list[ForkTrial]
     case: str
     command: str
 
@@ -142,7 +142,7 @@ def _messages(found: Incident, name: str) -> str:
     return f"<h3>{escape(name)}</h3><table class=small>{rows}</table>"
 
 
-def _try(each: Try, report: Report) -> str:
+def _try(each: ForkTrial, report: Report) -> str:
     what = _both(each.what, value=each.value)
     command = f"{report.command} {each.options}".strip() if each.options else ""
     return f"<tr><td>{what}<td>{escape(each.end)}<td><code>{escape(command)}</code>"

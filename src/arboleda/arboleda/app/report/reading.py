@@ -22,7 +22,7 @@ LOOK_S = 0.5  # between two looks at a record that is being written
 
 
 @dataclass(frozen=True, kw_only=True)
-class Read:
+class TaskRecord:
     """A record, the plant of it and what it has of the task."""
 
     record: Record
@@ -30,7 +30,7 @@ class Read:
     incident: Incident
 
 
-def read(task: str, record: Path | None, folder: Path) -> Read:
+def read(task: str, record: Path | None, folder: Path) -> TaskRecord:
     """The task in this record, or in the newest of a folder that has it; ConfigError where none has.
 
     What a plant that runs has not written yet is waited for, some seconds.
@@ -43,7 +43,7 @@ def read(task: str, record: Path | None, folder: Path) -> Read:
             whole = opened(found)
             incident = incident_of(task, whole)
             if incident.ended_at is not None or time.monotonic() > until:
-                return Read(record=whole, model=model_of(whole.first.beginning), incident=incident)
+                return TaskRecord(record=whole, model=model_of(whole.first.beginning), incident=incident)
         elif time.monotonic() > until or not paths or not _is_written(paths[0]):
             raise ConfigError((f"{plain(task, 80)}: no record of this plant has such a task",))
         time.sleep(LOOK_S)

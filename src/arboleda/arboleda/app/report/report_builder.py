@@ -8,11 +8,11 @@ from arboleda.recorder.cause import Cause
 
 from .case import case_of
 from .page import Report, page
-from .reading import Read
+from .reading import TaskRecord
 from .tries import tries
 
 
-def made(read: Read) -> tuple[Cause, str]:
+def made(read: TaskRecord) -> tuple[Cause, str]:
     """Its cause, and the content of the file."""
     found, beginning = read.incident, read.record.first.beginning
     cause = found.cause

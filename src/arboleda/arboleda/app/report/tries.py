@@ -10,10 +10,10 @@ from arboleda.model.plant_model import PlantModel
 from arboleda.recorder.incident import Incident
 from arboleda.recorder.troubles import SILENCE
 
-from ..fork.plant_events import TASK, Happening
-from ..fork.run import Asked, forked
+from ..fork.plant_events import TASK, PlantEvent
+from ..fork.run import ForkRequest, forked
 from ..replay_command import sentence_of
-from .reading import Read
+from .reading import TaskRecord
 
 LONGER = 3.0  # times a deadline
 EARLIER_NS = 100_000_000  # before it was asked for
@@ -22,7 +22,7 @@ WITHOUT, HEALTHY, STALE, DEADLINE = "without", "healthy", "stale", "deadline"
 
 
 @dataclass(frozen=True, kw_only=True)
-class Try:
+class ForkTrial:
     """A fork: what of, in a word, with which value, and what became of the task; `command` runs it again.
 
     `alike`: the task ended in the same state for the same reason as in the record.
@@ -36,10 +36,10 @@ class Try:
     options: str
 
 
-def tries(read: Read) -> list[Try]:
+def tries(read: TaskRecord) -> list[ForkTrial]:
     """The forks of a task from its beginning: without any change first. Where that does not end as the record
     did, other ones would prove nothing, and are not run."""
-    found: list[Try] = []
+    found: list[ForkTrial] = []
     for what, value, model, options in _changes(read.model, read.incident):
         found.append(_tried(read, what, value, model, options))
         if not found[0].alike:
@@ -62,10 +62,10 @@ def _changes(model: PlantModel, incident: Incident) -> Iterator[tuple[str, float
         yield DEADLINE, factor, patient, f"--set timing.deadline_factor={factor:g}"
 
 
-def _tried(read: Read, what: str, value: float, model: PlantModel, options: str) -> Try:
+def _tried(read: TaskRecord, what: str, value: float, model: PlantModel, options: str) -> ForkTrial:
     incident, record = read.incident, read.record
     since_s = (incident.ended_at or 0.0) - incident.asked_at
-    asked = Asked(
+    asked = ForkRequest(
         at_ns=incident.unix_ns - round(since_s * 1e9) - EARLIER_NS,
         model=model,
         recorded=read.model,
@@ -76,9 +76,9 @@ def _tried(read: Read, what: str, value: float, model: PlantModel, options: str)
     end = fork.said if fork else "?"
     alike = fork is not None and recorded is not None and fork.what == recorded.what
     done = end.startswith("done")
-    return Try(what=what, value=value, end=end, done=done, alike=alike, options=options)
+    return ForkTrial(what=what, value=value, end=end, done=done, alike=alike, options=options)
 
 
-def _last(row: Sequence[Happening], task: str) -> Happening | None:
+def _last(row: Sequence[PlantEvent], task: str) -> PlantEvent | None:
     """How the task ended there."""
     return next((each for each in reversed(row) if each.stream == TASK + task), None)

@@ -129,7 +129,7 @@ def simulate(
     from . import screen, single_seed  # the simulator takes a while to load, and only this command needs it
     from .flight import SUFFIX
     from .request import Request
-    from .seed_campaign import Many
+    from .seed_campaign import SeedCampaign
     from .workers import processors
 
     alone = trace or record is not None
@@ -168,4 +168,4 @@ def simulate(
         raise typer.Exit(work(request, console, store, json))
     if alone:
         raise typer.Exit(single_seed.run(request, console, trace=trace, record=record, file=json))
-    raise typer.Exit(Many(request, console, json).run(jobs or processors()))
+    raise typer.Exit(SeedCampaign(request, console, json).run(jobs or processors()))

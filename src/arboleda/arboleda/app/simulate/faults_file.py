@@ -22,7 +22,7 @@ SIMULATED = ("faults", "people")  # what of a broken seed is simulated again
 
 
 @dataclass(frozen=True, kw_only=True)
-class Told:
+class FaultsFile:
     """`climate` is what Climate.from_file and script_from take; of a broken seed also which it is, and how
     long it ran.
 
@@ -37,27 +37,27 @@ class Told:
     standby: bool = False
 
 
-def read(path: Path, seed: int | None) -> Told:
+def read(path: Path, seed: int | None) -> FaultsFile:
     """The file; of a summary the broken seed of that number, None for its first one. Else ConfigError."""
     data = _data(path)
     if not isinstance(data, dict):
-        return Told(climate=data)
+        return FaultsFile(climate=data)
     if SUMMARY not in data:
-        return Told(climate=data, plant=_plant(path, data))
+        return FaultsFile(climate=data, plant=_plant(path, data))
     try:
         return replace(_broken(path, data[SUMMARY], seed), standby=data.get("standby") is True)
     except (KeyError, TypeError):
         raise ConfigError((f"{path}: is not what `arboleda simulate --json` writes",)) from None
 
 
-def _broken(path: Path, rows: list[dict[str, Any]], seed: int | None) -> Told:
+def _broken(path: Path, rows: list[dict[str, Any]], seed: int | None) -> FaultsFile:
     broken = [row for row in rows if row["broken"]]
     for row in broken:
         if seed in (None, row["seed"]):
             seconds = row["broken"]["minutes"] * MINUTE_S
             climate = {key: row["broken"][key] for key in SIMULATED if key in row["broken"]}
             file = row["broken"].get("plant_file")
-            return Told(
+            return FaultsFile(
                 climate=climate, seed=row["seed"], plant=row["plant"], plant_file=file, seconds=seconds
             )
     there = f"; there are {', '.join(str(row['seed']) for row in broken)}" if broken else ""

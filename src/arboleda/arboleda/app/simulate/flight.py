@@ -13,7 +13,7 @@ from arboleda.model.errors import ArboledaError
 from arboleda.recorder import copying, reader
 from arboleda.recorder.files import parts_in
 from arboleda.recorder.preamble import Limits
-from arboleda.recorder.simulated import SimulatedRecorder, Unwritten
+from arboleda.recorder.simulated import RecordNotWritten, SimulatedRecorder
 from arboleda.recorder.tape import SECOND
 from arboleda.simulator.world import START_S
 
@@ -42,7 +42,7 @@ def recorded(file: Path, plant: Plant) -> Iterator[Flight]:
         try:
             yield flight
             recorder.close()
-        except Unwritten as lost:
+        except RecordNotWritten as lost:
             raise ArboledaError(f"{file}: cannot be written: {lost.error.strerror or lost.error}") from lost
         flight.said += _copied(Path(made), file)
 

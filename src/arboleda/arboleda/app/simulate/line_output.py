@@ -10,14 +10,14 @@ from arboleda.model.errors import ArboledaError
 TIME = 10  # columns of the time in a line of the trace
 
 
-class Unheard(BaseException):
+class OutputLost(BaseException):
     """Nobody takes the lines any more, `error` says why; an Exception would be laid to the plant."""
 
     def __init__(self, error: Exception) -> None:
         self.error = error
 
 
-class Teller:
+class LineWriter:
     """Called with each line: prints it with `printed`, and writes it to `file`; Unheard where that fails."""
 
     def __init__(self, *, printed: bool, file: RawIOBase | None) -> None:
@@ -34,14 +34,14 @@ class Teller:
         try:
             print(line)
         except OSError as error:
-            raise Unheard(error) from error
+            raise OutputLost(error) from error
 
     def _write(self, file: RawIOBase, line: str) -> None:
         try:
             file.write(line.encode() + b"\n")
         except OSError as error:
             sentence = f"the lines cannot be written to the file: {error.strerror}"
-            raise Unheard(ArboledaError(sentence)) from error
+            raise OutputLost(ArboledaError(sentence)) from error
 
 
 def as_json(line: str) -> str:

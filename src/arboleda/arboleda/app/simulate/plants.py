@@ -41,7 +41,7 @@ class Plants(Protocol):
 
 
 @dataclass(frozen=True, kw_only=True)
-class InTurn:
+class PlantRotation:
     """Some plants, seed n on number n modulo their count."""
 
     plants: tuple[Plant, ...]

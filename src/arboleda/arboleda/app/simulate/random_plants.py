@@ -21,7 +21,7 @@ RECENT = 16  # drawn plants that are kept
 
 
 @dataclass(frozen=True, kw_only=True)
-class Drawn:
+class RandomPlants:
     """A plant file of its own for each seed, the first one that `arboleda check` takes."""
 
     def of(self, seed: int) -> Plant:

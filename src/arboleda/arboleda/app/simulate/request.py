@@ -19,9 +19,9 @@ from arboleda.simulator.levels import LEVELS
 
 from .. import config
 from .defaults import CYCLES, LEVEL, SEED, SEEDS
-from .faults_file import Told, line_of, read
-from .plants import InTurn, Plant, Plants, notes
-from .random_plants import Drawn, loaded
+from .faults_file import FaultsFile, line_of, read
+from .plants import Plant, PlantRotation, Plants, notes
+from .random_plants import RandomPlants, loaded
 from .setting import Setting
 
 OF_DRAWN = "drawn plants: whatever link a robot declares, it is simulated with a virtual board on MQTT"
@@ -71,7 +71,7 @@ class Request:
         return count(self.first) if self.count is None else range(self.first, self.first + self.count)
 
     @cached_property
-    def told(self) -> Told | None:
+    def told(self) -> FaultsFile | None:
         """What `faults` names where it is a file."""
         if self.faults in LEVELS:
             return None
@@ -84,8 +84,8 @@ class Request:
     def plants(self) -> Plants:
         """What the seeds run on; a broken seed of a file runs on the plant that is in there."""
         if self.told is not None and self.told.plant_file is not None:
-            return InTurn(plants=(loaded(self.told.plant_file),))
-        return Drawn() if self.drawn_plants else InTurn(plants=self._by_files)
+            return PlantRotation(plants=(loaded(self.told.plant_file),))
+        return RandomPlants() if self.drawn_plants else PlantRotation(plants=self._by_files)
 
     @property
     def _by_files(self) -> tuple[Plant, ...]:
@@ -125,14 +125,14 @@ class Request:
         """Seeds that stand for all: faults that a file tells must be possible in each plant."""
         if self.told is None:
             return range(self.first, self.first + 1)
-        if isinstance(self.plants, InTurn):
+        if isinstance(self.plants, PlantRotation):
             return range(self.first, self.first + len(self.plants.plants))
         return range(self.first, self.first + (self.count or 1))
 
     @property
     def notes(self) -> list[str]:
         """What a person should know about what is simulated."""
-        if isinstance(self.plants, InTurn):
+        if isinstance(self.plants, PlantRotation):
             return notes(self.plants.plants)
         return [OF_DRAWN]
 

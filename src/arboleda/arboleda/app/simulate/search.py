@@ -22,14 +22,14 @@ ATTEMPTS = 250  # runs on smaller plants, at most
 
 
 @dataclass(frozen=True, kw_only=True)
-class Shrunk:
+class ShrunkBreach:
     """A breach with what it takes: the run of it, with the lines of its last seconds, and the plant."""
 
     result: Result
     plant: Plant
 
 
-def shrunk(setting: Setting, broken: Result, progress: Progress) -> Shrunk:
+def shrunk(setting: Setting, broken: Result, progress: Progress) -> ShrunkBreach:
     """The same breach with as few faults, and as little of a drawn plant, as could be found."""
     search = _Search(setting, broken, progress)
     search.fewer_faults()
@@ -38,8 +38,8 @@ def shrunk(setting: Setting, broken: Result, progress: Progress) -> Shrunk:
     found, plant = search.best, search.plant
     again = setting.attempt(plant, broken.seed, explicit(found.faults), found.minutes * MINUTE_S, keep=True)
     if again.broken:
-        return Shrunk(result=again, plant=plant)
-    return Shrunk(result=setting.run(broken.seed, keep=True), plant=setting.plants.of(broken.seed))
+        return ShrunkBreach(result=again, plant=plant)
+    return ShrunkBreach(result=setting.run(broken.seed, keep=True), plant=setting.plants.of(broken.seed))
 
 
 class _Search:

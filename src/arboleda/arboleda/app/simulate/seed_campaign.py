@@ -15,7 +15,7 @@ from . import breach_text, report, summary
 from .campaign import Campaign
 from .request import Request
 from .screen import progress
-from .search import Shrunk, shrunk
+from .search import ShrunkBreach, shrunk
 from .setting import Tick
 from .tally import Tally
 from .words import short
@@ -24,7 +24,7 @@ from .workers import Workers
 HELD, BROKEN, INTERRUPTED = 0, 1, 130  # exit statuses
 
 
-class Many:
+class SeedCampaign:
     """A campaign in a terminal; `file` gets what came of it."""
 
     def __init__(self, request: Request, console: Console, file: Path | None) -> None:
@@ -34,7 +34,7 @@ class Many:
         self._tally = Tally(setting=request.setting)
         self._began = time.monotonic()
         self._elapsed_s = 0.0
-        self._shrunk: Shrunk | None = None
+        self._shrunk: ShrunkBreach | None = None
         self._tick: Tick = lambda: None
 
     def run(self, jobs: int) -> int:
@@ -113,7 +113,7 @@ class Many:
                 self._line(seed, result)
         self._console.print(report.verdict(tally), soft_wrap=True)
 
-    def _story(self, shrunk: Shrunk, injected: int) -> None:
+    def _story(self, shrunk: ShrunkBreach, injected: int) -> None:
         told = shrunk.result
         self._say("")
         breach_text.breach(self._console, told, shrunk.plant.name)

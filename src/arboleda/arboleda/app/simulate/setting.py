@@ -12,7 +12,7 @@ from arboleda.model.plant_model import PlantModel
 from arboleda.simulator.climate import Climate
 from arboleda.simulator.faults import Fault
 from arboleda.simulator.judged import every
-from arboleda.simulator.run import NO_EXCEPTION, Broken, Plan, Result, Simulation
+from arboleda.simulator.run import NO_EXCEPTION, BrokenInvariant, Plan, Result, Simulation
 from arboleda.simulator.scripted_people import Script, script_from
 
 from .plants import Plant, Plants
@@ -21,7 +21,7 @@ Tell = Callable[[str], None]
 Tick = Callable[[], None]
 MakePlant = Callable[..., CorePlant]
 
-copyreg.pickle(Broken, lambda broken: (Broken, (broken.invariant, broken.sentence)))
+copyreg.pickle(BrokenInvariant, lambda broken: (BrokenInvariant, (broken.invariant, broken.sentence)))
 
 
 @dataclass(frozen=True, kw_only=True)

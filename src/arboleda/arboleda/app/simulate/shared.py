@@ -17,7 +17,7 @@ from arboleda.model.counting import counted
 from arboleda.model.errors import ArboledaError, StartError
 from arboleda.simulator.levels import LEVELS
 
-from .plants import InTurn
+from .plants import PlantRotation
 from .request import Request
 from .seed_campaign import BROKEN, HELD, INTERRUPTED
 
@@ -27,7 +27,7 @@ LOOK_S = 1.0  # between two looks for a seed that a worker has given back
 def campaign_of(request: Request) -> str:
     """The name of a campaign: what is simulated, so that workers of other options have another one."""
     told = "" if request.faults in LEVELS else Path(request.faults).read_text(encoding="utf-8")
-    plants = request.plants.plants if isinstance(request.plants, InTurn) else ()
+    plants = request.plants.plants if isinstance(request.plants, PlantRotation) else ()
     contents = [{name: text.hex() for name, text in each.files.contents.items()} for each in plants]
     asked = [__version__, request.first, request.count, request.cycles, request.faults, told, contents]
     asked += [request.drawn_plants, request.any_of, request.two_hosts]

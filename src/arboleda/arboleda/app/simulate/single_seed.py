@@ -11,7 +11,7 @@ from rich.text import Text
 from arboleda.simulator.run import Result
 
 from . import breach_text, flight, report, summary
-from .line_output import Teller, Unheard
+from .line_output import LineWriter, OutputLost
 from .request import Request
 from .seed_campaign import BROKEN, HELD, INTERRUPTED
 from .tally import Tally
@@ -30,7 +30,7 @@ def run(request: Request, console: Console, *, trace: bool, record: Path | None,
     except KeyboardInterrupt:
         console.print(Text("interrupted", style="yellow"))
         return INTERRUPTED
-    except Unheard as unheard:
+    except OutputLost as unheard:
         raise unheard.error from None
     tally = Tally(setting=request.setting)
     tally.add(result)
@@ -46,7 +46,7 @@ def run(request: Request, console: Console, *, trace: bool, record: Path | None,
 
 def _flown(request: Request, *, trace: bool, record: Path, said: list[str]) -> Result:
     """Runs it with a flight record; `said` gets a line for each file."""
-    tell = Teller(printed=True, file=None) if trace else None
+    tell = LineWriter(printed=True, file=None) if trace else None
     with flight.recorded(record, request.plants.of(request.first)) as flown:
         result = request.setting.run(request.first, tell=tell, make_plant=flown.make_plant)
     said += flown.said
@@ -55,4 +55,4 @@ def _flown(request: Request, *, trace: bool, record: Path, said: list[str]) -> R
 
 def _told(request: Request, *, trace: bool, record: Path | None) -> Result:
     with record.open("wb", buffering=0) if record else nullcontext() as file:
-        return request.setting.run(request.first, tell=Teller(printed=trace, file=file))
+        return request.setting.run(request.first, tell=LineWriter(printed=trace, file=file))

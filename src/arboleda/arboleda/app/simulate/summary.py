@@ -11,12 +11,12 @@ from arboleda import __version__
 from arboleda.model.errors import ArboledaError
 
 from .request import Request
-from .search import Shrunk
+from .search import ShrunkBreach
 from .setting import rules
 from .tally import Tally
 
 
-def write(path: Path, request: Request, tally: Tally, shrunk: Shrunk | None, *, complete: bool) -> None:
+def write(path: Path, request: Request, tally: Tally, shrunk: ShrunkBreach | None, *, complete: bool) -> None:
     """Writes it; `shrunk` is the run of one of the broken seeds with what is needed of faults and plant."""
     data = summary(request, tally, shrunk, complete=complete)
     try:
@@ -25,7 +25,7 @@ def write(path: Path, request: Request, tally: Tally, shrunk: Shrunk | None, *, 
         raise ArboledaError(f"{path}: cannot be written: {error.strerror}") from None
 
 
-def summary(request: Request, tally: Tally, shrunk: Shrunk | None, *, complete: bool) -> dict[str, Any]:
+def summary(request: Request, tally: Tally, shrunk: ShrunkBreach | None, *, complete: bool) -> dict[str, Any]:
     rows = [
         {**row, "broken": _broken(request, tally, seed, shrunk)} for seed, row in sorted(tally.rows.items())
     ]
@@ -50,7 +50,7 @@ def summary(request: Request, tally: Tally, shrunk: Shrunk | None, *, complete: 
     }
 
 
-def _broken(request: Request, tally: Tally, seed: int, shrunk: Shrunk | None) -> dict[str, Any] | None:
+def _broken(request: Request, tally: Tally, seed: int, shrunk: ShrunkBreach | None) -> dict[str, Any] | None:
     found = tally.broken.get(seed)
     if found is None:
         return None

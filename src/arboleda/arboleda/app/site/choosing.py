@@ -14,7 +14,7 @@ from arboleda.model.errors import ArboledaError
 from arboleda.model.sentence import OWN, Phrase, Sentence
 from arboleda.model.task import Order
 
-from .reach import NO_PLANT, Reach, Said, Silent
+from .reach import NO_PLANT, PlantRefusal, PlantSilent, Reach
 
 OF_PLANT = "/"  # between a plant and its cell
 LONGEST = 500  # characters of the reason that a plant keeps
@@ -29,7 +29,7 @@ OF_SILENT = Phrase("site.of_silent", "{plant} ({why})")
 EXAMPLE = "north/sis_a,south/sis_a 0B 7"
 
 
-class Refused(ArboledaError):
+class TaskRefused(ArboledaError):
     """A task is given to no plant; the sentence says why."""
 
 
@@ -59,9 +59,9 @@ async def chosen(text: str, plants: Mapping[str, Reach]) -> Choice:
     }
     said = tuple(OF_SILENT(plant=name, why=why) for name, why in silent.items())
     if len(silent) == len(texts):
-        raise Refused(NONE_ANSWERS(silent=said))
+        raise TaskRefused(NONE_ANSWERS(silent=said))
     if id and silent:
-        raise Refused(MAY_HAVE_IT(silent=said, id=id))
+        raise TaskRefused(MAY_HAVE_IT(silent=said, id=id))
     if id and (known := await _known(id, texts, plants)) is not None:
         return Choice(plant=known, text=texts[known], why=None)
     prospects = [each for answer in answers if not isinstance(answer, Sentence) for each in answer]
@@ -79,9 +79,9 @@ def _by_plant(text: str, plants: Mapping[str, Reach]) -> tuple[dict[str, str], s
     for name in names.split(BETWEEN_CELLS):
         plant, of_plant, cell = name.rpartition(OF_PLANT)
         if not (plant and of_plant and cell):
-            raise Refused(FORM(example=EXAMPLE))
+            raise TaskRefused(FORM(example=EXAMPLE))
         if plant not in plants:
-            raise Refused(NO_SUCH(plant=plant))
+            raise TaskRefused(NO_SUCH(plant=plant))
         cells.setdefault(plant, []).append(cell)
     id = words[-1][1:] if words and words[-1].startswith("#") else ""
     return {plant: " ".join([BETWEEN_CELLS.join(own), *words]) for plant, own in cells.items()}, id
@@ -100,9 +100,9 @@ async def _prospects(plant: str, text: str, reach: Reach) -> list[Prospect] | Se
             )
             for row in rows
         ]
-    except Said as error:
-        raise Refused(OF_SILENT(plant=plant, why=error.sentence)) from error
-    except Silent as error:
+    except PlantRefusal as error:
+        raise TaskRefused(OF_SILENT(plant=plant, why=error.sentence)) from error
+    except PlantSilent as error:
         return error.sentence
     except (KeyError, TypeError, ValueError):
         return NO_PLANT(url=reach.place.url)
@@ -121,7 +121,7 @@ async def _known(id: str, texts: Mapping[str, str], plants: Mapping[str, Reach])
     async def knows(plant: str) -> bool:
         try:
             await plants[plant].get(f"/api/tasks/{id}")
-        except Said:
+        except PlantRefusal:
             return False
         return True
 

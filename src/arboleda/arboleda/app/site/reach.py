@@ -24,11 +24,11 @@ NO_PLANT = Phrase("site.no_plant", "what answers at {url} is no plant")
 REFUSED = Phrase("site.refused", "it answers {status}: {said}")
 
 
-class Silent(ArboledaError):
+class PlantSilent(ArboledaError):
     """A plant gave no answer of use; the sentence says why."""
 
 
-class Said(ArboledaError):
+class PlantRefusal(ArboledaError):
     """A plant refused what was asked, in its own words."""
 
 
@@ -61,20 +61,20 @@ class Reach:
     async def _asked(self, method: str, path: str, body: dict[str, Any] | None) -> Any:
         url = self.place.url
         if not url:
-            raise Silent(NOBODY_LEADS())
+            raise PlantSilent(NOBODY_LEADS())
         try:
             asked = self._http.request(method, f"{url}{path}", json=body)
             answer = await asyncio.wait_for(asked, ANSWER_S)
             said = answer.json()
         except (asyncio.TimeoutError, httpx.TimeoutException) as error:
-            raise Silent(NO_ANSWER(seconds=ANSWER_S)) from error
+            raise PlantSilent(NO_ANSWER(seconds=ANSWER_S)) from error
         except httpx.HTTPError as error:
-            raise Silent(NOT_REACHED(url=url, error=said_by(error)[:LONGEST])) from error
+            raise PlantSilent(NOT_REACHED(url=url, error=said_by(error)[:LONGEST])) from error
         except ValueError as error:
-            raise Silent(NO_PLANT(url=url)) from error
+            raise PlantSilent(NO_PLANT(url=url)) from error
         if answer.is_success:
             return said
         sentence = plain(str(said.get("sentence", "") if isinstance(said, dict) else ""))[:LONGEST]
         if sentence and answer.status_code in (404, 409, 422):
-            raise Said(sentence)
-        raise Silent(REFUSED(status=answer.status_code, said=sentence))
+            raise PlantRefusal(sentence)
+        raise PlantSilent(REFUSED(status=answer.status_code, said=sentence))

@@ -9,13 +9,13 @@ from collections.abc import Iterator
 from typing import Any
 
 from arboleda.dashboard.frames import ended
-from arboleda.dashboard.site.side import Asked, PlantSeen
+from arboleda.dashboard.site.side import LastSeenPlant, RequestOutcome
 from arboleda.model.errors import ArboledaError
 from arboleda.model.sentence import BOTH, Phrase, Sentence
 
 from ..endpoints import Find, Place
-from .choosing import EXAMPLE, FORM, LONGEST, NO_SUCH, Choice, Refused, chosen, names_plants
-from .reach import NO_PLANT, NOT_REACHED, Reach, Said, Silent
+from .choosing import EXAMPLE, FORM, LONGEST, NO_SUCH, Choice, TaskRefused, chosen, names_plants
+from .reach import NO_PLANT, NOT_REACHED, PlantRefusal, PlantSilent, Reach
 
 LOOK_S = 2.0  # between two looks at a plant
 OEE_S = 60.0
@@ -38,7 +38,7 @@ NOT_STOPPED = Phrase(
 NOT_STOPPED_THAT = Phrase("site.not_stopped_that", "{plant} ({why})")
 
 
-class Watched:
+class WatchedPlant:
     """One address, and what was heard there last."""
 
     def __init__(self, place: Place) -> None:
@@ -77,13 +77,13 @@ class Watched:
             now = asyncio.get_running_loop().time()
             if not self.stands_by and now >= self._oee_at:
                 self.oee, self._oee_at = await self.reach.get("/api/oee"), now + OEE_S
-        except (Silent, Said) as error:
+        except (PlantSilent, PlantRefusal) as error:
             self.silent = error.sentence
 
     def _take_in(self, said: Any) -> None:
         name = said.get("plant") if isinstance(said, dict) else None
         if not isinstance(name, str) or not ("cells" in said or said.get("standby") is True):
-            raise Silent(NO_PLANT(url=self.url))
+            raise PlantSilent(NO_PLANT(url=self.url))
         self._name, self.stands_by = name, said.get("standby") is True
         self.silent = STANDS_BY() if self.stands_by else None
         self.snapshot = None if self.stands_by else said
@@ -94,10 +94,10 @@ class Site:
 
     def __init__(self, find: Find) -> None:
         self._find = find
-        self._watched: dict[Place, Watched] = {}
+        self._watched: dict[Place, WatchedPlant] = {}
         self._tasks: dict[Place, asyncio.Task[None]] = {}
         self._finding: asyncio.Task[None] | None = None
-        self._stopping: dict[str, asyncio.Task[Asked]] = {}
+        self._stopping: dict[str, asyncio.Task[RequestOutcome]] = {}
 
     def start(self) -> None:
         """Begin to watch, in the running event loop."""
@@ -107,11 +107,11 @@ class Site:
         running = [*self._tasks.values(), *([self._finding] if self._finding else [])]
         await asyncio.gather(*map(ended, running))
 
-    def plants(self) -> list[PlantSeen]:
+    def plants(self) -> list[LastSeenPlant]:
         """A row for each plant, whatever number of processes there is for it."""
         return [_seen(name, those) for name, those in self._rows()]
 
-    async def submit(self, plant: str, text: str) -> Asked:
+    async def submit(self, plant: str, text: str) -> RequestOutcome:
         """Have that plant take a task; a text that names plants goes to the best of those."""
         reaches = {name: those[0].reach for name, those in self._rows()}
         choice = Choice(plant=plant, text=text, why=None)
@@ -119,29 +119,31 @@ class Site:
             if names_plants(text):
                 choice = await chosen(text, reaches)
             if choice.plant not in reaches:
-                raise Refused(NO_SUCH(plant=choice.plant) if choice.plant else FORM(example=EXAMPLE))
+                raise TaskRefused(NO_SUCH(plant=choice.plant) if choice.plant else FORM(example=EXAMPLE))
             why = {"why": str(choice.why)[:LONGEST]} if choice.why else {}
             task = await reaches[choice.plant].post("/api/tasks", {"text": choice.text, **why})
             taken = TAKEN(plant=choice.plant, text=str(task["text"]), id=str(task["id"]))
-        except Refused as error:
-            return Asked(good=False, sentence=error.sentence)
-        except (Silent, Said) as error:
-            return Asked(good=False, sentence=NOT_TAKEN(plant=choice.plant, why=error.sentence))
+        except TaskRefused as error:
+            return RequestOutcome(good=False, sentence=error.sentence)
+        except (PlantSilent, PlantRefusal) as error:
+            return RequestOutcome(good=False, sentence=NOT_TAKEN(plant=choice.plant, why=error.sentence))
         except (KeyError, TypeError):
-            return Asked(good=False, sentence=NO_PLANT(url=reaches[choice.plant].place.url))
-        return Asked(good=True, sentence=BOTH(first=taken, second=choice.why) if choice.why else taken)
+            return RequestOutcome(good=False, sentence=NO_PLANT(url=reaches[choice.plant].place.url))
+        return RequestOutcome(
+            good=True, sentence=BOTH(first=taken, second=choice.why) if choice.why else taken
+        )
 
-    async def stop(self, plant: str = "") -> Asked:
+    async def stop(self, plant: str = "") -> RequestOutcome:
         """Have one plant stop, or all of them; who asks for the same meanwhile gets the same answer."""
         running = self._stopping.get(plant)
         if running is None or running.done():
             running = self._stopping[plant] = asyncio.create_task(self._stop(plant))
         return await asyncio.shield(running)
 
-    async def _stop(self, plant: str) -> Asked:
+    async def _stop(self, plant: str) -> RequestOutcome:
         rows = [row for row in self._rows() if plant in ("", row[0])]
         if not rows:
-            return Asked(good=False, sentence=NO_SUCH(plant=plant) if plant else NO_PLANTS())
+            return RequestOutcome(good=False, sentence=NO_SUCH(plant=plant) if plant else NO_PLANTS())
         answers = await asyncio.gather(*(_stop_plant(those) for _, those in rows))
         silent = [
             NOT_STOPPED_THAT(plant=name, why=why)
@@ -149,17 +151,17 @@ class Site:
             if why is not None
         ]
         if silent:
-            return Asked(
+            return RequestOutcome(
                 good=False, sentence=NOT_STOPPED(silent=tuple(silent), count=len(rows) - len(silent))
             )
         if len(rows) == 1:
-            return Asked(good=True, sentence=STOPPED(plants=rows[0][0]))
-        return Asked(good=True, sentence=STOPPED_ALL(count=len(rows)))
+            return RequestOutcome(good=True, sentence=STOPPED(plants=rows[0][0]))
+        return RequestOutcome(good=True, sentence=STOPPED_ALL(count=len(rows)))
 
-    def _rows(self) -> Iterator[tuple[str, list[Watched]]]:
+    def _rows(self) -> Iterator[tuple[str, list[WatchedPlant]]]:
         """The name of each plant, and its addresses, the one where it is led first. Two that both say that
         they lead a plant of that name are two rows: neither may be hidden behind the other."""
-        found: dict[str, list[Watched]] = defaultdict(list)
+        found: dict[str, list[WatchedPlant]] = defaultdict(list)
         for watched in self._watched.values():
             found[watched.name].append(watched)
         for plant, those in sorted(found.items()):
@@ -184,23 +186,23 @@ class Site:
             self._tasks.pop(place).cancel()
         fresh = [place for place in dict.fromkeys(places) if place not in self._watched]
         for number, place in enumerate(fresh):
-            watched = self._watched[place] = Watched(place)
+            watched = self._watched[place] = WatchedPlant(place)
             apart_s = LOOK_S * number / len(fresh)  # so that they are not all looked at in one moment
             self._tasks[place] = asyncio.create_task(watched.follow(apart_s))
 
 
-async def _stop_plant(those: list[Watched]) -> Sentence | None:
+async def _stop_plant(those: list[WatchedPlant]) -> Sentence | None:
     """Say stop wherever the plant may be led; why nobody heard it, None where somebody did."""
     answers = await asyncio.gather(*map(_told_to_stop, those))
     return None if None in answers else answers[0]
 
 
-async def _told_to_stop(watched: Watched) -> Sentence | None:
+async def _told_to_stop(watched: WatchedPlant) -> Sentence | None:
     """Why the stop was not heard there. A connection that lay idle may be closed: then another is tried."""
     for is_last in (False, True):
         try:
             await watched.reach.post("/api/plant/stop")
-        except (Silent, Said) as error:
+        except (PlantSilent, PlantRefusal) as error:
             if is_last or error.sentence.phrase is not NOT_REACHED:
                 return error.sentence
         else:
@@ -208,9 +210,9 @@ async def _told_to_stop(watched: Watched) -> Sentence | None:
     return None
 
 
-def _seen(name: str, those: list[Watched]) -> PlantSeen:
+def _seen(name: str, those: list[WatchedPlant]) -> LastSeenPlant:
     led = those[0]
-    return PlantSeen(
+    return LastSeenPlant(
         name=name,
         url=led.url,
         silent=led.silent,

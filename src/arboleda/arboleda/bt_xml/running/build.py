@@ -9,20 +9,20 @@ from functools import partial
 from arboleda.bt_xml import names, nodes, script, values
 from arboleda.bt_xml.forest import Forest
 from arboleda.bt_xml.forest import Node as Written
-from arboleda.bt_xml.nodes import Kind, Way
+from arboleda.bt_xml.nodes import Kind, PortDirection
 from arboleda.bt_xml.values import Variable
 
 from . import controls, decorators, leaves, nav2, watching
-from .decorators import ALL_DONE, ALL_FAILED, INVERTED, Turned
+from .decorators import ALL_DONE, ALL_FAILED, INVERTED, ResultDecorator
 from .errors import TreeError
 from .memory import Scope, Value
 from .node import FAILURE, RUNNING, SKIPPED, SUCCESS, Clock, Node
-from .ports import Given
+from .ports import NodePorts
 from .scripts import Script
 
 Leaf = Callable[[Written, "list[Node]", Scope], "Node | None"]
 """Makes a node of one's own, around those below it; None where there is no such node."""
-Make = Callable[[str, "list[Node]", Given], Node]
+Make = Callable[[str, "list[Node]", NodePorts], Node]
 
 
 @dataclass(frozen=True)
@@ -54,7 +54,7 @@ class Builder:
         make = MAKERS.get(node.kind)
         if make is not None:
             said = {name: attribute.value for name, attribute in node.ports.items()}
-            return make(node.name or node.kind, below, Given(node.kind, said))
+            return make(node.name or node.kind, below, NodePorts(node.kind, said))
         found = self.leaf(node, below, scope)
         if found is None:
             raise TreeError(f"Arboleda does not run {node.kind}", node.place)
@@ -88,7 +88,7 @@ class Builder:
             text = node.ports[port.name].value
             if port.type == "script":
                 scripts.append(text)
-            elif port.way is not Way.IN or node.kind == "UnsetBlackboard":
+            elif port.way is not PortDirection.IN or node.kind == "UnsetBlackboard":
                 said = values.read(port.name, text)
                 found.add(said.name if isinstance(said, Variable) else said)
         return found.union(*(script.writes(script.parse(text)) for text in scripts))
@@ -106,27 +106,27 @@ def _control(kind: Callable[[str, list[Node]], Node]) -> Make:
     return lambda name, below, given: kind(name, below)
 
 
-def _given(kind: Callable[[str, list[Node], Given], Node]) -> Make:
+def _given(kind: Callable[[str, list[Node], NodePorts], Node]) -> Make:
     return lambda name, below, given: kind(name, below, given)
 
 
-def _around(kind: Callable[[str, Node, Given], Node]) -> Make:
+def _around(kind: Callable[[str, Node, NodePorts], Node]) -> Make:
     return lambda name, below, given: kind(name, below[0], given)
 
 
-def _for_each(name: str, below: list[Node], given: Given) -> Node:
+def _for_each(name: str, below: list[Node], given: NodePorts) -> Node:
     return decorators.ForEach(name, below[0], given, source="vector_in", out="out")
 
 
-def _loop(name: str, below: list[Node], given: Given) -> Node:
+def _loop(name: str, below: list[Node], given: NodePorts) -> Node:
     return decorators.ForEach(name, below[0], given, source="queue", out="value")
 
 
-def _check(name: str, below: list[Node], given: Given, *, same: Callable[[Value, Value], bool]) -> Node:
+def _check(name: str, below: list[Node], given: NodePorts, *, same: Callable[[Value, Value], bool]) -> Node:
     return watching.BlackboardCheck(name, below[0], given, same)
 
 
-def _alone(kind: Callable[[str, Given], Node]) -> Make:
+def _alone(kind: Callable[[str, NodePorts], Node]) -> Make:
     return lambda name, below, given: kind(name, given)
 
 
@@ -152,9 +152,9 @@ MAKERS: Mapping[str, Make] = {
     "SingleTrigger": _around(watching.SingleTrigger),
     "GoalUpdatedController": _around(watching.GoalUpdatedController),
     "RateController": _around(decorators.RateController),
-    "Inverter": lambda name, below, given: Turned(name, below[0], INVERTED),
-    "ForceSuccess": lambda name, below, given: Turned(name, below[0], ALL_DONE),
-    "ForceFailure": lambda name, below, given: Turned(name, below[0], ALL_FAILED),
+    "Inverter": lambda name, below, given: ResultDecorator(name, below[0], INVERTED),
+    "ForceSuccess": lambda name, below, given: ResultDecorator(name, below[0], ALL_DONE),
+    "ForceFailure": lambda name, below, given: ResultDecorator(name, below[0], ALL_FAILED),
     "KeepRunningUntilFailure": _control(decorators.KeepRunningUntilFailure),
     "Repeat": lambda name, below, given: decorators.Loop(
         name, below[0], given, port="num_cycles", goes_on=SUCCESS
@@ -172,8 +172,8 @@ MAKERS: Mapping[str, Make] = {
     "WaitValueUpdate": lambda name, below, given: watching.WhenUpdated(name, below[0], given, RUNNING),
     **{kind: partial(_check, same=same) for kind, same in watching.SAME.items()},
     "WasEntryUpdated": _alone(watching.WasEntryUpdated),
-    "AlwaysSuccess": lambda name, below, given: leaves.Always(name, SUCCESS),
-    "AlwaysFailure": lambda name, below, given: leaves.Always(name, FAILURE),
+    "AlwaysSuccess": lambda name, below, given: leaves.ConstantLeaf(name, SUCCESS),
+    "AlwaysFailure": lambda name, below, given: leaves.ConstantLeaf(name, FAILURE),
     "Script": lambda name, below, given: leaves.RunScript(name, given.said["code"]),
     "ScriptCondition": lambda name, below, given: leaves.ScriptCondition(name, given.said["code"]),
     "SetBlackboard": _alone(leaves.SetBlackboard),

@@ -8,11 +8,11 @@ from typing import ClassVar
 from py_trees.common import Status
 
 from .node import ENDED, FAILURE, PAUSE_S, RUNNING, SKIPPED, SUCCESS, Node, Result
-from .ports import THRESHOLD, Given
+from .ports import THRESHOLD, NodePorts
 from .scripts import ScriptError
 
 
-class Ordered(Node):
+class OrderedControl(Node):
     """One child after the other, until one ends as `stops` says; where it was, it goes on."""
 
     counts = ("at", "skipped")
@@ -55,14 +55,14 @@ class Ordered(Node):
         return self.stops
 
 
-class InSequence(Ordered):
+class InSequence(OrderedControl):
     """Sequence."""
 
     sign = "sequence"
     stops, ends = FAILURE, SUCCESS
 
 
-class InFallback(Ordered):
+class InFallback(OrderedControl):
     """Fallback."""
 
     sign = "selector"
@@ -171,7 +171,7 @@ class ReactiveFallback(Reactive):
     stops, ends = SUCCESS, FAILURE
 
 
-def _threshold(given: Given, port: str, number: float, many: int) -> int:
+def _threshold(given: NodePorts, port: str, number: float, many: int) -> int:
     """How many of so many children a threshold means; a negative one counts from all of them.
 
     BehaviorTree.CPP refuses one that cannot be reached, though the node might end all the same.
@@ -187,7 +187,7 @@ class Parallel(Node):
     sign = "parallel"
     counts = ("ended", "done", "failed")
 
-    def __init__(self, name: str, children: Sequence[Node], given: Given) -> None:
+    def __init__(self, name: str, children: Sequence[Node], given: NodePorts) -> None:
         super().__init__(name, children)
         self.given = given
         self.ended: list[int] = []
@@ -241,7 +241,7 @@ class ParallelAll(Node):
     sign = "parallel"
     counts = ("ended", "failed")
 
-    def __init__(self, name: str, children: Sequence[Node], given: Given) -> None:
+    def __init__(self, name: str, children: Sequence[Node], given: NodePorts) -> None:
         super().__init__(name, children)
         self.given = given
         self.ended: list[int] = []
@@ -334,7 +334,7 @@ class Switch(Node):
 
     counts = ("ran",)
 
-    def __init__(self, name: str, children: Sequence[Node], given: Given) -> None:
+    def __init__(self, name: str, children: Sequence[Node], given: NodePorts) -> None:
         super().__init__(name, children)
         self.given = given
         self.ran: int | None = None

@@ -12,7 +12,7 @@ from arboleda.model.sentence import Phrase
 
 from .memory import Value
 from .node import ENDED, FAILURE, PAUSE_S, RUNNING, SKIPPED, SUCCESS, TICK_S, Decorator, Node, Result
-from .ports import Given
+from .ports import NodePorts
 from .scripts import Script, ScriptError
 
 STATUSES = {each.value: each for each in Result}
@@ -20,7 +20,7 @@ NO_STATUS = Phrase("xml.no_status", "{word} is no status; there are {known}")
 NO_RATE = Phrase("xml.no_rate", "hz of {node} must be more than 0")
 
 
-class Turned(Decorator):
+class ResultDecorator(Decorator):
     """It ends as `ends` says for each end of its child."""
 
     def __init__(self, name: str, child: Node, ends: Mapping[Result, Result]) -> None:
@@ -59,7 +59,7 @@ class Loop(Decorator):
 
     counts = ("rounds",)
 
-    def __init__(self, name: str, child: Node, given: Given, *, port: str, goes_on: Result) -> None:
+    def __init__(self, name: str, child: Node, given: NodePorts, *, port: str, goes_on: Result) -> None:
         super().__init__(name, [child])
         self.given = given
         self.port = port
@@ -97,7 +97,7 @@ class Timed(Decorator):
 
     counts = ("started",)
 
-    def __init__(self, name: str, child: Node, given: Given, port: str) -> None:
+    def __init__(self, name: str, child: Node, given: NodePorts, port: str) -> None:
         super().__init__(name, [child])
         self.given = given
         self.port = port
@@ -157,7 +157,7 @@ class RunOnce(Decorator):
 
     counts = ("ended_as",)
 
-    def __init__(self, name: str, child: Node, given: Given) -> None:
+    def __init__(self, name: str, child: Node, given: NodePorts) -> None:
         super().__init__(name, [child])
         self.given = given
         self.ended_as = ""
@@ -179,7 +179,7 @@ class Precondition(Decorator):
 
     counts = ("is_under_way",)
 
-    def __init__(self, name: str, child: Node, given: Given) -> None:
+    def __init__(self, name: str, child: Node, given: NodePorts) -> None:
         super().__init__(name, [child])
         self.given = given
         self.script = Script.of(given.said["if"])
@@ -210,7 +210,7 @@ class ForEach(Decorator):
     counts = ("left", "number", "is_under_way")
 
     def __init__(
-        self, name: str, child: Node, given: Given, *, source: str, out: str, if_empty: str = "SUCCESS"
+        self, name: str, child: Node, given: NodePorts, *, source: str, out: str, if_empty: str = "SUCCESS"
     ) -> None:
         super().__init__(name, [child])
         self.given = given
@@ -260,7 +260,7 @@ class RateController(Decorator):
 
     counts = ("has_begun",)
 
-    def __init__(self, name: str, child: Node, given: Given) -> None:
+    def __init__(self, name: str, child: Node, given: NodePorts) -> None:
         super().__init__(name, [child])
         self.given = given
         self.has_begun = False

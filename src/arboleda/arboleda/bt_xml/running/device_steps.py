@@ -115,7 +115,7 @@ class Order:
         return value_of(self.kind, self.ports[name], text)
 
 
-class Told(Forgiving):
+class DeviceStep(Forgiving):
     """A step of a device, `built` with some values. What of it are variables is looked up when it begins.
 
     `anew` are the values that it has been given since.
@@ -157,7 +157,7 @@ class Told(Forgiving):
         self.anew = found
 
 
-class Asking(Told):
+class QuestionStep(DeviceStep):
     """A question, whose answer becomes the value of a variable."""
 
     def __init__(
@@ -181,7 +181,7 @@ class Asking(Told):
         return result
 
 
-class Telling(Forgiving):
+class FactStep(Forgiving):
     """What a device says of itself becomes the values of variables; it fails where that said nothing."""
 
     def __init__(

@@ -9,7 +9,7 @@ from functools import partial
 from typing import Any
 
 from arboleda.bt_xml import forest, leaves, values
-from arboleda.bt_xml.nodes import Kind, Way
+from arboleda.bt_xml.nodes import Kind, PortDirection
 from arboleda.bt_xml.values import Variable
 from arboleda.model.facts import Value
 from arboleda.model.messages import Failure, Reason
@@ -22,11 +22,11 @@ from arboleda.trees.context import Context
 from arboleda.trees.leaves import Act, Require, titled
 from arboleda.trees.steps import framed
 
-from .device_steps import Asking, Order, Telling, Told, can_be_renewed, example_of, value_of
+from .device_steps import DeviceStep, FactStep, Order, QuestionStep, can_be_renewed, example_of, value_of
 from .errors import TreeError
 from .memory import Scope
 from .node import Node
-from .own import Calculated, Within
+from .own import FunctionNode, WrapperNode
 from .root import Forgiving
 from .scripts import ScriptError, spelled
 
@@ -90,20 +90,20 @@ class Devices:
             self._fix(order, node, scope)
             order = replace(order, variables={})
         if isinstance(step, Ask) and ANSWER in node.ports:
-            return Asking(name, step, self.context, self.causes, order, built, _variable(node, ANSWER))
-        return Told(name, step, self.context, self.causes, order, built)
+            return QuestionStep(name, step, self.context, self.causes, order, built, _variable(node, ANSWER))
+        return DeviceStep(name, step, self.context, self.causes, order, built)
 
     def _written(
         self, node: forest.Node, kind: Kind, written: WrittenNode, below: list[Node], scope: Scope
     ) -> Node:
         """A node in Python; what its function raises has its place there."""
         name = node.name or node.kind
-        inner = [Within(each, self.context, self.causes) for each in below]
+        inner = [WrapperNode(each, self.context, self.causes) for each in below]
         with _placed(node):
             order = self._order(node, kind, scope, partial(written.build, self.context, inner))
             if not written.is_step:
                 outs = {port: _variable(node, port) for port in written.gives if port in node.ports}
-                return Calculated(name, written, order, outs)
+                return FunctionNode(name, written, order, outs)
             self._fix(order, node, scope)
             now = self._now(order, scope)
         return Forgiving(name, framed(order.make(now)), self.context, self.causes)
@@ -111,7 +111,7 @@ class Devices:
     def _order(
         self, node: forest.Node, kind: Kind, scope: Scope, make: Callable[[dict[str, Value]], Step]
     ) -> Order:
-        ports = {name: port for name, port in (kind.ports or {}).items() if port.way is not Way.OUT}
+        ports = {name: port for name, port in (kind.ports or {}).items() if port.way is not PortDirection.OUT}
         said = {name: values.read(name, node.ports[name].value) for name in ports if name in node.ports}
         written = {
             name: value_of(node.kind, ports[name], each)
@@ -155,7 +155,7 @@ class Devices:
 
         step = Require(leaves.TELLS, self.context, unsaid)
         by_variable = {_variable(node, fact): told for fact, told in said.items()}
-        return Telling(name, step, self.context, self.causes, by_variable)
+        return FactStep(name, step, self.context, self.causes, by_variable)
 
 
 @contextmanager

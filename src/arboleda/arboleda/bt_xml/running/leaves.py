@@ -8,7 +8,7 @@ from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
 from .node import FAILURE, RUNNING, SUCCESS, Node, Result
-from .ports import Given
+from .ports import NodePorts
 from .scripts import Script
 
 
@@ -18,7 +18,7 @@ class Leaf(Node):
     frame = False
 
 
-class Always(Leaf):
+class ConstantLeaf(Leaf):
     """It always ends so."""
 
     def __init__(self, name: str, result: Result) -> None:
@@ -51,7 +51,7 @@ class ScriptCondition(RunScript):
 class SetBlackboard(Leaf):
     """A variable gets a value."""
 
-    def __init__(self, name: str, given: Given) -> None:
+    def __init__(self, name: str, given: NodePorts) -> None:
         super().__init__(name)
         self.given = given
 
@@ -63,7 +63,7 @@ class SetBlackboard(Leaf):
 class UnsetBlackboard(Leaf):
     """A variable loses its value."""
 
-    def __init__(self, name: str, given: Given) -> None:
+    def __init__(self, name: str, given: NodePorts) -> None:
         super().__init__(name)
         self.given = given
 
@@ -75,7 +75,7 @@ class UnsetBlackboard(Leaf):
 class Sleep(Leaf):
     """So many milliseconds, of the time that stands still while the cell is held."""
 
-    def __init__(self, name: str, given: Given) -> None:
+    def __init__(self, name: str, given: NodePorts) -> None:
         super().__init__(name)
         self.given = given
         self.until = 0.0

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from .node import FAILURE, RUNNING, SKIPPED, SUCCESS, Node, Result
-from .ports import Given
+from .ports import NodePorts
 
 AT = "current_child_idx"
 
@@ -15,7 +15,7 @@ class RecoveryNode(Node):
 
     counts = ("recovers", "retries")
 
-    def __init__(self, name: str, children: Sequence[Node], given: Given) -> None:
+    def __init__(self, name: str, children: Sequence[Node], given: NodePorts) -> None:
         super().__init__(name, children)
         self.given = given
         self.recovers = False
@@ -108,7 +108,7 @@ class PersistentSequence(Node):
 
     sign = "sequence"
 
-    def __init__(self, name: str, children: Sequence[Node], given: Given) -> None:
+    def __init__(self, name: str, children: Sequence[Node], given: NodePorts) -> None:
         super().__init__(name, children)
         self.given = given
 
@@ -135,7 +135,7 @@ class RoundRobin(Node):
 
     counts = ("at", "failed")
 
-    def __init__(self, name: str, children: Sequence[Node], given: Given) -> None:
+    def __init__(self, name: str, children: Sequence[Node], given: NodePorts) -> None:
         super().__init__(name, children)
         self.given = given
         self.at = self.failed = 0

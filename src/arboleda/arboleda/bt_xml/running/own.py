@@ -17,7 +17,7 @@ from .node import FAILURE, SUCCESS, Node, Result
 from .root import FAILED
 
 
-class Within(Node):
+class WrapperNode(Node):
     """A node of the tree below a step in Python, which finds the cause of its failure in the context."""
 
     frame = True
@@ -41,7 +41,7 @@ class Within(Node):
         return result
 
 
-class Calculated(Leaf):
+class FunctionNode(Leaf):
     """A function of values, called at each tick; whatever it raises is the tree's."""
 
     def __init__(self, name: str, written: WrittenNode, order: Order, outs: Mapping[str, str]) -> None:

@@ -31,7 +31,7 @@ TYPES = {
 
 
 @dataclass(frozen=True)
-class Given:
+class NodePorts:
     """The ports of one node, by name."""
 
     node: str

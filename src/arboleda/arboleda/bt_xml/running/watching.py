@@ -11,7 +11,7 @@ from .decorators import status
 from .leaves import Leaf
 from .memory import Value
 from .node import FAILURE, RUNNING, SUCCESS, Decorator, Node, Result
-from .ports import Given
+from .ports import NodePorts
 from .scripts import is_true
 
 
@@ -20,7 +20,7 @@ class WasEntryUpdated(Leaf):
 
     counts = ("seen",)
 
-    def __init__(self, name: str, given: Given) -> None:
+    def __init__(self, name: str, given: NodePorts) -> None:
         super().__init__(name)
         self.variable = given.variable("entry")
         self.seen = 0
@@ -35,7 +35,7 @@ class WhenUpdated(Decorator):
 
     counts = ("seen", "is_under_way")
 
-    def __init__(self, name: str, child: Node, given: Given, otherwise: Result) -> None:
+    def __init__(self, name: str, child: Node, given: NodePorts, otherwise: Result) -> None:
         super().__init__(name, [child])
         self.variable = given.variable("entry")
         self.otherwise = otherwise
@@ -58,7 +58,9 @@ class WhenUpdated(Decorator):
 class BlackboardCheck(Decorator):
     """Its child while two values are the same, as version 3 has it."""
 
-    def __init__(self, name: str, child: Node, given: Given, same: Callable[[Value, Value], bool]) -> None:
+    def __init__(
+        self, name: str, child: Node, given: NodePorts, same: Callable[[Value, Value], bool]
+    ) -> None:
         super().__init__(name, [child])
         self.given = given
         self.same = same
@@ -85,7 +87,7 @@ class SingleTrigger(Decorator):
 
     counts = ("has_ended",)
 
-    def __init__(self, name: str, child: Node, given: Given) -> None:
+    def __init__(self, name: str, child: Node, given: NodePorts) -> None:
         super().__init__(name, [child])
         self.has_ended = False
 
@@ -107,7 +109,7 @@ class GoalUpdatedController(Decorator):
 
     counts = ("goals", "is_new")
 
-    def __init__(self, name: str, child: Node, given: Given) -> None:
+    def __init__(self, name: str, child: Node, given: NodePorts) -> None:
         super().__init__(name, [child])
         self.given = given
         self.goals: list[Value | None] = []

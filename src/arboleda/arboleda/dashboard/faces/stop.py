@@ -13,7 +13,7 @@ LATCHED = 4  # MotionState.STOP_LATCHED
 
 
 @dataclass(frozen=True, kw_only=True)
-class Stopped:
+class StopState:
     """The robots under a stop: those that confirmed it, those that have not yet, those that cannot."""
 
     confirmed: tuple[str, ...]
@@ -33,12 +33,12 @@ class Stopped:
         return "partly" if self.free else "stopped"
 
 
-def stopped(snapshot: dict[str, Any], no_stop: frozenset[str]) -> Stopped:
+def stopped(snapshot: dict[str, Any], no_stop: frozenset[str]) -> StopState:
     """`no_stop`: robots whose board knows no latch; of them, standing still has to do."""
     groups: dict[str, list[str]] = {"confirmed": [], "waiting": [], "silent": [], "free": []}
     for robot in snapshot["robots"]:
         groups[_group(robot, no_stop)].append(robot["name"])
-    return Stopped(**{name: tuple(robots) for name, robots in groups.items()})
+    return StopState(**{name: tuple(robots) for name, robots in groups.items()})
 
 
 def _group(robot: dict[str, Any], no_stop: frozenset[str]) -> str:

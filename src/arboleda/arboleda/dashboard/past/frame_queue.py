@@ -11,7 +11,7 @@ BESIDE_S = 0.2  # between two frames beside a plant that runs: all of Python tak
 Made = TypeVar("Made")
 
 
-class Turns:
+class FrameQueue:
     """Has them made in a thread, of all pages one at a time, with `pause_s` after each."""
 
     def __init__(self, pause_s: float = 0.0) -> None:

@@ -12,7 +12,7 @@ from ..shell import Parts
 from ..twin import pane, window
 from ..wording import words
 from . import bar
-from .frame_queue import Turns
+from .frame_queue import FrameQueue
 from .side import PastSide
 from .stills import Stills
 from .visitor import Arrival, Visitor
@@ -36,7 +36,7 @@ def asked(request: Request) -> bool:
 def mount(server: FastAPI, side: PastSide) -> None:
     """Put the page on a record at `/` of this app, for whom no plant runs; StartError where this process
     shows a page already."""
-    stills, turns = Stills(), Turns()
+    stills, turns = Stills(), FrameQueue()
 
     def build(request: Request, client: Client) -> None:
         open_page(client, side, stills, turns, request)
@@ -49,7 +49,7 @@ def open_page(
     client: Client,
     side: PastSide,
     stills: Stills,
-    turns: Turns,
+    turns: FrameQueue,
     request: Request,
     *,
     beside: bool = False,

@@ -17,7 +17,7 @@ from ..faces.moment import Moment
 from ..wording import words
 from . import still
 from .moments import moment_of, nanoseconds, until_ns
-from .tree_history import TreesThen
+from .tree_history import TreeHistory
 
 SHOWN_EVENTS = 1000
 MARKS = 500  # on the slider, at most; more could not be told apart
@@ -47,7 +47,7 @@ class Past:
         self._events = list(views.events())
         self._happened_ns = [nanoseconds(each["at"]) for each in self._events]
         self._moments = lru_cache(None)(self._found)
-        self._trees = TreesThen(partial(followed, views), self._events, self._cells, views.began_ns)
+        self._trees = TreeHistory(partial(followed, views), self._events, self._cells, views.began_ns)
         self.began, self.ended = moment_of(views.began_ns / 1e9), moment_of(views.ended_ns / 1e9)
 
     def failures(self, cell: str | None = None) -> Sequence[int]:

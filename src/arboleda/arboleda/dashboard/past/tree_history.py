@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from arboleda.recorder.cell_history import Looked
+from arboleda.recorder.cell_history import CellMoment
 
 from ..tree_memory import EndedTree, TreeMemory
 from .moments import BESIDE_NS, nanoseconds
@@ -18,7 +18,7 @@ KEPT = 30  # tasks whose changes are kept, those that were asked for last
 Row = dict[str, Any]
 
 
-Follow = Callable[[str, int, int], Iterable[Looked]]
+Follow = Callable[[str, int, int], Iterable[CellMoment]]
 
 
 @dataclass
@@ -30,11 +30,11 @@ class Run:
     began_ns: int
     until_ns: int
     next_ns: int | None = None
-    looked: list[Looked] = field(default_factory=list)
+    looked: list[CellMoment] = field(default_factory=list)
 
 
 @dataclass
-class Come:
+class TreeState:
     """A tree that has seen the first `count` changes of a run, the last of them at `at_ns`."""
 
     run: Run
@@ -42,14 +42,14 @@ class Come:
     count: int = 0
     at_ns: int = 0
 
-    def see(self, looked: Iterable[Looked]) -> None:
+    def see(self, looked: Iterable[CellMoment]) -> None:
         """All changes up to a moment, those that it has seen too."""
         for each in [*looked][self.count :]:
             self.memory.see(each.cell, each.tasks, each.unix_ns / 1e9)
             self.count, self.at_ns = self.count + 1, each.unix_ns
 
 
-class TreesThen:
+class TreeHistory:
     """What each node had come to follows from all that its task did, so that is followed up to the moment.
 
     `follow(cell, after_ns, until_ns)` has each change of a cell in that time; `events` are the time line.
@@ -59,7 +59,7 @@ class TreesThen:
         self._follow = follow
         self._runs = {cell: _runs(events, cell, began_ns) for cell in cells}
         self._kept: list[Run] = []
-        self._coming: dict[str, Come] = {}
+        self._coming: dict[str, TreeState] = {}
 
     def at(self, cell: str, at_ns: int, snapshot: Row) -> TreeMemory:
         """The tree of a cell; the snapshot is that of the moment."""
@@ -68,11 +68,11 @@ class TreesThen:
         memory.see(row, snapshot["tasks"], at_ns / 1e9)
         return memory
 
-    def _come(self, cell: str, at_ns: int) -> Come:
+    def _come(self, cell: str, at_ns: int) -> TreeState:
         """A tree that has come to a moment: on from where it was, where that is on the way."""
         run, come = self._run(cell, at_ns), self._coming.get(cell)
         if come is None or come.run is not run or come.at_ns > at_ns:
-            come = self._coming[cell] = Come(run, TreeMemory())
+            come = self._coming[cell] = TreeState(run, TreeMemory())
         come.see(self._looked(run, at_ns))
         return come
 
@@ -91,7 +91,7 @@ class TreesThen:
         begun = bisect_right(self._runs[cell], at_ns, key=lambda run: run.began_ns)
         return self._runs[cell][max(0, begun - 1)]
 
-    def _looked(self, run: Run, at_ns: int) -> Iterator[Looked]:
+    def _looked(self, run: Run, at_ns: int) -> Iterator[CellMoment]:
         """What became of it up to a moment."""
         upto_ns = at_ns if run.next_ns is None else min(at_ns, run.next_ns)
         if upto_ns > run.until_ns:

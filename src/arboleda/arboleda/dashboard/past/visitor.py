@@ -15,7 +15,7 @@ from arboleda.views.changes import changed
 
 from ..faces import Face
 from ..wording import Words
-from .frame_queue import Turns
+from .frame_queue import FrameQueue
 from .moments import dated
 from .side import PastSide, Start
 from .stills import Stills
@@ -46,7 +46,13 @@ class Visitor:
     """One open page. Its moment changes at once with each event, frames follow as fast as they are made."""
 
     def __init__(
-        self, client: Client, side: PastSide, stills: Stills, turns: Turns, words: Words, arrival: Arrival
+        self,
+        client: Client,
+        side: PastSide,
+        stills: Stills,
+        turns: FrameQueue,
+        words: Words,
+        arrival: Arrival,
     ) -> None:
         self._client = client
         self._side = side

@@ -12,14 +12,14 @@ from ..faces import Face
 from ..faces.oee import UNKNOWN
 from ..faces.whole_page import WELL, WORST
 from ..wording import Words
-from .side import PlantSeen
+from .side import LastSeenPlant
 
 SILENT = "offline"
 ORDER = (SILENT, *WORST)
 Row = dict[str, Any]
 
 
-def face(plants: Sequence[PlantSeen], words: Words) -> Face:
+def face(plants: Sequence[LastSeenPlant], words: Words) -> Face:
     """A row for each plant, the one that needs somebody most first; and what they all come to."""
     in_order = sorted(plants, key=lambda plant: (ORDER.index(state_of(plant)), plant.name))
     found: Face = {"rows/plants": [plant.name for plant in in_order]}
@@ -28,7 +28,7 @@ def face(plants: Sequence[PlantSeen], words: Words) -> Face:
     return found | {"text/sum": _sum(plants, words), "text/title": _title(plants, words)}
 
 
-def state_of(plant: PlantSeen) -> str:
+def state_of(plant: LastSeenPlant) -> str:
     """The worst of its cells', SILENT where it does not answer."""
     if plant.silent is not None or plant.snapshot is None:
         return SILENT
@@ -45,7 +45,7 @@ def whole_oee(rows: Iterable[Row]) -> float | None:
     return sum(share * seconds for share, seconds in known) / planned_s if planned_s else None
 
 
-def _row(plant: PlantSeen, words: Words) -> Row:
+def _row(plant: LastSeenPlant, words: Words) -> Row:
     state = state_of(plant)
     tasks = _tasks(plant)
     texts = [
@@ -66,7 +66,7 @@ def _row(plant: PlantSeen, words: Words) -> Row:
     }
 
 
-def _stop(plant: PlantSeen, words: Words) -> Row:
+def _stop(plant: LastSeenPlant, words: Words) -> Row:
     return {
         "act": "stop",
         "of": plant.name,
@@ -79,11 +79,11 @@ def _said(state: str, words: Words) -> str:
     return words("site.silent") if state == SILENT else words.cell(state)
 
 
-def _is_heard(plant: PlantSeen) -> bool:
+def _is_heard(plant: LastSeenPlant) -> bool:
     return state_of(plant) != SILENT
 
 
-def _why(plant: PlantSeen, words: Words) -> str:
+def _why(plant: LastSeenPlant, words: Words) -> str:
     """Why it is silent, or what is in the way of its cells; and whether somebody stands by."""
     parts = [words.say(plant.silent)] if plant.silent is not None else []
     for cell in plant.snapshot["cells"] if plant.snapshot and plant.silent is None else ():
@@ -96,17 +96,17 @@ def _why(plant: PlantSeen, words: Words) -> str:
     return "; ".join(parts)
 
 
-def _tasks(plant: PlantSeen) -> Counter[str]:
+def _tasks(plant: LastSeenPlant) -> Counter[str]:
     tasks = plant.snapshot["tasks"] if plant.snapshot and _is_heard(plant) else ()
     return Counter(task["state"] for task in tasks)
 
 
-def _ended(plants: Iterable[PlantSeen]) -> dict[str, int]:
+def _ended(plants: Iterable[LastSeenPlant]) -> dict[str, int]:
     rows = [row for plant in plants for row in plant.oee]
     return {key: sum(row[key] for row in rows) for key in ("done", "failed")}
 
 
-def _sum(plants: Sequence[PlantSeen], words: Words) -> list[str]:
+def _sum(plants: Sequence[LastSeenPlant], words: Words) -> list[str]:
     """How many plants are in which state, the worst of them colours it; tasks and OEE of all."""
     states = Counter(map(state_of, plants))
     there = [state for state in ORDER if state in states]
@@ -123,7 +123,7 @@ def _sum(plants: Sequence[PlantSeen], words: Words) -> list[str]:
     return [" · ".join(figures), there[0] if there else ""]
 
 
-def _title(plants: Sequence[PlantSeen], words: Words) -> list[str]:
+def _title(plants: Sequence[LastSeenPlant], words: Words) -> list[str]:
     """What a browser's tab says: the plants that need somebody."""
     bad = sorted(plant.name for plant in plants if state_of(plant) not in WELL)
     if not bad:

@@ -24,7 +24,7 @@ from ..shell import language_of, role_shown
 from ..tags import act_button, rows, tag
 from ..wording import Words, words
 from .face import face
-from .side import Asked, SiteSide
+from .side import RequestOutcome, SiteSide
 
 FRAME_S = 0.5
 BEAT = 2  # frames after which pages are told that the site is there
@@ -118,7 +118,7 @@ class Desk(OpenPage):
         if not allowed(self.role, act):
             self.say(self._words("page.not_allowed", act=self._words.of("verb", act)), good=False)
             return
-        answer: Asked
+        answer: RequestOutcome
         if act == SUBMIT:
             answer = await self._site.submit(of, more[:LONGEST] if isinstance(more, str) else "")
         else:

@@ -9,7 +9,7 @@ from arboleda.model.sentence import Sentence
 
 
 @dataclass(frozen=True, kw_only=True)
-class PlantSeen:
+class LastSeenPlant:
     """A plant as it was seen last.
 
     `name` is that of its row, `url` its page, "" where nobody leads it. `silent` says why it does not answer
@@ -26,7 +26,7 @@ class PlantSeen:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Asked:
+class RequestOutcome:
     """What became of something that was asked of plants."""
 
     good: bool
@@ -36,9 +36,9 @@ class Asked:
 class SiteSide(Protocol):
     """Watches the plants, and asks them."""
 
-    def plants(self) -> list[PlantSeen]: ...
-    async def submit(self, plant: str, text: str) -> Asked: ...
-    async def stop(self, plant: str = "") -> Asked:
+    def plants(self) -> list[LastSeenPlant]: ...
+    async def submit(self, plant: str, text: str) -> RequestOutcome: ...
+    async def stop(self, plant: str = "") -> RequestOutcome:
         """The software stop of one plant, or of all of them; says which did not answer."""
         ...
 

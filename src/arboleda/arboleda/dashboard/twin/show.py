@@ -18,7 +18,7 @@ BEHIND = 20  # frames that a browser may not have drawn yet; it gets no more bef
 log = logging.getLogger(__name__)
 
 
-class Looker(Protocol):
+class TwinViewer(Protocol):
     """One browser that looks."""
 
     @property
@@ -28,7 +28,7 @@ class Looker(Protocol):
         """Send one frame: its number from 1 on, and what changed as JSON."""
 
 
-class Seen:
+class ViewerProgress:
     """How far one looker is: how many frames were sent to it, and how many of them it has drawn."""
 
     def __init__(self) -> None:
@@ -43,7 +43,7 @@ class Show:
     def __init__(self, plant: PlantSide) -> None:
         self._plant = plant
         self._twin: Twin | None = None
-        self._lookers: dict[Looker, Seen] = {}
+        self._lookers: dict[TwinViewer, ViewerProgress] = {}
         self._frame: dict[str, Any] = {}
         self._wanted: asyncio.Event | None = None
 
@@ -51,16 +51,16 @@ class Show:
         """What there is to draw; from any thread."""
         self._twin = twin
 
-    def look(self, looker: Looker) -> None:
+    def look(self, looker: TwinViewer) -> None:
         """It wants frames from now on, everything first."""
-        self._lookers[looker] = Seen()
+        self._lookers[looker] = ViewerProgress()
         if self._wanted is not None:
             self._wanted.set()
 
-    def leave(self, looker: Looker) -> None:
+    def leave(self, looker: TwinViewer) -> None:
         self._lookers.pop(looker, None)
 
-    def drawn(self, looker: Looker, number: int) -> None:
+    def drawn(self, looker: TwinViewer, number: int) -> None:
         """It says which frame it has drawn."""
         seen = self._lookers.get(looker)
         if seen is not None and 0 <= number <= seen.sent:
@@ -98,7 +98,7 @@ class Show:
             seen.whole = False
 
 
-def _ready(looker: Looker, seen: Seen) -> bool:
+def _ready(looker: TwinViewer, seen: ViewerProgress) -> bool:
     """Whether it takes a frame; one that is away or behind is told everything later."""
     if looker.connected and seen.sent - seen.drawn <= BEHIND:
         return True

@@ -20,7 +20,7 @@ class Twin:
         self.scene = scene(places, drawings)
         self._places = places
         self._drawings = drawings
-        self._followed = Followed(places, drawings)
+        self._followed = TwinTracker(places, drawings)
 
     def frame(self, positions: Row, now: float) -> Row:
         """By robot/<name>, part/<cell>, stored/<cell>, zone/<name>: what is drawn at `now` of the plant."""
@@ -28,10 +28,10 @@ class Twin:
 
     def still(self, positions: Row) -> Row:
         """The same of one moment alone, whatever was drawn before; `positions` have their `now`."""
-        return Followed(self._places, self._drawings).frame(positions, positions["now"])
+        return TwinTracker(self._places, self._drawings).frame(positions, positions["now"])
 
 
-class Followed:
+class TwinTracker:
     """Robots and parts from frame to frame, as far as what is drawn of them depends on those before."""
 
     def __init__(self, places: Row, drawings: Mapping[str, Body]) -> None:

@@ -61,20 +61,20 @@ def bring_three() -> None:
     _ = ui.scene
 
 
-class Drawn(Protocol):
+class DrawablePlant(Protocol):
     """A plant that can be drawn."""
 
     def layout(self) -> dict[str, Any]: ...
     def urdf(self, robot: str) -> str: ...
 
 
-class Opened(Protocol):
+class TwinOpening(Protocol):
     """What begins once there is a twin to draw; told from any thread."""
 
     def open(self, twin: Twin) -> None: ...
 
 
-def serve(server: FastAPI, plant: Drawn, *shows: Opened) -> None:
+def serve(server: FastAPI, plant: DrawablePlant, *shows: TwinOpening) -> None:
     """Have the browser's `SCENE` answered, and the shows opened by the first who asks."""
     store = _Store(plant, shows)
     server.add_api_route(SCENE, store.answer, include_in_schema=False)
@@ -83,7 +83,7 @@ def serve(server: FastAPI, plant: Drawn, *shows: Opened) -> None:
 class _Store:
     """The scene, made once, when somebody first wants to see it: drawing robots takes a while."""
 
-    def __init__(self, plant: Drawn, shows: Sequence[Opened]) -> None:
+    def __init__(self, plant: DrawablePlant, shows: Sequence[TwinOpening]) -> None:
         self._plant = plant
         self._shows = shows
         self._making = threading.Lock()

@@ -15,7 +15,7 @@ from arboleda.model.plant_model import MotionState, Robot
 
 from .alarms import named
 from .frames import Feedback, FrameReader, Mode
-from .replies import Nonsense, Reply, ReplyReader
+from .replies import NotAReply, Reply, ReplyReader
 from .settings import Settings
 from .work import ALARM, BROKEN, SETTLE_S, Look, Move, Readying, Work
 
@@ -43,7 +43,7 @@ STATES = {
 
 
 @dataclass(frozen=True, kw_only=True)
-class Opened:
+class ConnectionsOpened:
     """Both connections are there."""
 
 
@@ -55,21 +55,21 @@ class Closed:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Answered:
+class DashboardReply:
     """The dashboard sent this."""
 
     data: bytes
 
 
 @dataclass(frozen=True, kw_only=True)
-class Fed:
+class FeedbackData:
     """The feedback port sent this."""
 
     data: bytes
 
 
 @dataclass(frozen=True, kw_only=True)
-class Asked:
+class CommandRequest:
     """The plant commands the arm."""
 
     command: Command
@@ -86,21 +86,21 @@ class Close:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Say:
+class SendLine:
     """Send this to the dashboard."""
 
     text: str
 
 
 @dataclass(frozen=True, kw_only=True)
-class Unsent:
+class CommandNotSent:
     """The command that was asked for cannot leave."""
 
     why: str
 
 
-Event = Opened | Closed | Answered | Fed | Asked
-Message = Open | Close | Say | Unsent | Report
+Event = ConnectionsOpened | Closed | DashboardReply | FeedbackData | CommandRequest
+Message = Open | Close | SendLine | CommandNotSent | Report
 Take = Callable[[float, Reply], None]
 
 
@@ -152,16 +152,16 @@ class Machine:
         return out
 
     def _take(self, now: float, event: Event) -> None:
-        if isinstance(event, Asked):
+        if isinstance(event, CommandRequest):
             self._ask(now, event.command)
-        elif isinstance(event, Opened):
+        elif isinstance(event, ConnectionsOpened):
             self._opened(now)
         elif isinstance(event, Closed):
             if self._open or self._open_at == math.inf:  # else it was closed from here
                 self._lose(now, event.why)
-        elif self._open and isinstance(event, Answered):
+        elif self._open and isinstance(event, DashboardReply):
             self._answered(now, event.data)
-        elif self._open and isinstance(event, Fed):
+        elif self._open and isinstance(event, FeedbackData):
             for feedback in self._frames.feed(event.data):
                 self._look(now, feedback)
 
@@ -214,25 +214,25 @@ class Machine:
 
     def _say(self, now: float, text: str, take: Take) -> None:
         self._pending.append(Pending(name=text.partition("(")[0], at=now, take=take))
-        self._out.append(Say(text=text))
+        self._out.append(SendLine(text=text))
 
     def _answered(self, now: float, data: bytes) -> None:
         try:
             for reply in self._replies.feed(data):
                 if not self._pending:
-                    raise Nonsense(f"nobody asked for an answer to {reply.command}")
+                    raise NotAReply(f"nobody asked for an answer to {reply.command}")
                 first = self._pending.popleft()
                 if reply.command and reply.command.lower() != first.name.lower():
-                    raise Nonsense(f"it answers {reply.command} where {first.name} was said")
+                    raise NotAReply(f"it answers {reply.command} where {first.name} was said")
                 first.take(now, reply)
-        except Nonsense as error:
+        except NotAReply as error:
             self._close(now, str(error))
 
     # What it is told.
 
     def _ask(self, now: float, command: Command) -> None:
         if not self._open:
-            self._out.append(Unsent(why=f"{self._settings.host} is not connected"))
+            self._out.append(CommandNotSent(why=f"{self._settings.host} is not connected"))
         elif isinstance(command, Stop):
             self._ask_stop(now, command)
         elif isinstance(command, SetEffector):
@@ -245,7 +245,7 @@ class Machine:
             self._work = Readying(command.id, now)
             self._tell(accepted=command.id)
         else:
-            self._out.append(Unsent(why=f"a Dobot has no word for {type(command).__name__}"))
+            self._out.append(CommandNotSent(why=f"a Dobot has no word for {type(command).__name__}"))
 
     def _move(self, now: float, command: MoveJoints) -> None:
         move = Move(command.id, lambda feedback: self._arm.stands_at(_radians(feedback), command.q))
@@ -253,7 +253,7 @@ class Machine:
 
         def take(now: float, reply: Reply) -> None:
             if reply.error == 0 and reply.number is None:
-                raise Nonsense(f"it has taken {reply.command} without a number")
+                raise NotAReply(f"it has taken {reply.command} without a number")
             if reply.error == 0 and reply.number is not None:
                 move.taken(now, reply.number)
                 self._tell(accepted=command.id)
@@ -266,7 +266,7 @@ class Machine:
     def _switch(self, now: float, command: SetEffector) -> None:
         output = self._settings.tool_output
         if output is None:
-            self._out.append(Unsent(why="it has no tool_output in the plant file"))
+            self._out.append(CommandNotSent(why="it has no tool_output in the plant file"))
             return
 
         def take(now: float, reply: Reply) -> None:

@@ -54,7 +54,7 @@ NOT_TCP = Reply(error=-1, values="", command="")
 """The controller is not in its TCP mode; it says so without the form of a reply."""
 
 
-class Nonsense(ValueError):
+class NotAReply(ValueError):
     """What came is no reply, and nobody knows to which command the next one belongs."""
 
 
@@ -70,18 +70,18 @@ class ReplyReader:
         while OTHER_MODE in text:
             before, _, text = text.partition(OTHER_MODE)
             if before.strip(" \r\n\t;\0"):
-                raise Nonsense("it says that it is not in TCP mode in the middle of a reply")
+                raise NotAReply("it says that it is not in TCP mode in the middle of a reply")
             text = text.lstrip(" \r\n\t;.")
             self._rest = text
             return [NOT_TCP, *self.feed(b"")]
         *whole, self._rest = text.split(";")
         if len(self._rest) > LONGEST:
-            raise Nonsense("a reply does not end")
+            raise NotAReply("a reply does not end")
         return [_reply(each) for each in whole]
 
 
 def _reply(text: str) -> Reply:
     found = REPLY.fullmatch(text)
     if found is None:
-        raise Nonsense(f"{text[:60]!r} is no reply")
+        raise NotAReply(f"{text[:60]!r} is no reply")
     return Reply(error=int(found[1]), values=found[2].strip(), command=found[3])

@@ -11,11 +11,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from arboleda.kinds.declared import Device, Told
+from arboleda.kinds.declared import Device, VerbCall
 from arboleda.model.commands import Command, Work
 from arboleda.model.plant_model import Robot
 
-from ..ros_action.events import Ended, Seen, Status
+from ..ros_action.events import GoalResult, Measurement, Status
 from ..ros_action.joints import Joints
 from ..ros_action.machine import Machine
 from ..ros_action.mover import NoGoal, failure
@@ -60,7 +60,7 @@ class GripperMover:
         assert self._joint.q is not None
         return self._settings.width(self._joint.q[0])
 
-    def see(self, now: float, seen: Seen) -> bool:
+    def see(self, now: float, seen: Measurement) -> bool:
         if not self._joint.see(now, seen):
             return False
         if self._gripped and not self._near(self._held_mm):
@@ -71,7 +71,7 @@ class GripperMover:
         return self._joint.missing(now)
 
     def goals(self, command: Command) -> tuple[Width, ...]:
-        if not isinstance(command, Told):
+        if not isinstance(command, VerbCall):
             raise NoGoal(f"a gripper has no word for {type(command).__name__}")
         values, grips = dict(command.values), ("gripped", True) in command.sets
         width_mm = float(values.get("width_mm", 0.0 if grips else self._settings.width_mm))
@@ -99,7 +99,7 @@ class GripperMover:
     def rests(self, now: float, since: float = 0.0) -> bool:
         return self._joint.rest.holds(now, since)
 
-    def failure(self, end: Ended, goal: Width) -> str:
+    def failure(self, end: GoalResult, goal: Width) -> str:
         if end.stalled and end.status in (Status.SUCCEEDED, Status.ABORTED):
             return "" if goal.grips else "stalled"  # what fingers show decides whether they have a part
         return failure(end, {})

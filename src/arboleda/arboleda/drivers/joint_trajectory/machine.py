@@ -10,7 +10,7 @@ from arboleda.kinds.arm import Arm, MoveJoints
 from arboleda.model.commands import Command
 from arboleda.model.plant_model import Robot
 
-from ..ros_action.events import Ended, Seen
+from ..ros_action.events import GoalResult, Measurement
 from ..ros_action.joints import Joints
 from ..ros_action.machine import Machine
 from ..ros_action.mover import NoGoal, failure
@@ -45,7 +45,7 @@ class ArmMover:
         self._arm, self._settings = arm, settings
         self._joints = Joints(settings.joint_names(arm), settings.joint_states)
 
-    def see(self, now: float, seen: Seen) -> bool:
+    def see(self, now: float, seen: Measurement) -> bool:
         return self._joints.see(now, seen)
 
     def missing(self, now: float) -> str:
@@ -67,7 +67,7 @@ class ArmMover:
     def rests(self, now: float, since: float = 0.0) -> bool:
         return self._joints.rest.holds(now, since)
 
-    def failure(self, end: Ended, goal: Trajectory) -> str:
+    def failure(self, end: GoalResult, goal: Trajectory) -> str:
         return failure(end, ERRORS)
 
     def objection(self, goal: Trajectory) -> str:

@@ -9,15 +9,15 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
-from arboleda.kinds.declared import Device, Effect, Told
+from arboleda.kinds.declared import Device, Effect, VerbCall
 from arboleda.model.commands import Command, Stop, StopMode
 from arboleda.model.facts import Value
 from arboleda.model.messages import Report
 from arboleda.model.plant_model import Robot
 
 from ..plc.numbers import Numbers
-from ..plc.plc_snapshot import Question, Shown, report
-from ..plc.program_watch import Alive
+from ..plc.plc_snapshot import PlcSnapshot, Question, report
+from ..plc.program_watch import ProgramWatch
 from ..port import DriverError, NotSent
 from .registers import Register, Write
 from .settings import Settings
@@ -38,7 +38,7 @@ class Block:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Put:
+class WriteRequest:
     """Values for neighbouring coils or registers, written with one request."""
 
     table: str
@@ -56,7 +56,7 @@ class ModbusDevice:
         self._numbers = Numbers()
         self._written = 0  # the number that stands where it is written: a PLC notices only another one
         self._asked: tuple[int, Register, type[Value]] | None = None
-        self._alive = Alive(settings.alive_s)
+        self._alive = ProgramWatch(settings.alive_s)
         read = [register for _, register in readings(settings)]
         written = [settings.sequence.write] if settings.sequence is not None else []
         self.blocks = blocks(read)
@@ -72,11 +72,11 @@ class ModbusDevice:
         self._asked = None
         self._alive.begin()
 
-    def order(self, command: Command) -> tuple[Put, ...]:
+    def order(self, command: Command) -> tuple[WriteRequest, ...]:
         """What is written for a command, in this order; NotSent where the mapping has no word for it."""
         if isinstance(command, Stop):
             return self._stop(command.mode)
-        if not isinstance(command, Told) or command.verb not in self._settings.verbs:
+        if not isinstance(command, VerbCall) or command.verb not in self._settings.verbs:
             raise NotSent(f"the mapping of {self._device.name} has no word for {type(command).__name__}")
         verb = self._settings.verbs[command.verb]
         puts = [put(write, dict(command.values)) for write in verb.write]
@@ -84,7 +84,7 @@ class ModbusDevice:
         if sequence is not None:
             self._written = number = self._numbers.give(command.id)
             there = sequence.write
-            puts.append(Put(table="holding", address=there.address, values=there.raw(number)))
+            puts.append(WriteRequest(table="holding", address=there.address, values=there.raw(number)))
             if command.told.effect is Effect.QUERY and verb.answer is not None:
                 self._asked = (number, verb.answer, type(command.told.answers[0]))
         return joined(puts)
@@ -98,7 +98,7 @@ class ModbusDevice:
         state = settings.state
         echo, words = self._echo(raw), self._words(raw)
         self._numbers.see({*echo.values(), self._written})
-        shown = Shown(
+        shown = PlcSnapshot(
             state="stopped" if state is None else str(state.read(taken(state, raw), str)),
             facts=tuple(
                 (name, register.read(taken(register, raw), kinds[name].type))
@@ -114,7 +114,7 @@ class ModbusDevice:
         )
         return report(self._device.name, at, shown, self._numbers, self._answer(raw, shown.done))
 
-    def _stop(self, mode: StopMode) -> tuple[Put, ...]:
+    def _stop(self, mode: StopMode) -> tuple[WriteRequest, ...]:
         settings = self._settings
         writes = settings.halt
         if mode is StopMode.LATCH:
@@ -193,19 +193,19 @@ def taken(register: Register, raw: Raw) -> list[int]:
     return [raw[register.table, register.address + at] for at in range(register.length)]
 
 
-def put(write: Write, values: Mapping[str, Value]) -> Put:
+def put(write: Write, values: Mapping[str, Value]) -> WriteRequest:
     """A write with the values of its verb."""
     value = write.value if write.parameter is None else values[write.parameter]
-    return Put(table=write.table, address=write.address, values=write.raw(value))
+    return WriteRequest(table=write.table, address=write.address, values=write.raw(value))
 
 
-def joined(puts: list[Put]) -> tuple[Put, ...]:
+def joined(puts: list[WriteRequest]) -> tuple[WriteRequest, ...]:
     """The same, neighbours that follow one another in one request: their order stays."""
-    out: list[Put] = []
+    out: list[WriteRequest] = []
     for each in puts:
         last = out[-1] if out else None
         if last is not None and last.table == each.table and last.address + len(last.values) == each.address:
-            out[-1] = Put(table=last.table, address=last.address, values=last.values + each.values)
+            out[-1] = WriteRequest(table=last.table, address=last.address, values=last.values + each.values)
         else:
             out.append(each)
     return tuple(out)

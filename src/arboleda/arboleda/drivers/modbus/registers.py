@@ -12,7 +12,7 @@ from arboleda.drivers.port import DriverError
 from arboleda.model.facts import Value
 from arboleda.model.outside import quoted
 
-from ..plc.plc_snapshot import Unreadable
+from ..plc.plc_snapshot import UnreadableValue
 
 Order = Literal["big", "little"]
 Form = Literal["uint16", "int16", "uint32", "int32", "float32", "uint64", "int64", "float64"]
@@ -101,14 +101,14 @@ class Register:
         if of is bool:
             if number in (0, 1):
                 return bool(number)
-            raise Unreadable(f"{self} is {number}; a bool is 0 or 1")
+            raise UnreadableValue(f"{self} is {number}; a bool is 0 or 1")
         scaled = number * self.scale + self.offset
         if not math.isfinite(scaled):
-            raise Unreadable(f"{self} is {number}, which is no number")
+            raise UnreadableValue(f"{self} is {number}, which is no number")
         if of is int and self.scale == 1 and float(self.offset).is_integer():
             return int(scaled)
         if of is int and abs(scaled - round(scaled)) > 1e-6:
-            raise Unreadable(f"{self} is {scaled:g}, which is no whole number")
+            raise UnreadableValue(f"{self} is {scaled:g}, which is no whole number")
         return round(scaled) if of is int else float(scaled)
 
     def raw(self, value: Value) -> tuple[int, ...]:
@@ -137,7 +137,7 @@ class Register:
         word = next((word for word, held in self.words.items() if held == number), None)
         if word is None:
             known = ", ".join(self.words)
-            raise Unreadable(f"{self} is {number}, for which there is no word ({known})")
+            raise UnreadableValue(f"{self} is {number}, for which there is no word ({known})")
         return word
 
     def _bytes(self, packed: bytes) -> bytes:

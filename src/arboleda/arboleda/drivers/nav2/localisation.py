@@ -11,7 +11,7 @@ import math
 from collections import deque
 from dataclasses import dataclass
 
-from ..ros_action.events import Seen
+from ..ros_action.events import Measurement
 from ..ros_action.goal import Rest
 from .pose import Pose, wrapped
 
@@ -22,14 +22,14 @@ STILL_M = 0.005  # or rad; less than this is noise
 
 
 @dataclass(frozen=True, kw_only=True)
-class Localised(Seen):
+class MapPose(Measurement):
     """Localisation says where the base is on the map."""
 
     pose: Pose
 
 
 @dataclass(frozen=True, kw_only=True)
-class Counted(Seen):
+class OdometryPose(Measurement):
     """Odometry says how far the base has come, from wherever it began."""
 
     pose: Pose
@@ -42,8 +42,8 @@ class Localisation:
         self.heard_at = -math.inf
         self.rest = Rest(STILL_M)
         self._odometry, self._localisation, self._far_m = odometry, localisation, far_m
-        self._counted: deque[Counted] = deque(maxlen=KEPT)
-        self._early: Localised | None = None  # came before any odometry
+        self._counted: deque[OdometryPose] = deque(maxlen=KEPT)
+        self._early: MapPose | None = None  # came before any odometry
         self._map: Pose | None = None  # where odometry began, on the map
         self._gone_m = 0.0  # since localisation spoke
         self._turned = 0.0  # without a jump from pi to -pi
@@ -55,11 +55,11 @@ class Localisation:
             return None
         return self._map @ self._counted[-1].pose
 
-    def see(self, now: float, seen: Seen) -> bool:
+    def see(self, now: float, seen: Measurement) -> bool:
         """Whether that is news: a pose without a number, or with the time of the one before, is none."""
-        if isinstance(seen, Counted) and seen.pose.is_finite:
+        if isinstance(seen, OdometryPose) and seen.pose.is_finite:
             return self._count(now, seen)
-        if isinstance(seen, Localised) and seen.pose.is_finite:
+        if isinstance(seen, MapPose) and seen.pose.is_finite:
             self._localise(seen)
         return False
 
@@ -72,7 +72,7 @@ class Localisation:
             return f"{self._localisation} has said nothing new over {self._far_m:g} m of way"
         return ""
 
-    def _count(self, now: float, seen: Counted) -> bool:
+    def _count(self, now: float, seen: OdometryPose) -> bool:
         before = self._counted[-1] if self._counted else None
         if before is not None and before.stamp == seen.stamp:
             return False
@@ -89,7 +89,7 @@ class Localisation:
         self.rest.look(now, (seen.pose.x, seen.pose.y, self._turned))
         return self._map is not None
 
-    def _localise(self, seen: Localised) -> None:
+    def _localise(self, seen: MapPose) -> None:
         """Odometry of the same time says where it began on the map."""
         if not self._counted:
             self._early = seen
@@ -100,5 +100,5 @@ class Localisation:
         self._map, self._gone_m = seen.pose @ then.pose.inverse, 0.0
 
 
-def _seconds(seen: Seen) -> float:
+def _seconds(seen: Measurement) -> float:
     return seen.stamp[0] + seen.stamp[1] / 1e9

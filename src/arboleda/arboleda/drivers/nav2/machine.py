@@ -12,7 +12,7 @@ from arboleda.kinds.mobile import FollowPath, Mobile
 from arboleda.model.commands import Command
 from arboleda.model.plant_model import Robot
 
-from ..ros_action.events import Ended, Seen
+from ..ros_action.events import GoalResult, Measurement
 from ..ros_action.machine import Machine
 from ..ros_action.mover import NoGoal, failure
 from .localisation import Localisation
@@ -47,7 +47,7 @@ class BaseMover:
         )
         self._node: int | None = None  # the last one that it stood on
 
-    def see(self, now: float, seen: Seen) -> bool:
+    def see(self, now: float, seen: Measurement) -> bool:
         if not self._where.see(now, seen):
             return False
         node = self._stands_on()
@@ -72,7 +72,7 @@ class BaseMover:
     def rests(self, now: float, since: float = 0.0) -> bool:
         return self._where.rest.holds(now, since)
 
-    def failure(self, end: Ended, goal: Route) -> str:
+    def failure(self, end: GoalResult, goal: Route) -> str:
         if end.missed:  # a server may end so as a success
             names = ", ".join(str(goal.nodes[each]) for each in end.missed if each < len(goal.nodes))
             return f"missed_waypoints node {names}" if names else "missed_waypoints"

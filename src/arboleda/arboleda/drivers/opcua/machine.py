@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
-from arboleda.kinds.declared import Device, Effect, FactType, Told
+from arboleda.kinds.declared import Device, Effect, FactType, VerbCall
 from arboleda.model.commands import Command, Stop, StopMode
 from arboleda.model.facts import Value
 from arboleda.model.messages import Report
@@ -18,8 +18,8 @@ from arboleda.model.plant_model import Robot
 
 from ..plc.checks import answers
 from ..plc.numbers import Numbers
-from ..plc.plc_snapshot import STATES, Question, Shown, Unreadable, report
-from ..plc.program_watch import Alive
+from ..plc.plc_snapshot import STATES, PlcSnapshot, Question, UnreadableValue, report
+from ..plc.program_watch import ProgramWatch
 from ..port import DriverError, NotSent
 from .nodes import Method, Variable, number
 from .settings import Settings
@@ -46,7 +46,7 @@ class OpcUaDevice:
             raise DriverError(f"{device.name} is of no declared kind, so nothing can be mapped")
         self._device, self._settings = device, settings
         self._numbers = Numbers()
-        self._alive = Alive(settings.alive_s)
+        self._alive = ProgramWatch(settings.alive_s)
         self._asked: tuple[int, Variable, FactType] | None = None
         self.nodes = tuple(dict.fromkeys(_readings(settings)))
 
@@ -62,7 +62,7 @@ class OpcUaDevice:
         if isinstance(command, Stop):
             method = self._stop(command.mode)
             return None if method is None else call(method, {})
-        if not isinstance(command, Told) or command.verb not in self._settings.verbs:
+        if not isinstance(command, VerbCall) or command.verb not in self._settings.verbs:
             raise NotSent(f"the mapping of {self._device.name} has no word for {type(command).__name__}")
         verb, sequence = self._settings.verbs[command.verb], self._settings.sequence
         made = call(verb, dict(command.values))
@@ -80,7 +80,7 @@ class OpcUaDevice:
             self._alive.see(at, settings.alive, number(settings.alive, read[settings.alive]))
         echo = self._echo(read)
         self._numbers.see(echo.values())
-        shown = Shown(
+        shown = PlcSnapshot(
             state="stopped" if settings.state is None else _state(settings.state, read),
             facts=tuple(
                 (name, one.read(read[one.node], kinds[name])) for name, one in settings.facts.items()
@@ -113,7 +113,7 @@ class OpcUaDevice:
             return str(known.get(shown, f"code {shown}"))
         if isinstance(shown, str):
             return shown or None
-        raise Unreadable(f"{variable.node} is {quoted(shown)}; allowed: a whole number, or text")
+        raise UnreadableValue(f"{variable.node} is {quoted(shown)}; allowed: a whole number, or text")
 
     def _answer(self, read: Read, done: int | None) -> Question | None:
         if self._asked is None or done != self._asked[0]:
@@ -134,7 +134,7 @@ def call(method: Method, values: Mapping[str, Value]) -> Call:
 def _state(state: Variable, read: Read) -> str:
     word = state.word(read[state.node])
     if not isinstance(word, str) or word not in STATES:
-        raise Unreadable(f"{state.node} is {quoted(word)}; allowed: {', '.join(STATES)}")
+        raise UnreadableValue(f"{state.node} is {quoted(word)}; allowed: {', '.join(STATES)}")
     return word
 
 

@@ -12,7 +12,7 @@ from arboleda.kinds.declared import FactType
 from arboleda.model.facts import Value
 from arboleda.model.outside import quoted
 
-from ..plc.plc_snapshot import Unreadable
+from ..plc.plc_snapshot import UnreadableValue
 
 NODE = re.compile(r"(ns=\d+;)?(i=\d+|s=.+|g=[0-9a-fA-F-]{36}|b=.+)")
 Form = Literal[
@@ -71,7 +71,7 @@ class Variable:
         found = next((word for word, held in self.words.items() if is_whole(shown) and held == shown), None)
         if found is None:
             known = ", ".join(self.words)
-            raise Unreadable(f"{self.node} is {quoted(shown)}, for which there is no word ({known})")
+            raise UnreadableValue(f"{self.node} is {quoted(shown)}, for which there is no word ({known})")
         return found
 
     def read(self, shown: object, of: FactType) -> Value:
@@ -80,7 +80,7 @@ class Variable:
         finite = not isinstance(word, float) or math.isfinite(word)
         found = of.read(word) if finite else None
         if found is None:
-            raise Unreadable(f"{self.node} is {quoted(shown)}; allowed: {of.allowed()}")
+            raise UnreadableValue(f"{self.node} is {quoted(shown)}; allowed: {of.allowed()}")
         return found
 
 
@@ -145,5 +145,5 @@ def is_whole(value: object) -> bool:
 def number(node: str, shown: object) -> int:
     """A whole number of 0 or more that a node shows; Unreadable for anything else."""
     if not isinstance(shown, int) or isinstance(shown, bool) or shown < 0:
-        raise Unreadable(f"{node} is {quoted(shown)}; allowed: a whole number from 0")
+        raise UnreadableValue(f"{node} is {quoted(shown)}; allowed: a whole number from 0")
     return shown

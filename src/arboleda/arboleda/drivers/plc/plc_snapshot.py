@@ -20,12 +20,12 @@ STATES = {
 UNNAMED = "no reason given"
 
 
-class Unreadable(DriverError):
+class UnreadableValue(DriverError):
     """What a PLC shows has no meaning in the mapping."""
 
 
 @dataclass(frozen=True, kw_only=True)
-class Shown:
+class PlcSnapshot:
     """Numbers of commands, words and facts, as they were read together; 0 and None are no command."""
 
     state: str = "stopped"
@@ -47,7 +47,9 @@ class Question:
     answer: Value
 
 
-def report(robot: str, at: float, shown: Shown, numbers: Numbers, question: Question | None = None) -> Report:
+def report(
+    robot: str, at: float, shown: PlcSnapshot, numbers: Numbers, question: Question | None = None
+) -> Report:
     """The report of a device: numbers that were not given name no command.
 
     A query is done when it is answered, so the answer is that which was shown together with its number.

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from .plc_snapshot import Unreadable
+from .plc_snapshot import UnreadableValue
 
 
-class Alive:
+class ProgramWatch:
     """A PLC whose program stands still goes on to answer, with values of then: this notices it."""
 
     def __init__(self, patience_s: float) -> None:
@@ -22,4 +22,4 @@ class Alive:
             self._changed = (number, at)
         elif at - self._changed[1] > self._patience_s:
             what = f"{place} is {number} for {self._patience_s:g} s"
-            raise Unreadable(f"the program of the PLC stands still: {what}")
+            raise UnreadableValue(f"the program of the PLC stands still: {what}")

@@ -20,21 +20,21 @@ class Status(Enum):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Found:
+class ServersFound:
     """The servers of the action now, each by a number of its own; it changes where one was started anew."""
 
     servers: tuple[int, ...]
 
 
 @dataclass(frozen=True, kw_only=True)
-class Seen:
+class Measurement:
     """Something was measured; `stamp` is when the robot says that it was, in whatever clock."""
 
     stamp: tuple[int, int]
 
 
 @dataclass(frozen=True, kw_only=True)
-class Answered:
+class GoalAnswer:
     """The server has accepted a goal, or refused it."""
 
     id: str
@@ -42,7 +42,7 @@ class Answered:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Ended:
+class GoalResult:
     """The result of a goal has come; `stalled` and `missed` are what some actions say besides."""
 
     id: str
@@ -54,14 +54,14 @@ class Ended:
 
 
 @dataclass(frozen=True, kw_only=True)
-class CancelAnswered:
+class CancelAnswer:
     """The server has answered that all of its goals be cancelled."""
 
     refused: bool
 
 
 @dataclass(frozen=True, kw_only=True)
-class Asked:
+class CommandRequest:
     """The plant commands the device."""
 
     command: Command
@@ -81,18 +81,18 @@ class CancelAll:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Unsent:
+class CommandNotSent:
     """The command that was asked for cannot leave."""
 
     why: str
 
 
 @dataclass(frozen=True, kw_only=True)
-class Untaken:
+class UnusableMessage:
     """The server or the device has said what the machine broke on, in a sentence."""
 
     why: str
 
 
-Event = Found | Seen | Answered | Ended | CancelAnswered | Asked | Untaken
-Message = SendGoal | CancelAll | Unsent | Report
+Event = ServersFound | Measurement | GoalAnswer | GoalResult | CancelAnswer | CommandRequest | UnusableMessage
+Message = SendGoal | CancelAll | CommandNotSent | Report

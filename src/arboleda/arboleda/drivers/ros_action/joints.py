@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from .events import Seen
+from .events import Measurement
 from .goal import REST, Rest
 
 SILENT_S = 1.0  # joint states come many times a second
@@ -14,7 +14,7 @@ FAR = 1e6  # m or rad; numbers beyond are none that a robot measures, and do not
 
 
 @dataclass(frozen=True, kw_only=True)
-class JointsSeen(Seen):
+class JointStateEvent(Measurement):
     """A joint state."""
 
     names: tuple[str, ...]
@@ -32,8 +32,8 @@ class Joints:
         self._topic = topic
         self._stamp: tuple[int, int] | None = None
 
-    def see(self, now: float, seen: Seen) -> bool:
-        if not isinstance(seen, JointsSeen) or len(seen.names) != len(seen.positions):
+    def see(self, now: float, seen: Measurement) -> bool:
+        if not isinstance(seen, JointStateEvent) or len(seen.names) != len(seen.positions):
             return False
         at = dict(zip(seen.names, seen.positions, strict=True))
         q = tuple(at.get(name, math.nan) for name in self.names)

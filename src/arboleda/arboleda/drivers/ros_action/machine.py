@@ -12,19 +12,19 @@ from arboleda.model.plant_model import MotionState
 
 from ..port import lost
 from .events import (
-    Answered,
-    Asked,
     CancelAll,
-    CancelAnswered,
-    Ended,
+    CancelAnswer,
+    CommandNotSent,
+    CommandRequest,
     Event,
-    Found,
+    GoalAnswer,
+    GoalResult,
+    Measurement,
     Message,
-    Seen,
     SendGoal,
+    ServersFound,
     Status,
-    Unsent,
-    Untaken,
+    UnusableMessage,
 )
 from .goal import Goal
 from .mover import Mover, NoGoal
@@ -72,17 +72,17 @@ class Machine:
         return out
 
     def _take(self, now: float, event: Event) -> None:
-        if isinstance(event, Asked):
+        if isinstance(event, CommandRequest):
             self._ask(now, event.command)
-        elif isinstance(event, Found):
+        elif isinstance(event, ServersFound):
             self._find(now, event.servers)
-        elif isinstance(event, Seen):
+        elif isinstance(event, Measurement):
             self._see(now, event)
-        elif isinstance(event, Answered):
+        elif isinstance(event, GoalAnswer):
             self._hear_answer(now, event)
-        elif isinstance(event, Ended):
+        elif isinstance(event, GoalResult):
             self._hear_end(now, event)
-        elif isinstance(event, Untaken):
+        elif isinstance(event, UnusableMessage):
             self._lose(now, event.why)
         else:
             self._hear_cancel(now, event)
@@ -168,7 +168,7 @@ class Machine:
         self._stop_id, self._ids = "", {}
         self._mover.settle(None)
 
-    def _see(self, now: float, seen: Seen) -> None:
+    def _see(self, now: float, seen: Measurement) -> None:
         if not self._mover.see(now, seen):
             return
         self._news, self._seen = self._news or not self._seen, True
@@ -181,7 +181,7 @@ class Machine:
     def _ask(self, now: float, command: Command) -> None:
         why = self._missing(now)
         if why:
-            self._out.append(Unsent(why=why))
+            self._out.append(CommandNotSent(why=why))
         elif isinstance(command, Stop):
             self._ask_stop(now, command)
         elif self._homing is not None or (self._goal is not None and not self._mover.replaces):
@@ -197,7 +197,7 @@ class Machine:
         try:
             parts = self._mover.goals(command)
         except NoGoal as error:
-            self._out.append(Unsent(why=str(error)))
+            self._out.append(CommandNotSent(why=str(error)))
             return
         if self._goal is not None:
             self._drop(failed=self._goal.id, failure="replaced_by_the_next")
@@ -228,7 +228,7 @@ class Machine:
 
     # What the server says.
 
-    def _hear_answer(self, now: float, answer: Answered) -> None:
+    def _hear_answer(self, now: float, answer: GoalAnswer) -> None:
         goal = self._goal
         if goal is None or answer.id != goal.key:
             if answer.accepted:  # nobody waits for it any more
@@ -242,7 +242,7 @@ class Machine:
             else:
                 self._tell(accepted=goal.id)
 
-    def _hear_end(self, now: float, end: Ended) -> None:
+    def _hear_end(self, now: float, end: GoalResult) -> None:
         goal = self._goal
         if goal is None or end.id != goal.key:
             return
@@ -256,7 +256,7 @@ class Machine:
         else:
             goal.succeeded_at = now
 
-    def _hear_cancel(self, now: float, answer: CancelAnswered) -> None:
+    def _hear_cancel(self, now: float, answer: CancelAnswer) -> None:
         if self._cancel_at is None:
             return
         if answer.refused and self._goal is not None:

@@ -6,7 +6,7 @@ from typing import Any, Protocol
 
 from arboleda.model.commands import Command
 
-from .events import Ended, Seen, Status
+from .events import GoalResult, Measurement, Status
 
 
 class NoGoal(Exception):
@@ -19,7 +19,7 @@ class Mover(Protocol):
     name: str
     replaces: bool  # whether a new command takes the place of one that is open, rather than being refused
 
-    def see(self, now: float, seen: Seen) -> bool:
+    def see(self, now: float, seen: Measurement) -> bool:
         """Take what was measured; whether it is news of this device."""
 
     def missing(self, now: float) -> str:
@@ -37,7 +37,7 @@ class Mover(Protocol):
     def rests(self, now: float, since: float = 0.0) -> bool:
         """Whether it has been at rest, for as long as that takes to be seen, after `since`."""
 
-    def failure(self, end: Ended, goal: Any) -> str:
+    def failure(self, end: GoalResult, goal: Any) -> str:
         """Why a goal failed by the server's own result, in a word; "" where it did not."""
 
     def objection(self, goal: Any) -> str:
@@ -53,7 +53,7 @@ class Mover(Protocol):
         """The fields of a report that say where it is; `busy`: a goal is open."""
 
 
-def failure(end: Ended, errors: dict[int, str]) -> str:
+def failure(end: GoalResult, errors: dict[int, str]) -> str:
     """The word for an end that is no success; what the server adds follows it."""
     if end.status is Status.SUCCEEDED and end.error == 0:
         return ""

@@ -24,7 +24,7 @@ class Ability:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Wanted:
+class RequiredAction:
     """An action that a plant may tell a vehicle: `by` is what for, in words."""
 
     by: str
@@ -64,10 +64,10 @@ def _ability(action: Said) -> Ability:
     return Ability(scopes=frozenset(action["actionScopes"]), parameters=parameters)
 
 
-def wanted(devices: Iterable[Robot], settings: Settings) -> Iterator[Wanted]:
+def wanted(devices: Iterable[Robot], settings: Settings) -> Iterator[RequiredAction]:
     """All actions that a vehicle with these devices may be told."""
     for type in ("cancelOrder", "startPause", "stopPause"):
-        yield Wanted(by="stops", type=type, scope="INSTANT")
+        yield RequiredAction(by="stops", type=type, scope="INSTANT")
     for edge in settings.edges:
         by = f"the edge between {' and '.join(edge.between)}"
         yield _wanted(by, edge.action, edge.values, "EDGE")
@@ -77,12 +77,12 @@ def wanted(devices: Iterable[Robot], settings: Settings) -> Iterator[Wanted]:
             yield _wanted(f"{device.name} {verb.name}", verb.name, dict(verb.parameters), scope)
 
 
-def _wanted(by: str, verb: str, values: Iterable[str], scope: str) -> Wanted:
+def _wanted(by: str, verb: str, values: Iterable[str], scope: str) -> RequiredAction:
     named = frozenset(map(as_the_standard_writes, values))
-    return Wanted(by=by, type=as_the_standard_writes(verb), scope=scope, parameters=named)
+    return RequiredAction(by=by, type=as_the_standard_writes(verb), scope=scope, parameters=named)
 
 
-def lacks(sheet: Factsheet, wanted: Iterable[Wanted], ids: Iterable[str]) -> Iterator[str]:
+def lacks(sheet: Factsheet, wanted: Iterable[RequiredAction], ids: Iterable[str]) -> Iterator[str]:
     """In a sentence each, what is wanted of a vehicle that it says it cannot; `ids` are the plant's."""
     for each in wanted:
         yield from _lacks_for(each, sheet)
@@ -95,7 +95,7 @@ def lacks(sheet: Factsheet, wanted: Iterable[Wanted], ids: Iterable[str]) -> Ite
         yield "its orders may have one node, so it cannot be sent to another"
 
 
-def _lacks_for(wanted: Wanted, sheet: Factsheet) -> Iterator[str]:
+def _lacks_for(wanted: RequiredAction, sheet: Factsheet) -> Iterator[str]:
     ability = sheet.actions.get(wanted.type)
     where = WHERE[wanted.scope]
     if ability is None or wanted.scope not in ability.scopes:

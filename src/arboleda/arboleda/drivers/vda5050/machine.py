@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any
 
-from arboleda.kinds.declared import Device, Told
+from arboleda.kinds.declared import Device, VerbCall
 from arboleda.kinds.mobile import FollowPath, Mobile
 from arboleda.model.commands import Command, Query, Stop, StopMode
 from arboleda.model.facts import Facts, Value, shown
@@ -52,13 +52,13 @@ class Publish:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Tell:
+class LogLine:
     """A sentence for the log."""
 
     text: str
 
 
-Message = Report | Publish | Tell
+Message = Report | Publish | LogLine
 
 
 class Vehicle:
@@ -155,7 +155,9 @@ class Vehicle:
         wanted = factsheet.wanted(self._devices.values(), self._settings)
         ids = (f"{OURS}{self._mark}-{LONGEST_COMMAND}", *self._map.edge_ids)
         name = self._settings.vehicle
-        return [Tell(text=f"{name} by its factsheet: {each}") for each in factsheet.lacks(sheet, wanted, ids)]
+        return [
+            LogLine(text=f"{name} by its factsheet: {each}") for each in factsheet.lacks(sheet, wanted, ids)
+        ]
 
     # --- what it is told ---
 
@@ -167,7 +169,7 @@ class Vehicle:
             return self._stop(now, *STOPS[command.mode])
         if isinstance(command, FollowPath):
             return self._begin(command, self._map.way(self._at, command.nodes))
-        if not isinstance(command, Told):
+        if not isinstance(command, VerbCall):
             raise NotSent(f"VDA 5050 has no word for {type(command).__name__}")
         if command.verb not in self._settings.instant:
             return self._begin(command, (self._place(command),), verb=command)
@@ -179,12 +181,12 @@ class Vehicle:
     def _at(self) -> str:
         return self._state.node if self._state is not None else ""
 
-    def _place(self, told: Told) -> str:
+    def _place(self, told: VerbCall) -> str:
         if not self._at:
             raise NotSent(f"the vehicle says of no node that it stands there, so it cannot {told.verb} there")
         return self._at
 
-    def _begin(self, command: Command, nodes: tuple[str, ...], verb: Told | None = None) -> list[Message]:
+    def _begin(self, command: Command, nodes: tuple[str, ...], verb: VerbCall | None = None) -> list[Message]:
         state = self._state
         if self._order is not None:
             raise NotSent(f"the vehicle is still at its order {self._order.id}")
@@ -431,7 +433,7 @@ WORDS = {"rejected": "refusal", "failed": "failure", "answered": "answer"}
 
 def _answer(command: Query, result: str | None) -> Value:
     """The answer that the kind knows by these words, or else the words."""
-    known = command.told.answers if isinstance(command, Told) else ()
+    known = command.told.answers if isinstance(command, VerbCall) else ()
     return next((each for each in known if shown(each) == result), result or "")
 
 

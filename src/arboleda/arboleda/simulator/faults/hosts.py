@@ -8,7 +8,7 @@ from arboleda.model.plant_model import PlantModel
 
 from ..checks import BadFaults
 from ..hosts.hosts import NAMES, Hosts
-from ..hosts.process import Way
+from ..hosts.process import StorePath
 from ..world import BRIDGE, PLANT, World
 from . import targets
 from .kind import End, Fault, kind, words
@@ -64,10 +64,10 @@ def leader_frozen(world: World, fault: Fault) -> End:
     return thaw
 
 
-@kind(targets=names, words=words(*(way.value for way in Way)), seconds=(0.2, 9.0), weight=0.0)
+@kind(targets=names, words=words(*(way.value for way in StorePath)), seconds=(0.2, 9.0), weight=0.0)
 def store_cut(world: World, fault: Fault) -> End:
     """A host is cut off from the store, both ways or in one direction."""
-    cuts, way = _hosts(world).hosts[fault.target].cuts, Way(fault.word)
+    cuts, way = _hosts(world).hosts[fault.target].cuts, StorePath(fault.word)
     cuts[way] += 1
 
     def end() -> None:
@@ -81,11 +81,11 @@ def store_away(world: World, fault: Fault) -> End:
     """The store is away for everybody, as while it starts again; what it took it has."""
     hosts = _hosts(world).hosts.values()
     for each in hosts:
-        each.cuts[Way.BOTH] += 1
+        each.cuts[StorePath.BOTH] += 1
 
     def end() -> None:
         for each in hosts:
-            each.cuts[Way.BOTH] -= 1
+            each.cuts[StorePath.BOTH] -= 1
 
     return end
 

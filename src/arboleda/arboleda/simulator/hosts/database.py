@@ -73,11 +73,11 @@ class LeaderRow:
         return self.wanted is not None and abs(now - self.wanted) < WANTED_S
 
 
-class Away(DiskFull):
+class StoreUnreachable(DiskFull):
     """The store cannot be reached, so nothing can be kept."""
 
 
-class Refused(DiskFull):
+class StoreRefused(DiskFull):
     """Another process leads: the store takes nothing more from this one."""
 
 
@@ -115,7 +115,7 @@ class SharedDisk(Disk):
         if writer.host.reaches:
             took += self._fenced(writer.epoch, message, now)
         if not writer.host.hears:
-            raise Away("the store cannot be reached")
+            raise StoreUnreachable("the store cannot be reached")
         if self.forgets:
             self.forgets -= 1
             took += self._fenced(writer.epoch, message, now)
@@ -123,6 +123,6 @@ class SharedDisk(Disk):
 
     def _fenced(self, epoch: int, message: Notice, now: float) -> float:
         if not self.row.is_fenced(epoch):
-            raise Refused("another process leads the plant now: this one steps down")
+            raise StoreRefused("another process leads the plant now: this one steps down")
         self.writes.append(Write(epoch=epoch, leads=self.row.epoch, message=message))
         return super().commit(message, now)

@@ -13,15 +13,15 @@ from arboleda.wire.hop import FromPlant
 from arboleda.wire.transport import Publication
 
 from ..disk import is_kept
-from ..world import ENDS_S, Left, World
-from .database import Away, Refused, SharedDisk
+from ..world import ENDS_S, SupersededProcess, World
+from .database import SharedDisk, StoreRefused, StoreUnreachable
 from .process import Process
 
 WAKES_S = 0.02  # how often it does something, at the least, until it is over
 
 
 @dataclass(frozen=True, kw_only=True)
-class Said:
+class LateMessage:
     """What left a process after another one led: a message of its plant, or a publication of its bridge."""
 
     epoch: int
@@ -29,10 +29,10 @@ class Said:
     message: Command | Heartbeat | Publication
 
 
-class Former:
+class FormerLeader:
     """Goes on as a process does that was frozen, cut off or slow, until it knows, and is `over`."""
 
-    def __init__(self, world: World, disk: SharedDisk, process: Process, left: Left) -> None:
+    def __init__(self, world: World, disk: SharedDisk, process: Process, left: SupersededProcess) -> None:
         self.process = process
         self.over = False
         self._world, self._disk, self._left = world, disk, left
@@ -70,10 +70,10 @@ class Former:
     def _keep(self, message: object) -> None:
         try:
             self._disk.take(self.process, message, self._world.now)  # type: ignore[arg-type]
-        except Refused:
+        except StoreRefused:
             self.process.standing = Standing.SUPERSEDED
             self.end()
-        except Away:
+        except StoreUnreachable:
             self.process.standing = Standing.UNSURE
             self._begin_end()
 
@@ -82,7 +82,7 @@ class Former:
         standing = self.process.confirm(self._disk.row, world.now)
         if may_leave(message, standing) and not is_too_late(message, self._left.plant, world.now):
             world.moment.former.append(
-                Said(epoch=self.process.epoch, standing=self.process.standing, message=message)
+                LateMessage(epoch=self.process.epoch, standing=self.process.standing, message=message)
             )
             self._step_bridge([FromPlant(at=world.now, message=message)])
         if standing is Standing.SUPERSEDED:
@@ -103,6 +103,6 @@ class Former:
             if isinstance(message, Report):
                 left.inbox.append(message)
             elif isinstance(message, Publication):
-                said = Said(epoch=self.process.epoch, standing=self.process.standing, message=message)
+                said = LateMessage(epoch=self.process.epoch, standing=self.process.standing, message=message)
                 world.moment.former.append(said)
                 world.publish(message, left.client)

@@ -7,8 +7,8 @@ from arboleda.model.commands import Command
 from arboleda.model.messages import Heartbeat, OperatorRequest, Verb
 
 from ..world import BRIDGE, PLANT, World
-from .database import Away, Refused, SharedDisk
-from .former_leader import Former
+from .database import SharedDisk, StoreRefused, StoreUnreachable
+from .former_leader import FormerLeader
 from .process import Host, Process
 
 NAMES = ("host_a", "host_b")
@@ -30,7 +30,7 @@ class Hosts:
         self.hosts = {name: Host(name, world.now) for name in NAMES}
         first, second = self.hosts.values()
         self.leader = self._new_leader(first, disk.row.epoch, world.now)
-        self.formers: list[Former] = []
+        self.formers: list[FormerLeader] = []
         self.numbers = [(disk.row.epoch, first.name)]
         self._waits = {second.name}
         self._handing = False
@@ -118,7 +118,7 @@ class Hosts:
         epoch, going = got
         before, left = self.leader, self.world.change_leaders(epoch)
         if left is not None:
-            self.formers.append(Former(self.world, self.disk, before, left))
+            self.formers.append(FormerLeader(self.world, self.disk, before, left))
         self.leader = self._new_leader(host, epoch, asked_at)
         self.numbers.append((epoch, host.name))
         self._waits.discard(host.name)
@@ -137,9 +137,9 @@ class Hosts:
         """What the plant that leads lets out: nothing once it is unsure, as then it ends."""
         standing = self.leader.confirm(self.disk.row, self.world.now)
         if standing is Standing.UNSURE:
-            raise Away("the store cannot be reached")
+            raise StoreUnreachable("the store cannot be reached")
         if not may_leave(message, standing):
-            raise Refused("another process leads the plant now: this one steps down")
+            raise StoreRefused("another process leads the plant now: this one steps down")
 
     # --- a planned change ---
 

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 ANSWER_S = 1.0  # a server that says nothing for so long counts as away
 
 
-class Way(Enum):
+class StorePath(Enum):
     """What of a host's way to the store is cut."""
 
     TO = "to the store"
@@ -29,7 +29,7 @@ class Host:
 
     def __init__(self, name: str, now: float) -> None:
         self.name = name
-        self.cuts: Counter[Way] = Counter()
+        self.cuts: Counter[StorePath] = Counter()
         self.delay_s = 0.0
         self.wall_s = 0.0
         self.silence = Silence()
@@ -50,12 +50,12 @@ class Host:
     @property
     def reaches(self) -> bool:
         """Whether what it says comes to the store."""
-        return not (self.cuts[Way.TO] or self.cuts[Way.BOTH])
+        return not (self.cuts[StorePath.TO] or self.cuts[StorePath.BOTH])
 
     @property
     def hears(self) -> bool:
         """Whether an answer of the store comes back in time."""
-        return self.reaches and not self.cuts[Way.FROM] and self.delay_s < ANSWER_S
+        return self.reaches and not self.cuts[StorePath.FROM] and self.delay_s < ANSWER_S
 
 
 class Process:

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from .invariant import Look, When, invariant
+from .invariant import Look, Trigger, invariant
 
 ENOUGH = 6  # acts
 
 
-@invariant(When.ASKED)
+@invariant(Trigger.ASKED)
 def advice_leads_out(look: Look) -> Iterator[str]:
     """Once nothing goes wrong any more, the first advice leads each cell to work in at most six acts."""
     for name, acts in look.record.acts.of.items():
@@ -18,7 +18,7 @@ def advice_leads_out(look: Look) -> Iterator[str]:
             yield f"{name} does not work after {', '.join(acts)}: {why}"
 
 
-@invariant(When.ASKED)
+@invariant(Trigger.ASKED)
 def refusals_are_foretold(look: Look) -> Iterator[str]:
     """Whether and why a verb would be refused is told before as it is answered then."""
     for request, foretold in look.record.asked.foretold:
@@ -28,7 +28,7 @@ def refusals_are_foretold(look: Look) -> Iterator[str]:
             yield f"{said} was answered with {answer.refusal!r}, foretold was {foretold!r}"
 
 
-@invariant(When.END)
+@invariant(Trigger.END)
 def no_advice_where_all_is_well(look: Look) -> Iterator[str]:
     """At the end nothing is advised, as every cell works."""
     for name in look.world.plant.cells:

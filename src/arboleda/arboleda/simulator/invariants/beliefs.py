@@ -7,14 +7,14 @@ from collections.abc import Iterable, Iterator
 from arboleda.model.plant_model import Evidence
 
 from ..recorded.scopes import UNSENT
-from .invariant import Look, When, invariant
+from .invariant import Look, Trigger, invariant
 
 NOTHING: tuple[str, ...] = ()
 EVERY_S = 2.0
 FIELDS = ("state", "homed", "effector", "piece", "boot_id", "epoch", "plant", "q", "node")
 
 
-@invariant(When.STEPPED)
+@invariant(Trigger.STEPPED)
 def believed_as_said(look: Look) -> Iterable[str]:
     """The plant believes the last word of each robot on everything, and that who is silent is not there."""
     record = look.record

@@ -6,12 +6,12 @@ from collections.abc import Iterator
 
 from arboleda.model.messages import TaskState
 
-from .invariant import Look, When, invariant
+from .invariant import Look, Trigger, invariant
 
 ROUNDING_S = 1e-6
 
 
-@invariant(When.TOLD)
+@invariant(Trigger.TOLD)
 def tasks_go_to_the_best_cell(look: Look) -> Iterator[str]:
     """A task that names several cells goes to one that has room and works, as far as there is one, and is
     expected to have done it first; people are told why.
@@ -33,7 +33,7 @@ def tasks_go_to_the_best_cell(look: Look) -> Iterator[str]:
             yield f"task {said.task} went to {said.cell}, and nobody says why"
 
 
-@invariant(When.TOLD)
+@invariant(Trigger.TOLD)
 def tasks_stay_in_their_cell(look: Look) -> Iterator[str]:
     """A task that was taken in by a cell begins and ends in that cell."""
     for change in look.record.tasks.changes:
@@ -42,7 +42,7 @@ def tasks_stay_in_their_cell(look: Look) -> Iterator[str]:
             yield f"task {known.id} was in {known.cell}, and {change.said.state.value} in {change.said.cell}"
 
 
-@invariant(When.TOLD)
+@invariant(Trigger.TOLD)
 def courses_are_as_seen(look: Look) -> Iterator[str]:
     """What is learned of a task that is done is when its steps began and how long it worked, as it was seen;
     of one that an earlier start has begun nothing is.

@@ -12,7 +12,7 @@ from arboleda.trees.leaves import Act
 
 from ..recorded.commands import Commands, SentCommand
 from ..recorded.robots import Obstacle
-from .invariant import Look, When, invariant
+from .invariant import Look, Trigger, invariant
 
 NOTHING: tuple[str, ...] = ()
 ROUNDING_S = 1e-6
@@ -39,7 +39,7 @@ def _reachable() -> dict[State | None, frozenset[State]]:
 REACHABLE = _reachable()
 
 
-@invariant(When.COMMANDED)
+@invariant(Trigger.COMMANDED)
 def no_command_to_unfit(look: Look) -> Iterable[str]:
     """Nothing but stops goes to a robot that is offline, unhomed, faulted or latched by what it has said."""
     for sent in look.record.commands.new:
@@ -58,7 +58,7 @@ def _excused(sent: SentCommand) -> frozenset[Obstacle]:
     return STOPPED if opens and Verb.RELEASE in sent.verbs else frozenset()
 
 
-@invariant(When.COMMANDED)
+@invariant(Trigger.COMMANDED)
 def stops_are_cleared_by_operators(look: Look) -> Iterable[str]:
     """A stop is cleared at a robot only when an operator has asked for that."""
     for sent in look.record.commands.new:
@@ -68,7 +68,7 @@ def stops_are_cleared_by_operators(look: Look) -> Iterable[str]:
             yield f"{sent} clears its stop, which nobody asked for"
 
 
-@invariant(When.COMMANDED)
+@invariant(Trigger.COMMANDED)
 def one_motion_per_robot(look: Look) -> Iterable[str]:
     """At most one motion command, or other work, of a robot is open."""
     for sent in look.record.commands.new:
@@ -83,7 +83,7 @@ def _open_before(sent: SentCommand, commands: Commands) -> SentCommand | None:
     return next((each for each in others if each is not sent and each not in later), None)
 
 
-@invariant(When.NEWS)
+@invariant(Trigger.NEWS)
 def only_legal_command_states(look: Look) -> Iterable[str]:
     """A command changes its state only along the rows of the ledger's table, and leaves it only ended."""
     return _illegal(look)
@@ -98,7 +98,7 @@ def _illegal(look: Look) -> Iterator[str]:
         yield f"{sent} is no longer in the ledger, and has not ended"
 
 
-@invariant(When.STEPPED)
+@invariant(Trigger.STEPPED)
 def no_deadline_overrun(look: Look) -> Iterable[str]:
     """No command outlasts its deadline, no deadline its longest way, and no wait its end."""
     record = look.record
@@ -161,7 +161,7 @@ def _waits(leaves: Iterable[object], now: float) -> Iterator[str]:
             yield f"{getattr(leaf, 'name', leaf)} still waits {now - until:.3f} s after its end"
 
 
-@invariant(When.COMMANDED)
+@invariant(Trigger.COMMANDED)
 def retries_bounded(look: Look) -> Iterable[str]:
     """A step gives its command once, once per retry, and once more each time that an operator says so; in a
     recipe that repeats it, in each turn.
@@ -173,7 +173,7 @@ def retries_bounded(look: Look) -> Iterable[str]:
                 yield f"{cell.name}: {leaf.name} gave its command {count} times, allowed are {most}"
 
 
-@invariant(When.NEWS)
+@invariant(Trigger.NEWS)
 def halted_moves_sent_halt(look: Look) -> Iterable[str]:
     """A motion that is given up, or whose step is left early, has had a halt or a stop sent after it."""
     return (*_given_up(look), *_left(look))
@@ -215,7 +215,7 @@ def _known_still(look: Look, sent: SentCommand) -> bool:
     return any(code is not MotionState.MOVING for code in (*codes, look.record.robots[sent.robot].state))
 
 
-@invariant(When.TAKEN)
+@invariant(Trigger.TAKEN)
 def no_move_after_its_halt(look: Look) -> Iterable[str]:
     """No move reaches the bridge after a stop or a halt that the plant gave after it: it would begin anew."""
     return look.record.stops.overtaken

@@ -11,13 +11,13 @@ from arboleda.model.plant_model import Evidence
 
 from ..truth import Truth
 from ..truth.arm import ArmTruth
-from ..truth.ended_commands import Booked
+from ..truth.ended_commands import EndedCommand
 from ..truth.mobile import MobileTruth
 from ..truth.robot import RobotTruth
-from .invariant import Look, When, invariant
+from .invariant import Look, Trigger, invariant
 
 
-@invariant(When.BOOKED)
+@invariant(Trigger.BOOKED)
 def done_is_true(look: Look) -> Iterator[str]:
     """A command that the plant takes for done is truly done: the robot stands there, the effector is so."""
     for booked in look.truth.books.ended:
@@ -25,7 +25,7 @@ def done_is_true(look: Look) -> Iterator[str]:
             yield f"{_told(booked.command)} is called done, but {why}"
 
 
-@invariant(When.BOOKED)
+@invariant(Trigger.BOOKED)
 def tiny_moves_succeed(look: Look) -> Iterator[str]:
     """A move that no fault and no operator touches is done, even one of no length."""
     for booked in look.truth.books.ended:
@@ -34,7 +34,7 @@ def tiny_moves_succeed(look: Look) -> Iterator[str]:
             yield f"{_told(booked.command)} failed untouched: {failure.sentence if failure else 'no cause'}"
 
 
-def _undisturbed(truth: Truth, booked: Booked) -> bool:
+def _undisturbed(truth: Truth, booked: EndedCommand) -> bool:
     entry, robot = booked.entry, truth.robot(booked.command.robot)
     if robot is None or not entry.is_work or entry.cancelled_at is not None:
         return False
@@ -45,7 +45,7 @@ def _told(command: Command) -> str:
     return f"{type(command).__name__} {command.id} of {command.robot}"
 
 
-def _untrue(truth: Truth, booked: Booked) -> str | None:
+def _untrue(truth: Truth, booked: EndedCommand) -> str | None:
     """What of a command that is called done is not so; None where it is, or where nobody could know."""
     command, robot = booked.command, truth.robot(booked.command.robot)
     if robot is None or _unprovable(truth, booked, robot):
@@ -65,7 +65,7 @@ def _where(robot: RobotTruth, place: str) -> str:
     return f"it {'moves' if robot.moving else 'stands'} at {place}"
 
 
-def _unprovable(truth: Truth, booked: Booked, robot: RobotTruth) -> bool:
+def _unprovable(truth: Truth, booked: EndedCommand, robot: RobotTruth) -> bool:
     """Whether what a robot may say, at its level and as its board lies, proves nothing.
 
     At `ids` a move shows in two ways, its number and the place, and both must be lies. At `joints` it shows

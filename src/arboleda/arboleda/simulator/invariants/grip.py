@@ -8,12 +8,12 @@ from arboleda.model.messages import Check
 from arboleda.model.plant_model import Evidence
 
 from ..truth.arm import ArmTruth
-from ..truth.deeds import CellTruth, Ended, Switch, named
+from ..truth.deeds import CellTruth, EndedTask, Switch, named
 from ..truth.parts import FELL, FLOOR, GRIPPED, POWER, RELEASED
-from .invariant import Look, When, invariant
+from .invariant import Look, Trigger, invariant
 
 
-@invariant(When.DEEDS)
+@invariant(Trigger.DEEDS)
 def effector_on_only_between_pick_and_place(look: Look) -> Iterable[str]:
     """An effector goes on only at the pick-up of a running task that has not placed its part, and is off
     when a task begins and when one is done; in between a plant that failed keeps its grip.
@@ -21,13 +21,13 @@ def effector_on_only_between_pick_and_place(look: Look) -> Iterable[str]:
     return _grips(look)
 
 
-@invariant(When.CHANGED)
+@invariant(Trigger.CHANGED)
 def effector_off_only_where_legal(look: Look) -> Iterable[str]:
     """An effector is opened only at a pick-up, where the cell's part belongs, or by an operator."""
     return _opened(look)
 
 
-@invariant(When.PASSED)
+@invariant(Trigger.PASSED)
 def no_part_dropped(look: Look) -> Iterator[str]:
     """A part ends on the floor only by a fault that takes it, with the power, or by an operator's release."""
     world = look.world
@@ -39,7 +39,7 @@ def no_part_dropped(look: Look) -> Iterator[str]:
             yield f"{passage.arm} drops part {passage.part.number} ({passage.cause})"
 
 
-@invariant(When.CHANGED)
+@invariant(Trigger.CHANGED)
 def parts_conserved(look: Look) -> Iterator[str]:
     """An effector holds a part only where one lay and it was on; an effector that is off holds none."""
     for passage in look.truth.parts.passages:
@@ -50,7 +50,7 @@ def parts_conserved(look: Look) -> Iterator[str]:
             yield f"{robot.robot.name} holds a part with its effector off"
 
 
-@invariant(When.PASSED)
+@invariant(Trigger.PASSED)
 def station_gets_one_part(look: Look) -> Iterator[str]:
     """No part is put into a station that has one; the customer takes it when its task has ended."""
     for (cell, station), parts in look.truth.parts.stations.items():
@@ -58,13 +58,13 @@ def station_gets_one_part(look: Look) -> Iterator[str]:
             yield f"{station} of {cell} holds {len(parts)} parts"
 
 
-@invariant(When.DEEDS)
+@invariant(Trigger.DEEDS)
 def one_pick_one_place(look: Look) -> Iterable[str]:
     """At most one part leaves the pick-up for a task, and at most one comes to its place."""
     return _repeated(look)
 
 
-@invariant(When.ENDED)
+@invariant(Trigger.ENDED)
 def done_task_is_true(look: Look) -> Iterable[str]:
     """Of a task that is called done the effector gripped at the pick-up and opened at its place, and arm and
     mobile got to where they end.
@@ -72,7 +72,7 @@ def done_task_is_true(look: Look) -> Iterable[str]:
     return _not_done(look)
 
 
-@invariant(When.ENDED)
+@invariant(Trigger.ENDED)
 def robbed_task_is_not_done(look: Look) -> Iterator[str]:
     """A task is not called done whose effector somebody else opened on the way, if its board says so."""
     for ended in look.truth.ended:
@@ -80,7 +80,7 @@ def robbed_task_is_not_done(look: Look) -> Iterator[str]:
             yield f"{ended.task} ({ended.text}) is called done, but its part was taken from the effector"
 
 
-@invariant(When.ENDED)
+@invariant(Trigger.ENDED)
 def done_task_has_its_part(look: Look) -> Iterator[str]:
     """A task is not called done whose arm came without a part to where that belongs, if its board had said so
     and it does not say that nobody checked.
@@ -93,7 +93,7 @@ def done_task_has_its_part(look: Look) -> Iterator[str]:
             yield f"{ended.task} ({ended.text}) is called done, and its arm brought no part"
 
 
-@invariant(When.ENDED)
+@invariant(Trigger.ENDED)
 def unchecked_is_as_said(look: Look) -> Iterator[str]:
     """A done task says that its grip is unchecked exactly where no piece sensor speaks, or nobody is to ask
     it, and its release where the board says nothing of its effector, or has booted.
@@ -109,7 +109,7 @@ def unchecked_is_as_said(look: Look) -> Iterator[str]:
             yield f"{ended.task} is done, and its release is {_checked(ended, Check.RELEASE)}"
 
 
-def _checked(ended: Ended, check: Check) -> str:
+def _checked(ended: EndedTask, check: Check) -> str:
     return "not checked" if check in ended.unchecked else "checked"
 
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 
 from ..recorded.leaders import may_follow
-from .invariant import Invariant, Look, When, invariant
+from .invariant import Invariant, Look, Trigger, invariant
 
 
-@invariant(When.FORMER)
+@invariant(Trigger.FORMER)
 def one_leader_at_a_time(look: Look) -> Iterator[str]:
     """Nothing leaves a process that another one has superseded, but the stops of one that cannot find out."""
     for said in look.moment.former:
@@ -16,19 +16,19 @@ def one_leader_at_a_time(look: Look) -> Iterator[str]:
             yield f"who led under number {said.epoch}, and does no more, sends {said.message}"
 
 
-@invariant(When.LED_TWICE)
+@invariant(Trigger.LED_TWICE)
 def each_number_is_led_once(look: Look) -> Iterable[str]:
     """A number under which the plant is led belongs to one process, and is higher than any before."""
     return look.leaders.twice
 
 
-@invariant(When.OLD_NUMBER)
+@invariant(Trigger.OLD_NUMBER)
 def old_numbers_have_no_effect(look: Look) -> Iterable[str]:
     """A board that knows a number, by a beat or a command, carries out nothing of a lower one but stops."""
     return look.leaders.old
 
 
-@invariant(When.WRONG_HISTORY)
+@invariant(Trigger.WRONG_HISTORY)
 def history_is_one(look: Look) -> Iterable[str]:
     """Only who leads writes; a task is accepted once and ends once; who starts finds all that was taken."""
     return look.leaders.wrong

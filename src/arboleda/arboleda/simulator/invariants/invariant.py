@@ -29,7 +29,7 @@ class Look:
         self.moment = self.world.moment
 
 
-class When(Enum):
+class Trigger(Enum):
     """After which steps an invariant is worth a look; the value is what of a `Look` is true, or not empty."""
 
     ALWAYS = "world"
@@ -75,11 +75,11 @@ class Invariant:
 
     name: str
     sentence: str
-    when: When
+    when: Trigger
     rule: Rule
 
 
-def invariant(when: When) -> Callable[[Rule], Invariant]:
+def invariant(when: Trigger) -> Callable[[Rule], Invariant]:
     """Make a rule an invariant, named as the function, that is looked at after such steps."""
 
     def make(rule: Rule) -> Invariant:
@@ -92,10 +92,10 @@ class Judges:
     """Invariants in a row for each When; `looks` counts how often each of them looked."""
 
     def __init__(self, invariants: Iterable[Invariant]) -> None:
-        self._benches = {when: _Bench() for when in When}
+        self._benches = {when: _Bench() for when in Trigger}
         for each in invariants:
             self._benches[each.when].rules.append((each.name, each.rule))
-        used = [when for when, bench in self._benches.items() if bench.rules and when is not When.END]
+        used = [when for when, bench in self._benches.items() if bench.rules and when is not Trigger.END]
         self._after_a_step = [self._benches[when] for when in used]
         # the last two are there because of one name alone attrgetter makes no tuple
         self._signs = attrgetter(*(when.value for when in used), "world", "world")
@@ -115,12 +115,12 @@ class Judges:
 
     def at_the_end(self, look: Look) -> Iterator[tuple[str, str]]:
         """Each breach of what must hold once everything should be at rest."""
-        self._benches[When.END].looks += 1
-        return self._benches[When.END].breaches(look)
+        self._benches[Trigger.END].looks += 1
+        return self._benches[Trigger.END].breaches(look)
 
     def is_at_rest(self, look: Look) -> bool:
         """Whether that holds already."""
-        return not any(True for _ in self._benches[When.END].breaches(look))
+        return not any(True for _ in self._benches[Trigger.END].breaches(look))
 
 
 class _Bench:

@@ -10,7 +10,7 @@ from arboleda.model.plant_model import Evidence, Link, MotionState, Workspace
 from arboleda.sim.board import Board
 
 from ..recorded.cells import KnownCell
-from .invariant import Look, When, invariant
+from .invariant import Look, Trigger, invariant
 
 NOTHING: tuple[str, ...] = ()
 SLACK_S = 0.001
@@ -18,7 +18,7 @@ SURE_S = 1.5  # after a start, and some reports
 AT_WORK = (CellState.EXECUTE, CellState.HOLDING, CellState.HELD)
 
 
-@invariant(When.NEWS)
+@invariant(Trigger.NEWS)
 def running_tree_has_waker(look: Look) -> Iterable[str]:
     """A tree that runs has an open command or a time that will wake it."""
     awake = {sent.entry.cell for sent in look.record.commands.open.values() if sent.entry}
@@ -33,14 +33,14 @@ def _sleeps(cell: KnownCell) -> bool:
     return runs and cell.context.next_deadline is None
 
 
-@invariant(When.NEWS)
+@invariant(Trigger.NEWS)
 def time_stands_still_only_when_held(look: Look) -> Iterable[str]:
     """The own time of a cell, which its trees wait by, passes unless the cell is held."""
     frozen = [cell for cell in look.record.cells.values() if cell.frozen_s > SLACK_S]
     return [f"{cell.name} is {cell.state.value}, and its time stood still" for cell in frozen]
 
 
-@invariant(When.NEWS)
+@invariant(Trigger.NEWS)
 def no_tree_outlives_its_work(look: Look) -> Iterable[str]:
     """A cell has a tree only while it works, or is held at work."""
     left = [
@@ -49,7 +49,7 @@ def no_tree_outlives_its_work(look: Look) -> Iterable[str]:
     return [f"{cell.name} is {cell.state.value}, and still has a tree" for cell in left]
 
 
-@invariant(When.STEPPED)
+@invariant(Trigger.STEPPED)
 def no_starvation(look: Look) -> Iterable[str]:
     """In a cell that is idle, ready and not paused the next task starts in the same step."""
     return _idle_though_ready(look) if look.record.idle else NOTHING
@@ -108,7 +108,7 @@ def _is_outside(look: Look, space: Workspace) -> bool:
     return here is not None and any(robot.stands_at(here, robot.held_at(point)) for point in points)
 
 
-@invariant(When.WAITING)
+@invariant(Trigger.WAITING)
 def zone_requests_end(look: Look) -> Iterable[str]:
     """Who waits for a zone gets it, or is refused it, within zone_wait_s of the cell's own time; a recovery
     within as long since those before it were at work.
@@ -122,7 +122,7 @@ def _overdue(look: Look) -> Iterator[str]:
             yield f"{cell.cell.arm.name} waits for its zones for {cell.waited_s:.3f} s"
 
 
-@invariant(When.END)
+@invariant(Trigger.END)
 def at_rest_at_end(look: Look) -> Iterable[str]:
     """At the end each task has ended, each cell is idle, each robot at rest, and no zone held."""
     plant, record, zones = look.world.plant, look.record, look.world.plant.zones
@@ -174,7 +174,7 @@ def _troubles(board: Board) -> Iterator[str]:
     return (word for word, is_so in rows.items() if is_so)
 
 
-@invariant(When.END)
+@invariant(Trigger.END)
 def nothing_waits_at_end(look: Look) -> Iterable[str]:
     """At the end every queue is empty, none is paused, and no arm holds anything."""
     for name, cell in look.world.plant.cells.items():

@@ -7,14 +7,14 @@ from collections.abc import Iterable, Iterator
 from arboleda.model.commands import Stop, StopMode, Switch
 from arboleda.model.messages import Fact, Remember
 
-from ..recorded.robots import Stopped
+from ..recorded.robots import StopProgress
 from ..recorded.scopes import UNSENT
-from .invariant import Look, When, invariant
+from .invariant import Look, Trigger, invariant
 
-KEPT = {Stopped.LATCHED: "on", Stopped.CLEARED: "cleared", None: None}
+KEPT = {StopProgress.LATCHED: "on", StopProgress.CLEARED: "cleared", None: None}
 
 
-@invariant(When.COMMANDED)
+@invariant(Trigger.COMMANDED)
 def kept_before_it_leaves(look: Look) -> Iterator[str]:
     """A stop is kept before it leaves, so is its clear, and that an effector is being switched."""
     kept = {(fact, name): value for fact, rows in look.record.kept.items() for name, value in rows.items()}
@@ -33,7 +33,7 @@ def kept_before_it_leaves(look: Look) -> Iterator[str]:
             yield f"{message} leaves, and nobody would know after a restart"
 
 
-@invariant(When.NEWS)
+@invariant(Trigger.NEWS)
 def kept_is_what_is(look: Look) -> Iterable[str]:
     """What is kept of stops, effectors and zones is how they are."""
     return (*_stops(look), *_effectors(look), *_zones(look))
@@ -65,7 +65,7 @@ def _zones(look: Look) -> Iterator[str]:
             yield f"zone {zone} belongs to {zones.holder(zone) or 'nobody'}, and is kept for {robot}"
 
 
-@invariant(When.TOLD)
+@invariant(Trigger.TOLD)
 def racks_hold_what_was_put(look: Look) -> Iterator[str]:
     """A station of whose task the plant has said that it is done has a part until somebody takes it out, and
     none has one that no task of a shipped recipe was to fill.

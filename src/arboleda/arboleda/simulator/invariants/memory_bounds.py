@@ -8,7 +8,7 @@ from arboleda.core.intake import HISTORY
 from arboleda.dispatch.ledger import Feed
 from arboleda.wire.labels import REMEMBERED
 
-from .invariant import Look, When, invariant
+from .invariant import Look, Trigger, invariant
 
 NOTHING: tuple[str, ...] = ()
 EVERY_S = 5.0
@@ -17,7 +17,7 @@ WAKES = 100
 INBOX = 20_000  # messages for a process that stalls for 15 s while everybody says everything twice
 
 
-@invariant(When.STEPPED)
+@invariant(Trigger.STEPPED)
 def bounded_books(look: Look) -> Iterable[str]:
     """What the plant, the bridge and the boards keep stays below fixed bounds."""
     if look.world.plant.dispatcher.outbox:

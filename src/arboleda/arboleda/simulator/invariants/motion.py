@@ -11,10 +11,10 @@ from arboleda.wire.payloads import JointsGoal, PathGoal, StopGoal
 from ..truth.arm import ArmTruth
 from ..truth.robot import RobotTruth
 from .done import DONE
-from .invariant import Look, When, invariant
+from .invariant import Look, Trigger, invariant
 
 
-@invariant(When.EXECUTED)
+@invariant(Trigger.EXECUTED)
 def no_unhomed_move(look: Look) -> Iterator[str]:
     """No board that lost its position, and does not claim otherwise, makes an absolute move before homing."""
     for robot in look.truth.changed:
@@ -24,7 +24,7 @@ def no_unhomed_move(look: Look) -> Iterator[str]:
                 yield f"{robot.robot.name} is not homed and carries out {act.goal}"
 
 
-@invariant(When.SENT)
+@invariant(Trigger.SENT)
 def no_move_after_a_boot_that_was_told(look: Look) -> Iterator[str]:
     """Whose board reports no homing gets no absolute move once the plant heard that it booted."""
     boots = look.truth.boots
@@ -33,7 +33,7 @@ def no_move_after_a_boot_that_was_told(look: Look) -> Iterator[str]:
             yield f"{command.robot} booted and was not put right since, but gets {command}"
 
 
-@invariant(When.CHANGED)
+@invariant(Trigger.CHANGED)
 def nothing_moves_unasked(look: Look) -> Iterator[str]:
     """A body moves, and a fact of it changes, only by a goal that our bridge published, or to a stop."""
     for robot in look.truth.changed:
@@ -44,7 +44,7 @@ def nothing_moves_unasked(look: Look) -> Iterator[str]:
             yield f"the effector of {switch.arm} goes {'on' if switch.on else 'off'} unasked"
 
 
-@invariant(When.CHANGED)
+@invariant(Trigger.CHANGED)
 def arm_stays_within_limits(look: Look) -> Iterator[str]:
     """No joint of a homed arm rests beyond its limits by more than lost steps and the end of a ramp."""
     for robot in look.truth.changed:

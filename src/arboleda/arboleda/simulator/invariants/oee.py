@@ -7,17 +7,17 @@ from collections.abc import Callable, Iterator
 from itertools import pairwise
 
 from arboleda.model.messages import ENDED, TaskState
-from arboleda.views.oee import ENOUGH, LATE_S, TIMES, Kept, Oee, Run, Shortest, Work, oee
+from arboleda.views.oee import ENOUGH, LATE_S, TIMES, KeptFigures, Oee, Run, Shortest, Work, oee
 
 from ..recorded.tasks import KnownTask
-from .invariant import Look, When, invariant
+from .invariant import Look, Trigger, invariant
 
 LAST = 50  # tasks of a cell; more take long
 EXACT = 1e-6
 ITEMS = (TaskState.DONE, TaskState.FAILED)
 
 
-@invariant(When.END)
+@invariant(Trigger.END)
 def oee_is_as_seen(look: Look) -> Iterator[str]:
     """The figures of a cell are what its tasks, its states and the starts of the plant add up to: in all of
     the time and in a part of it, while the plant runs, once it was ended, and long after it was killed.
@@ -28,9 +28,9 @@ def oee_is_as_seen(look: Look) -> Iterator[str]:
         for ended, until_s in ((False, now), (True, now + 1.0), (False, now + LATE_S + 1.0)):
             runs = record.times.runs(now, ended=ended)
             begin = runs[0].since_s
-            kept = Kept(works=works, runs=runs, downs=record.times.downs, shortest=_shortest(works))
+            kept = KeptFigures(works=works, runs=runs, downs=record.times.downs, shortest=_shortest(works))
             for since_s in (begin - 1.0, begin + (now - begin) / 3.0):
-                yield from _unlike(oee(cell, kept, since_s, until_s), _Seen(kept, cell, until_s))
+                yield from _unlike(oee(cell, kept, since_s, until_s), _Interval(kept, cell, until_s))
 
 
 def _work(task: KnownTask) -> Work:
@@ -52,10 +52,10 @@ def _shortest(works: list[Work]) -> dict[tuple[str, str], Shortest]:
     return {key: Shortest(times=len(times), seconds=min(times)) for key, times in took.items()}
 
 
-class _Seen:
+class _Interval:
     """What was so at an instant, and for how long in all."""
 
-    def __init__(self, kept: Kept, cell: str, until_s: float) -> None:
+    def __init__(self, kept: KeptFigures, cell: str, until_s: float) -> None:
         self._runs, self._until_s = kept.runs, until_s
         self._downs = [each for each in kept.downs if each.cell == cell]
         self._works = kept.works
@@ -111,7 +111,7 @@ class _Seen:
         return run, lasts or at < run.seen_s
 
 
-def _unlike(told: Oee, seen: _Seen) -> Iterator[str]:
+def _unlike(told: Oee, seen: _Interval) -> Iterator[str]:
     begin, until_s = max(told.since_s, seen.since_s), told.until_s
     items = seen.items(begin)
     states = Counter(work.state for work in items)

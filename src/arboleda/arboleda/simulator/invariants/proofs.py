@@ -11,14 +11,14 @@ from arboleda.model.plant_model import Evidence
 
 from ..recorded.commands import SentCommand
 from ..recorded.proofs import Proof, told
-from .invariant import Look, When, invariant
+from .invariant import Look, Trigger, invariant
 
 NOTHING_SAID = Proof()
 ANSWERED = frozenset({State.RUNNING, State.DONE})
 ROUNDING_S = 1e-6
 
 
-@invariant(When.HEARD)
+@invariant(Trigger.HEARD)
 def proofs_end_commands(look: Look) -> Iterable[str]:
     """What a robot says ends its open commands where it proves their end, and shows them to be under way."""
     record = look.record
@@ -32,7 +32,7 @@ def proofs_end_commands(look: Look) -> Iterable[str]:
             yield f"{sent} is taken for not accepted, though its board has named it"
 
 
-@invariant(When.NEWS)
+@invariant(Trigger.NEWS)
 def ends_are_proven(look: Look) -> Iterator[str]:
     """A command changes its state only for what was said after it was sent, or for its time being over."""
     record = look.record

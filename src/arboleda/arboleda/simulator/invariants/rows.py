@@ -24,7 +24,7 @@ from arboleda.views.verb_words import ABOUT
 
 from ..recorded.cells import KnownCell
 from ..recorded.commands import SentCommand
-from ..recorded.robots import KnownRobot, Stopped
+from ..recorded.robots import KnownRobot, StopProgress
 from ..recorded.tasks import KnownTask
 
 Row = dict[str, Any]
@@ -183,7 +183,7 @@ def stands(row: Row) -> str:
 
 def obstacle(known: KnownRobot, now: float, plant: int) -> tuple[Phrase, ...] | None:
     """What may be said of why a robot takes no command, nothing where nothing is in its way; None: unsure."""
-    if known.stop is Stopped.LATCHED:
+    if known.stop is StopProgress.LATCHED:
         return (STOPPED.said,)
     if known.offline(now):
         return (OFFLINE.said,) if known.heard_at is not None else (UNHEARD.said,)

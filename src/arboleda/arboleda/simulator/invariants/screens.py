@@ -22,10 +22,10 @@ from arboleda.wire import status
 
 from ..recorded.cells import KnownCell
 from ..recorded.commands import SentCommand
-from ..recorded.robots import KnownRobot, Stopped
+from ..recorded.robots import KnownRobot, StopProgress
 from ..recorded.time_line import UNIX_S
 from . import rows
-from .invariant import Look, When, invariant
+from .invariant import Look, Trigger, invariant
 from .liveness import ready
 
 NOTHING: tuple[str, ...] = ()
@@ -37,7 +37,7 @@ STALE, ERROR, WARN, OK = 3, 2, 1, 0
 Row = dict[str, Any]
 
 
-@invariant(When.STEPPED)
+@invariant(Trigger.STEPPED)
 def screens_show_what_is(look: Look) -> Iterable[str]:
     """A screen shows cells, tasks, robots and zones as they were told, asked and commanded."""
     if look.record.due_for("screens", EVERY_S):
@@ -249,7 +249,7 @@ def _robot(look: Look, known: KnownRobot) -> Row:
         "q": known.q,
         "node": known.node,
         "homed": known.homed,
-        "latched": known.stop is Stopped.LATCHED,
+        "latched": known.stop is StopProgress.LATCHED,
         "effector": known.effector,
         "piece": known.piece,
         "facts": _facts(known) if is_arm else {},
@@ -336,7 +336,7 @@ def _ends(look: Look, known: KnownRobot, row: Row) -> Iterator[str]:
         yield f"{name} is drawn as {'' if row['reports'] else 'not '}reporting, it did {age_s} s ago"
 
 
-@invariant(When.NEWS)
+@invariant(Trigger.NEWS)
 def screens_are_told_of_news(look: Look) -> Iterable[str]:
     """Whenever a cell or a task changes, so does the number by which screens know that they are behind."""
     if look.record.unnumbered:
@@ -344,7 +344,7 @@ def screens_are_told_of_news(look: Look) -> Iterable[str]:
     return NOTHING
 
 
-@invariant(When.HEARD)
+@invariant(Trigger.HEARD)
 def status_says_the_report(look: Look) -> Iterable[str]:
     """A report that goes over ROS 2 arrives as it left; a status that no bridge can mean is refused."""
     if not look.record.anew or not look.record.due_for("status", STATUS_S):
@@ -390,7 +390,7 @@ def _broken(look: Look) -> Iterator[str]:
         yield f"{each} is taken for {heard}"
 
 
-@invariant(When.END)
+@invariant(Trigger.END)
 def plans_show_the_model(look: Look) -> Iterator[str]:
     """What never changes is shown as the plant file says it."""
     model = look.world.model

@@ -10,10 +10,10 @@ from arboleda.model.errors import TextError
 from arboleda.model.messages import Heartbeat, TaskChanged, TaskRequest, TaskState
 
 from ..recorded.tasks import SURE
-from .invariant import Look, When, invariant
+from .invariant import Look, Trigger, invariant
 
 
-@invariant(When.BORN)
+@invariant(Trigger.BORN)
 def accepted_is_found_again(look: Look) -> Iterator[str]:
     """Whatever was told of a task and of a stop is so for the plant that starts next."""
     starts, found, known = look.record.starts, look.world.found.tasks, look.world.plant.intake.tasks
@@ -29,7 +29,7 @@ def accepted_is_found_again(look: Look) -> Iterator[str]:
         yield f"{name} was stopped, and the plant that starts does not know it"
 
 
-@invariant(When.ASKED)
+@invariant(Trigger.ASKED)
 def asked_again_is_the_same_task(look: Look) -> Iterator[str]:
     """Whoever asks again for an id that was accepted gets that task, in whichever start."""
     answers = {each.request: each for each in look.moment.sent if isinstance(each, TaskChanged)}
@@ -50,7 +50,7 @@ def _asks_for(look: Look, request: TaskRequest, said: TaskChanged) -> bool:
         return False
 
 
-@invariant(When.UNKEPT)
+@invariant(Trigger.UNKEPT)
 def nothing_unkept_leaves(look: Look) -> Iterator[str]:
     """From the first thing that a plant cannot keep to its next start only stops and its beat leave it."""
     for message in look.moment.unkept:
@@ -59,13 +59,13 @@ def nothing_unkept_leaves(look: Look) -> Iterator[str]:
             yield f"the plant can keep nothing more, and {message} leaves"
 
 
-@invariant(When.TOLD_OTHERWISE)
+@invariant(Trigger.TOLD_OTHERWISE)
 def ends_once_over_all_starts(look: Look) -> Iterable[str]:
     """The end of a task is told once as news, whichever start tells it, and is the same ever after."""
     return look.record.starts.wrong
 
 
-@invariant(When.DONE_TWICE)
+@invariant(Trigger.DONE_TWICE)
 def no_step_is_done_twice(look: Look) -> Iterable[str]:
     """What a board has carried out of a task is not carried out again for a later start, but for a way that
     may have been cut short, and what an operator wants tried again.
@@ -73,7 +73,7 @@ def no_step_is_done_twice(look: Look) -> Iterable[str]:
     return look.record.starts.twice
 
 
-@invariant(When.DEEDS)
+@invariant(Trigger.DEEDS)
 def one_pick_one_place_over_all_starts(look: Look) -> Iterator[str]:
     """Over all starts at most one part leaves the pick-up for a task, and at most one comes to its place."""
     for each in look.truth.cells.values():
@@ -84,7 +84,7 @@ def one_pick_one_place_over_all_starts(look: Look) -> Iterator[str]:
             yield f"task {each.task} has {picks} picks and {places} places over all starts"
 
 
-@invariant(When.COMMANDED)
+@invariant(Trigger.COMMANDED)
 def nothing_moves_after_a_restart(look: Look) -> Iterator[str]:
     """After a start no robot is told to move before an operator gets its cell going, or somebody brings a
     task to a cell that had nothing to do; but where the plant file says so and no task was at work.

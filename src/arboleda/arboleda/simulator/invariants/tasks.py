@@ -22,10 +22,10 @@ from arboleda.model.plant_model import Evidence
 from arboleda.model.sentence import Sentence
 
 from ..recorded.cells import KnownCell
-from ..recorded.robots import Stopped
+from ..recorded.robots import StopProgress
 from ..recorded.scopes import UNSENT
 from ..truth.mobile import MobileTruth
-from .invariant import Look, When, invariant
+from .invariant import Look, Trigger, invariant
 
 LONGEST_WAIT_S = 1.5  # for the plant: robots have stopped themselves by then
 LEGAL: dict[TaskState | None, frozenset[TaskState]] = {
@@ -51,7 +51,7 @@ PIECES = frozenset({Reason.NO_PIECE, Reason.NOT_GRIPPED, Reason.PART_LOST})
 TECHNICAL = ("Traceback", "object at 0x", "\n", "Error(")
 
 
-@invariant(When.TOLD)
+@invariant(Trigger.TOLD)
 def each_task_ends_once(look: Look) -> Iterable[str]:
     """Each accepted task is told to have ended once, and only after it was accepted."""
     for change in look.record.tasks.changes:
@@ -60,7 +60,7 @@ def each_task_ends_once(look: Look) -> Iterable[str]:
             yield f"task {change.said.task} ended as {change.said.state.value}, and was {was}"
 
 
-@invariant(When.TOLD)
+@invariant(Trigger.TOLD)
 def ended_tasks_stay_ended(look: Look) -> Iterable[str]:
     """A task that has ended never changes, and to cancel it is refused."""
     for change in look.record.tasks.changes:
@@ -79,7 +79,7 @@ def _had_ended(look: Look, answer: OperatorAnswer) -> bool:
     return ended and id not in look.record.scopes
 
 
-@invariant(When.TOLD)
+@invariant(Trigger.TOLD)
 def only_legal_task_states(look: Look) -> Iterable[str]:
     """A task is queued, then runs, then ends; only a queued one may be cancelled before it runs."""
     for change in look.record.tasks.changes:
@@ -88,7 +88,7 @@ def only_legal_task_states(look: Look) -> Iterable[str]:
             yield f"task {change.said.task} became {change.said.state.value}, and was {was}"
 
 
-@invariant(When.TOLD)
+@invariant(Trigger.TOLD)
 def first_come_first_served(look: Look) -> Iterable[str]:
     """The task of a cell that starts is the one that has waited longest."""
     for change in look.record.tasks.changes:
@@ -96,7 +96,7 @@ def first_come_first_served(look: Look) -> Iterable[str]:
             yield f"task {change.said.task} started before {change.first}"
 
 
-@invariant(When.TOLD)
+@invariant(Trigger.TOLD)
 def tasks_start_where_all_is_ready(look: Look) -> Iterable[str]:
     """A task starts only where each robot of its cell takes commands and no effector may hold a part."""
     record = look.record
@@ -114,7 +114,7 @@ def tasks_start_where_all_is_ready(look: Look) -> Iterable[str]:
                 yield f"task {change.said.task} starts, and the effector of {name} is {kept}"
 
 
-@invariant(When.TOLD)
+@invariant(Trigger.TOLD)
 def cancelled_tasks_end_cancelled(look: Look) -> Iterable[str]:
     """A task ends as cancelled where an operator has cancelled it, as failed with a reason, or as done."""
     for change in look.record.tasks.changes:
@@ -135,7 +135,7 @@ def _asked_to_cancel(look: Look) -> bool:
     return any(each.verb is Verb.CANCEL for each in asked)
 
 
-@invariant(When.NEWS)
+@invariant(Trigger.NEWS)
 def accepted_tasks_are_kept(look: Look) -> Iterable[str]:
     """Each accepted task is in its cell's queue, runs there, or has ended."""
     return _unkept(look) if look.world.has_stepped else ()
@@ -163,7 +163,7 @@ def _unkept(look: Look) -> Iterator[str]:
             yield f"task {known.id} began at {known.started_at}, and that was attempt {known.attempts}"
 
 
-@invariant(When.NEWS)
+@invariant(Trigger.NEWS)
 def only_legal_cell_states(look: Look) -> Iterable[str]:
     """A cell changes its state along the rows of its table, by itself or as an operator asked then."""
     return _at_birth(look) if look.record.born else _illegal(look)
@@ -200,7 +200,7 @@ def _at_birth(look: Look) -> Iterator[str]:
     robots = look.record.robots
     for cell in look.record.cells.values():
         stops = {robots[robot.name].stop for robot in cell.cell.robots}
-        uncleared, unreset = Stopped.LATCHED in stops, cell.stopped or any(stops)
+        uncleared, unreset = StopProgress.LATCHED in stops, cell.stopped or any(stops)
         state = CellState.ABORTED if uncleared else CellState.STOPPED if unreset else None
         if state is not None and cell.run.state is not state:
             yield f"{cell.name} starts {cell.run.state.value}; its stop was not over"
@@ -208,13 +208,13 @@ def _at_birth(look: Look) -> Iterator[str]:
             yield f"{cell.name} starts {cell.run.state.value}; it was not stopped"
 
 
-@invariant(When.ASKED)
+@invariant(Trigger.ASKED)
 def rejected_input_changes_nothing(look: Look) -> Iterable[str]:
     """A step in which everything asked is refused, and nothing is heard or due, changes nothing."""
     return look.record.differences
 
 
-@invariant(When.ASKED)
+@invariant(Trigger.ASKED)
 def every_request_is_answered(look: Look) -> Iterable[str]:
     """Each task text and each verb has its answer in the step that takes it in."""
     record, asked = look.record, look.moment.asked
@@ -227,7 +227,7 @@ def every_request_is_answered(look: Look) -> Iterable[str]:
         yield f"task requests {tokens} were answered as {told}"
 
 
-@invariant(When.COMMANDED)
+@invariant(Trigger.COMMANDED)
 def nothing_moves_after_an_absence(look: Look) -> Iterator[str]:
     """After the plant was away for longer than a robot may be silent, no robot is told to move before an
     operator gets its cell going, or where nothing was under way in it, for a task.
@@ -236,7 +236,7 @@ def nothing_moves_after_an_absence(look: Look) -> Iterator[str]:
         yield f"the plant was away, and by itself sends {command}"
 
 
-@invariant(When.LATE)
+@invariant(Trigger.LATE)
 def nothing_late_leaves(look: Look) -> Iterator[str]:
     """What a plant decided before its disk kept it for longer than robots wait for it is not sent any more,
     but for stops.
@@ -247,7 +247,7 @@ def nothing_late_leaves(look: Look) -> Iterator[str]:
             yield f"{message} leaves {late_s:.1f} s after it was decided"
 
 
-@invariant(When.TOLD)
+@invariant(Trigger.TOLD)
 def no_internal_failure(look: Look) -> Iterable[str]:
     """No task fails, and no cell is held, for a defect of the plant itself."""
     for change in look.record.tasks.changes:
@@ -261,7 +261,7 @@ def no_internal_failure(look: Look) -> Iterable[str]:
             yield f"{cell.name} is held: {trouble.sentence}"
 
 
-@invariant(When.TOLD)
+@invariant(Trigger.TOLD)
 def no_task_fails_without_a_fault(look: Look) -> Iterable[str]:
     """As long as nothing has gone wrong and no operator has acted, no task of a shipped recipe fails, but for
     what its plant file asks for and robots cannot do, and for a zone in which another arm works for longer
@@ -294,7 +294,7 @@ def _cannot_be_done(look: Look, said: TaskChanged) -> bool:
     return mobile.node != order.values["path"].nodes[0]
 
 
-@invariant(When.TOLD)
+@invariant(Trigger.TOLD)
 def sentences_are_for_people(look: Look) -> Iterable[str]:
     """What the plant tells people is one line without a traceback, and a failure always has a sentence."""
     for message in look.moment.sent:

@@ -10,13 +10,13 @@ from arboleda.model.messages import TaskChanged, TaskRequest, TaskState
 from arboleda.model.plant_model import PlantModel
 from arboleda.model.sentence import Value
 
-from .invariant import Look, When, invariant
+from .invariant import Look, Trigger, invariant
 
 LONGEST = 200
 ID = re.compile(r"#(?!t-)[A-Za-z0-9_.-]{1,64}", re.ASCII)
 
 
-@invariant(When.ASKED)
+@invariant(Trigger.ASKED)
 def texts_mean_what_they_say(look: Look) -> Iterator[str]:
     """A task text is taken where it names what the plant has and its cell has room, and only there."""
     asked, record = look.moment.asked, look.record

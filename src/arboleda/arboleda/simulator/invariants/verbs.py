@@ -13,15 +13,15 @@ from arboleda.model.plant_model import Evidence, Link
 
 from ..recorded.cells import KnownCell
 from ..recorded.commands import SentCommand
-from ..recorded.robots import Stopped
-from ..recorded.verbs import Asked
-from .invariant import Look, When, invariant
+from ..recorded.robots import StopProgress
+from ..recorded.verbs import CellSnapshot
+from .invariant import Look, Trigger, invariant
 
-Can = Callable[[Asked], bool]  # whether a verb can be done in a cell, as the cell was before
+Can = Callable[[CellSnapshot], bool]  # whether a verb can be done in a cell, as the cell was before
 S = CellState
 
 
-def _resumable(cell: Asked) -> bool:
+def _resumable(cell: CellSnapshot) -> bool:
     if cell.state is S.IDLE:
         return cell.paused
     held = cell.state is S.HELD and cell.has_task
@@ -47,7 +47,7 @@ CANNOT: dict[Verb, Can] = {
 }
 
 
-@invariant(When.ASKED)
+@invariant(Trigger.ASKED)
 def verbs_are_refused_rightly(look: Look) -> Iterator[str]:
     """A verb is refused where it can be done nowhere in its scope, and only there."""
     for request, answer in _alone(look):
@@ -77,13 +77,13 @@ def _is_shared(look: Look, request: OperatorRequest) -> bool:
     return request.scope.strip().lower() in look.world.model.shared
 
 
-def _found(look: Look) -> list[Asked]:
+def _found(look: Look) -> list[CellSnapshot]:
     """The cells as the verb found them: a plant that was away first holds what was at work."""
     cells = look.record.asked.cells
     return [_held_after_absence(cell) for cell in cells] if look.record.away else cells
 
 
-def _held_after_absence(cell: Asked) -> Asked:
+def _held_after_absence(cell: CellSnapshot) -> CellSnapshot:
     worked = cell.state is S.EXECUTE
     state, paused = S.HOLDING if worked else cell.state, cell.paused or worked
     return replace(cell, state=state, paused=paused, troubled=cell.troubled or worked)
@@ -125,7 +125,7 @@ def _not_so(look: Look, request: OperatorRequest) -> bool:
     return any(robot.evidence is not Evidence.IDS for robot in robots)
 
 
-@invariant(When.ASKED)
+@invariant(Trigger.ASKED)
 def verbs_do_what_they_say(look: Look) -> Iterator[str]:
     """A verb that is not refused is in the journal and has done its work, in its scope and nowhere else."""
     begun = (each for each in look.moment.sent if isinstance(each, Journal) and each.outcome is None)
@@ -144,7 +144,7 @@ def _is_task(look: Look, request: OperatorRequest) -> bool:
     return request.scope.partition(" ")[0] not in look.record.scopes  # a station has its number behind it
 
 
-def _cells(look: Look, request: OperatorRequest, can: Can) -> list[tuple[Asked, KnownCell]]:
+def _cells(look: Look, request: OperatorRequest, can: Can) -> list[tuple[CellSnapshot, KnownCell]]:
     """Those of its scope in which the verb could be done."""
     names = look.record.scopes.cells(request.scope)
     asked = [cell for cell in _found(look) if cell.name in names and can(cell)]
@@ -157,7 +157,7 @@ def _kept_stopped(look: Look, request: OperatorRequest) -> set[str]:
     kept = set()
     for device in look.world.model.shared:
         for cell in look.world.model.cells_of[device]:
-            others = [name for name in cell.own if record.robots[name].stop is Stopped.LATCHED]
+            others = [name for name in cell.own if record.robots[name].stop is StopProgress.LATCHED]
             aborted = record.cells[cell.name].state in (S.ABORTING, S.ABORTED)
             if aborted and not scope.issuperset(others):
                 kept.add(device)
@@ -204,7 +204,7 @@ def _cleared(look: Look, request: OperatorRequest) -> Iterator[str]:
     for before, cell in could:
         kept = _kept_stopped(look, request)
         mine = [r.name for r in cell.cell.robots if r.name not in kept]
-        latched = [name for name in mine if record.robots[name].stop is Stopped.LATCHED]
+        latched = [name for name in mine if record.robots[name].stop is StopProgress.LATCHED]
         if latched and before.state is S.ABORTED and cell.state is not S.ABORTED:
             yield f"{cell.name} is {cell.state.value}, and {latched} are still stopped"
         if not latched and cell.state is S.ABORTED and len(could) == 1:
@@ -298,7 +298,7 @@ EFFECTS: dict[Verb, Effect] = {
 }
 
 
-@invariant(When.SENT)
+@invariant(Trigger.SENT)
 def acts_end_as_told(look: Look) -> Iterator[str]:
     """What devices did for an operator is told once it has ended, and as done only where each has done it."""
     told = [each for each in look.moment.sent if isinstance(each, Journal) and each.outcome is not None]

@@ -16,7 +16,7 @@ from arboleda.wire.payloads import StopGoal
 from ..record import SLOW_S
 from ..recorded.boards import fields, is_number, on_wire
 from ..world import BRIDGE
-from .invariant import Look, When, invariant
+from .invariant import Look, Trigger, invariant
 
 LIMIT_BYTES = 512
 FRESH_S = 2.0
@@ -24,7 +24,7 @@ ROUNDING_S = 1e-5
 ROUNDING_DEG = 0.6e-4  # the wire has four decimals
 
 
-@invariant(When.EXECUTED)
+@invariant(Trigger.EXECUTED)
 def executed_numbers_rise(look: Look) -> Iterable[str]:
     """The (epoca, seq) of the commands that a board carries out rise from its boot on."""
     for board, goal, before, *_ in look.record.boards.executed:
@@ -32,7 +32,7 @@ def executed_numbers_rise(look: Look) -> Iterable[str]:
             yield f"{board} carried out {(goal.epoch, goal.seq)} after {before}"
 
 
-@invariant(When.EXECUTED)
+@invariant(Trigger.EXECUTED)
 def no_repeat_has_effect(look: Look) -> Iterable[str]:
     """A board carries out only what was delivered to it, each message once, and nothing retained."""
     for each in look.record.boards.executed:
@@ -40,7 +40,7 @@ def no_repeat_has_effect(look: Look) -> Iterable[str]:
             yield f"{each.board} carried out {each.goal}, which was not delivered anew"
 
 
-@invariant(When.EXECUTED)
+@invariant(Trigger.EXECUTED)
 def nothing_of_an_old_epoch_has_effect(look: Look) -> Iterable[str]:
     """A board that has heard a bridge beat carries out nothing of one before it."""
     for board, goal, _, _, beat, _ in look.record.boards.executed:
@@ -48,7 +48,7 @@ def nothing_of_an_old_epoch_has_effect(look: Look) -> Iterable[str]:
             yield f"{board} carried out {(goal.epoch, goal.seq)} after a beat of {beat}"
 
 
-@invariant(When.EXECUTED)
+@invariant(Trigger.EXECUTED)
 def nothing_late_has_effect(look: Look) -> Iterable[str]:
     """A board carries out no command, but for a stop, whose giver had not heard it for FRESH_S by then."""
     for board, goal, *_, told_at in look.record.boards.executed:
@@ -59,7 +59,7 @@ def nothing_late_has_effect(look: Look) -> Iterable[str]:
             yield f"{board} carried out {goal}, which names telemetry that is {when}"
 
 
-@invariant(When.COMMANDED)
+@invariant(Trigger.COMMANDED)
 def commands_say_what_was_heard(look: Look) -> Iterable[str]:
     """A command names telemetry that the plant had just heard of its board: in this step, or last before."""
     for sent in look.record.commands.new:
@@ -69,7 +69,7 @@ def commands_say_what_was_heard(look: Look) -> Iterable[str]:
             yield f"{sent} names telemetry {command.heard}, and the last was {robot.numbers[-1]}"
 
 
-@invariant(When.PUBLISHED)
+@invariant(Trigger.PUBLISHED)
 def wire_targets_legal(look: Look) -> Iterable[str]:
     """Goals on the wire are finite, inside limits, whole motor steps, and what the plant commanded."""
     for client, publication in look.moment.published:
@@ -143,7 +143,7 @@ def _numbered(evidence: Evidence, body: dict[str, Any]) -> bool:
     return all(type(stamp) is int and stamp > 0 for stamp in stamps)
 
 
-@invariant(When.PUBLISHED)
+@invariant(Trigger.PUBLISHED)
 def nothing_retained_on_commands(look: Look) -> Iterable[str]:
     """Of all that the bridge and the boards publish, only presence is retained."""
     for client, publication in look.moment.published:
@@ -151,7 +151,7 @@ def nothing_retained_on_commands(look: Look) -> Iterable[str]:
             yield f"{client} published {publication.topic} retained"
 
 
-@invariant(When.PUBLISHED)
+@invariant(Trigger.PUBLISHED)
 def payload_size(look: Look) -> Iterable[str]:
     """No payload of the bridge or of a board is longer than 512 bytes."""
     for client, publication in look.moment.published:
@@ -159,7 +159,7 @@ def payload_size(look: Look) -> Iterable[str]:
             yield f"{client} published {len(publication.payload)} bytes on {publication.topic}"
 
 
-@invariant(When.HEARD)
+@invariant(Trigger.HEARD)
 def published_joints_are_reported(look: Look) -> Iterable[str]:
     """A position that the plant shows is the last one it heard, and its board told it lately."""
     shown = look.record.shown
@@ -185,7 +185,7 @@ def _untold(look: Look) -> Iterator[str]:
             yield f"{report.robot} is reported at {where}, which its board has not told lately"
 
 
-@invariant(When.BORN)
+@invariant(Trigger.BORN)
 def nothing_shown_before_heard(look: Look) -> Iterable[str]:
     """A plant that starts shows no position of a robot that it has not heard."""
     beliefs, robots = look.world.plant.dispatcher.beliefs, look.record.robots
@@ -197,7 +197,7 @@ def _heard(known: Any) -> bool:
     return known.q is not None or known.node is not None
 
 
-@invariant(When.PUBLISHED)
+@invariant(Trigger.PUBLISHED)
 def bridge_obeys_only_its_plant(look: Look) -> Iterable[str]:
     """Each motion, effector and clear that the bridge publishes is one command with an id that it took in, or
     one of others where it had heard no plant for so long that it obeys anybody.

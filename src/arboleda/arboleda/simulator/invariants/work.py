@@ -12,16 +12,16 @@ from arboleda.recipes.storage_cell import StorageCell
 
 from ..recorded.cells import KnownCell
 from ..recorded.commands import SentCommand
-from .invariant import Look, When, invariant
+from .invariant import Look, Trigger, invariant
 
 
-@invariant(When.NEWS)
+@invariant(Trigger.NEWS)
 def commands_follow_the_recipe(look: Look) -> Iterable[str]:
     """A task commands what its shipped recipe says, each step after the one before is done, and all of it."""
     return look.record.works.wrong if look.world.recipes is None else ()
 
 
-@invariant(When.COMMANDED)
+@invariant(Trigger.COMMANDED)
 def recovery_takes_its_zones(look: Look) -> Iterator[str]:
     """An arm that recovers from where nobody knows moves only while it holds all that its way may cross."""
     for sent in look.record.commands.new:

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from .invariant import Look, When, invariant
+from .invariant import Look, Trigger, invariant
 
 
-@invariant(When.MET)
+@invariant(Trigger.MET)
 def one_robot_per_zone(look: Look) -> Iterator[str]:
     """At most one robot or device is in a shared zone, or may have swept it, unless an operator said else."""
     for meeting in look.truth.zones.meetings:
@@ -17,7 +17,7 @@ def one_robot_per_zone(look: Look) -> Iterator[str]:
             yield f"{' and '.join(theirs)} are in zone {meeting.zone}"
 
 
-@invariant(When.FREED)
+@invariant(Trigger.FREED)
 def zone_released_only_outside(look: Look) -> Iterator[str]:
     """The plant frees a zone only if who had it is truly outside, or on an operator's override."""
     for freed in look.truth.zones.freed:
@@ -26,7 +26,7 @@ def zone_released_only_outside(look: Look) -> Iterator[str]:
             yield f"zone {freed.zone} is taken from {freed.arm}, which is still in it"
 
 
-@invariant(When.ENTERED)
+@invariant(Trigger.ENTERED)
 def zone_entered_only_when_held(look: Look) -> Iterator[str]:
     """Who gets into a shared zone does so only while the plant keeps that zone for it."""
     for entry in look.truth.zones.entries:

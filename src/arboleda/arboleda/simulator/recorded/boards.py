@@ -28,7 +28,7 @@ KEPT = 4096  # angles; arms go the same ways all day
 Numbers = tuple[int, int]  # (epoca, seq)
 
 
-class Executed(NamedTuple):
+class ExecutedCommand(NamedTuple):
     """A command that a board carried out.
 
     With its last numbers before, whether it was delivered to it, the newest epoch that it had heard beating,
@@ -72,14 +72,14 @@ class KnownBoard:
             words = self._words(q, node) + b'"estado":0}'
             self.telemetry.append(Delivery(at=at, topic="", payload=words))
 
-    def carried_out(self, goal: Goal) -> Executed:
+    def carried_out(self, goal: Goal) -> ExecutedCommand:
         """A command that it carries out now."""
         self._notice_boot()
         before, delivered = self.last, self._was_delivered(goal)
         if goal.seq is not None and goal.epoch is not None:
             self.last = (goal.epoch, goal.seq)
         told_at = None if isinstance(goal, StopGoal) else self._told_at(goal.heard)
-        return Executed(self.robot.mqtt, goal, before, delivered, self.beat, told_at)
+        return ExecutedCommand(self.robot.mqtt, goal, before, delivered, self.beat, told_at)
 
     def tell(self, at: float, payload: bytes) -> None:
         """It publishes telemetry."""
@@ -157,7 +157,7 @@ class Boards:
     def __init__(self, boards: dict[str, KnownBoard]) -> None:
         self.by_name = boards
         self.of_robot = {board.robot.name: board for board in boards.values()}
-        self.executed: list[Executed] = []
+        self.executed: list[ExecutedCommand] = []
         self._busy: dict[str, None] = {}  # boards with something in their inbox
         self._hears = {f"{name}/sensores": board.telemetry.append for name, board in boards.items()}
         self._obeys = {topic: name for name in boards for topic in _commands(name)}

@@ -23,7 +23,7 @@ from arboleda.wire.hop import FromPlant
 from arboleda.wire.rejections import FOREIGN, ForeignCommand, Rejection
 from arboleda.wire.transport import Connection, Delivery, Publication
 
-from ..world import Passed
+from ..world import BridgeStep
 from .boards import fields, parts
 
 EXACT = 1e-9
@@ -64,7 +64,7 @@ class Bridges:
         self._bridge, self._known = bridge, _Bridge(self._model, self.wrong)
         self._known.take_over(now, beliefs)
 
-    def look(self, passed: Iterable[Passed]) -> None:
+    def look(self, passed: Iterable[BridgeStep]) -> None:
         self.wrong.clear()
         self.of_others.clear()
         for each in passed:
@@ -99,7 +99,7 @@ class _Bridge:
             board.take_over(now, beliefs[name])
             self._plant = beliefs[name].plant
 
-    def take(self, passed: Passed) -> None:
+    def take(self, passed: BridgeStep) -> None:
         reports: defaultdict[str, list[Report]] = defaultdict(list)
         published: defaultdict[str, list[Publication]] = defaultdict(list)
         for message in passed.out:

@@ -19,7 +19,7 @@ TAKES_TIME = (Act, Await, Dwell)
 ROUNDING_S = 2e-3  # times are kept in ms
 
 
-class Seen:
+class TaskInProgress:
     """A task at work, its times in s of its cell's time, which stands still while it is held.
 
     `whole`: it was seen from its beginning; else only what begins after `began` is known of it.
@@ -107,11 +107,11 @@ class Courses:
     """What runs in each cell; `ended` are the tasks of which that was so before this pass, by id."""
 
     def __init__(self) -> None:
-        self.ended: dict[str, Seen] = {}
-        self._at_work: dict[str, Seen] = {}
+        self.ended: dict[str, TaskInProgress] = {}
+        self._at_work: dict[str, TaskInProgress] = {}
 
     @property
-    def at_work(self) -> Mapping[str, Seen]:
+    def at_work(self) -> Mapping[str, TaskInProgress]:
         """By cell."""
         return self._at_work
 
@@ -127,7 +127,7 @@ class Courses:
                 self.ended[seen.task], seen.ended_at = self._at_work.pop(name), run.context.now
                 seen = None
             if seen is None and run.task is not None and run.run.nodes:
-                seen = Seen(run.task.id, run.run.nodes, run.context.now, whole=not born)
+                seen = TaskInProgress(run.task.id, run.run.nodes, run.context.now, whole=not born)
                 self._at_work[name] = seen
             if seen is not None:
                 seen.look(run.run.rested, run.context.now)

@@ -8,7 +8,7 @@ from arboleda.model.commands import Command
 from arboleda.wire.hop import FromPlant
 from arboleda.wire.rejections import ForeignCommand, Rejection
 
-from ..world import Passed
+from ..world import BridgeStep
 
 # it may still turn out to be a copy of what the plant says, and that copy then to be the command of another
 UNSURE_S = 1.0
@@ -22,7 +22,7 @@ class ForeignCommands:
         self._waiting: list[tuple[float, Command]] = []  # until when each must be told
         self._bridge: object = None
 
-    def look(self, passed: Iterable[Passed], obeyed: list[Command]) -> None:
+    def look(self, passed: Iterable[BridgeStep], obeyed: list[Command]) -> None:
         """Take in what bridges did; what one `obeyed` that heard no plant is nothing to tell."""
         self.untold.clear()
         for each in passed:
@@ -36,7 +36,7 @@ class ForeignCommands:
             if self._waiting:
                 self._tell(each)
 
-    def _tell(self, passed: Passed) -> None:
+    def _tell(self, passed: BridgeStep) -> None:
         for told in (each for each in passed.out if isinstance(each, Rejection | ForeignCommand)):
             first = next((each for each in self._waiting if each[1].robot == told.robot), None)
             if first is not None:

@@ -12,7 +12,7 @@ from arboleda.wire.topics import Channel, parse
 from arboleda.wire.transport import Publication
 
 from ..hosts.database import Write
-from ..hosts.former_leader import Said
+from ..hosts.former_leader import LateMessage
 from ..hosts.hosts import Hosts
 from ..world import World
 from .boards import Boards
@@ -106,7 +106,7 @@ class Leaders:
                 self.wrong.append(f"the store took task {id} as {state.value}, and knows of it {now}")
 
 
-def may_follow(said: Said) -> bool:
+def may_follow(said: LateMessage) -> bool:
     """Whether something may leave a process that another one has superseded: a stop of one that cannot find
     that out, and the beat without which it does not count; what its bridge makes of that, or stops by itself.
     """

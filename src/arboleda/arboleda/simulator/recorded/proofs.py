@@ -46,7 +46,7 @@ class Proof:
 
 
 @dataclass
-class Shown:
+class ReportEvidence:
     """What reports have shown of a command since it was sent."""
 
     moving: bool = False
@@ -59,7 +59,7 @@ class Proofs:
 
     def __init__(self) -> None:
         self.of: dict[str, Proof] = {}
-        self._shown: dict[str, Shown] = {}
+        self._shown: dict[str, ReportEvidence] = {}
         self._by_robot: dict[str, list[SentCommand]] = {}
 
     def forget(self) -> None:
@@ -87,7 +87,7 @@ class Proofs:
             proof = self.of.setdefault(sent.command.id, Proof())
             _broken(proof, sent, report, known)
             if report.at >= sent.at:
-                shown = self._shown.setdefault(sent.command.id, Shown())
+                shown = self._shown.setdefault(sent.command.id, ReportEvidence())
                 _see(shown, report)
                 _said(proof, sent, report, known.robot)
                 off = _off(sent, known.robot, q, node) if sent.way else _off_facts(sent, report, known)
@@ -126,7 +126,7 @@ def _must(proof: Proof, reason: Reason, why: str) -> None:
     proof.must_end = proof.must_end or why
 
 
-def _see(shown: Shown, report: Report) -> None:
+def _see(shown: ReportEvidence, report: Report) -> None:
     shown.moving |= report.state is MotionState.MOVING
     shown.position |= report.q is not None or report.node is not None
     shown.unhomed |= report.homed is False
@@ -147,7 +147,7 @@ def _said(proof: Proof, sent: SentCommand, report: Report, robot: Robot) -> None
 
 
 def _moved(
-    proof: Proof, sent: SentCommand, shown: Shown, report: Report, robot: Robot, off: float | None
+    proof: Proof, sent: SentCommand, shown: ReportEvidence, report: Report, robot: Robot, off: float | None
 ) -> None:
     """Whether it is under way or done; `off` is how far beyond its tolerance the robot stands."""
     command, stopped = sent.command, _rests(sent, report)

@@ -27,7 +27,7 @@ class Obstacle(str, Enum):
     STOPPED = "of a cell that was stopped and not reset"
 
 
-class Stopped(Enum):
+class StopProgress(Enum):
     """How far an operator's stop of a robot is undone."""
 
     LATCHED = "latched"
@@ -39,7 +39,7 @@ class KnownRobot:
 
     def __init__(self, robot: Robot, stale_after_s: float) -> None:
         self.robot = robot
-        self.stop: Stopped | None = None
+        self.stop: StopProgress | None = None
         self.missed_clear = False  # an operator cleared its stop while it was offline
         self.halts = 0  # halts and stops that the plant sent it
         self._patience_s = stale_after_s if robot.evidence is not Evidence.STATE else math.inf
@@ -151,6 +151,6 @@ OBSTACLES: dict[Obstacle, Callable[[KnownRobot, float, int], bool]] = {
     Obstacle.UNHOMED: lambda known, now, epoch: known.unhomed,
     Obstacle.FAULTED: lambda known, now, epoch: known.state is MotionState.FAULT,
     Obstacle.LATCHED: lambda known, now, epoch: (
-        known.stop is Stopped.LATCHED or known.state is MotionState.STOP_LATCHED or known.barred
+        known.stop is StopProgress.LATCHED or known.state is MotionState.STOP_LATCHED or known.barred
     ),
 }

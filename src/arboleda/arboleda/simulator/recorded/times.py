@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from arboleda.core.cell_states import CellState
-from arboleda.views.oee import Down, Run
+from arboleda.views.oee import Downtime, Run
 
 from .cells import KnownCell
 
@@ -19,7 +19,7 @@ class Times:
         self._starts = [now]
         self._ends: list[float] = []  # of all starts but the last
         self._stands: dict[str, float] = {}  # cells that stand, since when
-        self._downs: list[Down] = []
+        self._downs: list[Downtime] = []
 
     def restart(self, last: float, now: float) -> None:
         """The plant was seen `last` before it died, and starts anew."""
@@ -44,10 +44,10 @@ class Times:
         ]
 
     @property
-    def downs(self) -> list[Down]:
+    def downs(self) -> list[Downtime]:
         """When cells stood, the lasting ones last."""
-        lasting = [Down(cell=name, since_s=since, until_s=None) for name, since in self._stands.items()]
+        lasting = [Downtime(cell=name, since_s=since, until_s=None) for name, since in self._stands.items()]
         return [*self._downs, *lasting]
 
     def _stand_no_more(self, name: str, now: float) -> None:
-        self._downs.append(Down(cell=name, since_s=self._stands.pop(name), until_s=now))
+        self._downs.append(Downtime(cell=name, since_s=self._stands.pop(name), until_s=now))

@@ -14,7 +14,7 @@ from .tasks import Tasks
 
 
 @dataclass(slots=True)
-class Asked:
+class CellSnapshot:
     """A cell after the last step: what may speak for or against a verb; `waits`: nobody can tell yet what
     became of the step at which an earlier start ended; `stored`: its stations with a part.
     """
@@ -31,11 +31,11 @@ class Asked:
     stored: frozenset[int]
 
 
-class Before:
+class EarlierState:
     """All of that just before the step in which somebody asks."""
 
     def __init__(self) -> None:
-        self.cells: list[Asked] = []
+        self.cells: list[CellSnapshot] = []
         self.quarantined: dict[str, str] = {}  # zone -> its silent robot
         self.foretold: list[tuple[OperatorRequest, str | None]] = []  # of a verb that comes alone
         self.tasks: dict[str, TaskState] = {}
@@ -50,7 +50,7 @@ class Before:
         self.tasks = {id: task.state for id, task in tasks.open.items()}
         self.ids = frozenset(tasks.open) | frozenset(tasks.ended)
         self.cells = [
-            Asked(
+            CellSnapshot(
                 cell.name,
                 run.state,
                 run.queue_paused,

@@ -39,7 +39,7 @@ class Switch:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Ended:
+class EndedTask:
     """A task that has ended, and how things stood then.
 
     `robbed`: somebody else opened the effector while it held its part elsewhere than where that belongs;
@@ -142,12 +142,12 @@ class CellTruth:
         if arm is not None and arm.on and not arm.holding and not self._lets_go:
             self.empty_handed = True
 
-    def end(self, text: str = "", *, done: bool = False, unchecked: tuple[Check, ...] = ()) -> Ended:
+    def end(self, text: str = "", *, done: bool = False, unchecked: tuple[Check, ...] = ()) -> EndedTask:
         """The running task has ended, or nobody knows of it any more."""
         task, self.task = self.task, None
         of_arm = self._missing_of_arm() if done and self.arm is not None else None
         of_way = self._missing_way() if done and self.arm is not None else None
-        return Ended(
+        return EndedTask(
             cell=self,
             task=task or "",
             text=text,

@@ -14,7 +14,7 @@ CALM_S = 20.0  # after the last fault, whatever it left under way has arrived or
 
 
 @dataclass(frozen=True, kw_only=True)
-class Booked:
+class EndedCommand:
     """A command that the plant takes for ended; `sent_at`: when it left.
 
     `late`: it, or what its robot said before it came, was under way for some time.
@@ -37,11 +37,11 @@ class Books:
     """Follows the open commands of the running plant; `ended` are those of this step."""
 
     def __init__(self, world: World) -> None:
-        self.ended: list[Booked] = []
+        self.ended: list[EndedCommand] = []
         self.late: set[str] = set()  # robots whose last command, before this step, was late
         self._in_time: set[str] = set()  # robots that got one in this step that was not
         self._world = world
-        self._open: dict[str, Booked] = {}
+        self._open: dict[str, EndedCommand] = {}
 
     def drop(self) -> None:
         """The plant died, and with it its books."""
@@ -66,7 +66,7 @@ class Books:
                 self.late.add(command.robot)
             else:
                 self._in_time.add(command.robot)
-            self._open[command.id] = Booked(entry=entry, sent_at=self._world.now, late=late)
+            self._open[command.id] = EndedCommand(entry=entry, sent_at=self._world.now, late=late)
 
     def is_late(self, robot: str) -> bool:
         """Whether anything between the plant and this robot's board, either way, takes its time now."""

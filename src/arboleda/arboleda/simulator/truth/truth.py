@@ -10,7 +10,7 @@ from arboleda.model.messages import OperatorAnswer, TaskChanged, TaskState, Verb
 from arboleda.model.task import Order
 
 from ..world import World
-from .deeds import CellTruth, Ended
+from .deeds import CellTruth, EndedTask
 from .parts import Parts
 from .robots import RobotsTruth
 from .stops import robots_of
@@ -25,7 +25,7 @@ class Truth(RobotsTruth):
 
     def __init__(self, world: World) -> None:
         self.begun: list[CellTruth] = []
-        self.ended: list[Ended] = []
+        self.ended: list[EndedTask] = []
         self.stray_grips: list[str] = []
         super().__init__(world)
         self.arms: dict[str, Any] = {

@@ -10,7 +10,7 @@ from .robot import RobotTruth
 
 
 @dataclass(frozen=True, kw_only=True)
-class Freed:
+class FreedZone:
     """A zone that the plant took from the arm that held it; `by_hand`: an operator said so."""
 
     zone: str
@@ -46,7 +46,7 @@ class ZonesTruth:
         self, world: World, robots: Mapping[str, RobotTruth], mistaken: Callable[[RobotTruth], bool]
     ) -> None:
         self.meetings: list[Meeting] = []
-        self.freed: list[Freed] = []
+        self.freed: list[FreedZone] = []
         self.entries: list[Entry] = []
         self._world = world
         self._robots = robots
@@ -78,7 +78,7 @@ class ZonesTruth:
             self._overridden = set()
 
     def _freed(self, zone: str, name: str) -> None:
-        self.freed.append(Freed(zone=zone, arm=name, by_hand=zone in self._overridden))
+        self.freed.append(FreedZone(zone=zone, arm=name, by_hand=zone in self._overridden))
         arm = self._robots.get(name)
         if arm is not None and zone in arm.zones and self._mistaken(arm):
             self._answered_for.add((zone, name))

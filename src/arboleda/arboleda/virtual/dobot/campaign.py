@@ -14,7 +14,7 @@ from arboleda.recipes.storage_cell import StorageCell
 
 from ..campaign import EPOCH, Hear, Trial
 from .faults import FAULTS
-from .loopback import Joined
+from .loopback import Loopback
 from .machine import VirtualDobot
 
 FRAME_S = 0.04  # a fifth of a real one's frames is enough to see every state
@@ -72,7 +72,7 @@ class DobotTrial(Trial):
         assert isinstance(cell, StorageCell)
         self._cell = cell
         self._dobot = VirtualDobot(self.faults, enabled=True, frame_s=FRAME_S)
-        self._driver: Counted | None = None
+        self._driver: MoveCounter | None = None
         spots = {"home": cell.home, "pick": cell.palletizing.pick, "place": cell.palletizing.place}
         self._spots = {name: _degrees(pose.joints) for name, pose in spots.items()}
 
@@ -83,8 +83,8 @@ class DobotTrial(Trial):
     def task(self, number: int) -> str:
         return f"{self._cell.name} palletizing #{number}"
 
-    def join(self, hear: Hear, now: float) -> Joined:
-        self._driver = Counted(self._cell.arm, self._dobot, hear, now)
+    def join(self, hear: Hear, now: float) -> Loopback:
+        self._driver = MoveCounter(self._cell.arm, self._dobot, hear, now)
         return self._driver
 
     def seen(self) -> tuple[str, bool] | None:
@@ -112,7 +112,7 @@ class DobotTrial(Trial):
             self._driver.tell(line)
 
 
-class Counted(Joined):
+class MoveCounter(Loopback):
     """Counts the moves that it was given."""
 
     given = 0

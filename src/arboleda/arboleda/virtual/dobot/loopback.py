@@ -6,28 +6,28 @@ from collections import deque
 from collections.abc import Callable
 
 from arboleda.drivers.dobot.machine import (
-    Answered,
-    Asked,
     Close,
     Closed,
+    CommandNotSent,
+    CommandRequest,
+    ConnectionsOpened,
+    DashboardReply,
     Event,
-    Fed,
+    FeedbackData,
     Machine,
     Message,
     Open,
-    Opened,
-    Say,
-    Unsent,
+    SendLine,
 )
 from arboleda.drivers.dobot.settings import Settings
 from arboleda.model.commands import Command
 from arboleda.model.messages import Report
 from arboleda.model.plant_model import Robot
 
-from .machine import Answer, Frame, HangUp, Said, VirtualDobot
+from .machine import Answer, ClientText, Disconnect, Frame, VirtualDobot
 
 
-class Joined:
+class Loopback:
     """What one says the other hears at once; `hear` gets what the plant would hear of the arm."""
 
     def __init__(self, arm: Robot, dobot: VirtualDobot, hear: Callable[[Report], None], now: float) -> None:
@@ -36,7 +36,7 @@ class Joined:
         self.now = now
         self.told: list[str] = []  # lines of the dashboard
         self._hear = hear
-        self._to_dobot: deque[Said] = deque()
+        self._to_dobot: deque[ClientText] = deque()
         self._to_driver: deque[Event] = deque()
         self._client = 0  # grows with each connection; 0: there is none
         self._connected = False
@@ -47,13 +47,13 @@ class Joined:
 
     def ask(self, command: Command) -> str | None:
         """Command the arm; why it could not leave, or None."""
-        out = self._step_driver(Asked(command=command))
+        out = self._step_driver(CommandRequest(command=command))
         self._settle()
-        return next((each.why for each in out if isinstance(each, Unsent)), None)
+        return next((each.why for each in out if isinstance(each, CommandNotSent)), None)
 
     def tell(self, line: str) -> None:
         """Say what another client of the dashboard says."""
-        self.dobot.step(self.now, [Said(client=-1, text=line)])
+        self.dobot.step(self.now, [ClientText(client=-1, text=line)])
 
     def pass_time(self, now: float) -> None:
         """Have both do what is due by now."""
@@ -83,22 +83,22 @@ class Joined:
             off = self.dobot.is_off
             self._connected = not off
             self._client += 1
-            self._to_driver.append(Closed(why="refused") if off else Opened())
+            self._to_driver.append(Closed(why="refused") if off else ConnectionsOpened())
         elif isinstance(message, Close):
             self._connected = False
             self._to_driver.clear()
-        elif isinstance(message, Say) and self._connected:
+        elif isinstance(message, SendLine) and self._connected:
             self.told.append(message.text)
-            self._to_dobot.append(Said(client=self._client, text=message.text))
+            self._to_dobot.append(ClientText(client=self._client, text=message.text))
 
-    def _step_dobot(self, *said: Said) -> None:
+    def _step_dobot(self, *said: ClientText) -> None:
         for message in self.dobot.step(self.now, said):
             if not self._connected:
                 continue
-            if isinstance(message, HangUp):
+            if isinstance(message, Disconnect):
                 self._connected = False
                 self._to_driver.append(Closed(why="hung up"))
             elif isinstance(message, Frame):
-                self._to_driver.append(Fed(data=message.data))
+                self._to_driver.append(FeedbackData(data=message.data))
             elif isinstance(message, Answer) and message.client == self._client:
-                self._to_driver.append(Answered(data=message.text.encode()))
+                self._to_driver.append(DashboardReply(data=message.text.encode()))

@@ -26,7 +26,7 @@ QUERIES = ("robotmode", "getangle", "geterrorid", "getcurrentcommandid", "gettoo
 
 
 @dataclass(frozen=True, kw_only=True)
-class Said:
+class ClientText:
     """A client told the dashboard this; one line, or several that each end with a bracket."""
 
     client: int
@@ -49,15 +49,15 @@ class Frame:
 
 
 @dataclass(frozen=True, kw_only=True)
-class HangUp:
+class Disconnect:
     """Every connection ends."""
 
 
-Message = Answer | Frame | HangUp
+Message = Answer | Frame | Disconnect
 
 
 @dataclass(frozen=True, kw_only=True)
-class Queued:
+class QueuedMove:
     """A move that waits for its turn."""
 
     number: int
@@ -66,7 +66,7 @@ class Queued:
     acceleration_percent: float = 100.0
 
 
-class Refused(Exception):
+class ErrorReply(Exception):
     """An ErrorID other than 0."""
 
     def __init__(self, error: int) -> None:
@@ -114,7 +114,7 @@ class VirtualDobot:
         """Whether nobody can connect."""
         return "power_cycle" in self.faults
 
-    def step(self, now: float, events: Sequence[Said]) -> list[Message]:
+    def step(self, now: float, events: Sequence[ClientText]) -> list[Message]:
         """Let time pass, do what it is told, and say what there is to say."""
         out: list[Message] = []
         self._now = now
@@ -123,7 +123,7 @@ class VirtualDobot:
             if self.is_off:
                 self._off = True
                 self._frame_at = now + self._frame_s
-                return [HangUp()]
+                return [Disconnect()]
             self._boot(now)
         self._pass_time(now)
         for event in events:
@@ -154,7 +154,7 @@ class VirtualDobot:
     # How time passes.
 
     def _forget(self) -> None:
-        self._queue: deque[Queued] = deque()
+        self._queue: deque[QueuedMove] = deque()
         self._path: Path | None = None
         self._ends_short = False
         self._command = 0  # the number of the last move that began
@@ -196,7 +196,9 @@ class VirtualDobot:
         if "second_client" in self.faults:
             self._number += 1
             self._path = None
-            self._begin(now, Queued(number=self._number, goal=tuple(each + 5 for each in self.joints_deg)))
+            self._begin(
+                now, QueuedMove(number=self._number, goal=tuple(each + 5 for each in self.joints_deg))
+            )
 
     def _part(self, now: float) -> float:
         assert self._path is not None
@@ -212,7 +214,7 @@ class VirtualDobot:
         if self._path.ends_at <= now:
             self._path = None
 
-    def _begin(self, now: float, queued: Queued) -> None:
+    def _begin(self, now: float, queued: QueuedMove) -> None:
         self._command = queued.number
         if "lie" in self.faults:
             return
@@ -237,7 +239,7 @@ class VirtualDobot:
         text, hang_up = self._reply(now, line)
         answer = Answer(client=client, text=text)
         if hang_up:
-            return [HangUp()]
+            return [Disconnect()]
         if "no_replies" in self.faults:
             return []
         if "nonsense_replies" in self.faults:
@@ -258,10 +260,10 @@ class VirtualDobot:
         try:
             does = getattr(self, f"_do_{'button' if name == BUTTON_LINE else name}", None)
             if does is None:
-                raise Refused(UNKNOWN)
+                raise ErrorReply(UNKNOWN)
             value = does(now, found[2])
             error = 0
-        except Refused as refused:
+        except ErrorReply as refused:
             value, error = "", refused.error
         hangs_up = name == "movj" and error == 0 and "hang_up" in self.faults
         return f"{error},{{{value}}},{found[1]}({found[2]});", hangs_up
@@ -303,15 +305,15 @@ class VirtualDobot:
 
     def _do_pause(self, now: float, values: str) -> str:
         if self._path is None:
-            raise Refused(-1)
+            raise ErrorReply(-1)
         if not self._paused:
-            self._resumes = Queued(number=self._command, goal=self._path.goal)
+            self._resumes = QueuedMove(number=self._command, goal=self._path.goal)
             self._path, self._paused = self._path.braked(now), True
         return ""
 
     def _do_continue(self, now: float, values: str) -> str:
         if not self._paused:
-            raise Refused(-1)
+            raise ErrorReply(-1)
         self._queue.appendleft(self._resumes)
         self._paused = False
         return ""
@@ -319,7 +321,7 @@ class VirtualDobot:
     def _do_speedfactor(self, now: float, values: str) -> str:
         (ratio,) = _numbers(values, 1)
         if not 1 <= ratio <= 100:
-            raise Refused(OUT_OF_RANGE)
+            raise ErrorReply(OUT_OF_RANGE)
         self.speed_percent = ratio
         return ""
 
@@ -340,11 +342,11 @@ class VirtualDobot:
         self._check(power=True, moves=True)
         found = JOINTS.fullmatch(values.strip())
         if found is None:  # poses need the arm's kinematics, which are not played here
-            raise Refused(WRONG_TYPE)
+            raise ErrorReply(WRONG_TYPE)
         goal = _numbers(found[1], 6)
         asked = dict(re.findall(r"(\w+)=([\d.]+)", found[2]))
         before, self._number = self._number, self._number + 1
-        queued = Queued(
+        queued = QueuedMove(
             number=self._number,
             goal=goal,
             speed_percent=float(asked.get("v", 100)),
@@ -366,21 +368,21 @@ class VirtualDobot:
 
     def _bit(self, index: float) -> int:
         if index not in (1, 2, 3, 4):
-            raise Refused(OUT_OF_RANGE)
+            raise ErrorReply(OUT_OF_RANGE)
         return 1 << (int(index) - 1)
 
     def _check(self, *, power: bool = False, moves: bool = False) -> None:
         """Refuse what cannot be done in this state."""
         if "stop_button" in self.faults:
-            raise Refused(-3)
+            raise ErrorReply(-3)
         if self._alarms or self._collided:
-            raise Refused(-2)
+            raise ErrorReply(-2)
         if power and not self._powered:
-            raise Refused(-4)
+            raise ErrorReply(-4)
         if moves and "script" in self.faults:
-            raise Refused(-5)
+            raise ErrorReply(-5)
         if moves and ("refuse" in self.faults or not self._enabled or self._paused):
-            raise Refused(-1)
+            raise ErrorReply(-1)
 
     # What it says by itself.
 
@@ -417,11 +419,11 @@ def _lines(text: str) -> list[str]:
 def _numbers(text: str, count: int) -> Joints:
     parts = text.split(",")
     if len(parts) != count:
-        raise Refused(WRONG_COUNT)
+        raise ErrorReply(WRONG_COUNT)
     try:
         numbers = tuple(float(part) for part in parts)
     except ValueError as error:
-        raise Refused(WRONG_TYPE) from error
+        raise ErrorReply(WRONG_TYPE) from error
     if not all(map(math.isfinite, numbers)):
-        raise Refused(WRONG_TYPE)
+        raise ErrorReply(WRONG_TYPE)
     return numbers

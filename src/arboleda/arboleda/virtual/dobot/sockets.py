@@ -11,7 +11,7 @@ from collections.abc import Callable, Collection
 from contextlib import suppress
 
 from ..ports import listen
-from .machine import Answer, Frame, HangUp, Message, Said, VirtualDobot
+from .machine import Answer, ClientText, Disconnect, Frame, Message, VirtualDobot
 
 AT_ONCE = 4096  # bytes
 LONGEST_WAIT_S = 0.1
@@ -70,7 +70,7 @@ class Server:
             for message in self.machine.step(time.monotonic() - self._began, said):
                 self._do(message)
 
-    def _heard(self, key: selectors.SelectorKey) -> list[Said]:
+    def _heard(self, key: selectors.SelectorKey) -> list[ClientText]:
         what, number = key.data
         assert isinstance(key.fileobj, socket.socket)
         if what != HEARD:
@@ -84,7 +84,7 @@ class Server:
             self._forget(key.fileobj, number)
             return []
         text = data.decode("utf-8", "replace")
-        return [Said(client=number, text=text)] if number in self._clients else []
+        return [ClientText(client=number, text=text)] if number in self._clients else []
 
     def _welcome(self, listener: socket.socket, what: str) -> None:
         client, _ = listener.accept()
@@ -101,7 +101,7 @@ class Server:
         self._selector.register(client, selectors.EVENT_READ, (HEARD, number))
 
     def _do(self, message: Message) -> None:
-        if isinstance(message, HangUp):
+        if isinstance(message, Disconnect):
             self._hang_up()
         elif isinstance(message, Frame):
             for client in list(self._fed):

@@ -6,8 +6,8 @@ import math
 from collections.abc import Collection
 from dataclasses import dataclass
 
-from arboleda.drivers.ros_action.events import Ended, Seen, Status
-from arboleda.drivers.ros_action.joints import JointsSeen
+from arboleda.drivers.ros_action.events import GoalResult, Measurement, Status
+from arboleda.drivers.ros_action.joints import JointStateEvent
 
 from ..ros_action.faults import FAULTS as OF_ALL
 from ..ros_action.machine import BadGoal
@@ -79,19 +79,19 @@ class GripperBody:
         if "slip" in self._faults and self.position == (self._part,):
             self.position = (self._told,)
 
-    def end(self, id: str, ride: Ride, *, arrived: bool) -> Ended:
+    def end(self, id: str, ride: Ride, *, arrived: bool) -> GoalResult:
         if arrived and self.position == ride.goal:
-            return Ended(id=id, status=Status.SUCCEEDED)
+            return GoalResult(id=id, status=Status.SUCCEEDED)
         stalled = Status.SUCCEEDED if "allow_stalling" in self._faults else Status.ABORTED
-        return Ended(id=id, status=stalled, stalled=True)
+        return GoalResult(id=id, status=stalled, stalled=True)
 
-    def aborted(self, id: str) -> Ended:
-        return Ended(id=id, status=Status.ABORTED)
+    def aborted(self, id: str) -> GoalResult:
+        return GoalResult(id=id, status=Status.ABORTED)
 
-    def measured(self, stamp: tuple[int, int], position: Position) -> list[Seen]:
+    def measured(self, stamp: tuple[int, int], position: Position) -> list[Measurement]:
         if "no_joint" in self._faults:
-            return [JointsSeen(names=(), positions=(), stamp=stamp)]
-        return [JointsSeen(names=(self.joint,), positions=position, stamp=stamp)]
+            return [JointStateEvent(names=(), positions=(), stamp=stamp)]
+        return [JointStateEvent(names=(self.joint,), positions=position, stamp=stamp)]
 
     def _reach(self, position: float) -> float:
         """Where the finger gets to on its way there; parts lie between fingers that are wider than they."""

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from arboleda.adapters.modbus import Refused
+from arboleda.adapters.modbus import RequestRefused
 from arboleda.drivers import Report
-from arboleda.drivers.modbus.machine import Block, ModbusDevice, Put, Raw
+from arboleda.drivers.modbus.machine import Block, ModbusDevice, Raw, WriteRequest
 from arboleda.drivers.modbus.settings import Settings
 from arboleda.model.commands import Command
 from arboleda.model.messages import Reason
@@ -14,7 +14,7 @@ from arboleda.model.plant_model import PlantModel
 
 from ..campaign import Causes
 from ..plc.campaign import NO_LINK, BeltTrial
-from ..plc.loopback import Broken
+from ..plc.loopback import LineBroken
 from .memory import FAULTS, BeltMemory
 
 CAUSES: Causes = {
@@ -54,15 +54,15 @@ class Registers:
         try:
             for put in self._machine.order(command):
                 self._write(put)
-        except Refused as error:
+        except RequestRefused as error:
             return error.word
         return None
 
     def beat(self, number: int) -> None:
         try:
-            self._write(Put(table="holding", address=4, values=(number,)))
-        except Refused as error:
-            raise Broken(str(error)) from error
+            self._write(WriteRequest(table="holding", address=4, values=(number,)))
+        except RequestRefused as error:
+            raise LineBroken(str(error)) from error
 
     def report(self, at: float) -> Report:
         return self._machine.report(at, self._read(self._machine.blocks))
@@ -73,17 +73,17 @@ class Registers:
             values = self._memory.read(block.table, block.address, block.length)
             self._hear()
             if isinstance(values, int):
-                raise Broken(str(Refused(f"to show {block.table} {block.address}", values)))
+                raise LineBroken(str(RequestRefused(f"to show {block.table} {block.address}", values)))
             raw |= {(block.table, block.address + at): value for at, value in enumerate(values)}
         return raw
 
-    def _write(self, put: Put) -> None:
+    def _write(self, put: WriteRequest) -> None:
         code = self._memory.write(put.table, put.address, list(put.values))
         self._hear()
         if code is not None:
-            raise Refused(f"to take {put.table} {put.address}", code)
+            raise RequestRefused(f"to take {put.table} {put.address}", code)
 
     def _hear(self) -> None:
         """The answer, as the line carries it."""
         if self._memory.trace(True, FRAME) != FRAME:
-            raise Broken("the PLC does not answer")
+            raise LineBroken("the PLC does not answer")

@@ -6,9 +6,9 @@ import math
 from collections.abc import Collection
 from dataclasses import dataclass, replace
 
-from arboleda.drivers.nav2.localisation import Counted, Localised
+from arboleda.drivers.nav2.localisation import MapPose, OdometryPose
 from arboleda.drivers.nav2.pose import Pose, wrapped
-from arboleda.drivers.ros_action.events import Ended, Seen, Status
+from arboleda.drivers.ros_action.events import GoalResult, Measurement, Status
 
 from ..ros_action.faults import FAULTS as OF_ALL
 from ..ros_action.machine import BadGoal
@@ -74,17 +74,17 @@ class BaseBody:
     def rests(self, now: float) -> None:
         """It stands."""
 
-    def end(self, id: str, ride: Ride, *, arrived: bool) -> Ended:
-        return Ended(id=id, status=Status.SUCCEEDED, missed=(0,) if self._missed else ())
+    def end(self, id: str, ride: Ride, *, arrived: bool) -> GoalResult:
+        return GoalResult(id=id, status=Status.SUCCEEDED, missed=(0,) if self._missed else ())
 
-    def aborted(self, id: str) -> Ended:
-        return Ended(id=id, status=Status.ABORTED)
+    def aborted(self, id: str) -> GoalResult:
+        return GoalResult(id=id, status=Status.ABORTED)
 
-    def measured(self, stamp: tuple[int, int], position: Position) -> list[Seen]:
+    def measured(self, stamp: tuple[int, int], position: Position) -> list[Measurement]:
         pose = Pose(*position)
-        said: list[Seen] = []
+        said: list[Measurement] = []
         if "no_odometry" not in self._faults:
-            said.append(Counted(stamp=stamp, pose=self._start.inverse @ pose))
+            said.append(OdometryPose(stamp=stamp, pose=self._start.inverse @ pose))
         at = stamp[0] + stamp[1] / 1e9
         quiet = at > self._said_at + SILENCE_S
         self._said_at = at
@@ -93,5 +93,5 @@ class BaseBody:
         found = replace(pose, y=pose.y + JUMP_M) if "jump" in self._faults else pose
         if self._said is None or quiet or not self._said.distance(found) < LOCALISED_M:
             self._said = found
-            said.append(Localised(stamp=stamp, pose=found))
+            said.append(MapPose(stamp=stamp, pose=found))
         return said

@@ -12,7 +12,7 @@ from arboleda.model.plant_model import PlantModel
 
 from ..campaign import Causes
 from ..plc.campaign import NO_LINK, BeltTrial
-from ..plc.loopback import Broken
+from ..plc.loopback import LineBroken
 from .faults import FAULTS
 from .program import BeltProgram
 
@@ -59,7 +59,7 @@ class Variables:
         self._answer()
         refused = self._call(call)
         if refused is not None and isinstance(command, Stop):
-            raise Broken(f"{call.method} was refused: {refused}")
+            raise LineBroken(f"{call.method} was refused: {refused}")
         return refused
 
     def beat(self, number: int) -> None:
@@ -74,7 +74,7 @@ class Variables:
         read = {f"ns=2;s={name}": value for name, value in self._program.show().items()}
         for node, value in read.items():
             if isinstance(value, Bad):
-                raise Broken(f"{node} is {value.status}")
+                raise LineBroken(f"{node} is {value.status}")
         return read
 
     def _call(self, call: Call) -> str | None:
@@ -83,6 +83,6 @@ class Variables:
     def _answer(self) -> None:
         """What lies before the server comes first."""
         if self._program.is_mute():
-            raise Broken("the server does not answer")
+            raise LineBroken("the server does not answer")
         while self._late:
             self._call(self._late.pop(0))

@@ -12,7 +12,7 @@ from arboleda.model.messages import Reason
 from arboleda.model.plant_model import PlantModel, Robot
 
 from ..campaign import START_S, Causes, Hear, Trial
-from .loopback import Joined, Wire
+from .loopback import Loopback, Wire
 from .machine import CLOSED, ENTRY, EXIT, OPEN, Belt
 
 NO_LINK = {Reason.LINK_LOST}
@@ -68,8 +68,8 @@ class BeltTrial(Trial):
     def task(self, number: int) -> str:
         return f"line pass 200 #{number}"
 
-    def join(self, hear: Hear, now: float) -> Joined:
-        return Counted(self, self.wire(), hear, now)
+    def join(self, hear: Hear, now: float) -> Loopback:
+        return OrderCounter(self, self.wire(), hear, now)
 
     @abstractmethod
     def wire(self) -> Wire:
@@ -90,7 +90,7 @@ class BeltTrial(Trial):
         self.belt.halt(self.now)
 
 
-class Counted(Joined):
+class OrderCounter(Loopback):
     """Tells its trial what it was given, and what time it is."""
 
     def __init__(self, trial: BeltTrial, wire: Wire, hear: Hear, now: float) -> None:

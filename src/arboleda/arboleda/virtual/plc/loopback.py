@@ -9,7 +9,7 @@ from __future__ import annotations
 from typing import Protocol
 
 from arboleda.drivers import Report, lost
-from arboleda.drivers.plc.plc_snapshot import Unreadable
+from arboleda.drivers.plc.plc_snapshot import UnreadableValue
 from arboleda.model.commands import Command
 
 from ..campaign import Hear
@@ -19,7 +19,7 @@ AGAIN_S = 0.5
 BEATS = 2**16
 
 
-class Broken(Exception):
+class LineBroken(Exception):
     """Nothing can be heard on the line, and why."""
 
 
@@ -39,7 +39,7 @@ class Wire(Protocol):
         """Read all that is mapped."""
 
 
-class Joined:
+class Loopback:
     """What one says the other hears at once; `hear` gets what the plant would hear of the device."""
 
     def __init__(self, robot: str, wire: Wire, hear: Hear, now: float) -> None:
@@ -54,7 +54,7 @@ class Joined:
             return "the PLC is not connected"
         try:
             word = self._wire.order(command)
-        except (Broken, Unreadable) as error:
+        except (LineBroken, UnreadableValue) as error:
             self._lose(error)
             return None
         if word is not None and command.id:
@@ -68,7 +68,7 @@ class Joined:
             self.next_deadline = now + POLL_S
             try:
                 self._poll()
-            except (Broken, Unreadable) as error:
+            except (LineBroken, UnreadableValue) as error:
                 self._lose(error)
 
     def _poll(self) -> None:

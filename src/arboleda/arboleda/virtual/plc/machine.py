@@ -37,7 +37,7 @@ WATCH_S = 2.0  # how long it works on without a heartbeat, once it had one
 
 
 @dataclass(kw_only=True)
-class Shown:
+class PlcDisplay:
     """What the PLC shows, in numbers."""
 
     boot: int = 1
@@ -71,7 +71,7 @@ class Belt:
     """`scan` before anything is read; `faults` are the names of those that are on."""
 
     faults: Collection[str] = ()
-    shown: Shown = field(default_factory=Shown)
+    shown: PlcDisplay = field(default_factory=PlcDisplay)
     _work: Work | None = None
     _beat: tuple[int, float] | None = None
     _latched: bool = False
@@ -183,5 +183,7 @@ class Belt:
             self.shown.state = LATCHED if self._latched else STOPPED
 
     def _boot(self) -> None:
-        self.shown = Shown(boot=self.shown.boot % 65535 + 1, part_at=self.shown.part_at, gate=self.shown.gate)
+        self.shown = PlcDisplay(
+            boot=self.shown.boot % 65535 + 1, part_at=self.shown.part_at, gate=self.shown.gate
+        )
         self._work, self._latched, self._beat = None, False, None

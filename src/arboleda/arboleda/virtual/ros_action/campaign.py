@@ -13,7 +13,7 @@ from arboleda.model.plant_model import Cell, PlantModel, Robot
 
 from ..campaign import Causes, Hear, Trial
 from ..faults import Faults
-from .loopback import Joined
+from .loopback import Loopback
 from .machine import Body, VirtualServer
 
 MEASURE_S = 0.05  # less often than by default: a campaign has to see every state, and no more
@@ -43,7 +43,7 @@ CAUSES: dict[str, set[Reason]] = {
 """Why a task may fail while a fault that every server has is there, or soon after it."""
 
 
-class Own(Collection[str]):
+class DeviceFaults(Collection[str]):
     """Those of one device among the faults of all, which are called by device and name: `arm.lie`."""
 
     def __init__(self, all: Faults, device: str) -> None:
@@ -82,12 +82,12 @@ class ActionTrial(Trial):
         super().__init__(known)
         self.model = example
         self.causes = {f"{each.name}.{name}": why for each in self.parts for name, why in each.causes.items()}
-        self.bodies = {part.name: part.body(Own(self.faults, part.name)) for part in self.parts}
+        self.bodies = {part.name: part.body(DeviceFaults(self.faults, part.name)) for part in self.parts}
         self._servers = {
-            name: VirtualServer(body, Own(self.faults, name), measure_s=MEASURE_S)
+            name: VirtualServer(body, DeviceFaults(self.faults, name), measure_s=MEASURE_S)
             for name, body in self.bodies.items()
         }
-        self._joined: Together | None = None
+        self._joined: DeviceGroup | None = None
 
     @property
     def cell(self) -> Cell:
@@ -98,23 +98,23 @@ class ActionTrial(Trial):
     def robots(self) -> Sequence[Robot]:
         return tuple(self.model.robots[part.name] for part in self.parts)
 
-    def join(self, hear: Hear, now: float) -> Together:
+    def join(self, hear: Hear, now: float) -> DeviceGroup:
         made = {}
         for part, device in zip(self.parts, self.robots, strict=True):
             assert device.driver is not None
             driver = part.machine([device], device.driver.settings)
-            made[part.name] = Joined(driver, self._servers[part.name], part.read, hear, now)
-        self._joined = Together(made)
+            made[part.name] = Loopback(driver, self._servers[part.name], part.read, hear, now)
+        self._joined = DeviceGroup(made)
         return self._joined
 
     def moves(self) -> tuple[int, int]:
         return (0, 0) if self._joined is None else (self._joined.goals, self._joined.given)
 
 
-class Together:
+class DeviceGroup:
     """Several devices that are reached as one."""
 
-    def __init__(self, joined: Mapping[str, Joined]) -> None:
+    def __init__(self, joined: Mapping[str, Loopback]) -> None:
         self._joined = joined
         self.given = 0  # nodes, positions and widths
 

@@ -7,27 +7,27 @@ from collections.abc import Callable
 from typing import Any
 
 from arboleda.drivers.ros_action.events import (
-    Answered,
-    Asked,
     CancelAll,
-    CancelAnswered,
-    Ended,
+    CancelAnswer,
+    CommandNotSent,
+    CommandRequest,
     Event,
-    Found,
+    GoalAnswer,
+    GoalResult,
     SendGoal,
-    Unsent,
+    ServersFound,
 )
 from arboleda.drivers.ros_action.events import Message as Told
 from arboleda.drivers.ros_action.machine import Machine
 from arboleda.model.commands import Command
 from arboleda.model.messages import Report
 
-from .machine import CancelAsked, CancelDecided, GoalAsked, VirtualServer
+from .machine import CancelDecision, CancelRequest, GoalRequest, VirtualServer
 
 LOOK_S = 0.1  # as often as the driver looks which servers there are
 
 
-class Joined:
+class Loopback:
     """What one says the other hears at once; `hear` gets what the plant would hear of the device.
 
     `read` makes of a goal of the driver what the server's body takes, as the message between them does.
@@ -46,7 +46,7 @@ class Joined:
         self._look_at = now
         self._starts, self._was_off = 1, False
         self._open: dict[str, bool] = {}  # goals that have no end, and whether they are accepted
-        self._early: dict[str, Ended] = {}  # ends of goals that are not yet accepted
+        self._early: dict[str, GoalResult] = {}  # ends of goals that are not yet accepted
         self._to_driver: deque[Event] = deque()
 
     @property
@@ -55,9 +55,9 @@ class Joined:
 
     def ask(self, command: Command) -> str | None:
         """Command the device; why it could not leave, or None."""
-        out = self._step_driver(Asked(command=command))
+        out = self._step_driver(CommandRequest(command=command))
         self._settle()
-        return next((each.why for each in out if isinstance(each, Unsent)), None)
+        return next((each.why for each in out if isinstance(each, CommandNotSent)), None)
 
     def pass_time(self, now: float) -> None:
         """Have both do what is due by now."""
@@ -71,7 +71,7 @@ class Joined:
         self._step_server()
         if self.now >= self._look_at:
             self._look_at = self.now + LOOK_S
-            self._to_driver.append(Found(servers=self._servers()))
+            self._to_driver.append(ServersFound(servers=self._servers()))
         self._settle()
 
     def _servers(self) -> tuple[int, ...]:
@@ -91,7 +91,7 @@ class Joined:
             elif isinstance(message, SendGoal) and not self._server.is_off:
                 self.goals += 1
                 self._open[message.id] = False
-                self._step_server(GoalAsked(id=message.id, goal=self._read(message.goal)))
+                self._step_server(GoalRequest(id=message.id, goal=self._read(message.goal)))
             elif isinstance(message, CancelAll) and not self._server.is_off:
                 self._cancel()
         return out
@@ -99,29 +99,29 @@ class Joined:
     def _cancel(self) -> None:
         """As action servers in C++ do: only what is accepted can be cancelled, and no goal is no refusal."""
         accepted = [id for id, is_accepted in self._open.items() if is_accepted]
-        decided = self._step_server(*(CancelAsked(id=id) for id in accepted))
+        decided = self._step_server(*(CancelRequest(id=id) for id in accepted))
         refused = bool(decided) and not any(each.accepted for each in decided)
-        self._to_driver.append(CancelAnswered(refused=refused))
+        self._to_driver.append(CancelAnswer(refused=refused))
 
-    def _step_server(self, *events: GoalAsked | CancelAsked) -> list[CancelDecided]:
+    def _step_server(self, *events: GoalRequest | CancelRequest) -> list[CancelDecision]:
         decided = []
         for message in self._server.step(self.now, events):
-            if isinstance(message, CancelDecided):
+            if isinstance(message, CancelDecision):
                 decided.append(message)
                 continue
-            if isinstance(message, Answered | Ended):
+            if isinstance(message, GoalAnswer | GoalResult):
                 self._tell(message)
             else:
                 self._to_driver.append(message)
         return decided
 
-    def _tell(self, message: Answered | Ended) -> None:
+    def _tell(self, message: GoalAnswer | GoalResult) -> None:
         """A client asks for the end of a goal once that is accepted, and hears of none before."""
-        if isinstance(message, Ended) and self._open.get(message.id) is False:
+        if isinstance(message, GoalResult) and self._open.get(message.id) is False:
             self._early[message.id] = message
             return
         self._to_driver.append(message)
-        if isinstance(message, Answered) and message.accepted and message.id in self._open:
+        if isinstance(message, GoalAnswer) and message.accepted and message.id in self._open:
             self._open[message.id] = True
             if (end := self._early.pop(message.id, None)) is not None:
                 self._tell(end)

@@ -7,7 +7,7 @@ from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass
 from typing import Any, Protocol
 
-from arboleda.drivers.ros_action.events import Answered, Ended, Seen, Status
+from arboleda.drivers.ros_action.events import GoalAnswer, GoalResult, Measurement, Status
 
 from .ride import Position, Ride
 
@@ -18,7 +18,7 @@ MEASURE_S = 0.02
 
 
 @dataclass(frozen=True, kw_only=True)
-class GoalAsked:
+class GoalRequest:
     """A client sends a goal; what it holds is the body's own."""
 
     id: str
@@ -26,21 +26,21 @@ class GoalAsked:
 
 
 @dataclass(frozen=True, kw_only=True)
-class CancelAsked:
+class CancelRequest:
     """A client wants a goal to end."""
 
     id: str
 
 
 @dataclass(frozen=True, kw_only=True)
-class CancelDecided:
+class CancelDecision:
     """What is answered to it."""
 
     id: str
     accepted: bool
 
 
-Message = Answered | Ended | Seen | CancelDecided
+Message = GoalAnswer | GoalResult | Measurement | CancelDecision
 
 
 class BadGoal(Exception):
@@ -62,13 +62,13 @@ class Body(Protocol):
     def rests(self, now: float) -> None:
         """It is led nowhere."""
 
-    def end(self, id: str, ride: Ride, *, arrived: bool) -> Ended:
+    def end(self, id: str, ride: Ride, *, arrived: bool) -> GoalResult:
         """The end of a goal by itself."""
 
-    def aborted(self, id: str) -> Ended:
+    def aborted(self, id: str) -> GoalResult:
         """The end of a goal that goes wrong half way."""
 
-    def measured(self, stamp: tuple[int, int], position: Position) -> list[Seen]:
+    def measured(self, stamp: tuple[int, int], position: Position) -> list[Measurement]:
         """What its sensors say."""
 
 
@@ -100,7 +100,7 @@ class VirtualServer:
         ahead = [each for each in ends if each > self._measure_at - self._measure_s]
         return min([self._measure_at, *ahead, *(at for at, _ in self._late)])
 
-    def step(self, now: float, events: Sequence[GoalAsked | CancelAsked]) -> list[Message]:
+    def step(self, now: float, events: Sequence[GoalRequest | CancelRequest]) -> list[Message]:
         """Let time pass, take what clients ask, and say what there is to say."""
         if self.is_off or self._off:
             self._boot()
@@ -110,7 +110,7 @@ class VirtualServer:
                 return []
         out = self._pass_time(now)
         for event in events:
-            out += self._begin(now, event) if isinstance(event, GoalAsked) else self._cancel(event)
+            out += self._begin(now, event) if isinstance(event, GoalRequest) else self._cancel(event)
         out += [message for at, message in self._late if at <= now]
         self._late = [row for row in self._late if row[0] > now]
         if self._measure_at <= now:
@@ -145,15 +145,15 @@ class VirtualServer:
         elif "abort" in self.faults:
             return self._stand(self.body.aborted)
         elif "other_client" in self.faults:
-            return self._stand(lambda id: Ended(id=id, status=self.body.preempted))
+            return self._stand(lambda id: GoalResult(id=id, status=self.body.preempted))
         return []
 
-    def _stand(self, end: Callable[[str], Ended]) -> list[Message]:
+    def _stand(self, end: Callable[[str], GoalResult]) -> list[Message]:
         self._ride = None
         id, self._goal = self._goal, None
         return [] if id is None else [end(id)]
 
-    def _over(self, now: float, end: Ended) -> list[Message]:
+    def _over(self, now: float, end: GoalResult) -> list[Message]:
         if self._goal is None or "no_result" in self.faults:
             return []  # it is gone on with though it ended, or nobody hears of its end
         self._goal = None
@@ -164,34 +164,34 @@ class VirtualServer:
 
     # What clients ask.
 
-    def _begin(self, now: float, asked: GoalAsked) -> list[Message]:
+    def _begin(self, now: float, asked: GoalRequest) -> list[Message]:
         try:
             if "refuse" in self.faults:
                 raise BadGoal("refused")
             ride = self.body.ride(now, asked.goal, SLOW if "slow" in self.faults else 1.0)
         except BadGoal:
-            return [Answered(id=asked.id, accepted=False)]
-        out = self._stand(lambda id: Ended(id=id, status=self.body.preempted))
-        answer = Answered(id=asked.id, accepted=True)
+            return [GoalAnswer(id=asked.id, accepted=False)]
+        out = self._stand(lambda id: GoalResult(id=id, status=self.body.preempted))
+        answer = GoalAnswer(id=asked.id, accepted=True)
         if "late_answer" in self.faults:
             self._late.append((now + LATE_ANSWER_S, answer))
         else:
             out.append(answer)
         self._goal, self._ride = asked.id, ride.cut(SHORT) if "short" in self.faults else ride
         if "lie" in self.faults or "early" in self.faults:
-            out.append(Ended(id=asked.id, status=Status.SUCCEEDED))
+            out.append(GoalResult(id=asked.id, status=Status.SUCCEEDED))
             self._goal = None
             self._ride = None if "lie" in self.faults else ride
         return out
 
-    def _cancel(self, asked: CancelAsked) -> list[Message]:
+    def _cancel(self, asked: CancelRequest) -> list[Message]:
         if asked.id != self._goal or "refuse_cancel" in self.faults:
-            return [CancelDecided(id=asked.id, accepted=False)]
-        decided = CancelDecided(id=asked.id, accepted=True)
+            return [CancelDecision(id=asked.id, accepted=False)]
+        decided = CancelDecision(id=asked.id, accepted=True)
         if "deaf" in self.faults:
             return [decided]
         self._ride = self._goal = None
-        return [decided, Ended(id=asked.id, status=Status.CANCELED)]
+        return [decided, GoalResult(id=asked.id, status=Status.CANCELED)]
 
     # What it measures.
 

@@ -7,8 +7,8 @@ from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
-from arboleda.drivers.ros_action.events import Ended, Seen, Status
-from arboleda.drivers.ros_action.joints import JointsSeen
+from arboleda.drivers.ros_action.events import GoalResult, Measurement, Status
+from arboleda.drivers.ros_action.joints import JointStateEvent
 
 from ..ros_action.faults import FAULTS as OF_ALL
 from ..ros_action.machine import BadGoal
@@ -59,14 +59,14 @@ class ArmBody:
     def rests(self, now: float) -> None:
         """It holds its position."""
 
-    def end(self, id: str, ride: Ride, *, arrived: bool) -> Ended:
-        return Ended(id=id, status=Status.SUCCEEDED)
+    def end(self, id: str, ride: Ride, *, arrived: bool) -> GoalResult:
+        return GoalResult(id=id, status=Status.SUCCEEDED)
 
-    def aborted(self, id: str) -> Ended:
-        return Ended(id=id, status=Status.ABORTED, error=PATH_TOLERANCE, text="a joint left its path")
+    def aborted(self, id: str) -> GoalResult:
+        return GoalResult(id=id, status=Status.ABORTED, error=PATH_TOLERANCE, text="a joint left its path")
 
-    def measured(self, stamp: tuple[int, int], position: Position) -> list[Seen]:
+    def measured(self, stamp: tuple[int, int], position: Position) -> list[Measurement]:
         names = self.joints
         if "no_joint" in self._faults:
             names, position = names[:-1], position[:-1]
-        return [JointsSeen(names=names, positions=position, stamp=stamp)]
+        return [JointStateEvent(names=names, positions=position, stamp=stamp)]

@@ -13,11 +13,11 @@ from typing import Any
 from arboleda.adapters.broker import EmbeddedBroker
 from arboleda.adapters.broker_login import address, login
 from arboleda.adapters.mqtt import MqttClient, NotConnected
-from arboleda.adapters.vda5050.messages import Headers, Unfit, from_bytes, to_bytes
+from arboleda.adapters.vda5050.messages import Headers, SchemaMismatch, from_bytes, to_bytes
 from arboleda.drivers.vda5050.settings import MAJOR
 from arboleda.wire.transport import Connection, Delivery, Publication
 
-from .machine import Connect, Cut, Heard, Message, Say, VirtualAgv
+from .machine import Connect, ConnectionCut, Message, OutgoingMessage, VehicleMessage, VirtualAgv
 from .words import BROKEN
 
 CONNECT_S = 5.0
@@ -46,7 +46,7 @@ class Server:
         self._own = EmbeddedBroker(host, port) if broker is None else None
         self.broker = broker or ""
         self._client: MqttClient | None = None
-        self._events: SimpleQueue[Heard] = SimpleQueue()
+        self._events: SimpleQueue[VehicleMessage] = SimpleQueue()
         self._up, self._came, self._ending = threading.Event(), threading.Event(), threading.Event()
         self._thread = threading.Thread(target=self._run, name=f"vehicle {serial}", daemon=True)
 
@@ -81,19 +81,19 @@ class Server:
             with suppress(Empty):
                 self._events.put(self._events.get(timeout=max(0.001, wait_s)))
 
-    def _heard(self) -> list[Heard]:
+    def _heard(self) -> list[VehicleMessage]:
         heard = []
         while not self._events.empty():
             heard.append(self._events.get())
         return heard
 
     def _do(self, message: Message) -> None:
-        if isinstance(message, Say):
+        if isinstance(message, OutgoingMessage):
             self._publish(message)
         elif isinstance(message, Connect):
             self._headers = self._new_headers() if message.anew else self._headers
             self._connect()
-        elif isinstance(message, Cut) and self._client is not None:
+        elif isinstance(message, ConnectionCut) and self._client is not None:
             self._publish(self._broken())  # what the broker says in its place
             self._client.close()
             self._client = None
@@ -120,16 +120,18 @@ class Server:
             return
         topic = event.topic.rpartition("/")[2]
         try:
-            self._events.put(Heard(topic=topic, said=from_bytes(self._version, topic, event.payload)))
-        except Unfit:
-            self._events.put(Heard(topic=topic, said=None))
+            self._events.put(
+                VehicleMessage(topic=topic, said=from_bytes(self._version, topic, event.payload))
+            )
+        except SchemaMismatch:
+            self._events.put(VehicleMessage(topic=topic, said=None))
 
-    def _publish(self, say: Say) -> None:
+    def _publish(self, say: OutgoingMessage) -> None:
         with suppress(NotConnected):  # nobody hears it, as on any wire that is cut
             if self._client is not None:
                 self._client.publish(self._publication(say))
 
-    def _publication(self, say: Say) -> Publication:
+    def _publication(self, say: OutgoingMessage) -> Publication:
         message = {**self._headers(say.topic), **say.body}
         if say.as_serial is not None:
             message["serialNumber"] = say.as_serial
@@ -137,12 +139,12 @@ class Server:
         qos = 1 if say.topic == "connection" else 0
         return Publication(topic=f"{self._topics}/{say.topic}", payload=payload, qos=qos, retain=say.retain)
 
-    def _broken(self) -> Say:
+    def _broken(self) -> OutgoingMessage:
         return _connection(BROKEN[self._version])
 
     def _new_headers(self) -> Headers:
         return Headers(self._version, self._manufacturer, self._serial)
 
 
-def _connection(word: str) -> Say:
-    return Say(topic="connection", body={"connectionState": word}, retain=True)
+def _connection(word: str) -> OutgoingMessage:
+    return OutgoingMessage(topic="connection", body={"connectionState": word}, retain=True)

@@ -11,7 +11,7 @@ from arboleda.model.plant_model import PlantModel, Robot
 
 from ..campaign import Hear, Trial
 from .faults import FAULTS
-from .loopback import Joined
+from .loopback import Loopback
 from .machine import VirtualAgv
 
 SILENT_S = 3.0  # the shortest silence that states of each second allow
@@ -57,7 +57,7 @@ class AgvTrial(Trial):
         self._agv = VirtualAgv(self.faults, version=version)
         names = {"broker": "nowhere", "manufacturer": "arboleda", "serial": "agv1", "version": version}
         self._settings = Settings(silent_after_s=SILENT_S, **names)  # type: ignore[arg-type]
-        self._driver: Counted | None = None
+        self._driver: ActionCounter | None = None
 
     @property
     def robots(self) -> Sequence[Robot]:
@@ -66,8 +66,8 @@ class AgvTrial(Trial):
     def task(self, number: int) -> str:
         return f"hall fetch left right #{number}"
 
-    def join(self, hear: Hear, now: float) -> Joined:
-        self._driver = Counted(self.robots, self._settings, self._agv, hear, now)
+    def join(self, hear: Hear, now: float) -> Loopback:
+        self._driver = ActionCounter(self.robots, self._settings, self._agv, hear, now)
         return self._driver
 
     def seen(self) -> tuple[str, bool]:
@@ -80,7 +80,7 @@ class AgvTrial(Trial):
         return (sum(not said["orderUpdateId"] for said in orders), self._driver.given)
 
 
-class Counted(Joined):
+class ActionCounter(Loopback):
     """Counts the work that it was given."""
 
     given = 0

@@ -11,18 +11,18 @@ from typing import Any
 
 from arboleda.adapters.vda5050.messages import Headers, from_bytes, to_bytes
 from arboleda.drivers import NotSent
-from arboleda.drivers.vda5050.machine import Message, Publish, Tell, Vehicle
+from arboleda.drivers.vda5050.machine import LogLine, Message, Publish, Vehicle
 from arboleda.drivers.vda5050.settings import Settings
 from arboleda.model.commands import Command
 from arboleda.model.messages import Report
 from arboleda.model.plant_model import Robot
 
-from .machine import Connect, Cut, Heard, Say, VirtualAgv
+from .machine import Connect, ConnectionCut, OutgoingMessage, VehicleMessage, VirtualAgv
 from .machine import Message as Said
 from .words import BROKEN
 
 
-class Joined:
+class Loopback:
     """What one says the other hears at once; `hear` gets what the plant would hear of its devices."""
 
     def __init__(
@@ -41,7 +41,7 @@ class Joined:
         self._names = (settings.version, settings.manufacturer, settings.serial)
         self._to_agv, self._headers = Headers(*self._names), Headers(*self._names)
         self._connected = False
-        self._waiting: deque[Heard] = deque()
+        self._waiting: deque[VehicleMessage] = deque()
         self._do(self.vehicle.connected(now, up=True))
 
     @property
@@ -72,24 +72,24 @@ class Joined:
         while self._waiting:
             self._step_agv(self._waiting.popleft())
 
-    def _step_agv(self, *heard: Heard) -> None:
+    def _step_agv(self, *heard: VehicleMessage) -> None:
         for message in self.agv.step(self.now, heard):
             self._take(message)
 
     def _take(self, message: Said) -> None:
-        if isinstance(message, Say):
+        if isinstance(message, OutgoingMessage):
             if message.fits:
                 self._read(message)
             return
         self._connected = isinstance(message, Connect)
-        if isinstance(message, Cut):
+        if isinstance(message, ConnectionCut):
             self._waiting.clear()
         elif message.anew:
             self._headers = Headers(*self._names)
         word = "ONLINE" if self._connected else BROKEN[self._settings.version]
         self._do(self.vehicle.connection(self.now, {"connectionState": word}))
 
-    def _read(self, say: Say) -> None:
+    def _read(self, say: OutgoingMessage) -> None:
         version = self._settings.version
         body = {**self._headers(say.topic), **say.body}
         said = from_bytes(version, say.topic, to_bytes(version, say.topic, body))
@@ -101,7 +101,7 @@ class Joined:
         for message in messages:
             if isinstance(message, Publish):
                 self._publish(message)
-            elif isinstance(message, Tell):
+            elif isinstance(message, LogLine):
                 self.log.append(message.text)
             else:
                 self._hear(message)
@@ -111,4 +111,4 @@ class Joined:
         said = from_bytes(version, message.topic, to_bytes(version, message.topic, body))
         self.told.append((message.topic, said))
         if self._connected:
-            self._waiting.append(Heard(topic=message.topic, said=said))
+            self._waiting.append(VehicleMessage(topic=message.topic, said=said))

@@ -21,7 +21,7 @@ OVER = ("FINISHED", "FAILED")
 
 
 @dataclass(frozen=True, kw_only=True)
-class Heard:
+class VehicleMessage:
     """A message for the vehicle; `said` is None where it does not fit the schema of its topic."""
 
     topic: str
@@ -29,7 +29,7 @@ class Heard:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Say:
+class OutgoingMessage:
     """A message of the vehicle, without its header."""
 
     topic: str
@@ -47,15 +47,15 @@ class Connect:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Cut:
+class ConnectionCut:
     """Be cut off from the broker."""
 
 
-Message = Say | Connect | Cut
+Message = OutgoingMessage | Connect | ConnectionCut
 
 
 @dataclass(kw_only=True)
-class Doing:
+class RunningAction:
     """An action and how far it is."""
 
     id: str
@@ -87,7 +87,7 @@ class VirtualAgv:
         self.loaded, self.charging, self.battery = False, False, 90.0
         self.paused = self.driving = False
         self.course = Course()
-        self.actions: dict[str, Doing] = {}
+        self.actions: dict[str, RunningAction] = {}
         self.errors: list[dict[str, Any]] = []
         self._edge_left_s: float | None = None
         self._now: float | None = None
@@ -96,10 +96,10 @@ class VirtualAgv:
         self._state_at = 0.0
         self._changed = False
         self._frozen: Mapping[str, Any] | None = None
-        self._later: list[tuple[float, Say]] = []
+        self._later: list[tuple[float, OutgoingMessage]] = []
         self.next_deadline = 0.0
 
-    def step(self, now: float, events: Sequence[Heard]) -> list[Message]:
+    def step(self, now: float, events: Sequence[VehicleMessage]) -> list[Message]:
         """Drive on until now, take what is told, and say what there is to say."""
         passed_s = 0.0 if self._now is None else now - self._now
         self._now = now
@@ -128,7 +128,7 @@ class VirtualAgv:
             return []
         self._online = not away
         self._changed = True
-        return [Connect(anew=booted)] if self._online else [Cut()]
+        return [Connect(anew=booted)] if self._online else [ConnectionCut()]
 
     # --- what befalls it ---
 
@@ -151,7 +151,7 @@ class VirtualAgv:
 
     # --- what it is told ---
 
-    def _take(self, event: Heard) -> None:
+    def _take(self, event: VehicleMessage) -> None:
         self._changed = True
         if event.said is None:
             self._complain("validationError", {"topic": event.topic})
@@ -197,10 +197,13 @@ class VirtualAgv:
             self._cancel(doing)
         elif doing.type == "factsheetRequest":
             self._later.append(
-                (self._now or 0.0, Say(topic="factsheet", body=factsheet_of(self._version), retain=True))
+                (
+                    self._now or 0.0,
+                    OutgoingMessage(topic="factsheet", body=factsheet_of(self._version), retain=True),
+                )
             )
 
-    def _cancel(self, doing: Doing) -> None:
+    def _cancel(self, doing: RunningAction) -> None:
         """It stands at once, between two nodes if need be: as line guided vehicles may not, but others do."""
         if not self.course.steps:
             doing.status = "FAILED"
@@ -226,7 +229,7 @@ class VirtualAgv:
             if doing.left_s <= 0:
                 self._finish(doing)
 
-    def _finish(self, doing: Doing) -> None:
+    def _finish(self, doing: RunningAction) -> None:
         self._changed = True
         if "action_fails" in self._faults:
             doing.status = "FAILED"
@@ -310,7 +313,7 @@ class VirtualAgv:
             due.append(self._later.pop(0)[1])
         return due if self._online else []
 
-    def _states(self, now: float) -> list[Say]:
+    def _states(self, now: float) -> list[OutgoingMessage]:
         body: Mapping[str, Any] = state_of(self, self._faults, self._version)
         if "frozen" in self._faults:
             body = self._frozen = self._frozen or body
@@ -320,13 +323,13 @@ class VirtualAgv:
         if garbled:
             body = {**body, "driving": "perhaps", "nodeStates": None}
         serial = "another" if "wrong_serial" in self._faults else None
-        say = Say(topic="state", body=body, as_serial=serial, fits=not garbled)
+        say = OutgoingMessage(topic="state", body=body, as_serial=serial, fits=not garbled)
         return [say, say] if "double" in self._faults else [say]
 
 
-def _doing(action: Said, *, instant: bool = False) -> Doing:
+def _doing(action: Said, *, instant: bool = False) -> RunningAction:
     values = {each["key"]: each["value"] for each in action.get("actionParameters", ())}
-    return Doing(
+    return RunningAction(
         id=action["actionId"],
         type=action["actionType"],
         instant=instant,

@@ -6,7 +6,7 @@ from collections.abc import Collection, Iterable, Mapping
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from .machine import Doing, VirtualAgv
+    from .machine import RunningAction, VirtualAgv
 
 BROKEN = {"2.0": "CONNECTIONBROKEN", "2.1": "CONNECTIONBROKEN", "3.0": "CONNECTION_BROKEN"}
 NODE_KEYS = ("nodeId", "sequenceId", "released")
@@ -38,7 +38,9 @@ def state_of(agv: VirtualAgv, faults: Collection[str], version: str) -> dict[str
 FATAL = {"errorType": "driveError", "errorLevel": "FATAL", "errorReferences": []}
 
 
-def _of_2(agv: VirtualAgv, doing: Iterable[Doing], faults: Collection[str], stop: str) -> dict[str, Any]:
+def _of_2(
+    agv: VirtualAgv, doing: Iterable[RunningAction], faults: Collection[str], stop: str
+) -> dict[str, Any]:
     return {
         "actionStates": [_action(each, "resultDescription") for each in doing],
         "batteryState": {"batteryCharge": agv.battery, "charging": agv.charging},
@@ -47,7 +49,9 @@ def _of_2(agv: VirtualAgv, doing: Iterable[Doing], faults: Collection[str], stop
     }
 
 
-def _of_3(agv: VirtualAgv, doing: Iterable[Doing], faults: Collection[str], stop: str) -> dict[str, Any]:
+def _of_3(
+    agv: VirtualAgv, doing: Iterable[RunningAction], faults: Collection[str], stop: str
+) -> dict[str, Any]:
     instant = [each for each in doing if each.instant]
     return {
         "actionStates": [_action(each, "actionResult") for each in doing if not each.instant],
@@ -63,7 +67,7 @@ def _place(agv: VirtualAgv) -> dict[str, Any]:
     return {"x": x, "y": y, "theta": 0.0, "mapId": "map"}
 
 
-def _action(doing: Doing, result: str) -> dict[str, Any]:
+def _action(doing: RunningAction, result: str) -> dict[str, Any]:
     said = {"actionId": doing.id, "actionType": doing.type, "actionStatus": doing.status}
     return said if doing.result is None else {**said, result: doing.result}
 
