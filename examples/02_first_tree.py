@@ -12,7 +12,7 @@ from py_trees.common import Status
 from py_trees.composites import Sequence
 from py_trees.display import ascii_tree
 
-from arboleda.app.draw import draw
+from arboleda.cli.draw import draw
 from arboleda.views.tree_view import rows
 
 paths = import_module("01_paths")  # an import statement cannot name a file that begins with a digit

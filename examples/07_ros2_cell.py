@@ -14,9 +14,9 @@ from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 from py_trees.composites import Sequence
 
-from arboleda.app.build import Options, build
-from arboleda.app.config import load
-from arboleda.app.session import NO_ROS, ros_link
+from arboleda.cli.session import NO_ROS, ros_link
+from arboleda.plant_file.loader import load
+from arboleda.runtime.build import Options, build
 
 try:
     from rclpy.context import Context

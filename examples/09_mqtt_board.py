@@ -17,9 +17,9 @@ from paho.mqtt.enums import CallbackAPIVersion
 
 from arboleda.adapters.broker import EmbeddedBroker
 from arboleda.adapters.broker_login import address as broker_address
-from arboleda.app.build import Options, build
-from arboleda.app.config import load
 from arboleda.model.errors import StartError
+from arboleda.plant_file.loader import load
+from arboleda.runtime.build import Options, build
 
 PLANT = Path(__file__).parent / "plants" / "lessons.yaml"
 BOARD = "ra_1"

@@ -15,11 +15,11 @@ from paho.mqtt.client import Client
 from paho.mqtt.enums import CallbackAPIVersion
 
 from arboleda.adapters.broker import EmbeddedBroker
-from arboleda.app.build import App, Options, build
-from arboleda.app.config import load
-from arboleda.app.session import ros_link
+from arboleda.cli.session import ros_link
 from arboleda.model.plant_model import MotionState
 from arboleda.model.sentence import Sentence
+from arboleda.plant_file.loader import load
+from arboleda.runtime.build import App, Options, build
 
 PLANT = Path(__file__).parent / "plants" / "lessons.yaml"
 PATIENCE_S = 60.0

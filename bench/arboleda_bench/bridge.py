@@ -29,7 +29,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from statistics import median
 
-from arboleda.app.config import load
+from arboleda.plant_file.loader import load
 from arboleda_ros.link import connect
 
 from . import plants

@@ -14,11 +14,11 @@ from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
-from arboleda.app import view_text
-from arboleda.app.build import App, Options, build
-from arboleda.app.config import load
 from arboleda.model.errors import ArboledaError
 from arboleda.model.messages import TaskChanged, TaskState
+from arboleda.plant_file.loader import load
+from arboleda.runtime import view_text
+from arboleda.runtime.build import App, Options, build
 from arboleda.views.diagnostics import Diagnostic
 
 from .played import Crew

@@ -11,7 +11,7 @@ from __future__ import annotations
 from functools import partial
 
 from arboleda.adapters.broker_login import address
-from arboleda.app.config import load
+from arboleda.plant_file.loader import load
 
 from . import plants, steps
 from .boards import DECLARED, Boards

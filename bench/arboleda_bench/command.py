@@ -11,9 +11,9 @@ from typing import Any
 from rich.console import Console
 from rich.text import Text
 
-from arboleda.app.simulate.screen import console, progress
-from arboleda.app.user_file import check_writable
+from arboleda.campaigns.screen import console, progress
 from arboleda.model.errors import ArboledaError, ConfigError
+from arboleda.plant_file.user_file import check_writable
 
 from . import catalog, report
 from .result import Result

@@ -9,8 +9,8 @@ from itertools import count
 from pathlib import Path
 from typing import Any
 
-from arboleda.app.config import load
 from arboleda.model.errors import ArboledaError, StartError
+from arboleda.plant_file.loader import load
 
 from .played import Crew
 from .processes import Process

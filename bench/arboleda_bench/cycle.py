@@ -11,8 +11,8 @@ from collections.abc import Sequence
 
 from std_msgs.msg import UInt8
 
-from arboleda.app.config import load
 from arboleda.model.plant_model import Timing
+from arboleda.plant_file.loader import load
 from arboleda_ros import qos
 
 from . import plants

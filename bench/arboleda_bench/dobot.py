@@ -23,7 +23,7 @@ from .scene import Scene
 PATIENCE_S = 60.0  # of one turn
 LONGEST_S = 0.5  # what is longer lies between two turns
 MOVES = 20  # in each task
-RUN = "from arboleda.app.cli import main; main()"
+RUN = "from arboleda.cli.main import main; main()"
 PLANT = """
 name: bench_dobot
 uses: [recipes.py]

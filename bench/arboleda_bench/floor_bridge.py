@@ -21,9 +21,9 @@ from rclpy.node import Node
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Bool, Float32MultiArray, UInt8, UInt32
 
-from arboleda.app.config import load
 from arboleda.kinds.arm import Arm
 from arboleda.model.plant_model import PlantModel
+from arboleda.plant_file.loader import load
 from arboleda.wire.joints import joint_names, joint_states_topic
 from arboleda_ros import qos
 from arboleda_ros.link import connect

@@ -15,8 +15,8 @@ from rclpy.node import Node
 from rclpy.qos import QoSProfile
 from std_msgs.msg import String, UInt8
 
-from arboleda.app.config import load
 from arboleda.kinds.arm import Arm
+from arboleda.plant_file.loader import load
 
 DEPTH = QoSProfile(depth=10)  # reliable and volatile, as commands and reports are
 SPIN_S = 1.0

@@ -27,12 +27,12 @@ from typing import Any
 
 import httpx
 
-from arboleda.adapters import row_sums
-from arboleda.adapters.store import Store
-from arboleda.app.config import load
-from arboleda.app.parts.orchestrator import Orchestrator
-from arboleda.app.state import STORE, find_running
 from arboleda.model.messages import TaskChanged, TaskState
+from arboleda.plant_file.loader import load
+from arboleda.runtime.parts.orchestrator import Orchestrator
+from arboleda.runtime.state import STORE, find_running
+from arboleda.store import row_sums
+from arboleda.store.sqlite import Store
 
 from .processes import Process
 from .result import Aim, Figure, Result, percentile
@@ -43,7 +43,7 @@ BARE = "CREATE TABLE task (id TEXT, text TEXT, cell TEXT, recipe TEXT, state TEX
 INSERT = "INSERT INTO task VALUES (?, ?, ?, ?, ?, ?)"
 PAUSE_S = 0.005  # between two tasks: a log that is folded into its file meanwhile is folded for both
 DAY_S = 86_400.0
-UP = "from arboleda.app.cli import main; main()"
+UP = "from arboleda.cli.main import main; main()"
 READY_S = 60.0
 PAGE = "/?tab=tasks"  # what a browser asks for before
 FIRST_SCREEN = "/history.json?words=&lang=en&limit=20"

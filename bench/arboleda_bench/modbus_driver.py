@@ -15,11 +15,11 @@ from pathlib import Path
 
 from arboleda.adapters.modbus import Modbus
 from arboleda.adapters.modbus_server import ModbusServer
-from arboleda.app.config import load
 from arboleda.drivers.modbus.machine import ModbusDevice
 from arboleda.drivers.modbus.settings import Settings
 from arboleda.kinds.declared import Device
 from arboleda.model.errors import ArboledaError
+from arboleda.plant_file.loader import load
 
 from .plc_driver import PATIENCE_S, Driven, figures
 from .result import Result

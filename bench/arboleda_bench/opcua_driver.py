@@ -17,11 +17,11 @@ from typing import Any
 
 from arboleda.adapters.opcua import OpcUa
 from arboleda.adapters.opcua_server import OpcUaServer
-from arboleda.app.config import load
 from arboleda.drivers.opcua.machine import OpcUaDevice
 from arboleda.drivers.opcua.settings import Settings
 from arboleda.kinds.declared import Device
 from arboleda.model.errors import ArboledaError
+from arboleda.plant_file.loader import load
 from arboleda.virtual.opcua.program import BeltProgram
 
 from .plc_driver import PATIENCE_S, Driven, figures

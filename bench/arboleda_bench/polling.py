@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from arboleda.app.config import load
+from arboleda.plant_file.loader import load
 
 from . import plants, steps
 from .moments import milliseconds, reactions

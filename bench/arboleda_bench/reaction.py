@@ -11,8 +11,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from functools import partial
 
-from arboleda.app.config import load
 from arboleda.dispatch.belief import APART_S
+from arboleda.plant_file.loader import load
 
 from . import plants, steps
 from .moments import Reaction, kind, milliseconds, reactions

@@ -23,9 +23,9 @@ from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from time import process_time
 
-from arboleda.app.simulate.request import Request
-from arboleda.app.simulate.setting import Setting
-from arboleda.app.simulate.workers import collect_rarely
+from arboleda.campaigns.request import Request
+from arboleda.campaigns.setting import Setting
+from arboleda.campaigns.workers import collect_rarely
 from arboleda.model.errors import ArboledaError
 from arboleda.simulator.invariants import INVARIANTS
 from arboleda.simulator.people import Attendant, Customers

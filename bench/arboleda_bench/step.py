@@ -25,12 +25,12 @@ from typing import Any
 
 from py_trees.behaviour import Behaviour
 
-from arboleda.app.config import load
 from arboleda.kinds.arm import MoveJoints
 from arboleda.kinds.mobile import FollowPath
 from arboleda.model.commands import Command
 from arboleda.model.messages import Report
 from arboleda.model.plant_model import PlantModel
+from arboleda.plant_file.loader import load
 from arboleda.views import view
 
 from . import plants

@@ -30,7 +30,7 @@ BETWEEN_S = (0.02, 0.08)
 READY_S = 60.0
 MEMORY = Path("/dev/shm")
 MOST_MS = 50.0
-UP = "from arboleda.app.cli import main; main()"
+UP = "from arboleda.cli.main import main; main()"
 
 
 def run(scene: Scene) -> Result:

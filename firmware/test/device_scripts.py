@@ -7,8 +7,8 @@ from functools import cache
 from pathlib import Path
 from random import Random
 
-from arboleda.app.config import load
 from arboleda.kinds.declared import Device
+from arboleda.plant_file.loader import load
 from arboleda.sim.board import Board
 from arboleda.sim.body import BodyReport
 from arboleda.sim.machine import MachineBody

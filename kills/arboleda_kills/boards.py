@@ -18,11 +18,11 @@ from typing import Any
 from arboleda.adapters import clock
 from arboleda.adapters.broker_login import Address
 from arboleda.adapters.mqtt import MqttClient, NotConnected
-from arboleda.app import config
-from arboleda.app.loop import Loop
-from arboleda.app.rate import at_rate
 from arboleda.model.plant_model import PlantModel
+from arboleda.plant_file import loader
 from arboleda.recipes.storage_cell import StorageCell
+from arboleda.runtime.loop import Loop
+from arboleda.runtime.rate import at_rate
 from arboleda.sim.arm import ArmBody
 from arboleda.sim.board import Board
 from arboleda.sim.devices import Devices, FromBoard, ToBoard
@@ -170,7 +170,7 @@ def _lost(message: FromBoard, error: Exception) -> None:
 
 
 def main() -> None:
-    boards = Boards(at_rate(config.load(None), float(sys.argv[1])))
+    boards = Boards(at_rate(loader.load(None), float(sys.argv[1])))
     boards.loop.start()
     with suppress(KeyboardInterrupt):
         for line in sys.stdin:

@@ -12,10 +12,10 @@ from typing import Any
 
 import httpx
 
-from arboleda.adapters.task_rows import TaskHistory, TaskQuery, TaskRow
-from arboleda.app import config
-from arboleda.app.state import STORE
+from arboleda.plant_file import loader
 from arboleda.recipes.storage_cell import StorageCell
+from arboleda.runtime.state import STORE
+from arboleda.store.task_rows import TaskHistory, TaskQuery, TaskRow
 
 from .judge import Kill, Verdict, judge
 from .people import Attendant, Customers
@@ -63,7 +63,7 @@ class Campaign:
         self._wanted, self._say = kills, say
         self._dice = random.Random(seed)
         self._boards = Boards(rate, folder / "boards.log")
-        cells = [cell for cell in config.load(None).cells if isinstance(cell, StorageCell)]
+        cells = [cell for cell in loader.load(None).cells if isinstance(cell, StorageCell)]
         self._customers = Customers(cells, self._dice, f"s{seed}")
         self._attendant = Attendant(self._boards)
         self._outcome = Outcome()

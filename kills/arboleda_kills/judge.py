@@ -7,8 +7,8 @@ from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
-from arboleda.adapters.task_rows import TaskRow
 from arboleda.model.messages import Reason, Verb
+from arboleda.store.task_rows import TaskRow
 
 from .deeds import ALONE, PICK_UP, STATION, Deed, Did
 from .people import Said

@@ -16,12 +16,12 @@ from typing import Any
 
 import httpx
 
-from arboleda.app.state import find_running
+from arboleda.runtime.state import find_running
 
 from .deeds import Deed
 
 BROKER = re.compile(r"MQTT broker: (\S+):(\d+)")
-UP = "from arboleda.app.cli import main; main()"
+UP = "from arboleda.cli.main import main; main()"
 PATIENCE_S = 60.0
 LOOK_S = 0.02
 

@@ -67,11 +67,11 @@ def _runner(root: Path) -> Any:
     """Runs one seed: the name of the invariant that breaks, or "". Imports what may have a bug."""
     from importlib.resources import as_file, files
 
-    from arboleda.app import config
-    from arboleda.app.simulate.plants import Plant
-    from arboleda.app.simulate.random_plants import RandomPlants
-    from arboleda.app.simulate.setting import Setting
-    from arboleda.app.simulate.workers import collect_rarely
+    from arboleda.campaigns.plants import Plant
+    from arboleda.campaigns.random_plants import RandomPlants
+    from arboleda.campaigns.setting import Setting
+    from arboleda.campaigns.workers import collect_rarely
+    from arboleda.plant_file import loader
 
     class Turns:
         """Plants of which each turn takes the next one."""
@@ -86,9 +86,9 @@ def _runner(root: Path) -> Any:
         return Setting(plants=plants, cycles=0, level=level, seconds=SECONDS, any_of=any_of)
 
     with as_file(files("arboleda").joinpath("plants", "shared.yaml")) as shared:
-        packaged = Turns(*(Plant(declared=each) for each in (config.load(shared), config.load())))
+        packaged = Turns(*(Plant(declared=each) for each in (loader.load(shared), loader.load())))
     paths = [root / "examples" / name / "plant.yaml" for name in EXAMPLES]
-    examples = Turns(*(Plant(declared=config.load(path)) for path in paths))
+    examples = Turns(*(Plant(declared=loader.load(path)) for path in paths))
     settings = (
         setting(packaged, MANY),
         setting(RandomPlants(), MANY),

@@ -17,7 +17,7 @@ from .reach import Reach
 from .sources import ENGINE, PACKAGE, Sources, fingerprint
 
 TESTS, SIMULATOR = JUDGES = ("tests", "simulator")
-SIMULATED = ("kinds", "recipes", "views", "wire", "sim", "simulator", "app", "plants")
+SIMULATED = ("kinds", "recipes", "views", "wire", "sim", "simulator", "plant_file", "campaigns", "plants")
 FOLDERS = {
     TESTS: (str(PACKAGE), "wire_vectors"),
     SIMULATOR: ("examples", *(str(PACKAGE / each) for each in (*ENGINE, *SIMULATED))),

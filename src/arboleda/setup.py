@@ -28,7 +28,7 @@ setup(
     install_requires=["setuptools"],
     extras_require={"test": ["pytest"]},
     entry_points={
-        "console_scripts": ["arboleda = arboleda.app.command:main"],
+        "console_scripts": ["arboleda = arboleda.cli.entry:main"],
         "arboleda.drivers": [
             "dobot = arboleda.adapters.dobot:Dobot",
             "modbus = arboleda.adapters.modbus:Modbus",

@@ -9,19 +9,19 @@ from typing import Any
 
 from fastapi import FastAPI
 
-from arboleda.adapters.oee_rows import OeeQuery
-from arboleda.adapters.task_rows import TaskQuery, TaskRow
-from arboleda.adapters.web.auth import Door
-from arboleda.adapters.web.guard import Guard
-from arboleda.adapters.web.names import names_for
-from arboleda.adapters.web.server import Server
 from arboleda.dashboard import page
 from arboleda.model.errors import StartError
 from arboleda.model.messages import OperatorAnswer, Verb
 from arboleda.model.sentence import OWN, Sentence
+from arboleda.store.oee_rows import OeeQuery
+from arboleda.store.task_rows import TaskQuery, TaskRow
 from arboleda.testing import Rig, shipped
 from arboleda.views import view
 from arboleda.views.oee import KeptFigures, Oee, oee
+from arboleda.web.auth import Door
+from arboleda.web.guard import Guard
+from arboleda.web.names import names_for
+from arboleda.web.server import Server
 
 EVIL = sys.argv[1]
 SAID = {

@@ -14,11 +14,11 @@ import pytest
 
 from arboleda.adapters import webhook
 from arboleda.adapters.webhook import DeliveryRefused, Hook, NotDelivered, Webhook
-from arboleda.app.alarm_options import AlarmOptions
-from arboleda.app.build import App, Options, build
-from arboleda.app.parts.alarms import OnTopic
-from arboleda.app.parts.broker import OtherBroker
 from arboleda.model.messages import Verb
+from arboleda.runtime.alarm_options import AlarmOptions
+from arboleda.runtime.build import App, Options, build
+from arboleda.runtime.parts.alarms import OnTopic
+from arboleda.runtime.parts.broker import OtherBroker
 from arboleda.testing import shipped
 
 from ..patience import PATIENCE_S
@@ -125,15 +125,15 @@ def test_over_mqtt_an_alarm_is_taken_once_the_broker_has_it(broker: Any, peer: C
 def test_over_mqtt_an_alarm_waits_for_the_broker_and_comes_again_after_it(
     stopped_broker: Any, peer: Callable[..., Any], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("arboleda.app.parts.alarms.TAKES_S", 0.3)
+    monkeypatch.setattr("arboleda.runtime.parts.alarms.TAKES_S", 0.3)
     topic = OnTopic(shipped(), OtherBroker(stopped_broker.address, None), "arboleda/alarms")
     with pytest.raises(NotDelivered, match="is not connected"):
         topic.post(ALARM)
-    monkeypatch.setattr("arboleda.app.parts.alarms.TAKES_S", PATIENCE_S)
+    monkeypatch.setattr("arboleda.runtime.parts.alarms.TAKES_S", PATIENCE_S)
     stopped_broker.start()
     topic.post(ALARM)
     stopped_broker.stop()
-    monkeypatch.setattr("arboleda.app.parts.alarms.TAKES_S", 0.3)
+    monkeypatch.setattr("arboleda.runtime.parts.alarms.TAKES_S", 0.3)
     with pytest.raises(NotDelivered):
         topic.post(ALARM)
     topic.close()

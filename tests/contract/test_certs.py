@@ -13,8 +13,8 @@ from typing import Any
 
 import pytest
 
-from arboleda.adapters.own_addresses import own_addresses
-from arboleda.app import cli
+from arboleda.cli import main
+from arboleda.web.own_addresses import own_addresses
 
 pytestmark = pytest.mark.requires("cryptography")
 
@@ -26,7 +26,7 @@ def certs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.Captur
     def run(*words: str) -> tuple[int, str]:
         monkeypatch.setattr(sys, "argv", ["arboleda", "certs", str(tmp_path / "lab"), *words])
         with pytest.raises(SystemExit) as ended:
-            cli.main()
+            main.main()
         said = capsys.readouterr()
         return ended.value.code or 0, said.out + said.err
 
@@ -230,7 +230,7 @@ def test_nobody_of_that_name_is_made_anew(certs: Any, lab: Path) -> None:
 
 
 def test_a_board_cannot_log_in_as_the_plant(certs: Any, lab: Path, tmp_path: Path) -> None:
-    text = (Path(cli.__file__).parents[1] / "plants/plant.yaml").read_text()
+    text = (Path(main.__file__).parents[1] / "plants/plant.yaml").read_text()
     assert "mqtt: ra_1" in text
     (tmp_path / "plant.yaml").write_text(text.replace("mqtt: ra_1", "mqtt: plant"))
     status, said = certs("--plant", str(tmp_path / "plant.yaml"))

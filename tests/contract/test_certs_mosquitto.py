@@ -10,7 +10,7 @@ import pytest
 from typer.testing import CliRunner, Result
 
 from arboleda.adapters.broker_login import address
-from arboleda.app.cli import cli
+from arboleda.cli.main import cli
 from arboleda.wire.transport import Publication
 
 from .conftest import Authority, said

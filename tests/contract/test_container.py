@@ -9,8 +9,8 @@ import pytest
 import typer
 import yaml
 
-from arboleda.app.cli import cli
-from arboleda.app.mosquitto_files import CONFIGURATION
+from arboleda.cli.main import cli
+from arboleda.cli.mosquitto_files import CONFIGURATION
 
 FOLDER = Path(__file__).parents[2] / "container"
 

@@ -14,8 +14,8 @@ from typing import Any
 
 import pytest
 
-from arboleda.adapters.plant_memory import PlantMemory
 from arboleda.model.messages import Reason, TaskState, Verb
+from arboleda.store.plant_memory import PlantMemory
 
 from ..patience import PATIENCE_S
 from .drivers.bench import ASK, HALT, LATCH, OTHER, WORK, Shop

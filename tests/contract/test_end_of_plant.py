@@ -11,11 +11,11 @@ from typing import Any
 
 import pytest
 
-from arboleda.adapters.web import server
-from arboleda.adapters.web.server import Server
-from arboleda.app.build import PARTS, Options, build
-from arboleda.app.parts.web import WebPart
+from arboleda.runtime.build import PARTS, Options, build
+from arboleda.runtime.parts.web import WebPart
 from arboleda.testing import shipped
+from arboleda.web import server
+from arboleda.web.server import Server
 
 from ..patience import PATIENCE_S
 

@@ -19,9 +19,9 @@ import msgpack
 import pytest
 import zmq
 
-from arboleda.app.build import Options, build
-from arboleda.app.parts.groot2 import Groot2Options, Groot2Part
 from arboleda.model.errors import StartError
+from arboleda.runtime.build import Options, build
+from arboleda.runtime.parts.groot2 import Groot2Options, Groot2Part
 from arboleda.testing import shipped
 
 from ..patience import PATIENCE_S

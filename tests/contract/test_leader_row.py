@@ -9,13 +9,13 @@ import psycopg
 import pytest
 from tests.postgres import Server
 
-from arboleda.adapters.plant_memory import Superseded
-from arboleda.adapters.postgres.leader_row import END_LEASE, LAST_SEEN
-from arboleda.adapters.postgres.leadership import Leadership
-from arboleda.adapters.postgres.memory import LEAD, PostgresMemory
 from arboleda.core.leading import LEASE_S, WANTED_S
 from arboleda.model.messages import Fact, Remember
 from arboleda.simulator.hosts.database import LeaderRow
+from arboleda.store.plant_memory import Superseded
+from arboleda.store.postgres.leader_row import END_LEASE, LAST_SEEN
+from arboleda.store.postgres.leadership import Leadership
+from arboleda.store.postgres.memory import LEAD, PostgresMemory
 
 NOW = 1000.0
 AGES_S = (0.1, LEASE_S + 1.0, WANTED_S - 5.0, WANTED_S + 5.0, -3600.0)  # or the clock is set back

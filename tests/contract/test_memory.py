@@ -11,12 +11,6 @@ from dataclasses import replace
 
 import pytest
 
-from arboleda.adapters.oee_rows import OeeQuery
-from arboleda.adapters.plant_memory import PRUNED, PlantMemory
-from arboleda.adapters.postgres.history import PostgresHistory
-from arboleda.adapters.postgres.memory import PostgresMemory
-from arboleda.adapters.store import Store
-from arboleda.adapters.task_rows import History, TaskHistory, TaskQuery, answers_of, course_of
 from arboleda.model.messages import (
     Course,
     Fact,
@@ -29,6 +23,12 @@ from arboleda.model.messages import (
     Verb,
 )
 from arboleda.model.sentence import OWN
+from arboleda.store.oee_rows import OeeQuery
+from arboleda.store.plant_memory import PRUNED, PlantMemory
+from arboleda.store.postgres.history import PostgresHistory
+from arboleda.store.postgres.memory import PostgresMemory
+from arboleda.store.sqlite import Store
+from arboleda.store.task_rows import History, TaskHistory, TaskQuery, answers_of, course_of
 
 LATCH = Remember(fact=Fact.LATCH, name="ra1", value="on")
 ACT = Journal(

@@ -21,11 +21,11 @@ from pymodbus.client import ModbusTcpClient
 
 from arboleda.adapters.modbus import LINES, Modbus
 from arboleda.adapters.modbus_server import ModbusServer
-from arboleda.app.config import load
 from arboleda.drivers import MotionState, NotSent, Report
 from arboleda.drivers.modbus.registers import Register
 from arboleda.drivers.modbus.settings import Settings
 from arboleda.kinds.declared import Device
+from arboleda.plant_file.loader import load
 
 from ..patience import PATIENCE_S
 

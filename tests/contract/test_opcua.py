@@ -22,11 +22,11 @@ from asyncua import ua
 from asyncua.common.utils import NotEnoughData
 
 from arboleda.adapters.opcua import OpcUa
-from arboleda.app.config import load
 from arboleda.drivers import MotionState, NotSent, Report, Stop, StopMode
 from arboleda.drivers.opcua.settings import Settings
 from arboleda.drivers.port import DriverError
 from arboleda.kinds.declared import Device
+from arboleda.plant_file.loader import load
 
 from ..conftest import need_tool
 from ..patience import PATIENCE_S

@@ -7,9 +7,9 @@ from collections.abc import Iterator
 
 import pytest
 
-from arboleda.app.parts import broker
-from arboleda.app.parts.broker import OwnBroker
 from arboleda.model.errors import StartError
+from arboleda.runtime.parts import broker
+from arboleda.runtime.parts.broker import OwnBroker
 
 
 @pytest.fixture

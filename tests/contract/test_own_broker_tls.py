@@ -19,9 +19,9 @@ from arboleda.adapters.broker import EmbeddedBroker
 from arboleda.adapters.broker_login import CA, Address, Credentials, address
 from arboleda.adapters.mqtt_broker import limits
 from arboleda.adapters.server_tls import server_tls
-from arboleda.app.parts import broker as part
-from arboleda.app.parts.broker import OwnBroker
 from arboleda.model.errors import StartError
+from arboleda.runtime.parts import broker as part
+from arboleda.runtime.parts.broker import OwnBroker
 from arboleda.wire.transport import Publication
 
 from ..patience import PATIENCE_S

@@ -13,16 +13,16 @@ from contextlib import closing, contextmanager
 import pytest
 from tests.postgres import DATABASE, PASSWORD, USER, Server
 
-from arboleda.adapters.plant_memory import PlantMemory, Standby, Superseded
-from arboleda.adapters.postgres.history import PostgresHistory
-from arboleda.adapters.postgres.leaders import Leaders
-from arboleda.adapters.postgres.leadership import Leadership
-from arboleda.adapters.postgres.memory import PostgresMemory
-from arboleda.adapters.task_rows import TaskQuery
 from arboleda.core.leading import LEASE_S, RENEW_S
 from arboleda.model.errors import ArboledaError, StartError
 from arboleda.model.messages import Fact, Journal, Remember, TaskChanged, TaskState, Verb
 from arboleda.model.sentence import OWN
+from arboleda.store.plant_memory import PlantMemory, Standby, Superseded
+from arboleda.store.postgres.history import PostgresHistory
+from arboleda.store.postgres.leaders import Leaders
+from arboleda.store.postgres.leadership import Leadership
+from arboleda.store.postgres.memory import PostgresMemory
+from arboleda.store.task_rows import TaskQuery
 
 LATCH = Remember(fact=Fact.LATCH, name="ra1", value="on")
 QUEUED = TaskChanged(task="a", text="sis_a 0B 1", cell="sis_a", state=TaskState.QUEUED)
@@ -324,7 +324,7 @@ def test_what_was_left_at_work_waits_for_a_person_where_the_next_leader_comes_la
 def test_a_server_that_is_too_old_is_one_sentence(
     database: str, plant: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("arboleda.adapters.postgres.server.OLDEST", 99)
+    monkeypatch.setattr("arboleda.store.postgres.server.OLDEST", 99)
     assert "and this needs 99 or newer" in refusal(database, plant)
 
 

@@ -11,13 +11,13 @@ from pathlib import Path
 
 import pytest
 
-from arboleda.app import config
-from arboleda.app.parts import reports
-from arboleda.app.parts.reports import MOST_KEPT, MOST_WAITING, NoReport, ReportsPart
 from arboleda.model.errors import ConfigError
 from arboleda.model.messages import TaskChanged, TaskState
+from arboleda.plant_file import loader
+from arboleda.runtime.parts import reports
+from arboleda.runtime.parts.reports import MOST_KEPT, MOST_WAITING, NoReport, ReportsPart
 
-SHIPPED = config.load_recorded()[1]
+SHIPPED = loader.load_recorded()[1]
 
 
 def ended(task: str, state: TaskState = TaskState.FAILED, request: str | None = None) -> TaskChanged:
@@ -147,7 +147,7 @@ def test_reports_are_as_the_plant_file_says(tmp_path: Path, text: str, expected:
     assert SHIPPED is not None
     file = tmp_path / "plant.yaml"
     file.write_bytes(SHIPPED.files.contents["plant.yaml"] + f"\n{text}\n".encode())
-    recording = config.load_recorded(file)[1]
+    recording = loader.load_recorded(file)[1]
     assert recording is not None and recording.reports is expected
 
 
@@ -161,4 +161,4 @@ def test_reports_are_as_the_plant_file_says(tmp_path: Path, text: str, expected:
 def test_wrong_reports_are_a_problem_of_the_plant_file(text: str, problem: str) -> None:
     assert SHIPPED is not None
     with pytest.raises(ConfigError, match=problem):
-        config.parse("p.yaml", SHIPPED.files.contents["plant.yaml"] + f"\n{text}\n".encode())
+        loader.parse("p.yaml", SHIPPED.files.contents["plant.yaml"] + f"\n{text}\n".encode())

@@ -8,8 +8,8 @@ from uuid import uuid4
 import pytest
 from tests.postgres import Server
 
-from arboleda.adapters.postgres.seeds import SeedRow, SeedRows
 from arboleda.model.errors import StartError
+from arboleda.store.postgres.seeds import SeedRow, SeedRows
 
 
 def done(seed: int) -> SeedRow:

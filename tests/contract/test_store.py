@@ -20,14 +20,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 from tests.rights import modes_count
 
-from arboleda.adapters import row_sums
-from arboleda.adapters.memory_file import VERSION
-from arboleda.adapters.store import Store
-from arboleda.adapters.task_rows import TaskHistory, TaskQuery, choice_of, course_of, unchecked_of
 from arboleda.core.choosing import LATER
 from arboleda.model.errors import ArboledaError, StartError
 from arboleda.model.messages import Check, Course, Fact, Journal, Remember, TaskChanged, TaskState, Verb
 from arboleda.model.sentence import OWN
+from arboleda.store import row_sums
+from arboleda.store.memory_file import VERSION
+from arboleda.store.sqlite import Store
+from arboleda.store.task_rows import TaskHistory, TaskQuery, choice_of, course_of, unchecked_of
 
 LATCH = Remember(fact=Fact.LATCH, name="ra1", value="on")
 ACT = Journal(
@@ -36,7 +36,7 @@ ACT = Journal(
 AT_FULL = """
 import os, sys, time
 from pathlib import Path
-from arboleda.adapters.store import Store
+from arboleda.store.sqlite import Store
 from arboleda.model.messages import Fact, Journal, Remember, Verb
 from arboleda.model.sentence import OWN
 store = Store(Path(sys.argv[1]))
@@ -190,7 +190,7 @@ def test_a_reader_neither_waits_nor_makes_wait(store, path):
 
 
 def test_a_file_that_another_program_writes_is_said_to_be(path, monkeypatch):
-    monkeypatch.setattr("arboleda.adapters.store.BUSY_S", 0)
+    monkeypatch.setattr("arboleda.store.sqlite.BUSY_S", 0)
     with Store(path) as store:
         writer = sqlite3.connect(path, isolation_level=None)
         writer.execute("BEGIN IMMEDIATE")

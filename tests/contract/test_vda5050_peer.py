@@ -14,12 +14,12 @@ import pytest
 
 from arboleda.adapters.mqtt import MqttClient
 from arboleda.adapters.vda5050.driver import Vda5050
-from arboleda.app.config import load
 from arboleda.drivers import FollowPath, MotionState, Report, Stop, StopMode
 from arboleda.drivers.vda5050.settings import EdgeAction, Settings
 from arboleda.kinds.declared import Device
 from arboleda.model.facts import Value
 from arboleda.model.plant_model import Robot
+from arboleda.plant_file.loader import load
 from arboleda.wire.transport import Delivery
 
 from ..patience import PATIENCE_S

@@ -10,14 +10,14 @@ from typing import Any
 import pytest
 from rich.console import Console
 
-from arboleda.adapters.web.schema import Cell
-from arboleda.app.screen import table
+from arboleda.cli.screen import table
 from arboleda.core import cell, operator
 from arboleda.core.cell_states import CellState
 from arboleda.dashboard.wording import LANGUAGES, SENTENCES, tree_of, words
 from arboleda.model.sentence import Phrase
 from arboleda.testing import Rig, shipped
 from arboleda.views import view
+from arboleda.web.schema import Cell
 
 ROOT = Path(__file__).parents[2]
 STANDINGS = ("blocked", "paused")

@@ -12,18 +12,19 @@ import pytest
 import arboleda
 import arboleda.kinds
 import arboleda.recipes
-from arboleda.app.plant_file.registry import COME_WITH_IT
 from arboleda.model.plant_model import Cell, Robot
+from arboleda.plant_file.registry import COME_WITH_IT
 from arboleda.recipes.storage_cell import StorageCell
 
 ROOT = Path(arboleda.__file__).parent
 ENGINE = ("model", "dispatch", "trees", "core")
-PACKAGES = (*ENGINE, "wire", "views", "adapters", "sim", "simulator", "dashboard", "app", "testing")
+ABOVE = ("cli", "playback", "board_kit", "site", "campaigns", "runtime", "plant_file", "web", "store")
+PACKAGES = (*ENGINE, *ABOVE, "wire", "views", "adapters", "sim", "simulator", "dashboard", "testing")
 NAMED_AS_ROLES = {
-    "app/plant_file/robot_models.py",  # of the files of models that come with it
-    "app/plant_file/robots.py",
-    "app/plant_file/shapes.py",
-    "app/plant_file/yaml_model.py",
+    "plant_file/robot_models.py",  # of the files of models that come with it
+    "plant_file/robots.py",
+    "plant_file/shapes.py",
+    "plant_file/yaml_model.py",
     "dashboard/twin/parts.py",  # the twin of a cell of storage
     "dashboard/twin/scene.py",
     "dashboard/twin/twin.py",
@@ -35,7 +36,7 @@ NAMED_AS_ROLES = {
     "simulator/plants/timing.py",
 }
 """Where the two robots of a cell of storage are called by their roles, or the model of one by its name."""
-REGISTRY = "app/plant_file/registry.py"  # where kinds that come with it get their names
+REGISTRY = "plant_file/registry.py"  # where kinds that come with it get their names
 FACT = "effector"  # also what an arm says of itself
 
 
@@ -102,7 +103,7 @@ def _names_of_kinds(package: str) -> dict[str, set[str]]:
     return {file: found for file, found in names.items() if found and file != REGISTRY}
 
 
-@pytest.mark.parametrize("package", [*ENGINE, "app", "dashboard", "simulator"])
+@pytest.mark.parametrize("package", [*ENGINE, *ABOVE, "dashboard", "simulator"])
 def test_no_module_names_a_kind(package: str) -> None:
     roles = set(StorageCell.keyed_roles)
     found = {
@@ -113,5 +114,5 @@ def test_no_module_names_a_kind(package: str) -> None:
 
 
 def test_every_module_that_calls_robots_by_their_roles_does_so() -> None:
-    found = {file for package in ("app", "dashboard", "simulator") for file in _names_of_kinds(package)}
+    found = {file for package in (*ABOVE, "dashboard", "simulator") for file in _names_of_kinds(package)}
     assert found == NAMED_AS_ROLES

@@ -8,8 +8,8 @@ from importlib.resources import as_file, files
 
 import pytest
 
-from arboleda.app import config
 from arboleda.model.plant_model import PlantModel
+from arboleda.plant_file import loader
 from arboleda.simulator import judged_world
 from arboleda.simulator.invariants import INVARIANTS, Invariant
 from arboleda.simulator.invariants.hosts import HOSTS
@@ -25,7 +25,7 @@ _whole: dict[tuple[object, ...], str | None] = {}  # many mutants are found in t
 def plants() -> tuple[PlantModel, PlantModel]:
     """Those of even and of odd seeds, as `arboleda simulate` takes them."""
     with as_file(files("arboleda").joinpath("plants", "shared.yaml")) as shared:
-        return config.load(shared), config.load()
+        return loader.load(shared), loader.load()
 
 
 def found_at(mutant: Mutant) -> int | None:

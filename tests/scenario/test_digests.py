@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from arboleda.app.simulate.request import Request
+from arboleda.campaigns.request import Request
 
 PINNED = Path(__file__).with_name("digests.json")
 SEEDS, CYCLES = range(1, 9), 12

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import pytest
 import yaml
 
-from arboleda.app.simulate.random_plants import loaded
+from arboleda.campaigns.random_plants import loaded
 from arboleda.simulator.faults import Fault
 from arboleda.simulator.run import Simulation
 from arboleda.simulator.shrink import explicit

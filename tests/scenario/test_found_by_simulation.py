@@ -8,7 +8,6 @@ from pathlib import Path
 
 import pytest
 
-from arboleda.app.config import load
 from arboleda.core.cell_states import CellState
 from arboleda.dispatch.ledger import State
 from arboleda.kinds.arm import SetEffector
@@ -16,6 +15,7 @@ from arboleda.kinds.mobile import FollowPath
 from arboleda.model.commands import Home
 from arboleda.model.messages import Journal, TaskState, Verb
 from arboleda.model.plant_model import Evidence, PlantModel, Retry
+from arboleda.plant_file.loader import load
 from arboleda.sim.arm import ArmBody
 from arboleda.sim.freshness import Freshness
 from arboleda.simulator.faults import Fault

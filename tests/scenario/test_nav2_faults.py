@@ -6,9 +6,9 @@ from pathlib import Path
 
 import pytest
 
-from arboleda.app.config import load
 from arboleda.drivers.ros_action.goal import Rest
 from arboleda.kinds.mobile import Mobile
+from arboleda.plant_file.loader import load
 from arboleda.virtual import campaign
 from arboleda.virtual.nav2.campaign import BASE_CAUSES, RoundTrial, WaypointsTrial
 from arboleda.virtual.nav2.machine import FAULTS

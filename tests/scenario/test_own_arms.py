@@ -6,13 +6,13 @@ from pathlib import Path
 
 import pytest
 
-from arboleda.app import config
-from arboleda.app.plant_file.robot_models import mobile_models
-from arboleda.app.simulate.plants import Plant, PlantRotation
-from arboleda.app.simulate.random_plants import ATTEMPTS, as_yaml
-from arboleda.app.simulate.setting import Setting
+from arboleda.campaigns.plants import Plant, PlantRotation
+from arboleda.campaigns.random_plants import ATTEMPTS, as_yaml
+from arboleda.campaigns.setting import Setting
 from arboleda.model.errors import ConfigError
 from arboleda.model.plant_model import PlantModel
+from arboleda.plant_file import loader
+from arboleda.plant_file.robot_models import mobile_models
 from arboleda.simulator.plants import draw
 from arboleda.testing import Sim
 
@@ -43,7 +43,7 @@ def drawn(folder: Path, seed: int) -> PlantModel:
     for attempt in range(ATTEMPTS):
         file = as_yaml(draw(seed, attempt, arms=arms, mobiles=mobiles)).encode()
         try:
-            return config.parse("drawn.yaml", file, folder)
+            return loader.parse("drawn.yaml", file, folder)
         except ConfigError as refusal:
             last = refusal
     raise last

@@ -8,11 +8,11 @@ from shutil import copytree
 
 import pytest
 
-from arboleda.app import nodes_command
-from arboleda.app.config import load
 from arboleda.bt_xml.nodes import Category
+from arboleda.cli import nodes
 from arboleda.model.errors import ConfigError
 from arboleda.model.messages import Reason, TaskState
+from arboleda.plant_file.loader import load
 from arboleda.testing import Rig
 
 from .restarts import ENDED, restart
@@ -63,7 +63,7 @@ def problems(folder: Path, body: str, python: str = SHOWN) -> str:
 
 
 def test_they_are_in_the_palette_with_their_category(tmp_path: Path) -> None:
-    kinds = nodes_command.of_plant(load(plant(tmp_path, "<mill_open/>")), None)
+    kinds = nodes.of_plant(load(plant(tmp_path, "<mill_open/>")), None)
     assert {name: kinds[name].category for name in CATEGORIES} == CATEGORIES
     assert (kinds["OneOf"].fewest, kinds["OneOf"].most) == (2, 3)
     margin = (kinds["GripForce"].ports or {})["margin"]

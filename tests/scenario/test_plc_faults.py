@@ -6,9 +6,9 @@ from pathlib import Path
 
 import pytest
 
-from arboleda.app.config import load
 from arboleda.dispatch import evidence
 from arboleda.drivers.plc.numbers import Numbers
+from arboleda.plant_file.loader import load
 from arboleda.virtual import campaign
 from arboleda.virtual.modbus.campaign import ModbusTrial, Registers
 from arboleda.virtual.modbus.memory import FAULTS as MODBUS_FAULTS

@@ -6,10 +6,10 @@ from pathlib import Path
 
 import pytest
 
-from arboleda.app.config import load
 from arboleda.drivers.gripper_command.machine import GripperMover
 from arboleda.drivers.ros_action import machine
 from arboleda.kinds.arm import Arm
+from arboleda.plant_file.loader import load
 from arboleda.virtual import campaign
 from arboleda.virtual.gripper.campaign import ARM_CAUSES, GRIPPER_CAUSES, CarryTrial
 from arboleda.virtual.gripper.machine import FAULTS as GRIPPER_FAULTS

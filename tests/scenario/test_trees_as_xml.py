@@ -7,12 +7,12 @@ from shutil import copytree
 
 import pytest
 
-from arboleda.app.config import load
 from arboleda.bt_xml.parameters import LARGEST
 from arboleda.core.plant import Plant
 from arboleda.core.text import parse
 from arboleda.model.messages import TaskState, Verb
 from arboleda.model.recipe import Limits
+from arboleda.plant_file.loader import load
 from arboleda.testing import Rig
 from arboleda.trees.leaves import title_of
 from arboleda.views import view

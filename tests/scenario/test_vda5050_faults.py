@@ -7,9 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from arboleda.app.config import load
 from arboleda.drivers.vda5050 import machine
 from arboleda.kinds.mobile import Mobile
+from arboleda.plant_file.loader import load
 from arboleda.virtual import campaign
 from arboleda.virtual.vda5050.campaign import CAUSES, AgvTrial
 from arboleda.virtual.vda5050.faults import FAULTS

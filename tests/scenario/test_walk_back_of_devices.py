@@ -7,12 +7,12 @@ from shutil import copytree
 
 import pytest
 
-from arboleda.app.config import load
 from arboleda.core.advice import Hand
 from arboleda.core.cell_states import CellState
 from arboleda.model.commands import Command, Stop
 from arboleda.model.messages import Check, TaskState, Verb
 from arboleda.model.plant_model import PlantModel
+from arboleda.plant_file.loader import load
 from arboleda.recipes import Kit, parallel, recipe, work
 from arboleda.simulator import hands
 from arboleda.testing import Rig

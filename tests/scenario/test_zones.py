@@ -10,10 +10,10 @@ from pathlib import Path
 
 import pytest
 
-from arboleda.app.config import load
 from arboleda.core.cell_states import CellState
 from arboleda.model.messages import Fact, Journal, Reason, TaskState, Verb
 from arboleda.model.plant_model import Evidence, PlantModel
+from arboleda.plant_file.loader import load
 from arboleda.testing import Rig, Witness, faults, slowed
 from arboleda.testing.following import advised, follow, works
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from arboleda.app.config import load
+from arboleda.plant_file.loader import load
 from arboleda.simulator.run import Simulation
 from arboleda.simulator.shrink import explicit
 

@@ -132,7 +132,7 @@ def arboleda(start: Callable[..., Process], tmp_path: Path) -> Callable[..., Pro
     def go(verb: str, *args: str) -> Process:
         own = verb not in ("check", "conformance", "tree") and "--state" not in args
         state = ("--state", str(tmp_path / "state")) if own else ()
-        main = "from arboleda.app.cli import main; main()"
+        main = "from arboleda.cli.main import main; main()"
         return start(sys.executable, "-c", main, verb, *args, *state, env={"PYTHONPATH": paths()})
 
     return go
@@ -147,7 +147,7 @@ def typed(tmp_path: Path) -> Callable[..., tuple[int, str]]:
     """
 
     def go(*words: str) -> tuple[int, str]:
-        from arboleda.app.cli import main
+        from arboleda.cli.main import main
 
         said, status = StringIO(), 0
         command = mock.patch.object(sys, "argv", ["arboleda", *words, "--state", str(tmp_path / "state")])

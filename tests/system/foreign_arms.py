@@ -17,9 +17,9 @@ from pathlib import Path
 from random import Random
 from typing import Any
 
-from arboleda.app import config
 from arboleda.kinds.arm import Arm
 from arboleda.model.plant_model import Link, MotionState
+from arboleda.plant_file import loader
 from arboleda.wire.payloads import Channel, JointsGoal, Presence, StopGoal, Telemetry, decode, encode
 from arboleda.wire.topics import topic
 from arboleda.wire.units import from_wire, to_wire
@@ -168,7 +168,7 @@ def play_mqtt(arms: list[Glued], port: int) -> None:
 
 def main(how: str, plant: str, port: str = "0") -> None:
     link = Link.ROS if how == "ros" else Link.MQTT
-    cells = config.load(Path(plant)).cells
+    cells = loader.load(Path(plant)).cells
     arms = [Glued(cell.arm, number) for number, cell in enumerate(cells) if cell.arm.link is link]
     if how == "ros":
         play_ros(arms)

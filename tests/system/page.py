@@ -9,7 +9,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from arboleda.app.client import PlantClient
+from arboleda.cli.client import PlantClient
 from arboleda.model.messages import ENDED, TaskState, Verb
 
 from ..patience import PATIENCE_S
@@ -21,7 +21,7 @@ PARTS = ("cells", "twin", "tasks", "panel", "links", "events")
 @contextmanager
 def running(state: Path, *args: str) -> Iterator[str]:
     """A plant and its page's address."""
-    main = "from arboleda.app.cli import main; main()"
+    main = "from arboleda.cli.main import main; main()"
     command = ("up", "--no-ros", "--rate", "10", "--state", str(state), *args)
     plant = Process(sys.executable, "-c", main, *command, env={"PYTHONPATH": paths()})
     try:

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 import yaml
 
-from arboleda.app.client import PlantClient
+from arboleda.cli.client import PlantClient
 from arboleda.dashboard.wording import LANGUAGES
 from arboleda.model.messages import Verb
 

@@ -14,8 +14,8 @@ from typing import Any
 
 import pytest
 
-from arboleda.app.client import PlantClient
-from arboleda.app.line import VerbRefused
+from arboleda.cli.client import PlantClient
+from arboleda.cli.line import VerbRefused
 from arboleda.model.messages import Verb
 
 from ..patience import PATIENCE_S

@@ -12,8 +12,8 @@ from typing import Any
 
 import pytest
 
-from arboleda.app.build import Options, build
-from arboleda.app.config import load
+from arboleda.plant_file.loader import load
+from arboleda.runtime.build import Options, build
 
 from .conftest import paths
 
@@ -133,7 +133,7 @@ def test_who_waits_for_a_task_may_stop_waiting(arboleda: Callable[..., Any]) -> 
 def test_shells_complete_the_command(
     start: Callable[..., Any], shell: str, typed_so_far: dict[str, str]
 ) -> None:
-    main = "from arboleda.app.cli import main; main()"
+    main = "from arboleda.cli.main import main; main()"
     asks = {"_ARBOLEDA_COMPLETE": f"complete_{shell}", "PYTHONPATH": paths(), **typed_so_far}
     completed = start(sys.executable, "-c", main, env=asks)
     assert completed.wait() == 0 and "submit" in completed.output
@@ -250,7 +250,7 @@ def test_real_boards_are_driven_where_no_virtual_ones_are_wanted(
 
 
 def test_a_reader_that_goes_away_does_not_stop_the_plant(start: Callable[..., Any], tmp_path: Path) -> None:
-    command = f"{sys.executable} -c 'from arboleda.app.cli import main; main()'"
+    command = f"{sys.executable} -c 'from arboleda.cli.main import main; main()'"
     task = f"run 'sis_a 0B 7' --no-ros --rate 10 --state {tmp_path}/state"
     shell = start("bash", "-c", f"{command} {task} | head -1", env={"PYTHONPATH": paths()})
     assert shell.wait() == 0
@@ -259,7 +259,7 @@ def test_a_reader_that_goes_away_does_not_stop_the_plant(start: Callable[..., An
 
 def test_a_png_is_not_poured_into_a_terminal() -> None:
     screen, terminal = os.openpty()
-    main = "from arboleda.app.cli import main; main()"
+    main = "from arboleda.cli.main import main; main()"
     command = [sys.executable, "-c", main, "tree", "storage", "--format", "png"]
     environ = {**os.environ, "PYTHONPATH": paths()}
     ran = subprocess.run(

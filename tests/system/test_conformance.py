@@ -8,8 +8,8 @@ from typing import Any
 
 import pytest
 
-from arboleda.app.build import Options, build
-from arboleda.app.conformance.judge import CHECKS, DEVICE_CHECKS
+from arboleda.board_kit.conformance.judge import CHECKS, DEVICE_CHECKS
+from arboleda.runtime.build import Options, build
 from arboleda.testing import shipped
 
 pytestmark = [pytest.mark.system, pytest.mark.timeout(150)]

@@ -11,8 +11,8 @@ from typing import Any
 import pytest
 import yaml
 
-from arboleda.adapters.store import Store
 from arboleda.model.messages import Fact, Remember
+from arboleda.store.sqlite import Store
 
 from ..patience import PATIENCE_MS
 from .conftest import SHIPPED

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from arboleda.app.build import App, Options, build
 from arboleda.model.messages import TaskChanged, TaskState
+from arboleda.runtime.build import App, Options, build
 
 from ..patience import PATIENCE_S
 from ..unit.kinds.lab import model

@@ -39,7 +39,7 @@ Dwell.update = broken
 def test_what_raises_in_one_cell_ends_its_task_and_nothing_else(
     start: Callable[..., Any], tmp_path: Path, defect: str
 ) -> None:
-    main = f"{BROKEN[defect]}\nfrom arboleda.app.cli import main; main()"
+    main = f"{BROKEN[defect]}\nfrom arboleda.cli.main import main; main()"
     tasks = ("sis_a 0B 7", "sis_b 1C 3")
     state = ("--state", str(tmp_path / "state"))
     command = (sys.executable, "-c", main, "run", *tasks, "--no-ros", "--rate", "10", *state)

@@ -10,7 +10,7 @@ from typing import Any
 
 import pytest
 
-from arboleda.app.client import PlantClient
+from arboleda.cli.client import PlantClient
 
 from ..chromium import browsers
 from ..patience import PATIENCE_S
@@ -55,7 +55,7 @@ def test_a_first_visit_says_what_to_click_and_a_button_ends_the_demonstration(
 
 
 def test_ctrl_c_leaves_every_robot_still(tmp_path: Path) -> None:
-    main = "from arboleda.app.cli import main; main()"
+    main = "from arboleda.cli.main import main; main()"
     command = ("up", "--no-ros", "--demo", "--rate", "2", "--state", str(tmp_path))
     plant = Process(sys.executable, "-c", main, *command, env={"PYTHONPATH": paths()})
     try:
@@ -72,7 +72,7 @@ def test_ctrl_c_leaves_every_robot_still(tmp_path: Path) -> None:
 
 
 def test_real_boards_are_refused(tmp_path: Path) -> None:
-    command = [sys.executable, "-c", "from arboleda.app.cli import main; main()", "up", "--demo"]
+    command = [sys.executable, "-c", "from arboleda.cli.main import main; main()", "up", "--demo"]
     ran = subprocess.run(
         [*command, "--boards", "real", "--no-ros", "--state", str(tmp_path)],
         capture_output=True,

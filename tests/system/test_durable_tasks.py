@@ -64,7 +64,7 @@ def test_a_disk_that_gets_full_ends_the_plant_which_has_kept_all_that_it_accepte
     tmp_path: Path,
 ) -> None:
     """The limit for the size of files stands for the disk."""
-    command = [sys.executable, "-c", "from arboleda.app.cli import main; main()", *UP]
+    command = [sys.executable, "-c", "from arboleda.cli.main import main; main()", *UP]
     limited = f"ulimit -f 150; exec {shlex.join([*command, '--state', str(tmp_path / 'state')])}"
     plant = start("bash", "-c", limited, env={"PYTHONPATH": paths()})
     plant.wait_for("HTTP API")

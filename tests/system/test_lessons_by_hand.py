@@ -42,7 +42,7 @@ def terminals(page: str) -> tuple[str, list[str]]:
 
 def as_installed(command: str) -> str:
     """The command with the Python of the tests, where a person has .venv."""
-    programs = {"python": "", "arboleda": " -c 'from arboleda.app.cli import main; main()'"}
+    programs = {"python": "", "arboleda": " -c 'from arboleda.cli.main import main; main()'"}
     return re.sub(r"\.venv/bin/(\w+)", lambda found: f"{sys.executable}{programs[found[1]]}", command)
 
 

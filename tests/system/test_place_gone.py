@@ -16,7 +16,7 @@ import pytest
 
 from arboleda.adapters.broker_login import address
 from arboleda.adapters.mqtt import MqttClient
-from arboleda.app import place_claim
+from arboleda.runtime import place_claim
 from arboleda.wire.transport import Connection, Delivery
 
 from ..patience import PATIENCE_S

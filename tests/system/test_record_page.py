@@ -11,7 +11,7 @@ from typing import Any
 import httpx
 import pytest
 
-from arboleda.app.client import PlantClient
+from arboleda.cli.client import PlantClient
 from arboleda.model.messages import Verb
 from arboleda.recorder import reader
 from arboleda.recorder.errors import NoRecord
@@ -27,7 +27,7 @@ __all__ = ["eye"]  # a fixture
 
 pytestmark = [pytest.mark.system, pytest.mark.requires("chromium", "playwright")]
 
-MAIN = "from arboleda.app.cli import main; main()"
+MAIN = "from arboleda.cli.main import main; main()"
 AT = "[data-live='record.at']"
 FAILED = "article.cell.chosen g.node.is-failure"
 

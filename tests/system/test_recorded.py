@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
-from arboleda.app.cli import cli
+from arboleda.cli.main import cli
 from arboleda.recorder import reader
 from arboleda.recorder.files import FOLDER, parts_in
 

@@ -12,7 +12,7 @@ from builtin_interfaces.msg import Time
 from diagnostic_msgs.msg import DiagnosticArray
 from rclpy.serialization import deserialize_message, serialize_message
 
-from arboleda.app.parts.slices import Slices
+from arboleda.runtime.parts.slices import Slices
 from arboleda_ros import statuses
 from arboleda_ros.diagnostics import Diagnostics
 

@@ -26,8 +26,6 @@ from sensor_msgs.msg import JointState
 from std_msgs.msg import Bool, Float32MultiArray, MultiArrayDimension, String, UInt8, UInt32
 from std_srvs.srv import Trigger
 
-from arboleda.adapters.store import Store
-from arboleda.app.parts.orchestrator import Orchestrator
 from arboleda.core.leaving import STILL_WAITS, stop_left
 from arboleda.kinds.arm import MoveJoints, SetEffector
 from arboleda.kinds.mobile import FollowPath
@@ -48,6 +46,8 @@ from arboleda.model.messages import (
     Verb,
 )
 from arboleda.model.plant_model import Evidence, Link, MotionState, PlantModel
+from arboleda.runtime.parts.orchestrator import Orchestrator
+from arboleda.store.sqlite import Store
 from arboleda.testing import shipped
 from arboleda.wire.status import STALE, to_status
 from arboleda_ros import convert, statuses

@@ -12,7 +12,7 @@ from pathlib import Path
 import httpx
 import pytest
 
-from arboleda.app.state import find_running
+from arboleda.runtime.state import find_running
 
 pytest.importorskip("rclpy", reason="rclpy is not installed")
 

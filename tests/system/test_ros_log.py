@@ -16,7 +16,7 @@ from typing import Any
 
 import pytest
 
-from arboleda.app.log_queue import log_to
+from arboleda.runtime.log_queue import log_to
 from arboleda.testing import shipped
 
 from .conftest import paths

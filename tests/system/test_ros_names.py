@@ -16,7 +16,7 @@ pytestmark = [pytest.mark.system, pytest.mark.requires("rclpy")]
 
 EMBEDDED = """
 import sys
-from arboleda.app.parts import broker
+from arboleda.runtime.parts import broker
 broker.MQTT_PORT = {port}  # stands for 1883, which may be taken on this machine
 from arboleda_ros import nodes
 sys.exit(nodes.main("virtual_devices"))

@@ -19,8 +19,8 @@ from diagnostic_msgs.msg import DiagnosticArray
 from rclpy.context import Context
 from rclpy.executors import SingleThreadedExecutor
 
-from arboleda.adapters.postgres.memory import PostgresMemory
-from arboleda.app.state import find_running
+from arboleda.runtime.state import find_running
+from arboleda.store.postgres.memory import PostgresMemory
 from arboleda_kills.processes import paths
 
 from ..patience import PATIENCE_S

@@ -13,7 +13,7 @@ import pytest
 from .conftest import paths
 
 pytestmark = pytest.mark.system
-RUN = "from arboleda.app.cli import main; main()"
+RUN = "from arboleda.cli.main import main; main()"
 
 
 def test_a_plant_says_that_it_is_ready_that_it_lives_and_that_it_ends(

@@ -17,7 +17,7 @@ from typing import Any
 
 import pytest
 
-from arboleda.app.simulate.request import Request
+from arboleda.campaigns.request import Request
 
 from .conftest import paths
 
@@ -107,8 +107,8 @@ def test_every_interpreter_that_is_here_does_the_same(setting: Path, tmp_path: P
 
 MAIN = """
 import os; print(os.getpid())
-from arboleda.app.simulate import screen; screen.EVERY_S = 0.5  # a line says that it runs
-from arboleda.app.cli import main; main()
+from arboleda.campaigns import screen; screen.EVERY_S = 0.5  # a line says that it runs
+from arboleda.cli.main import main; main()
 """
 
 
@@ -200,7 +200,7 @@ def test_a_worker_that_is_killed_ends_it_with_a_sentence(endless: tuple[Any, lis
 
 
 def test_a_reader_that_goes_away_is_no_trouble(start: Callable[..., Any]) -> None:
-    command = f"{sys.executable} -c 'from arboleda.app.cli import main; main()'"
+    command = f"{sys.executable} -c 'from arboleda.cli.main import main; main()'"
     words = "simulate --seed 3 --cycles 1 --faults none --trace"
     shell = start("bash", "-c", f"{command} {words} | head -1", env={"PYTHONPATH": paths()})
     assert shell.wait() == 0

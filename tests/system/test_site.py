@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from arboleda.app.client import PlantClient
+from arboleda.cli.client import PlantClient
 
 from ..patience import PATIENCE_MS
 from .conftest import Process, paths
@@ -19,7 +19,7 @@ from .test_accessible import Eye, eye
 __all__ = ["eye"]  # a fixture
 
 pytestmark = [pytest.mark.system, pytest.mark.requires("chromium", "playwright")]
-MAIN = "from arboleda.app.cli import main; main()"
+MAIN = "from arboleda.cli.main import main; main()"
 NOBODY = "http://127.0.0.1:9"  # a port on which nothing listens
 
 

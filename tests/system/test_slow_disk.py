@@ -17,13 +17,13 @@ pytestmark = pytest.mark.system
 SLOW_S = 0.15
 ON_A_SLOW_DISK = f"""
 import time
-from arboleda.adapters.store import Store
+from arboleda.store.sqlite import Store
 write = Store._write
 def slowly(self, *statements, durable):
     time.sleep({SLOW_S} if durable else 0.0)
     write(self, *statements, durable=durable)
 Store._write = slowly
-from arboleda.app.cli import main
+from arboleda.cli.main import main
 main()
 """
 

@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from arboleda.app.client import PlantClient
+from arboleda.cli.client import PlantClient
 from arboleda.model.messages import Verb
 
 from ..patience import PATIENCE_MS

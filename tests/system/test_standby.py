@@ -11,7 +11,7 @@ from typing import Any
 
 import pytest
 
-from arboleda.app.state import find_running
+from arboleda.runtime.state import find_running
 
 from ..postgres import Server
 from .two_hosts import PATIENCE_S, TAKEN_OVER_S, Hosts

@@ -22,7 +22,7 @@ Typed = Callable[..., tuple[int, str]]
 def certs(start: Callable[..., Any], tmp_path: Path) -> Path:
     """The folder that the command wrote."""
     folder = tmp_path / "certs"
-    main = "from arboleda.app.cli import main; main()"
+    main = "from arboleda.cli.main import main; main()"
     made = start(sys.executable, "-c", main, "certs", str(folder), env={"PYTHONPATH": paths()})
     assert made.wait() == 0, made.output
     return folder

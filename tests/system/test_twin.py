@@ -14,12 +14,12 @@ from typing import Any
 import pytest
 import yaml
 
-from arboleda.app import config
-from arboleda.app.urdf import robot_urdf, root_link
 from arboleda.dashboard.shell import assets
 from arboleda.kinds.arm import Arm
 from arboleda.kinds.mobile import Mobile
 from arboleda.model.plant_model import MotionState, PlantModel, Robot
+from arboleda.plant_file import loader
+from arboleda.plant_file.urdf import robot_urdf, root_link
 from arboleda.testing import shipped
 from arboleda.wire import payloads, topics, units
 from arboleda.wire.topics import Channel
@@ -124,7 +124,7 @@ class Plant:
 
 @contextmanager
 def running(state: Path, *args: str) -> Iterator[Plant]:
-    main = "from arboleda.app.cli import main; main()"
+    main = "from arboleda.cli.main import main; main()"
     command = ("up", "--state", str(state), *args)
     process = Process(sys.executable, "-c", main, *command, env={"PYTHONPATH": paths()})
     try:
@@ -260,7 +260,7 @@ def test_every_link_is_where_the_last_telemetry_puts_it(
 
 def test_an_arm_of_ones_own_is_drawn_where_its_telemetry_puts_it(tmp_path: Path, look: Any) -> None:
     file = Path(__file__).parents[2] / "examples/plants/own_arm.yaml"
-    model = config.load(file)
+    model = loader.load(file)
     place = Place(model, "tender")
     with running(tmp_path, "--no-ros", "--plant", str(file)) as plant, ExitStack() as opened:
         heard = Heard(model, plant.broker)

@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from arboleda.app.state import find_running
+from arboleda.runtime.state import find_running
 
 from ..patience import PATIENCE_MS
 from .two_hosts import Hosts

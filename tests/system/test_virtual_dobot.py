@@ -16,7 +16,7 @@ import pytest
 pytestmark = pytest.mark.system
 
 LINK = "      twin: r3\n      link: mqtt\n"
-COMMAND = "from arboleda.app.cli import main; main()"
+COMMAND = "from arboleda.cli.main import main; main()"
 
 
 @pytest.fixture

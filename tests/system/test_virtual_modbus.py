@@ -14,7 +14,7 @@ import pytest
 pytestmark = [pytest.mark.system, pytest.mark.requires("pymodbus", "serial")]
 
 EXAMPLE = Path(__file__).parents[2] / "examples/plc_conveyor"
-COMMAND = "from arboleda.app.cli import main; main()"
+COMMAND = "from arboleda.cli.main import main; main()"
 
 
 @pytest.fixture

@@ -17,7 +17,7 @@ import httpx
 import pytest
 
 from arboleda.adapters import descriptors
-from arboleda.adapters.web.admission import Admission
+from arboleda.web.admission import Admission
 
 from ..patience import PATIENCE_S
 from .conftest import Process, paths
@@ -139,7 +139,7 @@ def test_a_limit_of_open_files_that_is_too_low_is_said(start: Callable[..., Proc
 
 def few_files(start: Callable[..., Process], limit: int, *args: str) -> Process:
     """The command, in a process that may have only so many files open."""
-    main = "from arboleda.app.cli import main; main()"
+    main = "from arboleda.cli.main import main; main()"
     words = ("sh", "-c", f'ulimit -n {limit} && exec "$@"', "sh", sys.executable, "-c", main)
     return start(*words, *args, env={"PYTHONPATH": paths()})
 

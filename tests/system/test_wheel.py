@@ -16,7 +16,7 @@ from arboleda import __version__
 ROOT = Path(__file__).parents[2]
 PACKAGES = ("src/arboleda/arboleda", "src/arboleda_ros/arboleda_ros", "bench/arboleda_bench")
 DESCRIPTION = "src/arboleda_description/arboleda_description"
-RUN = "from arboleda.app.command import main; main()"
+RUN = "from arboleda.cli.entry import main; main()"
 Command = Callable[..., "subprocess.CompletedProcess[str]"]
 
 

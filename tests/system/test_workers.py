@@ -29,7 +29,7 @@ def test_seeds_that_workers_share_come_to_the_same_as_alone(
     from .conftest import paths
 
     def simulate(*options: str) -> Any:
-        main = "from arboleda.app.cli import main; main()"
+        main = "from arboleda.cli.main import main; main()"
         return start(sys.executable, "-c", main, "simulate", *SEEDS, *options, env={"PYTHONPATH": paths()})
 
     with postgres.connection() as db:

@@ -10,7 +10,7 @@ from typing import Any
 import httpx
 
 from arboleda.adapters.broker import EmbeddedBroker
-from arboleda.app.state import find_running
+from arboleda.runtime.state import find_running
 from arboleda_kills.deeds import Did
 from arboleda_kills.processes import Boards, Plant
 

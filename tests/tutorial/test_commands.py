@@ -47,7 +47,7 @@ def checkout(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     programs.mkdir(parents=True)
     (folder / "examples").symlink_to(ROOT / "examples")
     write_program(programs / "python", "")
-    write_program(programs / "arboleda", ' -c "from arboleda.app.cli import main; main()"')
+    write_program(programs / "arboleda", ' -c "from arboleda.cli.main import main; main()"')
     monkeypatch.setenv("PYTHONPATH", os.pathsep.join(path for path in sys.path if path))
     monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path / "state"))
     monkeypatch.setenv("COLUMNS", "200")

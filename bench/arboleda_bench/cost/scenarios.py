@@ -17,23 +17,23 @@ import httpx
 from starlette.types import ASGIApp, Receive, Scope, Send
 
 from arboleda.adapters import clock
-from arboleda.adapters.store import IN_MEMORY, Store
-from arboleda.adapters.web.api import make_app
-from arboleda.adapters.web.auth import Role
-from arboleda.app.config import load
-from arboleda.app.parts.orchestrator import Orchestrator
-from arboleda.app.parts.web import Side
-from arboleda.app.simulate.request import Request
+from arboleda.campaigns.request import Request
 from arboleda.core.plant import Plant
 from arboleda.kinds.mobile import FollowPath
 from arboleda.model.commands import Command
 from arboleda.model.plant_model import PlantModel
+from arboleda.plant_file.loader import load
 from arboleda.recorder.state import state_of
 from arboleda.recorder.steps import Step, as_json
+from arboleda.runtime.parts.orchestrator import Orchestrator
+from arboleda.runtime.parts.web import Side
 from arboleda.simulator.people import Attendant, Customers
 from arboleda.simulator.run import MINUTE_S
 from arboleda.simulator.world import World
+from arboleda.store.sqlite import IN_MEMORY, Store
 from arboleda.views import view
+from arboleda.web.api import make_app
+from arboleda.web.auth import Role
 
 from .. import plants
 from ..obedient import EPOCH, Yard, command_in, is_over

@@ -25,7 +25,7 @@ from collections import Counter
 from collections.abc import Callable
 from pathlib import Path
 
-from arboleda.app.waiting import interruptible
+from arboleda.runtime.waiting import interruptible
 from arboleda_bench.result import percentile
 
 from ..database import NoServer, programs

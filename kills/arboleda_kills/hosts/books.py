@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import psycopg
 
-from arboleda.adapters.task_rows import TaskRow
+from arboleda.store.task_rows import TaskRow
 
 from ..steady import BEGAN_S
 

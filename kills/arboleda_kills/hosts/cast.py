@@ -16,9 +16,9 @@ from typing import Any
 
 import httpx
 
-from arboleda.adapters.web.auth import Role
-from arboleda.app import tokens
-from arboleda.app.state import find_running
+from arboleda.runtime import tokens
+from arboleda.runtime.state import find_running
+from arboleda.web.auth import Role
 
 from ..database import DATABASE, PASSWORD, USER, Server
 from ..processes import PATIENCE_S, Boards, Plant, paths

@@ -10,13 +10,13 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
-from arboleda.adapters.postgres.history import PostgresHistory
-from arboleda.adapters.postgres.leadership import Leader, Leadership
-from arboleda.adapters.postgres.schema import schema_of
-from arboleda.adapters.task_rows import TaskQuery, TaskRow
-from arboleda.app import config
 from arboleda.model.errors import ArboledaError
+from arboleda.plant_file import loader
 from arboleda.recipes.storage_cell import StorageCell
+from arboleda.store.postgres.history import PostgresHistory
+from arboleda.store.postgres.leadership import Leader, Leadership
+from arboleda.store.postgres.schema import schema_of
+from arboleda.store.task_rows import TaskQuery, TaskRow
 
 from ..database import DATABASE, USER
 from ..judge import Kill, Verdict, judge
@@ -46,7 +46,7 @@ class Run:
 
     def __init__(self, folder: Path, *, seed: int, rate: float) -> None:
         self._dice = random.Random(seed)
-        model = config.load(None)
+        model = loader.load(None)
         cells = [cell for cell in model.cells if isinstance(cell, StorageCell)]
         self._cells = [cell.name for cell in cells]
         self.network = Network(HOSTS, folder)

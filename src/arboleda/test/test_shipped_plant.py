@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from arboleda.app.config import load
+from arboleda.plant_file.loader import load
 
 
 def test_the_shipped_plant_has_its_three_cells() -> None:

@@ -6,8 +6,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from arboleda.adapters.broker_login import MQTT_PORT, address
-from arboleda.app.rate import check_rate
 from arboleda.model.errors import StartError
+from arboleda.runtime.rate import check_rate
 
 from .arguments import AUTO, EMBEDDED
 

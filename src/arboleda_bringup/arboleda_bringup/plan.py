@@ -7,8 +7,8 @@ from collections.abc import Mapping
 from functools import partial
 from pathlib import Path
 
-from arboleda.app.config import load
-from arboleda.app.urdf import robot_urdf
+from arboleda.plant_file.loader import load
+from arboleda.plant_file.urdf import robot_urdf
 from arboleda_ros.link import limit_discovery
 
 from .choice import read

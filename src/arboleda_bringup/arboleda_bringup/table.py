@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from arboleda.app.urdf import root_link
 from arboleda.kinds.arm import Arm
 from arboleda.kinds.mobile import Mobile
 from arboleda.model.plant_model import Link, PlantModel
+from arboleda.plant_file.urdf import root_link
 
 from .choice import Choice
 from .row import Row, Value

@@ -16,7 +16,6 @@ from sensor_msgs.msg import JointState
 from std_msgs.msg import Bool, String, UInt8, UInt32
 
 from arboleda.adapters.rate_limit import RateLimit
-from arboleda.app import view_text
 from arboleda.kinds.arm import Arm
 from arboleda.kinds.declared import Device
 from arboleda.model.commands import Command
@@ -34,6 +33,7 @@ from arboleda.model.messages import (
 )
 from arboleda.model.plant_model import Evidence, Link, PlantModel, Robot
 from arboleda.model.sentence import in_json
+from arboleda.runtime import view_text
 from arboleda.views import view
 from arboleda.wire import rejections
 from arboleda.wire.hop import HEARTBEAT, PLAIN, kind_of

@@ -16,7 +16,7 @@ from typing import Any
 from rclpy.logging import LoggingSeverity
 from rclpy.node import Node
 
-from arboleda.app.log_queue import OURS
+from arboleda.runtime.log_queue import OURS
 
 QUIET = ("--ros-args", "--disable-stdout-logs", "--")
 Logger = Any  # rclpy names its type in a private module only

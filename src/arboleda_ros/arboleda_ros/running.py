@@ -8,6 +8,7 @@ import sys
 from contextlib import closing
 from dataclasses import replace
 from functools import partial
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -15,16 +16,16 @@ from rcl_interfaces.msg import ParameterDescriptor
 from rclpy.node import Node
 
 from arboleda.adapters.broker_login import login
-from arboleda.adapters.web.names import LOCAL
-from arboleda.app.alarm_options import alarm_options
-from arboleda.app.build import App, Options, build
-from arboleda.app.config import load_recorded
-from arboleda.app.log_file import LogFile
-from arboleda.app.log_queue import log_to
-from arboleda.app.waiting import raise_at_signals
-from arboleda.app.web_options import WebOptions
 from arboleda.model.errors import ArboledaError, StartError
 from arboleda.model.plant_model import Link as LinkKind
+from arboleda.plant_file.loader import load_recorded
+from arboleda.runtime.alarm_options import alarm_options
+from arboleda.runtime.build import App, Options, build
+from arboleda.runtime.log_file import LogFile
+from arboleda.runtime.log_queue import log_to
+from arboleda.runtime.waiting import raise_at_signals
+from arboleda.runtime.web_options import WebOptions
+from arboleda.web.names import LOCAL
 
 from . import missing_libraries
 from .link import Link, connect
@@ -131,7 +132,7 @@ def _app(link: Link, name: str) -> App:
         recording=recording,
     )
     if values.get("standby"):
-        from arboleda.app.standby import take_over  # it shows a page, which no other start needs
+        from arboleda.runtime.standby import take_over  # it shows a page, which no other start needs
 
         return take_over(model, parts, options, LOG.info)
     return build(model, parts, options)
@@ -150,8 +151,8 @@ def _embedded(name: str) -> str:
 def _has_web() -> bool:
     """Whether the libraries of the page are there; a line in the log where they are not."""
     try:
-        import arboleda.app.parts.web
-        import arboleda.dashboard.page  # noqa: F401
+        for name in ("arboleda.dashboard.page", "arboleda.runtime.parts.web"):
+            import_module(name)
     except ImportError as error:
         LOG.warning("the dashboard is off: %s", missing_libraries.sentence(error))
         return False

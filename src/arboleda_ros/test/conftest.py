@@ -135,8 +135,8 @@ def link(request: pytest.FixtureRequest, ros_domain: int) -> Iterator[Callable[[
 @pytest.fixture(scope="module")
 def start(link: Callable[[], Any], tmp_path_factory: pytest.TempPathFactory) -> Iterator[Callable[[], Any]]:
     """Starts a whole plant with virtual robots, in this process."""
-    from arboleda.app.build import Options, build
-    from arboleda.app.config import load
+    from arboleda.plant_file.loader import load
+    from arboleda.runtime.build import Options, build
 
     running: list[Any] = []
 

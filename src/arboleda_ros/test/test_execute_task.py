@@ -13,9 +13,9 @@ from rclpy.action import ActionClient
 from std_msgs.msg import String, UInt8
 from std_srvs.srv import Trigger
 
-from arboleda.app.config import load
 from arboleda.core.text import parse
 from arboleda.model.errors import TextError
+from arboleda.plant_file.loader import load
 
 SUCCEEDED, CANCELED, ABORTED = (
     GoalStatus.STATUS_SUCCEEDED,

@@ -11,7 +11,6 @@ from action_msgs.msg import GoalInfo, GoalStatus
 from action_msgs.srv import CancelGoal
 from unique_identifier_msgs.msg import UUID
 
-from arboleda.app.config import load
 from arboleda.model.messages import (
     OperatorAnswer,
     OperatorRequest,
@@ -21,6 +20,7 @@ from arboleda.model.messages import (
     TaskState,
     Verb,
 )
+from arboleda.plant_file.loader import load
 
 Execute = Callable[..., Any]
 

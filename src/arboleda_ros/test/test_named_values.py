@@ -52,8 +52,8 @@ def ask(cell):
 @pytest.fixture(scope="module", autouse=True)
 def plant(link: Callable[[], Any], tmp_path_factory: pytest.TempPathFactory) -> Iterator[Any]:
     """A bench and a person, with virtual boards."""
-    from arboleda.app.build import Options, build
-    from arboleda.app.config import load
+    from arboleda.plant_file.loader import load
+    from arboleda.runtime.build import Options, build
 
     folder: Path = tmp_path_factory.mktemp("lab")
     (folder / "plant.yaml").write_text(PLANT, "utf-8")

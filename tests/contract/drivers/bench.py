@@ -14,8 +14,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Protocol
 
-from arboleda.app.build import App
 from arboleda.model.messages import TaskChanged, TaskState, Verb
+from arboleda.runtime.build import App
 
 from ...patience import PATIENCE_S
 

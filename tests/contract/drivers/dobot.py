@@ -13,9 +13,9 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
-from arboleda.app.build import App, Options, build
-from arboleda.app.config import load
 from arboleda.drivers.dobot.frames import Feedback, Mode
+from arboleda.plant_file.loader import load
+from arboleda.runtime.build import App, Options, build
 
 from ...patience import PATIENCE_S
 from .bench import HALT, LATCH, OTHER, WORK, Bench, Device, Ref

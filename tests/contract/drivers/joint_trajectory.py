@@ -7,8 +7,8 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from arboleda.app.build import App, Options, build
-from arboleda.app.config import load
+from arboleda.plant_file.loader import load
+from arboleda.runtime.build import App, Options, build
 
 from .bench import OTHER, WORK, Bench, Device
 from .ros_action import HOME, PlayedServer

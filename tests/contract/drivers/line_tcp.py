@@ -8,7 +8,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
-from arboleda.app.build import App, Options, build
+from arboleda.runtime.build import App, Options, build
 
 from .bench import Bench, Device
 from .press import EXAMPLE, Order, Press, Words, plant

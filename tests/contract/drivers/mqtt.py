@@ -12,7 +12,7 @@ from typing import Any
 
 from arboleda.adapters.broker_login import address
 from arboleda.adapters.mqtt import MqttClient, NotConnected
-from arboleda.app.build import App, Options, build
+from arboleda.runtime.build import App, Options, build
 from arboleda.wire.transport import Connection, Delivery, Publication
 
 from ...patience import PATIENCE_S

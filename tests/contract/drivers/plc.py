@@ -6,7 +6,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Protocol
 
-from arboleda.app.build import App, Options, build
+from arboleda.runtime.build import App, Options, build
 
 from .bench import Bench, Device
 from .press import Order, Press, Wire, plant

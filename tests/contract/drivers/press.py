@@ -10,8 +10,8 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Protocol
 
-from arboleda.app.config import load
 from arboleda.model.plant_model import MotionState, PlantModel
+from arboleda.plant_file.loader import load
 
 from ...patience import PATIENCE_S
 from .bench import ASK, HALT, LATCH, OTHER, WORK, Ref

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from arboleda.app.build import App, Options, build
+from arboleda.runtime.build import App, Options, build
 
 from ...conftest import need_tool
 from .bench import Bench, Device

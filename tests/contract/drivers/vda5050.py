@@ -13,8 +13,8 @@ from arboleda.adapters.broker import EmbeddedBroker
 from arboleda.adapters.broker_login import address
 from arboleda.adapters.mqtt import MqttClient, NotConnected
 from arboleda.adapters.vda5050.messages import Headers, from_bytes, to_bytes
-from arboleda.app.build import App, Options, build
-from arboleda.app.config import load
+from arboleda.plant_file.loader import load
+from arboleda.runtime.build import App, Options, build
 from arboleda.wire.transport import Connection, Delivery, Publication
 
 from ...patience import PATIENCE_S

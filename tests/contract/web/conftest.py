@@ -12,22 +12,22 @@ import httpx
 import pytest
 from fastapi import FastAPI, WebSocket, WebSocketDisconnect
 
-from arboleda.adapters.oee_rows import OeeQuery
 from arboleda.adapters.server_tls import ServerTls, pinned
-from arboleda.adapters.task_rows import TaskQuery, TaskRow
-from arboleda.adapters.web import limits
-from arboleda.adapters.web.api import make_app
-from arboleda.adapters.web.auth import Door, Role
-from arboleda.adapters.web.guard import Guard
-from arboleda.adapters.web.names import names_for
-from arboleda.adapters.web.second_loop import SecondLoop
-from arboleda.adapters.web.server import Server
 from arboleda.core.leaving import stop_left
 from arboleda.core.text import alternatives, spelled
 from arboleda.model.messages import OperatorAnswer, Verb
 from arboleda.model.sentence import Phrase, Sentence
+from arboleda.store.oee_rows import OeeQuery
+from arboleda.store.task_rows import TaskQuery, TaskRow
 from arboleda.testing import shipped
 from arboleda.views.oee import KeptFigures, Oee, Run, Work, oee
+from arboleda.web import limits
+from arboleda.web.api import make_app
+from arboleda.web.auth import Door, Role
+from arboleda.web.guard import Guard
+from arboleda.web.names import names_for
+from arboleda.web.second_loop import SecondLoop
+from arboleda.web.server import Server
 
 from ...patience import PATIENCE_S
 

@@ -7,12 +7,12 @@ from concurrent.futures import ThreadPoolExecutor
 
 import pytest
 
-from arboleda.adapters.oee_rows import OeeQuery
-from arboleda.adapters.task_rows import TaskQuery
 from arboleda.core.leaving import STILL_WAITS, stop_left
 from arboleda.model.errors import ArboledaError, QueueFull, TextError
 from arboleda.model.messages import OperatorAnswer, Outcome, Verb
 from arboleda.model.sentence import Phrase
+from arboleda.store.oee_rows import OeeQuery
+from arboleda.store.task_rows import TaskQuery
 
 from ...patience import PATIENCE_S
 from .conftest import LATE, OFFERS, QUEUED, TASK, VIEW
@@ -165,7 +165,7 @@ def test_a_refusal_says_why(web, plant, said, status):
 
 
 def test_a_plant_that_does_not_answer_is_said_to(web, plant, monkeypatch):
-    monkeypatch.setattr("arboleda.adapters.web.api.ANSWER_S", 0.05)
+    monkeypatch.setattr("arboleda.web.api.ANSWER_S", 0.05)
     plant.answer = None
     answer = web.post("/api/tasks", json={"text": "sis_a 0B 7"})
     assert answer.status_code == 503
@@ -271,7 +271,7 @@ def test_a_body_that_means_nothing_stops_nothing(web, plant, body):
 
 
 def test_a_verb_that_is_answered_late_is_said_to_be_so(web, plant, monkeypatch):
-    monkeypatch.setattr("arboleda.adapters.web.api.ANSWER_S", 0.05)
+    monkeypatch.setattr("arboleda.web.api.ANSWER_S", 0.05)
     plant.unanswered = []
     answer = web.post("/api/plant/stop")
     assert answer.status_code == 503

@@ -7,13 +7,13 @@ import os
 
 import pytest
 
-from arboleda.adapters.web import stream
-from arboleda.app import tokens
-from arboleda.app.client import PlantClient
-from arboleda.app.line import VerbRefused
-from arboleda.app.state import StateDir
+from arboleda.cli.client import PlantClient
+from arboleda.cli.line import VerbRefused
 from arboleda.model.errors import ArboledaError, QueueFull, TextError
 from arboleda.model.messages import Verb
+from arboleda.runtime import tokens
+from arboleda.runtime.state import StateDir
+from arboleda.web import stream
 
 from .conftest import QUEUED, TASK, VIEW
 

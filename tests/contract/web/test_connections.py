@@ -11,9 +11,9 @@ from contextlib import ExitStack, contextmanager
 
 import pytest
 
-from arboleda.adapters.web import connections
-from arboleda.adapters.web.server import Server
 from arboleda.model.errors import StartError
+from arboleda.web import connections
+from arboleda.web.server import Server
 
 from .conftest import VIEW, Web
 

@@ -6,8 +6,8 @@ import re
 
 import httpx
 
-from arboleda.adapters.web import openapi
 from arboleda.model.messages import Verb
+from arboleda.web import openapi
 
 
 def test_the_description_has_every_route_and_what_it_takes_and_gives(web: httpx.Client) -> None:

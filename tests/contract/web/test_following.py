@@ -14,18 +14,18 @@ from pathlib import Path
 
 import pytest
 
-from arboleda.adapters.web.auth import Role
-from arboleda.app import remote_plant
-from arboleda.app.client import PlantClient
-from arboleda.app.leader import LeaderInfo
-from arboleda.app.line import PlantSilent
-from arboleda.app.parts.waiting_room import WaitingRoom
-from arboleda.app.remote_plant import NoLeader, RemotePlant
-from arboleda.app.state import StateDir
-from arboleda.app.tokens import TOKENS as FILE
-from arboleda.app.web_options import WebOptions
+from arboleda.cli import remote_plant
+from arboleda.cli.client import PlantClient
+from arboleda.cli.line import PlantSilent
+from arboleda.cli.remote_plant import NoLeader, RemotePlant
 from arboleda.model.errors import ArboledaError
 from arboleda.model.messages import Verb
+from arboleda.runtime.leader import LeaderInfo
+from arboleda.runtime.parts.waiting_room import WaitingRoom
+from arboleda.runtime.state import StateDir
+from arboleda.runtime.tokens import TOKENS as FILE
+from arboleda.runtime.web_options import WebOptions
+from arboleda.web.auth import Role
 
 from .conftest import QUEUED, TASK, TOKENS, VIEW, Plant, Web
 
@@ -66,7 +66,7 @@ class Database:
         monkeypatch.setattr(remote_plant, "leadership_of", lambda store, plant: self)
 
     def leader(self):
-        from arboleda.adapters.postgres.leadership import Leader
+        from arboleda.store.postgres.leadership import Leader
 
         led = self.led or HERE
         return Leader(

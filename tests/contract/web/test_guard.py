@@ -8,9 +8,9 @@ import socket
 
 import pytest
 
-from arboleda.adapters.web import limits
-from arboleda.adapters.web.auth import Role
 from arboleda.model.messages import Verb
+from arboleda.web import limits
+from arboleda.web.auth import Role
 
 from .conftest import TOKENS, VIEW
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from arboleda.adapters.web import auth, limits
-from arboleda.adapters.web.auth import Door, Role
 from arboleda.model.errors import StartError
+from arboleda.web import auth, limits
+from arboleda.web.auth import Door, Role
 
 from .conftest import TOKENS
 

@@ -14,16 +14,16 @@ import pytest
 from fastapi import FastAPI
 from fastapi.responses import JSONResponse
 
-from arboleda.adapters.web.auth import Door, Role
-from arboleda.adapters.web.guard import Guard
-from arboleda.adapters.web.names import names_for
-from arboleda.adapters.web.server import Server
-from arboleda.app.endpoints import Place
-from arboleda.app.site.reach import ANSWER_S, NO_ANSWER
-from arboleda.app.site.watch import NOT_SEEN, NOT_STOPPED, STANDS_BY, STOPPED, STOPPED_ALL, Site
 from arboleda.dashboard.frames import ended
 from arboleda.dashboard.site.side import LastSeenPlant
 from arboleda.model.messages import OperatorAnswer, Verb
+from arboleda.runtime.endpoints import Place
+from arboleda.site.reach import ANSWER_S, NO_ANSWER
+from arboleda.site.watch import NOT_SEEN, NOT_STOPPED, STANDS_BY, STOPPED, STOPPED_ALL, Site
+from arboleda.web.auth import Door, Role
+from arboleda.web.guard import Guard
+from arboleda.web.names import names_for
+from arboleda.web.server import Server
 
 from ...patience import PATIENCE_S
 from .conftest import QUEUED, TOKENS, VIEW, Plant, running

@@ -6,9 +6,9 @@ from collections.abc import Awaitable, Callable
 
 import pytest
 
-from arboleda.app.endpoints import Place
-from arboleda.app.site.watch import Site
 from arboleda.dashboard.site.side import RequestOutcome
+from arboleda.runtime.endpoints import Place
+from arboleda.site.watch import Site
 
 from .conftest import QUEUED, Plant, running
 from .test_site import called, deaf, heard, seen, watched

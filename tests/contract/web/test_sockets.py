@@ -12,9 +12,9 @@ import pytest
 from websockets.exceptions import ConnectionClosed, InvalidStatus
 from websockets.sync.client import ClientConnection, connect
 
-from arboleda.adapters.web import limits
-from arboleda.adapters.web.auth import LOCAL, Role
-from arboleda.adapters.web.sockets import Sockets
+from arboleda.web import limits
+from arboleda.web.auth import LOCAL, Role
+from arboleda.web.sockets import Sockets
 
 from .conftest import TOKENS, Web
 

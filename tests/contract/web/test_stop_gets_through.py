@@ -18,10 +18,10 @@ import pytest
 from fastapi import FastAPI
 from starlette.types import Receive, Scope, Send
 
-from arboleda.adapters.web import second_loop
-from arboleda.adapters.web.auth import Role
-from arboleda.adapters.web.server import Server
 from arboleda.model.messages import OperatorAnswer, Verb
+from arboleda.web import second_loop
+from arboleda.web.auth import Role
+from arboleda.web.server import Server
 
 from .conftest import TOKENS, VIEW, Plant, Web
 

@@ -10,11 +10,11 @@ from typing import Any
 import httpx
 import pytest
 
-from arboleda.adapters.store import Store
-from arboleda.app.build import App, Options, build
-from arboleda.app.client import PlantClient
+from arboleda.cli.client import PlantClient
 from arboleda.core.leaving import ends_motion
 from arboleda.model.messages import Verb
+from arboleda.runtime.build import App, Options, build
+from arboleda.store.sqlite import Store
 from arboleda.testing import shipped
 
 PATIENCE_S = 20.0

@@ -11,8 +11,8 @@ from contextlib import contextmanager
 import httpx
 import pytest
 
-from arboleda.adapters.web import connections, limits
-from arboleda.adapters.web.auth import Role
+from arboleda.web import connections, limits
+from arboleda.web.auth import Role
 
 from .conftest import TASK, VIEW, Plant, Web
 

@@ -18,11 +18,11 @@ from websockets.asyncio.client import connect
 from websockets.exceptions import InvalidStatus
 
 from arboleda.adapters.server_tls import ServerTls, server_tls
-from arboleda.adapters.web import connections
-from arboleda.adapters.web.auth import Role
-from arboleda.app.client import PlantClient
-from arboleda.app.state import StateDir
+from arboleda.cli.client import PlantClient
 from arboleda.model.errors import ArboledaError
+from arboleda.runtime.state import StateDir
+from arboleda.web import connections
+from arboleda.web.auth import Role
 
 from ...patience import PATIENCE_S
 from ..conftest import Authority

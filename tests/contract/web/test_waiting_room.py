@@ -10,10 +10,10 @@ from pathlib import Path
 import httpx
 import pytest
 
-from arboleda.app import tokens
-from arboleda.app.leader import LeaderInfo
-from arboleda.app.parts.waiting_room import WaitingRoom
-from arboleda.app.web_options import WebOptions
+from arboleda.runtime import tokens
+from arboleda.runtime.leader import LeaderInfo
+from arboleda.runtime.parts.waiting_room import WaitingRoom
+from arboleda.runtime.web_options import WebOptions
 
 LED = LeaderInfo(plant="demo", host="host-a", process=7, url="http://10.0.0.5:8080", epoch=3)
 NEAR = "http://127.0.0.1:8080"

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from arboleda.adapters.held_files import HeldFiles
+from arboleda.store.held_files import HeldFiles
 
 Change = Callable[[Path], object]
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
-from arboleda.app.plant_file import settings
-from arboleda.app.plant_file.document import Document
 from arboleda.model.errors import ConfigError
 from arboleda.model.plant_model import Robot
+from arboleda.plant_file import settings
+from arboleda.plant_file.document import Document
 
 EXAMPLE = Path(__file__).parents[3] / "examples/plc_conveyor"
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from arboleda.app import config
 from arboleda.kinds.arm import Arm
 from arboleda.model.plant_model import PlantModel
+from arboleda.plant_file import loader
 
 ROOT = Path(__file__).parents[3]
 TENDER = ROOT / "examples/machine_tending/models/tender.urdf"
@@ -71,12 +71,12 @@ def written(folder: Path, model: str, poses: tuple[str, str, str], more: str = "
 def gantry(folder: Path, model: str = "gantry.urdf", more: str = "") -> PlantModel:
     (folder / "gantry.urdf").write_text(GANTRY)
     poses = ("{mm: [0, 0, 0]}", "{mm: [100, 200, -250]}", "{0: {mm: [400, 50, -250], approach_mm: 40}}")
-    return config.load(written(folder, model, poses, more))
+    return loader.load(written(folder, model, poses, more))
 
 
 def swing(folder: Path, urdf: str = ONE, model: str = "one.urdf", more: str = "") -> PlantModel:
     (folder / "one.urdf").write_text(urdf)
-    return config.load(written(folder, model, ("{deg: [0]}", "{deg: [30]}", "{0: {deg: [-30]}}"), more))
+    return loader.load(written(folder, model, ("{deg: [0]}", "{deg: [30]}", "{0: {deg: [-30]}}"), more))
 
 
 def tender(folder: Path, model: str | None = None, more: str = "") -> PlantModel:
@@ -85,7 +85,7 @@ def tender(folder: Path, model: str | None = None, more: str = "") -> PlantModel
         "{deg: [90, 50.9, 86.93, 0, 42.17, 0]}",
         "{0: {deg: [0, 29.94, 95.3, 0, 54.76, 0]}, 1: {deg: [20, 29.94, 95.3, 0, 54.76, 0]}}",
     )
-    return config.load(written(folder, model or str(TENDER), poses, more))
+    return loader.load(written(folder, model or str(TENDER), poses, more))
 
 
 def arm(plant: PlantModel) -> Arm:

@@ -10,12 +10,12 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
-from arboleda.app import config
-from arboleda.app.cli import cli
-from arboleda.app.plant_file.recipe_check import MOST
+from arboleda.cli.main import cli
 from arboleda.kinds.declared import Device
 from arboleda.kinds.shipped import SHIPPED
 from arboleda.model.errors import ConfigError
+from arboleda.plant_file import loader
+from arboleda.plant_file.recipe_check import MOST
 from arboleda.recipes.authoring import Kit
 
 ROOT = Path(__file__).parents[3]
@@ -35,7 +35,7 @@ def said(page: str, file: str) -> list[str]:
 
 def problems(file: Path) -> list[str]:
     with pytest.raises(ConfigError) as refusal:
-        config.load(file)
+        loader.load(file)
     return list(refusal.value.problems)
 
 
@@ -58,7 +58,7 @@ def test_the_plant_of_the_page_is_one_and_its_mistakes_are_told(folder: Path) ->
     recipes = re.sub(r"pump\.dispense\(ml=ml\)|scale\.tare\(\)", "pump.close()", recipes)
     Path("recipes.py").write_text(recipes, "utf-8")
     Path("my_lab.yaml").write_text(text, "utf-8")
-    assert [cell.name for cell in config.load(Path("my_lab.yaml")).cells] == ["bench"]
+    assert [cell.name for cell in loader.load(Path("my_lab.yaml")).cells] == ["bench"]
     for old, new in (
         ("clamped: bool", "clamped: boll"),
         ("sets: {lid: closed}", "sets: {lit: closed}"),
@@ -79,7 +79,7 @@ def test_the_kind_of_the_page_is_one_and_its_mistakes_are_told(folder: Path) -> 
         "utf-8",
     )
     plant.write_text(SHOP, "utf-8")
-    fast = config.load(plant).robots["fast"]
+    fast = loader.load(plant).robots["fast"]
     assert isinstance(fast, Device) and fast.kind.verbs["cut"].takes_s == 3.0
     for old, new in (("mm_s: 10}", "mms: 10}"), ("mm_s: 100", "mm_s: -1")):
         assert old in SHOP

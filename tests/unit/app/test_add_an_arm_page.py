@@ -8,20 +8,13 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
-from arboleda.app import config
-from arboleda.app.cli import cli
-from arboleda.app.plant_file.own_models import (
-    ENDINGS,
-    FULL_SPEED_S,
-    LEAST_STEP,
-    MOST_JOINTS,
-    STEP_DEG,
-    STEP_MM,
-)
-from arboleda.app.plant_file.shapes import ModelShape, OffsetShape
-from arboleda.app.urdf import robot_urdf
+from arboleda.cli.main import cli
 from arboleda.dashboard.twin import bodies, kinematics
 from arboleda.model.errors import ConfigError
+from arboleda.plant_file import loader
+from arboleda.plant_file.own_models import ENDINGS, FULL_SPEED_S, LEAST_STEP, MOST_JOINTS, STEP_DEG, STEP_MM
+from arboleda.plant_file.shapes import ModelShape, OffsetShape
+from arboleda.plant_file.urdf import robot_urdf
 from arboleda.testing import Sim
 
 PAGE = (Path(__file__).parents[3] / "docs/how-to/add-an-arm.md").read_text("utf-8")
@@ -46,7 +39,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 def refused(model: str) -> tuple[str, ...]:
     Path("models/lift_arm.urdf").write_text(model, "utf-8")
     with pytest.raises(ConfigError) as refusal:
-        config.load(Path("my_plant.yaml"))
+        loader.load(Path("my_plant.yaml"))
     return refusal.value.problems
 
 
@@ -69,7 +62,7 @@ def test_the_mistakes_of_the_page_are_what_is_said(folder: Path) -> None:
     ]
     (folder / "models/lift_arm.urdf").unlink()
     with pytest.raises(ConfigError) as refusal:
-        config.load(Path("my_plant.yaml"))
+        loader.load(Path("my_plant.yaml"))
     assert [*refusal.value.problems, *found] == SAID[3:]
 
 
@@ -78,7 +71,7 @@ def test_both_forms_are_the_same_arm(folder: Path) -> None:
     for ending in ("urdf", "yaml"):
         text = PLANT.replace("lift_arm.urdf", f"lift_arm.{ending}")
         (folder / "my_plant.yaml").write_text(text, "utf-8")
-        body = bodies.read(robot_urdf(config.load(Path("my_plant.yaml")), "lifter"))
+        body = bodies.read(robot_urdf(loader.load(Path("my_plant.yaml")), "lifter"))
         places.append(kinematics.at(kinematics.tool(body, (-0.1, 0.7, -0.4))))
     assert places[0] == pytest.approx(places[1])
 

@@ -11,10 +11,6 @@ import pytest
 
 from arboleda.adapters.mqtt_broker.limits import PACKET_BYTES
 from arboleda.adapters.webhook import TOKEN, URL
-from arboleda.app.alarm_options import TOPIC, alarm_options
-from arboleda.app.build import Options, build
-from arboleda.app.parts.alarms import AlarmsPart
-from arboleda.app.parts.commit_pace import Pace
 from arboleda.core.cell_states import CellState
 from arboleda.core.plant import Plant
 from arboleda.kinds.person import person
@@ -23,6 +19,10 @@ from arboleda.model.messages import Reason, Shutdown, TaskChanged, TaskState, Ve
 from arboleda.model.plant_model import Evidence
 from arboleda.model.sentence import OWN
 from arboleda.recipes import Kit, parallel, recipe, work
+from arboleda.runtime.alarm_options import TOPIC, alarm_options
+from arboleda.runtime.build import Options, build
+from arboleda.runtime.parts.alarms import AlarmsPart
+from arboleda.runtime.parts.commit_pace import Pace
 from arboleda.simulator.world import PLANT
 from arboleda.testing import shipped
 from arboleda.testing.rig import Rig

@@ -13,11 +13,12 @@ from pathlib import Path
 import pytest
 from tests.rights import modes_count
 
-from arboleda.adapters import row_sums
-from arboleda.adapters.memory_file import VERSION
-from arboleda.adapters.store import Store
-from arboleda.app import build, cli, session
+from arboleda.cli import main, session
 from arboleda.model.messages import Fact, Remember, TaskChanged, TaskState
+from arboleda.runtime import build
+from arboleda.store import row_sums
+from arboleda.store.memory_file import VERSION
+from arboleda.store.sqlite import Store
 
 STARTS = ("up", "run")
 ALL = (*STARTS, "tasks", "backup", "restore")
@@ -90,7 +91,7 @@ def carried_out(
         where = ["--state", str(memory.parent)]
         patch.setattr(sys, "argv", ["arboleda", command, *words[command], *where, *more])
         try:
-            cli.main()
+            main.main()
         except SystemExit as end:
             status = int(end.code or 0)
     return status, capsys.readouterr().err

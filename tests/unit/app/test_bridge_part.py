@@ -8,11 +8,11 @@ import pytest
 
 from arboleda.adapters import clock
 from arboleda.adapters.broker_login import Address
-from arboleda.app import config
-from arboleda.app.parts import bridge
-from arboleda.app.parts.broker import OtherBroker
 from arboleda.model.commands import Stop, StopMode
 from arboleda.model.plant_model import MotionState
+from arboleda.plant_file import loader
+from arboleda.runtime.parts import bridge
+from arboleda.runtime.parts.broker import OtherBroker
 from arboleda.wire.payloads import Presence, Telemetry, encode
 from arboleda.wire.topics import Channel, topic
 from arboleda.wire.transport import Connection, Delivery, Publication
@@ -34,7 +34,7 @@ def test_what_it_sends_counts_from_the_step_that_it_came_of(monkeypatch: pytest.
     client = Client()
     reported_at: list[float] = []
     monkeypatch.setattr(bridge, "MqttClient", lambda *_, **__: client)
-    model, now = config.load(None), clock.seconds()
+    model, now = loader.load(None), clock.seconds()
     part = bridge.BridgePart(model, 7, OtherBroker(Address(host="127.0.0.1", port=1), None), _crash)
     part.connect(lambda _report: reported_at.append(clock.seconds()))
     part.join()

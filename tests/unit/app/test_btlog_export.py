@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
-from arboleda.app.cli import cli
+from arboleda.cli.main import cli
 from arboleda.model.errors import ConfigError
 from arboleda.recorder import recorder
 

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from arboleda.app.build import PARTS, Options, build
 from arboleda.model.errors import StartError
+from arboleda.runtime.build import PARTS, Options, build
 from arboleda.testing import shipped
 
 

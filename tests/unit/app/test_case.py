@@ -9,9 +9,9 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
-from arboleda.app.cli import cli
-from arboleda.app.report.reading import incident_of
+from arboleda.cli.main import cli
 from arboleda.model.errors import ConfigError
+from arboleda.playback.report.reading import incident_of
 from arboleda.recorder import reader
 
 from .test_simulate_record import Said, said

@@ -11,11 +11,11 @@ import os, signal, sys
 
 class CtrlC:
     def find_spec(self, name, path=None, target=None):
-        if name == "arboleda.app.cli":
+        if name == "arboleda.cli.main":
             os.kill(os.getpid(), signal.SIGINT)
 
 sys.meta_path.insert(0, CtrlC())
-from arboleda.app.command import main
+from arboleda.cli.entry import main
 main()
 """
 
@@ -27,7 +27,7 @@ def test_ctrl_c_while_the_command_loads_is_no_error() -> None:
 
 ENDED = """
 import atexit, os, signal, sys
-from arboleda.app.command import main
+from arboleda.cli.entry import main
 atexit.register(os.kill, os.getpid(), signal.SIGINT)
 sys.argv[1:] = ["--version"]
 main()
@@ -40,7 +40,7 @@ def test_ctrl_c_while_python_ends_is_no_error() -> None:
 
 
 def test_a_command_that_runs_no_plant_loads_nothing_that_only_a_plant_needs() -> None:
-    loaded = "import sys, arboleda.app.cli; print(*sys.modules)"
+    loaded = "import sys, arboleda.cli.main; print(*sys.modules)"
     said = subprocess.run([sys.executable, "-c", loaded], capture_output=True, text=True, check=True).stdout
     heavy = {
         "asyncio",
@@ -52,5 +52,5 @@ def test_a_command_that_runs_no_plant_loads_nothing_that_only_a_plant_needs() ->
         "arboleda.sim",
         "arboleda.simulator.world",
     }
-    assert "arboleda.app.config" in said.split()
+    assert "arboleda.plant_file.loader" in said.split()
     assert heavy & set(said.split()) == set()

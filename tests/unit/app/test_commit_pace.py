@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from arboleda.app.parts.commit_pace import (
+from arboleda.runtime.parts.commit_pace import (
     FAST_S,
     KEPT_S,
     LEAST,

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from arboleda.app.cli import main
+from arboleda.cli.main import main
 
 EVIL = "\x1b[2J\u202e\x9b31m"
 

@@ -8,9 +8,9 @@ from pathlib import Path
 
 import pytest
 
-from arboleda.app import config
 from arboleda.model.errors import ConfigError
 from arboleda.model.plant_model import Evidence, Link, MqttVersion, PlantModel, Timing
+from arboleda.plant_file import loader
 
 EXAMPLES = Path(__file__).parents[3] / "examples" / "plants"
 PATHS = {
@@ -33,7 +33,7 @@ CELLS = {  # arm, MQTT, twin, model, mobile, home, pick-up of exit B in degrees 
 
 @pytest.fixture(scope="module")
 def shipped() -> PlantModel:
-    return config.load()
+    return loader.load()
 
 
 def wire_values(plant: PlantModel, cell: str, q: tuple[float, ...]) -> list[float]:
@@ -84,13 +84,13 @@ def test_the_shipped_plant_loads_in_far_less_than_100_ms(shipped: PlantModel) ->
     took = []
     for _ in range(3):  # a full garbage collection of all that this process tested before may fall into one
         start = time.process_time()
-        assert config.load() == shipped
+        assert loader.load() == shipped
         took.append(time.process_time() - start)
     assert min(took) < 0.1
 
 
 def test_the_example_by_hand_listens_to_typed_motion_states() -> None:
-    plant = config.load(EXAMPLES / "by_hand.yaml")
+    plant = loader.load(EXAMPLES / "by_hand.yaml")
     assert [(r.link, r.evidence) for r in plant.robots.values()] == [(Link.ROS, Evidence.STATE)] * 2
     assert plant.cell("sis_a").palletizing.place.name == "station 8"
 
@@ -98,11 +98,11 @@ def test_the_example_by_hand_listens_to_typed_motion_states() -> None:
 def test_a_robot_may_be_only_drawn(tmp_path: Path) -> None:
     file = tmp_path / "drawn.yaml"
     file.write_text((EXAMPLES / "by_hand.yaml").read_text().replace("link: ros", "link: none"))
-    assert {robot.link for robot in config.load(file).robots.values()} == {Link.NONE}
+    assert {robot.link for robot in loader.load(file).robots.values()} == {Link.NONE}
 
 
 def test_the_example_joints_has_numbered_stations_with_an_approach() -> None:
-    plant = config.load(EXAMPLES / "joints.yaml")
+    plant = loader.load(EXAMPLES / "joints.yaml")
     cell = plant.cell("sis_a")
     assert [(r.link, r.evidence) for r in plant.robots.values()] == [(Link.MQTT, Evidence.JOINTS)] * 2
     assert [pose.name for pose in cell.stations] == ["station 0", "station 1", "station 2"]
@@ -115,21 +115,21 @@ def test_a_board_without_stop_is_a_warning(tmp_path: Path, shipped: PlantModel) 
     text = (EXAMPLES / "joints.yaml").read_text("utf-8")
     file = tmp_path / "plant.yaml"
     file.write_text(text.replace("mqtt: ra_1", "mqtt: ra_1\n      stop: none"), "utf-8")
-    (warning,) = config.warnings(config.load(file))
+    (warning,) = loader.warnings(loader.load(file))
     assert warning.startswith("ra1: ")
-    assert config.warnings(shipped) == ()
+    assert loader.warnings(shipped) == ()
 
 
 def test_a_store_is_the_address_of_a_database_without_its_password() -> None:
     content = (EXAMPLES / "by_hand.yaml").read_bytes()
 
     def parsed(store: str) -> PlantModel:
-        return config.parse(
+        return loader.parse(
             "plant.yaml", content.replace(b"\ncells:", f"\nstore: {store}\ncells:".encode(), 1)
         )
 
     assert parsed("postgresql://me@db.example/plants").store == "postgresql://me@db.example/plants"
-    assert config.parse("plant.yaml", content).store == ""
+    assert loader.parse("plant.yaml", content).store == ""
     with pytest.raises(ConfigError, match="store: must be postgresql://USER@HOST:PORT/DATABASE"):
         parsed("plants.sqlite")
     with pytest.raises(ConfigError, match="store: has a password in it; leave it to PGPASSWORD") as refused:

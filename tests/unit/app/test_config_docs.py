@@ -7,9 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from arboleda.app import config
-from arboleda.app.plant_file import shapes
 from arboleda.model.errors import ConfigError
+from arboleda.plant_file import loader, shapes
 
 PAGE = (Path(__file__).parents[3] / "docs" / "how-to" / "plant-file.md").read_text("utf-8")
 EXAMPLE = PAGE.split("```yaml\n")[1].split("```")[0]
@@ -54,7 +53,7 @@ def _defaults() -> dict[str, list[str]]:
 def test_the_smallest_plant_of_the_page_is_one(tmp_path: Path) -> None:
     file = tmp_path / "my_plant.yaml"
     file.write_text(EXAMPLE, "utf-8")
-    plant = config.load(file)
+    plant = loader.load(file)
     assert [pose.name for pose in plant.cell("sis_a").stations] == ["station 0"]
 
 
@@ -65,5 +64,5 @@ def test_the_mistakes_of_the_page_are_what_check_says(
     text = EXAMPLE.replace("evidence: ids}", "evidence: id}", 1).replace("[45, 10]", "[45, 150]")
     Path("my_plant.yaml").write_text(text, "utf-8")
     with pytest.raises(ConfigError) as refusal:
-        config.load(Path("my_plant.yaml"))
+        loader.load(Path("my_plant.yaml"))
     assert "\n".join(refusal.value.problems) in PAGE

@@ -6,9 +6,9 @@ from pathlib import Path
 
 import pytest
 
-from arboleda.app import config
 from arboleda.model.errors import ConfigError
 from arboleda.model.plant_model import PlantModel
+from arboleda.plant_file import loader
 
 PLANT = """\
 name: small
@@ -151,7 +151,7 @@ MISTAKES = {  # id: (text, put in its place, the sentence starts with, and has i
 def load(tmp_path: Path, text: str) -> PlantModel:
     file = tmp_path / "plant.yaml"
     file.write_text(text, "utf-8")
-    return config.load(file)
+    return loader.load(file)
 
 
 def problems(tmp_path: Path, text: str) -> list[str]:

@@ -11,9 +11,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from arboleda.app import config, layout_check
 from arboleda.model.errors import ConfigError
 from arboleda.model.plant_model import PlantModel
+from arboleda.plant_file import layout_check, loader
 
 EXAMPLES = Path(__file__).parents[3] / "examples"
 WORD = re.compile(r"[^\s<>=\"/]+")
@@ -62,7 +62,7 @@ def read_model(folder: Path, text: str) -> None:
     (folder / "plant.yaml").write_text(own_arm(), "utf-8")
     (folder / "tender.urdf").write_bytes(text.encode("utf-8"))
     try:
-        plant: PlantModel | None = config.load(folder / "plant.yaml")
+        plant: PlantModel | None = loader.load(folder / "plant.yaml")
         problems: tuple[str, ...] = ()
     except ConfigError as error:
         plant, problems = None, error.problems
@@ -82,7 +82,7 @@ def read(folder: Path, text: str, *, recipes: bool = True) -> None:
     file = folder / "plant.yaml"
     file.write_bytes(text.encode("utf-8"))
     try:
-        plant: PlantModel | None = config.load(file, recipes=recipes)
+        plant: PlantModel | None = loader.load(file, recipes=recipes)
         problems: tuple[str, ...] = ()
     except ConfigError as error:
         plant, problems = None, error.problems

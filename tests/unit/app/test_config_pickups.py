@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from arboleda.app import config
 from arboleda.model.errors import ConfigError
+from arboleda.plant_file import loader
 from arboleda.recipes.storage_cell import StorageCell
 
 TEXT = """\
@@ -28,7 +28,7 @@ B = "      B: {deg: [1, 1], mm: 0}\n"
 def cell(tmp_path: Path, text: str) -> StorageCell:
     file = tmp_path / "p.yaml"
     file.write_text(TEXT + text, "utf-8")
-    return config.load(file).cells[0]
+    return loader.load(file).cells[0]
 
 
 def taken_at(of: StorageCell) -> dict[str, str]:

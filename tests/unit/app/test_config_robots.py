@@ -10,8 +10,8 @@ from pathlib import Path
 import pytest
 import yaml
 
-from arboleda.app.plant_file.document import Document
-from arboleda.app.plant_file.robot_models import ArmFile, JointFile, MobileFile, arm_models, mobile_models
+from arboleda.plant_file.document import Document
+from arboleda.plant_file.robot_models import ArmFile, JointFile, MobileFile, arm_models, mobile_models
 
 PAGE = (Path(__file__).parents[3] / "docs" / "reference" / "robot-models.md").read_text("utf-8")
 NAMES = ("scara", "cr10a", "mobile")

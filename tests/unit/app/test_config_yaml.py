@@ -7,9 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from arboleda.app import config
-from arboleda.app.plant_file.yaml_marks import parse
 from arboleda.model.errors import ConfigError
+from arboleda.plant_file import loader
+from arboleda.plant_file.yaml_marks import parse
 
 SCALARS = {
     "on": "on",
@@ -70,7 +70,7 @@ def test_a_file_that_cannot_be_read_is_one_clear_sentence(tmp_path: Path, raw: b
     file = tmp_path / "plant.yaml"
     file.write_bytes(raw)
     with pytest.raises(ConfigError) as refusal:
-        config.load(file)
+        loader.load(file)
     assert sentence in str(refusal.value)
     assert len(refusal.value.problems) == 1
 
@@ -108,4 +108,4 @@ def test_a_byte_order_mark_is_no_part_of_the_text() -> None:
 )
 def test_a_path_without_a_file_is_one_clear_sentence(tmp_path: Path, name: str, sentence: str) -> None:
     with pytest.raises(ConfigError, match=sentence):
-        config.load(tmp_path / name)
+        loader.load(tmp_path / name)

@@ -7,9 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from arboleda.app import config
 from arboleda.model.errors import ConfigError
 from arboleda.model.plant_model import Crossing, PlantModel, Pose, Retry, Timing
+from arboleda.plant_file import loader
 from arboleda.recipes.storage_cell import StorageCell
 
 DOCS = Path(__file__).parents[3] / "docs" / "how-to" / "plant-file.md"
@@ -74,7 +74,7 @@ KEYS = {  # id: (text in the shipped file, put in its place, the sentence has in
 def load(tmp_path: Path, text: str) -> PlantModel:
     file = tmp_path / "plant.yaml"
     file.write_text(text, "utf-8")
-    return config.load(file)
+    return loader.load(file)
 
 
 def problems(tmp_path: Path, text: str) -> list[str]:
@@ -89,7 +89,7 @@ def poses(cell: StorageCell) -> list[Pose]:
 
 
 def test_the_shipped_plant_shares_nothing_and_has_the_defaults() -> None:
-    plant = config.load()
+    plant = loader.load()
     assert (plant.zones, plant.timing.piece_wait_s, plant.timing.piece_debounce_s) == ((), 2.0, 0.1)
     for cell in plant.cells:
         assert not any(pose.zones for pose in poses(cell))

@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from arboleda.app.conformance.judge import CHECKS, Judge
+from arboleda.board_kit.conformance.judge import CHECKS, Judge
 from arboleda.kinds.arm import Arm, Joint
 from arboleda.model.commands import StopMode
 from arboleda.model.plant_model import Evidence

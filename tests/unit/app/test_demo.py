@@ -6,8 +6,8 @@ from collections import Counter
 
 import pytest
 
-from arboleda.app.demo import ALARM_S, CALM_S, Demo, DemoEnded, Task
 from arboleda.model.messages import Verb
+from arboleda.runtime.demo import ALARM_S, CALM_S, Demo, DemoEnded, Task
 from arboleda.sim.devices import Alarm, Reboot
 from arboleda.testing.sim import Sim
 

@@ -9,12 +9,12 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
-from arboleda.app import config
-from arboleda.app.cli import cli
-from arboleda.app.rate import at_rate
+from arboleda.cli.main import cli
 from arboleda.kinds.declared import Device, Slot
 from arboleda.model.errors import ConfigError
 from arboleda.model.plant_model import Cell, Evidence, PlantModel
+from arboleda.plant_file import loader
+from arboleda.runtime.rate import at_rate
 
 from ..kinds import lab
 
@@ -291,16 +291,16 @@ def folder(tmp_path: Path) -> Path:
 def load(folder: Path, text: str) -> PlantModel:
     file = folder / "plant.yaml"
     file.write_text(text, "utf-8")
-    return config.load(file)
+    return loader.load(file)
 
 
 def problems(folder: Path, text: str) -> list[str]:
     """The problems, those of the plant file without its name."""
-    found = config.trial("plant.yaml", text.encode(), folder, lambda spot, doing: None)
+    found = loader.trial("plant.yaml", text.encode(), folder, lambda spot, doing: None)
     if found.here or found.elsewhere:
         return [*(f"{line}:{column}: {sentence}" for line, column, sentence in found.here), *found.elsewhere]
     with pytest.raises(ConfigError) as refusal:
-        config.parse("plant.yaml", text.encode(), folder)
+        loader.parse("plant.yaml", text.encode(), folder)
     return [each.removeprefix("plant.yaml:") for each in refusal.value.problems]
 
 
@@ -339,7 +339,7 @@ def test_a_device_has_names_and_evidence_of_its_own(folder: Path) -> None:
         Evidence.JOINTS,
         False,
     )
-    assert "oven_1" in config.warnings(plant)[0]
+    assert "oven_1" in loader.warnings(plant)[0]
 
 
 def test_facts_prove_no_motion_that_sets_none(folder: Path) -> None:
@@ -358,13 +358,13 @@ def test_numbers_are_of_one_type(folder: Path) -> None:
 
 
 def test_a_plant_may_have_cells_of_both_forms(folder: Path) -> None:
-    shipped = config.load().cells[0]
+    shipped = loader.load().cells[0]
     storage = Path(__file__).parents[3] / "src/arboleda/arboleda/plants/plant.yaml"
     head, _, rest = storage.read_text("utf-8").partition("cells:\n")
     ours = KINDS.partition("name: lab\n")[2]
     text = ours.replace("cells:\n", f"{head}cells:\n{rest}\n")
     plant = load(folder, text)
-    assert [cell.name for cell in plant.cells] == [*(cell.name for cell in config.load().cells), "bench"]
+    assert [cell.name for cell in plant.cells] == [*(cell.name for cell in loader.load().cells), "bench"]
     assert plant.cells[0] == shipped and type(plant.cells[-1]) is Cell
 
 

@@ -10,10 +10,10 @@ from typing import Any
 
 import pytest
 
-from arboleda.app.config import load
-from arboleda.app.conformance.judge import DEVICE_CHECKS, Judge
+from arboleda.board_kit.conformance.judge import DEVICE_CHECKS, Judge
 from arboleda.kinds.declared import Device
 from arboleda.model.plant_model import Evidence
+from arboleda.plant_file.loader import load
 from arboleda.sim.board import Board
 from arboleda.sim.machine import MachineBody
 from arboleda.wire.payloads import Goal, OrderGoal, StopGoal

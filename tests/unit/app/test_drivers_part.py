@@ -10,10 +10,10 @@ from typing import Any
 
 import pytest
 
-from arboleda.app.parts.drivers import DriversPart
 from arboleda.drivers import Clock, Command, Hear, NotSent, Stop, StopMode
 from arboleda.model.messages import Heartbeat, Report, Undelivered
 from arboleda.model.plant_model import DriverUse, Link, MotionState, PlantModel, Robot, Timing
+from arboleda.runtime.parts.drivers import DriversPart
 
 from ..kinds.station import STATION, plant
 
@@ -245,7 +245,7 @@ def test_a_driver_that_hangs_loses_its_device_and_holds_up_nobody(
         def send(self, command: Command) -> None:
             go.wait(WAIT_S)
 
-    monkeypatch.setattr("arboleda.app.parts.drivers.PATIENCE_S", 0.0)
+    monkeypatch.setattr("arboleda.runtime.parts.drivers.PATIENCE_S", 0.0)
     there = running(Hanging(), stale_after_s=0.3)
     there.is_up()
     there.part.send(GO)

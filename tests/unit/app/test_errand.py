@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from arboleda.app.errand import Errand
+from arboleda.cli.errand import Errand
 from arboleda.model.messages import Reason, TaskChanged, TaskState
 
 

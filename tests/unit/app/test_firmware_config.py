@@ -8,13 +8,13 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
-from arboleda.app.cli import cli
-from arboleda.app.config import load
-from arboleda.app.firmware_config.header import header
-from arboleda.app.firmware_config.resolving import tables
-from arboleda.app.firmware_config.tables import Tables
+from arboleda.board_kit.firmware_config.header import header
+from arboleda.board_kit.firmware_config.resolving import tables
+from arboleda.board_kit.firmware_config.tables import Tables
+from arboleda.cli.main import cli
 from arboleda.kinds.declared import Device
 from arboleda.model.errors import ConfigError
+from arboleda.plant_file.loader import load
 
 ROOT = Path(__file__).parents[3]
 PRESS = ROOT / "examples/press_board"

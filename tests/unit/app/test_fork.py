@@ -9,12 +9,12 @@ from typing import Any
 
 import pytest
 
-from arboleda.app.fork.command import compared
-from arboleda.app.fork.plant_events import Pair
-from arboleda.app.fork.run import ForkRequest, ForkResult, forked
-from arboleda.app.replay_command import sentence_of
+from arboleda.cli.fork import compared
 from arboleda.model.messages import Verb
 from arboleda.model.plant_model import PlantModel
+from arboleda.playback.fork.plant_events import Pair
+from arboleda.playback.fork.run import ForkRequest, ForkResult, forked
+from arboleda.playback.record_text import sentence_of
 from arboleda.recorder.tape import TapedPlant
 from arboleda.simulator.faults import KINDS, Fault
 from arboleda.simulator.world import World

@@ -10,15 +10,15 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
-from arboleda.app import config
-from arboleda.app.cli import cli
-from arboleda.app.fork.settings import with_settings
-from arboleda.app.rate import at_rate
-from arboleda.app.simulate.plants import Plant
+from arboleda.campaigns.plants import Plant
+from arboleda.cli.main import cli
 from arboleda.model.errors import ConfigError
+from arboleda.plant_file import loader
+from arboleda.playback.fork.settings import with_settings
 from arboleda.recorder.files import PartFile
 from arboleda.recorder.steps import TOPIC, as_json
 from arboleda.recorder.tape import TapedPlant
+from arboleda.runtime.rate import at_rate
 from arboleda.simulator.world import World
 
 Act = Callable[[World], None]
@@ -27,7 +27,7 @@ EXAMPLE = Path(__file__).parents[3] / "examples" / "lab_bench" / "plant.yaml"
 
 def written(folder: Path, plant_file: Path | None, text: str, act: tuple[float, Act] | None) -> Path:
     """The record of a simulated run of one task, in which something may go wrong."""
-    model, recording = config.load_recorded(plant_file)
+    model, recording = loader.load_recorded(plant_file)
     assert recording is not None
     make = partial(TapedPlant, files=recording.files)
     world = World(at_rate(Plant(declared=model).model, 1.0), now=1_700_000_000.0, make_plant=make)

@@ -7,13 +7,13 @@ from typing import Any
 
 import pytest
 
-from arboleda.adapters.plant_memory import PlantMemory, Superseded
-from arboleda.app.parts import handover
-from arboleda.app.parts.handover import CellResumption, hold_all
-from arboleda.app.parts.lease import LeasePart
 from arboleda.model.errors import ArboledaError
 from arboleda.model.messages import OperatorAnswer, Verb
 from arboleda.model.sentence import OWN
+from arboleda.runtime.parts import handover
+from arboleda.runtime.parts.handover import CellResumption, hold_all
+from arboleda.runtime.parts.lease import LeasePart
+from arboleda.store.plant_memory import PlantMemory, Superseded
 
 
 class Plant:

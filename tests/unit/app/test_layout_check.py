@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
-from arboleda.app import config, layout_check
-from arboleda.app.cli import cli
+from arboleda.cli.main import cli
+from arboleda.plant_file import layout_check, loader
 from arboleda.testing import shipped
 
 ROOT = Path(__file__).parents[3]
@@ -42,7 +42,7 @@ def warned(tmp_path: Path) -> Warned:
     def read(text: str) -> tuple[str, ...]:
         file = tmp_path / "plant.yaml"
         file.write_text(text, "utf-8")
-        return layout_check.warnings(config.load(file))
+        return layout_check.warnings(loader.load(file))
 
     return read
 
@@ -110,7 +110,7 @@ def test_what_could_not_stand_there_is_a_warning(warned: Warned, old: str, new: 
 
 @pytest.mark.parametrize("file", EXAMPLES, ids=lambda file: file.name)
 def test_an_example_could_be_built(file: Path) -> None:
-    assert layout_check.warnings(config.load(file)) == ()
+    assert layout_check.warnings(loader.load(file)) == ()
 
 
 @pytest.mark.parametrize("page", PAGES)

@@ -8,9 +8,9 @@ from pathlib import Path
 import pytest
 
 from arboleda.adapters.broker_login import Address, Credentials
-from arboleda.app.parts.linux_boards import LinuxBoards, on_linux
 from arboleda.model.errors import StartError
 from arboleda.model.plant_model import Evidence, Link, PlantModel
+from arboleda.runtime.parts.linux_boards import LinuxBoards, on_linux
 from arboleda.testing import shipped
 
 

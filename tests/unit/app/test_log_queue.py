@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from arboleda.app.log_file import LogFile
-from arboleda.app.log_queue import LONGEST, RATE, RATES, LogQueue, log_to
+from arboleda.runtime.log_file import LogFile
+from arboleda.runtime.log_queue import LONGEST, RATE, RATES, LogQueue, log_to
 
 LOG = logging.getLogger("arboleda.test")
 
@@ -89,8 +89,8 @@ def test_a_large_plant_may_say_more_of_its_tasks(queue: LogQueue, shelf: Shelf) 
 
 
 def test_an_output_that_is_stuck_holds_up_nobody(clock: Clock, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("arboleda.app.log_queue.WAITING", 10)
-    monkeypatch.setattr("arboleda.app.log_queue.FLUSH_S", 0.01)
+    monkeypatch.setattr("arboleda.runtime.log_queue.WAITING", 10)
+    monkeypatch.setattr("arboleda.runtime.log_queue.FLUSH_S", 0.01)
     stuck, busy, shelf = threading.Event(), threading.Event(), Shelf()
 
     def block(_line: logging.LogRecord) -> None:
@@ -116,7 +116,7 @@ def test_an_output_that_is_stuck_holds_up_nobody(clock: Clock, monkeypatch: pyte
 def test_what_waited_for_a_stuck_output_comes_with_a_count(
     clock: Clock, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("arboleda.app.log_queue.WAITING", 10)
+    monkeypatch.setattr("arboleda.runtime.log_queue.WAITING", 10)
     go_on, busy, shelf = threading.Event(), threading.Event(), Shelf()
 
     def slow(_line: logging.LogRecord) -> None:

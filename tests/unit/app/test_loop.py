@@ -6,8 +6,8 @@ import threading
 
 import pytest
 
-from arboleda.app.loop import Loop, StepInFlight
 from arboleda.model.errors import ArboledaError
+from arboleda.runtime.loop import Loop, StepInFlight
 
 
 class Echo:

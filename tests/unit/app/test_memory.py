@@ -8,13 +8,13 @@ from pathlib import Path
 
 import pytest
 
-from arboleda.adapters.store import Store
-from arboleda.adapters.task_rows import TaskQuery, course_of, unchecked_of
-from arboleda.app.memory import kept_tasks, remembered
 from arboleda.model.errors import StartError
 from arboleda.model.messages import Check, Course, Fact, Reason, Remember, TaskAnswer, TaskChanged, TaskState
 from arboleda.model.sentence import OWN, Phrase, retold
 from arboleda.model.task import Task
+from arboleda.runtime.memory import kept_tasks, remembered
+from arboleda.store.sqlite import Store
+from arboleda.store.task_rows import TaskQuery, course_of, unchecked_of
 
 
 @pytest.fixture

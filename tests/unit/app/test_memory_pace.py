@@ -8,11 +8,11 @@ from pathlib import Path
 import pytest
 
 from arboleda.adapters import clock
-from arboleda.adapters.plant_memory import Statement
-from arboleda.adapters.store import Store
-from arboleda.app.parts.commit_pace import STALL_KEPT_S, Pace
-from arboleda.app.parts.memory_pace import MemoryPace
 from arboleda.model.messages import Fact, Remember
+from arboleda.runtime.parts.commit_pace import STALL_KEPT_S, Pace
+from arboleda.runtime.parts.memory_pace import MemoryPace
+from arboleda.store.plant_memory import Statement
+from arboleda.store.sqlite import Store
 from arboleda.wire.status import OK, WARN
 
 LATCH = Remember(fact=Fact.LATCH, name="ra1", value="on")

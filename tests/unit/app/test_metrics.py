@@ -13,9 +13,9 @@ import pytest
 from prometheus_client.parser import text_string_to_metric_families
 
 from arboleda.adapters import clock
-from arboleda.app.parts.metrics import Metrics
 from arboleda.core.plant import Plant
 from arboleda.model.messages import Reason, TaskChanged, TaskState
+from arboleda.runtime.parts.metrics import Metrics
 from arboleda.testing import shipped
 from arboleda.views import view
 

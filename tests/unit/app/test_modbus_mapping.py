@@ -6,10 +6,10 @@ from pathlib import Path
 
 import pytest
 
-from arboleda.app import config
 from arboleda.drivers.modbus.settings import Settings
 from arboleda.model.errors import ConfigError
 from arboleda.model.plant_model import Robot
+from arboleda.plant_file import loader
 
 from .mappings import EXAMPLE, Example
 
@@ -23,7 +23,7 @@ UNCHANGED = MAPPED.text
 
 @pytest.fixture(scope="module")
 def belt() -> Robot:
-    return config.load(EXAMPLE / "plant.yaml").robots["belt"]
+    return loader.load(EXAMPLE / "plant.yaml").robots["belt"]
 
 
 def changed(folder: Path, old: str, new: str) -> ConfigError:
@@ -31,7 +31,7 @@ def changed(folder: Path, old: str, new: str) -> ConfigError:
     for name in ("plant.yaml", "recipes.py"):
         (folder / name).write_text((EXAMPLE / name).read_text("utf-8").replace(old, new), "utf-8")
     with pytest.raises(ConfigError) as raised:
-        config.load(folder / "plant.yaml")
+        loader.load(folder / "plant.yaml")
     return raised.value
 
 
@@ -132,7 +132,7 @@ def test_ids_need_numbers_that_the_plc_echoes(belt: Robot) -> None:
 
 
 def test_a_robot_has_no_mapping() -> None:
-    arm = config.load(None).robots["ra1"]
+    arm = loader.load(None).robots["ra1"]
     assert list(Settings(host="10.0.0.7").problems(arm)) == [
         ((), "reaches devices of declared kinds; ra1 is of the kind arm")
     ]

@@ -8,9 +8,9 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner, Result
 
-from arboleda.app import config
-from arboleda.app.cli import cli
-from arboleda.app.command import main
+from arboleda.cli.entry import main
+from arboleda.cli.main import cli
+from arboleda.plant_file import loader
 
 from ..kinds.lab import Bench
 
@@ -27,7 +27,7 @@ def test_the_folder_is_a_plant_that_does_its_task(tmp_path: Path) -> None:
     assert result.exit_code == 0 and f"wrote {folder / 'plant.yaml'}" in result.output
     said = " ".join(result.output.split())
     assert f'up "cell press feed 3" --plant {folder / "plant.yaml"}' in said and f"-m pytest {folder}" in said
-    plant = config.load(folder / "plant.yaml")
+    plant = loader.load(folder / "plant.yaml")
     assert plant.name == "my_plant"
     here = Bench(plant)
     here.submit("cell press spare 5")

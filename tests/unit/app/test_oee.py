@@ -10,16 +10,16 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
-from arboleda.adapters.oee_rows import OeeQuery
-from arboleda.adapters.store import Store
-from arboleda.adapters.task_rows import TaskHistory, TaskQuery
-from arboleda.app.build import Options, build
-from arboleda.app.cli import cli
-from arboleda.app.parts.cell_times import CellTimes
-from arboleda.app.state import STORE
+from arboleda.cli.main import cli
 from arboleda.core.cell_states import CellState
 from arboleda.model.errors import ArboledaError
 from arboleda.model.messages import TaskChanged, TaskState, Verb
+from arboleda.runtime.build import Options, build
+from arboleda.runtime.parts.cell_times import CellTimes
+from arboleda.runtime.state import STORE
+from arboleda.store.oee_rows import OeeQuery
+from arboleda.store.sqlite import Store
+from arboleda.store.task_rows import TaskHistory, TaskQuery
 from arboleda.testing import shipped
 from arboleda.testing.rig import Rig
 from arboleda.views.oee import SEEN_S

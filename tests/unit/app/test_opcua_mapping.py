@@ -6,10 +6,10 @@ from pathlib import Path
 
 import pytest
 
-from arboleda.app import config
 from arboleda.drivers.opcua.settings import Settings
 from arboleda.model.errors import ConfigError
 from arboleda.model.plant_model import Robot
+from arboleda.plant_file import loader
 
 from .mappings import EXAMPLE, Example
 
@@ -22,7 +22,7 @@ MM_S = "mm_s: {node: ns=2;s=mm_s}"
 
 @pytest.fixture(scope="module")
 def belt() -> Robot:
-    return config.load(EXAMPLE / "opcua.yaml").robots["belt"]
+    return loader.load(EXAMPLE / "opcua.yaml").robots["belt"]
 
 
 def test_the_example_is_good(belt: Robot) -> None:
@@ -34,7 +34,7 @@ def test_what_does_not_fit_the_kind_is_told_with_file_and_line(tmp_path: Path) -
     file = tmp_path / "plant.yaml"
     file.write_text(UNCHANGED.replace(LOAD, LOAD.replace("load:", "lode:")), "utf-8")
     with pytest.raises(ConfigError) as raised:
-        config.load(file)
+        loader.load(file)
     where = "plant.yaml:36:21: cells.line.devices.belt.driver.opcua.verbs.lode: a belt has no verb lode"
     assert where in str(raised.value)
 
@@ -100,7 +100,7 @@ def test_ids_need_numbers_that_the_server_echoes(belt: Robot) -> None:
 
 
 def test_a_robot_has_no_mapping() -> None:
-    arm = config.load(None).robots["ra1"]
+    arm = loader.load(None).robots["ra1"]
     assert list(Settings(url="opc.tcp://10.0.0.7:4840").problems(arm)) == [
         ((), "reaches devices of declared kinds; ra1 is of the kind arm")
     ]

@@ -9,15 +9,6 @@ from types import SimpleNamespace
 import pytest
 
 from arboleda.adapters.broker_login import address
-from arboleda.adapters.plant_memory import Superseded
-from arboleda.adapters.store import Store
-from arboleda.adapters.task_rows import TaskQuery, answers_of
-from arboleda.app.build import Options, build
-from arboleda.app.parts import orchestrator
-from arboleda.app.parts.bridge import BridgePart
-from arboleda.app.parts.broker import OtherBroker
-from arboleda.app.parts.orchestrator import Orchestrator
-from arboleda.app.parts.slices import PAUSE_S, SLICE_S
 from arboleda.core.plant import Plant
 from arboleda.kinds.arm import MoveJoints, SetEffector
 from arboleda.model.commands import Home, Stop, StopMode
@@ -41,6 +32,15 @@ from arboleda.model.messages import (
 )
 from arboleda.model.sentence import OWN
 from arboleda.model.task import Order, Task
+from arboleda.runtime.build import Options, build
+from arboleda.runtime.parts import orchestrator
+from arboleda.runtime.parts.bridge import BridgePart
+from arboleda.runtime.parts.broker import OtherBroker
+from arboleda.runtime.parts.orchestrator import Orchestrator
+from arboleda.runtime.parts.slices import PAUSE_S, SLICE_S
+from arboleda.store.plant_memory import Superseded
+from arboleda.store.sqlite import Store
+from arboleda.store.task_rows import TaskQuery, answers_of
 from arboleda.testing.plants import shipped
 from arboleda.wire import status
 

@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from arboleda.adapters.webhook import DeliveryRefused, NotDelivered
-from arboleda.app.parts.outbox import Outbox
+from arboleda.runtime.parts.outbox import Outbox
 
 PATIENCE_S = 20.0
 

@@ -8,8 +8,8 @@ import pytest
 from typer.main import get_command
 from typer.testing import CliRunner
 
-from arboleda.app import overview
-from arboleda.app.cli import cli
+from arboleda.cli import overview
+from arboleda.cli.main import cli
 
 
 def test_each_command_is_listed_below_one_heading() -> None:

@@ -10,8 +10,8 @@ from typing import Any
 
 import pytest
 
-from arboleda.app.config import load
 from arboleda.model.plant_model import MotionState
+from arboleda.plant_file.loader import load
 from arboleda.sim.board import Board as VirtualBoard
 from arboleda.sim.machine import MachineBody
 from arboleda.wire.payloads import Telemetry, decode

@@ -10,13 +10,12 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
-from arboleda.app import config
-from arboleda.app.cli import cli
-from arboleda.app.plant_file import drivers
-from arboleda.app.simulate.plants import Plant
+from arboleda.campaigns.plants import Plant
+from arboleda.cli.main import cli
 from arboleda.drivers.port import spec_of
 from arboleda.model.errors import ConfigError
 from arboleda.model.plant_model import Link, PlantModel, Robot
+from arboleda.plant_file import drivers, loader
 
 PLANT = """\
 name: lab
@@ -78,7 +77,7 @@ def load(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[..., Plant
         Path("drivers/my_plc.py").write_text(driver, "utf-8")
         Path("recipes.py").write_text(RECIPES, "utf-8")
         Path("plant.yaml").write_text(plant.replace(USE, use), "utf-8")
-        return config.load(Path("plant.yaml"))
+        return loader.load(Path("plant.yaml"))
 
     return made
 
@@ -268,7 +267,7 @@ def test_a_plant_with_drivers_is_simulated_on_virtual_boards(load: Callable[...,
 
 def test_without_recipes_a_plant_file_is_read_without_its_drivers(load: Callable[..., PlantModel]) -> None:
     load()
-    found = oven(config.load(Path("plant.yaml"), recipes=False))
+    found = oven(loader.load(Path("plant.yaml"), recipes=False))
     assert found.link is Link.DRIVER and found.driver is None
 
 

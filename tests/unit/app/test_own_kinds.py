@@ -8,10 +8,10 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
-from arboleda.app import config, recipe_trial
-from arboleda.app.cli import cli
+from arboleda.cli.main import cli
 from arboleda.kinds.declared import Device
 from arboleda.model.errors import ConfigError
+from arboleda.plant_file import loader, recipe_trial
 
 SAW = """\
 from dataclasses import dataclass
@@ -181,14 +181,14 @@ def write(folder: Path, kind: str = SAW, plant: str = PLANT, recipes: str = RECI
 
 def problems(file: Path) -> list[str]:
     """What this process finds wrong, without the folder's name."""
-    found = config.trial(file.name, file.read_bytes(), file.parent, lambda spot, doing: None)
+    found = loader.trial(file.name, file.read_bytes(), file.parent, lambda spot, doing: None)
     told = [f"plant.yaml:{line}:{column}: {sentence}" for line, column, sentence in found.here]
     return [*told, *(each.removeprefix(f"{file.parent}/") for each in found.elsewhere)]
 
 
 def refused(file: Path) -> list[str]:
     with pytest.raises(ConfigError) as refusal:
-        config.load(file)
+        loader.load(file)
     return [each.removeprefix(f"{file.parent}/") for each in refusal.value.problems]
 
 
@@ -214,7 +214,7 @@ def site(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def test_a_file_beside_the_plant_file_brings_a_kind_with_its_settings(tmp_path: Path) -> None:
-    plant = config.load(write(tmp_path))
+    plant = loader.load(write(tmp_path))
     saw, eye = plant.robots["saw"], plant.robots["eye"]
     assert isinstance(saw, Device) and isinstance(eye, Device)
     assert (saw.kind_name, saw.kind.verbs["cut"].takes_s, saw.timeout_s) == ("saw", 30.0, 60.0)
@@ -224,7 +224,7 @@ def test_a_file_beside_the_plant_file_brings_a_kind_with_its_settings(tmp_path: 
 
 def test_devices_of_one_kind_have_settings_of_their_own(tmp_path: Path) -> None:
     second = "      fast: {kind: saw, mm_s: 100, blades: [bone], evidence: facts, mqtt: saw_2}\n"
-    plant = config.load(write(tmp_path, plant=PLANT + second))
+    plant = loader.load(write(tmp_path, plant=PLANT + second))
     verbs = [plant.robots[name].kind.verbs["cut"] for name in ("saw", "fast")]  # type: ignore[attr-defined]
     assert [dict(verb.parameters)["blade"].words for verb in verbs] == [("wood", "steel"), ("bone",)]
     assert [verb.takes_s for verb in verbs] == [30.0, 3.0]
@@ -232,7 +232,7 @@ def test_devices_of_one_kind_have_settings_of_their_own(tmp_path: Path) -> None:
 
 def test_a_sensor_may_answer_numbers(tmp_path: Path) -> None:
     numbers = PLANT.replace("{kind: camera}", "{kind: sensor, answers: [1, 2.5]}")
-    eye = config.load(write(tmp_path, plant=numbers)).robots["eye"]
+    eye = loader.load(write(tmp_path, plant=numbers)).robots["eye"]
     assert isinstance(eye, Device) and eye.kind.verbs["read"].answers == (1.0, 2.5)
     (found,) = problems(write(tmp_path, plant=numbers.replace("[1,", "[one,")))
     assert "plant.yaml:7:12: " in found and "read.answers must be all words or all numbers" in found
@@ -241,18 +241,18 @@ def test_a_sensor_may_answer_numbers(tmp_path: Path) -> None:
 def test_a_shared_device_may_be_of_a_kind_in_python(tmp_path: Path) -> None:
     common = PLANT.replace("saw: {kind: saw, mm_s: 10}", "saw: {shared: big_saw}")
     shared = "shared: {big_saw: {kind: saw, mm_s: 10}}\n"
-    plant = config.load(write(tmp_path, plant=common.replace("cells:", f"{shared}cells:")))
+    plant = loader.load(write(tmp_path, plant=common.replace("cells:", f"{shared}cells:")))
     assert plant.robots["big_saw"].kind.verbs["cut"].takes_s == 30.0  # type: ignore[attr-defined]
 
 
 def test_the_plant_file_declares_before_anybody(tmp_path: Path) -> None:
     declared = "kinds: {camera: {verbs: {look: {effect: query, answers: [yes, no]}}}}\n"
-    plant = config.load(write(tmp_path, plant=PLANT.replace("cells:", f"{declared}cells:")))
+    plant = loader.load(write(tmp_path, plant=PLANT.replace("cells:", f"{declared}cells:")))
     assert plant.robots["eye"].kind.verbs["look"].answers == ("yes", "no")  # type: ignore[attr-defined]
 
 
 def test_a_kind_of_a_file_stands_for_the_one_that_comes_with_it(tmp_path: Path) -> None:
-    plant = config.load(
+    plant = loader.load(
         write(
             tmp_path,
             SAW.replace('@kind("saw")', '@kind("gripper")'),
@@ -337,14 +337,14 @@ def test_a_file_may_bring_recipes_and_no_kind_but_some_file_must(tmp_path: Path)
 def test_an_installed_package_brings_a_kind(tmp_path: Path, site: Path) -> None:
     install(site, "acme_saws", "saw = acme_saws:saw")
     file = write(tmp_path, plant=PLANT.replace("kinds/saw.py, ", ""))
-    assert config.load(file).robots["saw"].kind_name == "saw"
+    assert loader.load(file).robots["saw"].kind_name == "saw"
     unknown = write(tmp_path, plant=PLANT.replace("kinds/saw.py, ", "").replace("kind: saw", "kind: xyz"))
     assert ", sensor or saw, is" in refused(unknown)[0], "what packages register is named"
 
 
 def test_a_package_is_not_imported_for_plants_without_its_kind(tmp_path: Path, site: Path) -> None:
     install(site, "acme_saws", "other = acme_saws:saw", "raise SystemExit\n")
-    assert config.load(write(tmp_path)).robots["saw"].kind_name == "saw"
+    assert loader.load(write(tmp_path)).robots["saw"].kind_name == "saw"
 
 
 PACKAGES = {  # id: (entry point, what the package is, words of the only problem)
@@ -393,7 +393,7 @@ def test_a_name_that_two_packages_register_is_one_sentence(tmp_path: Path, site:
     assert (
         "acme_saws 1.2 and more_saws 1.2 both register a kind" in found or "more_saws 1.2 and acme" in found
     )
-    assert config.load(write(tmp_path)).robots["saw"].kind_name == "saw", "a file of the plant's own decides"
+    assert loader.load(write(tmp_path)).robots["saw"].kind_name == "saw", "a file of the plant's own decides"
 
 
 def test_a_package_that_registers_the_name_of_a_shipped_kind_is_one_sentence(

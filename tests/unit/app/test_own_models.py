@@ -10,13 +10,13 @@ from xml.etree import ElementTree
 import pytest
 from typer.testing import CliRunner
 
-from arboleda.app import config, layout_check
-from arboleda.app.cli import cli
-from arboleda.app.plant_file.robot_models import arm_models
-from arboleda.app.urdf import robot_urdf, root_link
+from arboleda.cli.main import cli
 from arboleda.dashboard.twin import bodies, kinematics
 from arboleda.dashboard.twin.bodies import Body
 from arboleda.model.plant_model import MotionState, PlantModel
+from arboleda.plant_file import layout_check, loader
+from arboleda.plant_file.robot_models import arm_models
+from arboleda.plant_file.urdf import robot_urdf, root_link
 from arboleda.wire import payloads, units
 from arboleda.wire.values import Telemetry
 
@@ -45,14 +45,14 @@ def test_what_a_urdf_does_not_say_is_assumed_and_said(tmp_path: Path) -> None:
     plant = tender(tmp_path)
     assert {each.step for each in arm(plant).joints} == {math.radians(0.01)}
     assert [each.acceleration for each in arm(plant).joints[:2]] == [2 * 2.6, 2 * 2.4]
-    said = " ".join(config.notes(plant))
+    said = " ".join(loader.notes(plant))
     assert "full speed in 0.5 s are assumed for q1, q2, q3, q4, q5, q6" in said
     assert "motor steps of 0.01 deg or 0.1 mm are assumed for q1" in said
     assert "the joint flange has no ends; it is taken as -360 deg to 360 deg" in said
 
 
 def test_it_is_said_of_an_arm_among_devices_too() -> None:
-    said = config.notes(config.load(TENDER.parents[1] / "plant.yaml"))
+    said = loader.notes(loader.load(TENDER.parents[1] / "plant.yaml"))
     assert [each.split(":")[0] for each in said] == ["tender"] * len(said)
     assert any("full speed in 0.5 s are assumed for q3, q4, q5, q6" in each for each in said)
 
@@ -64,7 +64,7 @@ def test_the_plant_file_says_it_better(tmp_path: Path) -> None:
     q1, q2, q3 = arm(plant).joints[:3]
     assert (q2.acceleration, q1.step, q3.speed) == tuple(map(math.radians, (90, 0.1, 45)))
     assert (q1.lower, q1.upper) == (math.radians(-100), math.radians(120))
-    said = " ".join(config.notes(plant))
+    said = " ".join(loader.notes(plant))
     assert "assumed for q1, q3, q4, q5, q6;" in said and "assumed for q2, q3, q4, q5, q6;" in said
 
 
@@ -95,7 +95,7 @@ def test_a_slide_on_an_arm_that_tilts_lifts_nothing_for_sure(tmp_path: Path) -> 
     poses = ("{deg: [0], mm: 0}", "{deg: [30], mm: 100}", "{0: {deg: [5], mm: 100, approach_mm: 20}}")
     (tmp_path / "tilts.urdf").write_text(tilts)
     with pytest.raises(Exception, match=r"needs a joint that slides up and down; the tilts.urdf has none"):
-        config.load(written(tmp_path, "tilts.urdf", poses))
+        loader.load(written(tmp_path, "tilts.urdf", poses))
 
 
 def test_recovery_lifts_the_way_that_is_up(tmp_path: Path) -> None:
@@ -155,7 +155,7 @@ def test_joints_beside_the_way_stay_at_0_and_that_is_said(tmp_path: Path) -> Non
     urdf = urdf.replace("</robot>", joint("on", "beam cup", "fixed", limit="") + "</robot>")
     plant = swing(tmp_path, urdf, "{file: one.urdf, tip_link: cup}")
     assert [each.name for each in arm(plant).joints] == ["swing"]
-    assert "ra: one.urdf: the joint grasp is not on the way to the tool and stays at 0" in config.notes(plant)
+    assert "ra: one.urdf: the joint grasp is not on the way to the tool and stays at 0" in loader.notes(plant)
     assert body(plant)["children"][0]["children"][0]["children"][0]["moves"] is None
 
 
@@ -178,7 +178,7 @@ def test_a_mesh_stays_in_the_urdf_and_is_said_to_have_a_stand_in(tmp_path: Path)
         tmp_path, ONE.replace(link("beam"), link("beam", '<mesh filename="package://m/beam.stl"/>'))
     )
     assert 'filename="package://m/beam.stl"' in robot_urdf(plant, "ra")
-    assert "ra: one.urdf: the twin draws a stand-in for the meshes of beam" in config.notes(plant)
+    assert "ra: one.urdf: the twin draws a stand-in for the meshes of beam" in loader.notes(plant)
     assert [each["kind"] for each in body(plant)["children"][0]["children"][0]["shapes"]] == ["sphere"]
 
 
@@ -191,14 +191,14 @@ def test_a_mesh_beside_the_file_is_found_from_everywhere(tmp_path: Path) -> None
 def test_a_yaml_in_the_form_of_the_packaged_ones_is_an_arm(tmp_path: Path) -> None:
     (tmp_path / "mine.yaml").write_text(CR10A.read_text().replace("step_deg: 0.01", "step_deg: 0.02"))
     poses = ("{deg: [0, 0, 0, 0, 0, 0]}", "{deg: [1, 0, 0, 0, 0, 0]}", "{0: {deg: [2, 0, 0, 0, 0, 0]}}")
-    plant = config.load(written(tmp_path, "mine.yaml", poses))
+    plant = loader.load(written(tmp_path, "mine.yaml", poses))
     packaged = arm_models()["cr10a"].joints
     assert [each.step for each in arm(plant).joints] == [math.radians(0.02)] * 6
     assert [each.upper for each in arm(plant).joints] == [each.upper for each in packaged]
-    assert config.notes(plant) == ()
+    assert loader.notes(plant) == ()
     other = written(tmp_path, "cr10a", poses)
     q = (0.3, -0.5, 1.0, 0.2, -0.4, 0.1)
-    assert tool(plant, *q) == pytest.approx(tool(config.load(other), *q), abs=1e-6)
+    assert tool(plant, *q) == pytest.approx(tool(loader.load(other), *q), abs=1e-6)
 
 
 def test_a_yaml_needs_joints_only(tmp_path: Path) -> None:
@@ -209,7 +209,7 @@ def test_a_yaml_needs_joints_only(tmp_path: Path) -> None:
         "- {name: spin, type: continuous, speed_deg_s: 90, acceleration_deg_s2: 80, step_deg: 0.1}\n"
     )
     poses = ("{deg: [0], mm: 0}", "{deg: [300], mm: 80}", "{0: {deg: [-300], mm: 80}}")
-    lift, spin = arm(config.load(written(tmp_path, "one.yaml", poses))).joints
+    lift, spin = arm(loader.load(written(tmp_path, "one.yaml", poses))).joints
     assert (lift.step, lift.up) == (pytest.approx(0.0001), 1)
     assert (spin.lower, spin.upper) == (-2 * math.pi, 2 * math.pi)
 
@@ -221,7 +221,7 @@ def test_twelve_joints_at_their_ends_fit_one_message(tmp_path: Path) -> None:
     twelve = ", ".join("0" * 12)
     poses = (f"{{deg: [{twelve}]}}", f"{{deg: [{twelve}]}}", f"{{0: {{deg: [{twelve}]}}}}")
     (tmp_path / "long.urdf").write_text(robot(*map(link, names), *joints))
-    axes = arm(config.load(written(tmp_path, "long.urdf", poses))).joints
+    axes = arm(loader.load(written(tmp_path, "long.urdf", poses))).joints
     most = 2**32 - 1
     said = Telemetry(
         q=tuple(units.to_wire(each, each.lower) for each in axes),
@@ -259,5 +259,5 @@ def test_a_plant_file_says_its_models_from_where_it_lies(
     inner.mkdir()
     gantry(inner)
     monkeypatch.chdir(tmp_path)
-    assert len(arm(config.load(Path("inner/plant.yaml"))).joints) == 3
+    assert len(arm(loader.load(Path("inner/plant.yaml"))).joints) == 3
     assert (inner / "gantry.urdf").read_text() == GANTRY

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from arboleda.app import config
 from arboleda.model.errors import ConfigError
+from arboleda.plant_file import loader
 
 from .own_arms import GANTRY, ONE, TENDER, joint, link, robot, swing, tender, written
 
@@ -151,7 +151,7 @@ def test_a_model_of_two_cells_is_said_once(tmp_path: Path) -> None:
         + text.partition("cells:\n")[2].replace("a:", "b:", 1).replace("ra,", "rb,").replace("ma,", "mb,")
     )
     with pytest.raises(ConfigError) as refusal:
-        config.load(file)
+        loader.load(file)
     assert len(refusal.value.problems) == 1
 
 
@@ -254,7 +254,7 @@ def test_a_pose_of_sliding_joints_is_held_against_them(tmp_path: Path, pose: str
     (tmp_path / "gantry.urdf").write_text(GANTRY)
     file = written(tmp_path, "gantry.urdf", ("{mm: [0, 0, 0]}", pose, "{0: {mm: [1, 1, 1]}}"))
     with pytest.raises(ConfigError) as refusal:
-        config.load(file)
+        loader.load(file)
     (said,) = refusal.value.problems
     assert said.startswith(f"{file}:8:") and words in said
 
@@ -264,7 +264,7 @@ def test_a_rack_by_rule_needs_two_joints_that_turn(tmp_path: Path) -> None:
     rack = "{columns_q1_deg: [0], rows_q2_deg: [0]}"
     file = written(tmp_path, "gantry.urdf", ("{mm: [0, 0, 0]}", "{mm: [1, 1, 1]}", rack))
     with pytest.raises(ConfigError, match="a rack by rule needs q1 and q2 that turn"):
-        config.load(file)
+        loader.load(file)
 
 
 def test_more_joints_than_a_message_holds_are_refused(tmp_path: Path) -> None:
@@ -316,4 +316,4 @@ def test_a_yaml_has_no_links_to_name(tmp_path: Path) -> None:
 def test_a_content_that_lies_nowhere_has_no_models_beside_it() -> None:
     plant = Path(TENDER.parents[2] / "plants/own_arm.yaml").read_bytes()
     with pytest.raises(ConfigError, match="this plant file lies in no folder"):
-        config.parse("plant.yaml", plant)
+        loader.parse("plant.yaml", plant)

@@ -8,12 +8,12 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
-from arboleda.app import config, recipe_trial
-from arboleda.app.cli import cli
-from arboleda.app.plant_file.python_uses import Spot
+from arboleda.cli.main import cli
 from arboleda.core.text import parse
 from arboleda.model.errors import ConfigError, TextError
 from arboleda.model.plant_model import PlantModel
+from arboleda.plant_file import loader, recipe_trial
+from arboleda.plant_file.python_uses import Spot
 
 PLANT = """\
 name: lab
@@ -130,19 +130,19 @@ def write(folder: Path, recipes: str, plant: str = PLANT) -> Path:
 def problems(folder: Path, recipes: str, plant: str = PLANT) -> list[str]:
     """What this process finds wrong with the recipes, without the folder's name."""
     content = write(folder, recipes, plant).read_bytes()
-    found = config.trial("plant.yaml", content, folder, lambda spot, doing: None)
+    found = loader.trial("plant.yaml", content, folder, lambda spot, doing: None)
     told = [f"plant.yaml:{line}:{column}: {sentence}" for line, column, sentence in found.here]
     return [*told, *(each.removeprefix(f"{folder}/") for each in found.elsewhere)]
 
 
 def refused(file: Path) -> list[str]:
     with pytest.raises(ConfigError) as refusal:
-        config.load(file)
+        loader.load(file)
     return [each.removeprefix(f"{file.parent}/") for each in refusal.value.problems]
 
 
 def load(folder: Path, recipes: str, plant: str = PLANT) -> PlantModel:
-    return config.load(write(folder, recipes, plant))
+    return loader.load(write(folder, recipes, plant))
 
 
 @pytest.mark.parametrize("mistake", MISTAKES.values(), ids=MISTAKES)
@@ -244,7 +244,7 @@ def test_an_installed_module_brings_recipes(tmp_path: Path, monkeypatch: pytest.
 
 def test_only_installed_modules_serve_a_plant_that_lies_nowhere() -> None:
     with pytest.raises(ConfigError) as refusal:
-        config.parse("plant.yaml", PLANT.encode())
+        loader.parse("plant.yaml", PLANT.encode())
     assert "lies in no folder" in str(refusal.value)
 
 
@@ -334,7 +334,7 @@ def test_of_many_tasks_a_sample_is_tried_and_said(tmp_path: Path) -> None:
     found = problems(tmp_path, recipes)
     assert found == ["recipes.py:6:1: heat cannot be built: ValueError: thirty"]
     plant = load(tmp_path, recipes.replace("== 30", "== 31"))
-    assert config.notes(plant) == ("bench: heat has 900 combinations of parameters; 200 of them were tried",)
+    assert loader.notes(plant) == ("bench: heat has 900 combinations of parameters; 200 of them were tried",)
 
 
 def test_check_and_tree_take_the_same_way_in(tmp_path: Path) -> None:

@@ -9,11 +9,11 @@ from tempfile import TemporaryDirectory
 
 import pytest
 
-from arboleda.app import config
 from arboleda.core.text import parse
 from arboleda.model.errors import ConfigError
 from arboleda.model.messages import TaskState, Verb
 from arboleda.model.plant_model import PlantModel
+from arboleda.plant_file import loader
 from arboleda.sim.arm import ArmBody
 from arboleda.simulator.climate import Climate
 from arboleda.simulator.general import GENERAL
@@ -68,7 +68,7 @@ def read(recipes: str, plant: str = "plant.yaml") -> PlantModel:
         text = files("arboleda").joinpath("plants", plant).read_text("utf-8")
         Path(made, "plant.yaml").write_text(text.replace("\nname: ", "\nuses: [own.py]\nname: ", 1), "utf-8")
         Path(made, "own.py").write_text(recipes, "utf-8")
-        return config.load(Path(made, "plant.yaml"))
+        return loader.load(Path(made, "plant.yaml"))
 
 
 @cache

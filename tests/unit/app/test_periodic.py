@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import threading
 
-from arboleda.app.parts import periodic
-from arboleda.app.parts.periodic import Periodic
 from arboleda.model.errors import ArboledaError
+from arboleda.runtime.parts import periodic
+from arboleda.runtime.parts.periodic import Periodic
 
 
 def test_all_are_looked_at_until_one_says_that_the_plant_must_end() -> None:

@@ -6,9 +6,9 @@ from pathlib import Path
 
 import pytest
 
-from arboleda.app import endpoints
-from arboleda.app.endpoints import Place, named, tokens_of, with_tokens
 from arboleda.model.errors import ConfigError, StartError
+from arboleda.runtime import endpoints
+from arboleda.runtime.endpoints import Place, named, tokens_of, with_tokens
 
 HERE = Place(url="http://127.0.0.1:8080", plant="here", token="h" * 20, certificate="PEM")
 

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import pytest
 
-from arboleda.app.rate import at_rate
 from arboleda.kinds.arm import Arm
 from arboleda.kinds.declared import Device
 from arboleda.kinds.mobile import Mobile
+from arboleda.runtime.rate import at_rate
 from arboleda.testing import shipped
 
 from ..kinds.lab import model

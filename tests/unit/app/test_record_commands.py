@@ -11,16 +11,18 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
-from arboleda.app import config, logs_command, recorded_plant, replay_command
-from arboleda.app.build import Options, build
-from arboleda.app.cli import cli
+from arboleda.cli import logs, replay
+from arboleda.cli.main import cli
 from arboleda.model.errors import ConfigError
+from arboleda.plant_file import loader
+from arboleda.playback import recorded_plant
 from arboleda.recorder import copying, files, reader
 from arboleda.recorder.errors import NoRecord
 from arboleda.recorder.preamble import PlantFiles
 from arboleda.recorder.steps import TOPIC
+from arboleda.runtime.build import Options, build
 
-SHIPPED = config.load_recorded()[1]
+SHIPPED = loader.load_recorded()[1]
 TASK = "sis_a 0B 7 #lot-1"
 
 
@@ -28,7 +30,7 @@ TASK = "sis_a 0B 7 #lot-1"
 def state(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The state directory of a plant without devices, which queued a task and refused another one."""
     folder = tmp_path_factory.mktemp("state")
-    model = config.load()
+    model = loader.load()
     app = build(model, {"orchestrator"}, Options(state_dir=folder, recording=SHIPPED, rate=2.0))
     app.start()
     try:
@@ -117,8 +119,8 @@ def test_a_replay_of_a_damaged_record_says_how_much_of_it_is_read(state: Path, t
 
 def test_a_replay_at_a_speed_waits(state: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     waited: list[float] = []
-    monkeypatch.setattr(replay_command.time, "sleep", waited.append)
-    monkeypatch.setattr(replay_command.time, "monotonic", lambda: 50.0)
+    monkeypatch.setattr(replay.time, "sleep", waited.append)
+    monkeypatch.setattr(replay.time, "monotonic", lambda: 50.0)
     said("replay", "--state", str(state), "--speed", "10")
     record = reader.opened(files.parts_in(state / files.FOLDER)[0].path)
     times = [step.now for step in record.steps()]
@@ -137,7 +139,7 @@ def test_another_plant_file_says_where_it_first_does_otherwise(state: Path, tmp_
 
 
 def test_another_version_says_so(state: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(replay_command, "__version__", "99.0")
+    monkeypatch.setattr(replay, "__version__", "99.0")
     first = said("replay", "--state", str(state)).splitlines()[0]
     assert first.startswith("note: recorded by Arboleda ") and first.endswith(", replayed by 99.0")
 
@@ -186,11 +188,11 @@ def test_a_record_whose_first_files_are_gone_is_read_and_not_replayed(state: Pat
 
 def test_a_plant_with_files_of_its_own_is_replayed_with_those() -> None:
     source = Path(__file__).parents[3] / "examples" / "lab_bench"
-    _, recording = config.load_recorded(source / "plant.yaml")
+    _, recording = loader.load_recorded(source / "plant.yaml")
     assert recording is not None
     contents = recording.files.contents
     assert recording.files.plant == "plant.yaml" and any(name.endswith(".py") for name in contents)
-    again, first = recorded_plant.loaded(recording.files), config.load(source / "plant.yaml")
+    again, first = recorded_plant.loaded(recording.files), loader.load(source / "plant.yaml")
     assert [(cell.name, [each.name for each in cell.recipes]) for cell in again.cells] == [
         (cell.name, [each.name for each in cell.recipes]) for cell in first.cells
     ]
@@ -215,7 +217,7 @@ def test_a_wrong_limit_is_a_problem_of_the_plant_file(text: str, problem: str) -
     assert SHIPPED is not None
     content = SHIPPED.files.contents["plant.yaml"] + f"\n{text}\n".encode()
     with pytest.raises(ConfigError) as refusal:
-        config.parse("p.yaml", content)
+        loader.parse("p.yaml", content)
     assert problem in str(refusal.value) and len(refusal.value.problems) == 1
 
 
@@ -223,10 +225,10 @@ def test_a_plant_file_says_how_much_is_kept_or_that_nothing_is(tmp_path: Path) -
     assert SHIPPED is not None
     file = tmp_path / "plant.yaml"
     file.write_bytes(SHIPPED.files.contents["plant.yaml"] + b"\nrecord: {megabytes: 50}\n")
-    recording = config.load_recorded(file)[1]
+    recording = loader.load_recorded(file)[1]
     assert recording is not None and recording.limits == replace(SHIPPED.limits, megabytes=50.0)
     file.write_bytes(SHIPPED.files.contents["plant.yaml"] + b"\nrecord: off\n")
-    assert config.load_recorded(file)[1] is None
+    assert loader.load_recorded(file)[1] is None
 
 
 def test_without_its_library_the_plant_goes_on_without_a_record(
@@ -235,7 +237,7 @@ def test_without_its_library_the_plant_goes_on_without_a_record(
     for name in ("arboleda.recorder.recorder", "arboleda.recorder.files"):
         monkeypatch.delitem(sys.modules, name, raising=False)
     monkeypatch.setitem(sys.modules, "mcap.writer", None)
-    app = build(config.load(), {"orchestrator"}, Options(state_dir=tmp_path, recording=SHIPPED))
+    app = build(loader.load(), {"orchestrator"}, Options(state_dir=tmp_path, recording=SHIPPED))
     app.start()
     try:
         assert app.submit(TASK).result(30.0).state.value == "queued"
@@ -279,10 +281,10 @@ def test_logs_have_all_starts_in_order(state: Path, tmp_path: Path) -> None:
 def test_logs_say_why_a_cell_was_held() -> None:
     why = {"key": "own", "english": "{text}", "values": {"text": "ra1 must be homed first"}}
     told = {"kind": "cell", "cell": "sis_a", "subject": "sis_a", "what": "held", "sentence": why}
-    lines = list(logs_command._lines(logs_command.EVENTS, told))
+    lines = list(logs._lines(logs.EVENTS, told))
     assert lines == [("sis_a", "held      sis_a  ra1 must be homed first")]
-    assert not list(logs_command._lines(logs_command.EVENTS, told | {"what": "execute"}))
-    assert not list(logs_command._lines(logs_command.EVENTS, told | {"kind": "robot", "what": "offline"}))
+    assert not list(logs._lines(logs.EVENTS, told | {"what": "execute"}))
+    assert not list(logs._lines(logs.EVENTS, told | {"kind": "robot", "what": "offline"}))
 
 
 def test_what_a_step_has_to_say_for_people() -> None:
@@ -295,7 +297,7 @@ def test_what_a_step_has_to_say_for_people() -> None:
         {"type": "InternalError", "cell": "sis_b", "error": "KeyError: 'x'"},
         {"type": "Heartbeat", "epoch": 1},
     ]
-    assert list(logs_command._lines(logs_command.STEPS, {"messages": rows})) == [
+    assert list(logs._lines(logs.STEPS, {"messages": rows})) == [
         (None, "all stopped"),
         (None, "resume sis_a was refused: all stopped"),
         (None, "the plant was away for 2.0 s"),

@@ -8,12 +8,12 @@ from typing import Any
 
 import pytest
 
-from arboleda.app.parts import records
-from arboleda.app.parts.records import Records
 from arboleda.recorder.errors import NoRecord
 from arboleda.recorder.files import part_path
 from arboleda.recorder.preamble import Limits, PlantFiles
 from arboleda.recorder.simulated import SimulatedRecorder
+from arboleda.runtime.parts import records
+from arboleda.runtime.parts.records import Records
 from arboleda.simulator.world import World
 from arboleda.testing import shipped
 from arboleda.views import view

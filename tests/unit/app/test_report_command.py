@@ -11,9 +11,9 @@ from typing import Any
 import pytest
 from typer.testing import CliRunner
 
-from arboleda.app.cli import cli
-from arboleda.app.report import reading
+from arboleda.cli.main import cli
 from arboleda.model.errors import ConfigError
+from arboleda.playback.report import reading
 from arboleda.simulator.faults import KINDS, Fault
 from arboleda.simulator.world import World
 from arboleda.testing import Sim

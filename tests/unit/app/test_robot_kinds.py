@@ -7,15 +7,15 @@ from pathlib import Path
 
 import pytest
 
-from arboleda.app import config
-from arboleda.app.plant_file.registry import COME_WITH_IT
 from arboleda.model.errors import ConfigError
+from arboleda.plant_file import loader
+from arboleda.plant_file.registry import COME_WITH_IT
 from arboleda.testing import Sim
 
 CART = """\
-from arboleda.app.plant_file.robot_kind import RobotKind
-from arboleda.app.plant_file.robots import mobile
-from arboleda.app.plant_file.shapes import MobileDeviceShape
+from arboleda.plant_file.robot_kind import RobotKind
+from arboleda.plant_file.robots import mobile
+from arboleda.plant_file.shapes import MobileDeviceShape
 from arboleda.kinds.mobile import Mobile
 
 
@@ -71,7 +71,7 @@ def write(folder: Path, plant: str = PLANT, cart: str = CART) -> Path:
 
 def problems(file: Path) -> list[str]:
     with pytest.raises(ConfigError) as refusal:
-        config.load(file)
+        loader.load(file)
     return [each.removeprefix(f"{file.parent}/") for each in refusal.value.problems]
 
 
@@ -103,13 +103,13 @@ def test_a_robot_of_a_kind_of_ones_own_goes_to_targets(tmp_path: Path, sim: Sim)
 
 def test_an_installed_package_brings_such_a_kind(tmp_path: Path, site: Path) -> None:
     install(site)
-    cart = config.load(write(tmp_path, PLANT.replace("cart.py, ", ""))).robots["cart"]
+    cart = loader.load(write(tmp_path, PLANT.replace("cart.py, ", ""))).robots["cart"]
     assert (cart.kind_name, cart.goes, cart.on_grid) == ("cart", True, True)
 
 
 def test_its_own_keys_are_read_and_others_are_named_with_their_place(tmp_path: Path) -> None:
-    slow = config.load(write(tmp_path)).robots["cart"]
-    quick = config.load(write(tmp_path, PLANT.replace("true", "false"))).robots["cart"]
+    slow = loader.load(write(tmp_path)).robots["cart"]
+    quick = loader.load(write(tmp_path, PLANT.replace("true", "false"))).robots["cart"]
     assert slow.travel_s(0, (0, 1)) == 2 * quick.travel_s(0, (0, 1))
     (found,) = problems(write(tmp_path, PLANT.replace("loaded", "loadd")))
     assert found.startswith('plant.yaml:6:26: cells.bay.devices.cart: the key "loadd" is not known;')

@@ -9,8 +9,9 @@ from typing import Any
 
 import pytest
 
-from arboleda.app import build, cli, session
-from arboleda.app.build import App
+from arboleda.cli import main, session
+from arboleda.runtime import build
+from arboleda.runtime.build import App
 
 BY_HAND = Path(__file__).parents[3] / "examples" / "plants" / "by_hand.yaml"
 Started = Callable[..., "tuple[App | None, str]"]
@@ -42,7 +43,7 @@ def started(monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys: pytest.Capt
     def start(*words: str) -> tuple[App | None, str]:
         monkeypatch.setattr(sys, "argv", ["arboleda", *words, "--state", str(tmp_path / "state")])
         with pytest.raises(SystemExit):
-            cli.main()
+            main.main()
         return (apps[0] if apps else None), capsys.readouterr().err
 
     return start

@@ -6,10 +6,10 @@ from dataclasses import replace
 
 import pytest
 
-from arboleda.app.parts.router import NoRoute, Router
 from arboleda.model.commands import Command, Stop, StopMode
 from arboleda.model.messages import Heartbeat, Notice
 from arboleda.model.plant_model import Link, PlantModel
+from arboleda.runtime.parts.router import NoRoute, Router
 
 from ..kinds.lab import model
 

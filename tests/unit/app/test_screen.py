@@ -10,11 +10,11 @@ import pytest
 from rich.console import Console
 from rich.text import Text
 
-from arboleda.app import screen as shown
-from arboleda.app.parts.orchestrator import task_line
-from arboleda.app.screen import Screen, joints, logged, parting, table
+from arboleda.cli import screen as shown
+from arboleda.cli.screen import Screen, joints, logged, parting, table
 from arboleda.model.messages import Reason, TaskChanged, TaskState, Verb
 from arboleda.model.plant_model import MotionState
+from arboleda.runtime.parts.orchestrator import task_line
 from arboleda.testing import Rig, shipped
 from arboleda.views import view
 

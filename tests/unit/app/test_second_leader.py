@@ -6,9 +6,9 @@ from pathlib import Path
 
 import pytest
 
-from arboleda.adapters.plant_memory import OtherLeader, PlantMemory
-from arboleda.app import build as building
-from arboleda.app.build import Options, build
+from arboleda.runtime import build as building
+from arboleda.runtime.build import Options, build
+from arboleda.store.plant_memory import OtherLeader, PlantMemory
 from arboleda.testing import shipped
 
 
@@ -26,7 +26,7 @@ def test_it_has_made_no_page_of_which_a_process_has_one(
         raise OtherLeader("another process leads")
 
     monkeypatch.setattr(building, "memory_of", led_by_another)
-    monkeypatch.setattr("arboleda.app.parts.page.mounting", pages.append)
+    monkeypatch.setattr("arboleda.runtime.parts.page.mounting", pages.append)
     for _ in range(2):
         with pytest.raises(OtherLeader):
             build(shipped("sis_a"), {"orchestrator", "web"}, Options(state_dir=tmp_path))

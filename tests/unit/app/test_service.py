@@ -10,8 +10,8 @@ from pathlib import Path
 
 import pytest
 
-from arboleda.app.cli import main
-from arboleda.app.service_unit import unit
+from arboleda.cli.main import main
+from arboleda.cli.service_unit import unit
 
 Typed = Callable[..., tuple[int, str, str]]
 SYSTEMCTL = """#!/bin/sh

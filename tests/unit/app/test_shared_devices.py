@@ -8,11 +8,11 @@ from pathlib import Path
 import pytest
 from rich.console import Console
 
-from arboleda.app import config
-from arboleda.app.screen import table
+from arboleda.cli.screen import table
 from arboleda.core.plant import Plant
 from arboleda.model.errors import ConfigError
 from arboleda.model.plant_model import PlantModel
+from arboleda.plant_file import loader
 from arboleda.views import view
 from arboleda.views.chronicle import Chronicle
 from arboleda.views.view import devices_once
@@ -116,7 +116,7 @@ MISTAKES = {
 
 def load(tmp_path: Path, text: str = TEXT) -> PlantModel:
     (tmp_path / "plant.yaml").write_text(text, "utf-8")
-    return config.load(tmp_path / "plant.yaml", recipes=False)
+    return loader.load(tmp_path / "plant.yaml", recipes=False)
 
 
 def test_one_device_is_in_two_cells_in_roles_of_their_own(tmp_path: Path) -> None:

@@ -9,7 +9,6 @@ from itertools import combinations, permutations, product
 
 import pytest
 
-from arboleda.app.urdf import robot_urdf
 from arboleda.core import text
 from arboleda.dashboard.twin import bodies, kinematics
 from arboleda.dashboard.twin.parts import PART_HEIGHT_M, PART_RADIUS_M
@@ -17,6 +16,7 @@ from arboleda.dashboard.twin.scene import deck
 from arboleda.kinds.arm import Arm, Joint
 from arboleda.kinds.mobile import Mobile
 from arboleda.model.plant_model import Pose
+from arboleda.plant_file.urdf import robot_urdf
 from arboleda.recipes.storage_cell import StorageCell
 from arboleda.testing import shipped
 

@@ -12,13 +12,13 @@ from typing import Any
 
 import pytest
 
-from arboleda.app import config
-from arboleda.app.cli import main
-from arboleda.app.simulate import setting
-from arboleda.app.simulate.plants import Plant
-from arboleda.app.simulate.random_plants import RandomPlants
-from arboleda.app.simulate.request import Request, shared
+from arboleda.campaigns import setting
+from arboleda.campaigns.plants import Plant
+from arboleda.campaigns.random_plants import RandomPlants
+from arboleda.campaigns.request import Request, shared
+from arboleda.cli.main import main
 from arboleda.model.plant_model import Evidence
+from arboleda.plant_file import loader
 from arboleda.simulator import judged
 from arboleda.simulator.faults import KINDS
 from arboleda.simulator.invariants import Invariant
@@ -343,7 +343,7 @@ def test_without_a_plant_file_odd_seeds_are_the_shipped_plant_and_even_ones_the_
 def test_the_shared_plant_is_what_the_shipped_one_is_not() -> None:
     plant = shared()
     cells, arms = plant.cells, [cell.arm for cell in plant.cells]
-    assert config.warnings(plant) == ()
+    assert loader.warnings(plant) == ()
     assert plant.zones and any(cell.crossings for cell in cells)
     assert any(len([pose for pose in cell.poses if pose.zones]) > 1 for cell in cells)
     assert any(pose.above for cell in cells for pose in cell.poses)

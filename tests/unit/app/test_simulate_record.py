@@ -11,7 +11,7 @@ from types import SimpleNamespace
 import pytest
 from typer.testing import CliRunner
 
-from arboleda.app.cli import cli
+from arboleda.cli.main import cli
 from arboleda.recorder import reader
 from arboleda.recorder.views import Views
 

@@ -12,9 +12,9 @@ from pathlib import Path
 
 import pytest
 
-from arboleda.app import place_claim, state
-from arboleda.app.state import StateDir, default_state, find_running
 from arboleda.model.errors import ArboledaError, StartError
+from arboleda.runtime import place_claim, state
+from arboleda.runtime.state import StateDir, default_state, find_running
 
 
 @pytest.fixture(autouse=True)
@@ -51,7 +51,7 @@ def test_what_a_killed_plant_left_behind_is_no_plant(tmp_path):
     leave = f"""
 import os
 from pathlib import Path
-from arboleda.app.state import StateDir
+from arboleda.runtime.state import StateDir
 state = StateDir(Path({str(tmp_path)!r}))
 state.open()
 state.announce(4321)
@@ -146,7 +146,7 @@ def test_an_epoch_that_is_a_pipe_is_not_waited_for(tmp_path):
 FULL = """
 import resource, signal, sys
 from pathlib import Path
-from arboleda.app.state import StateDir
+from arboleda.runtime.state import StateDir
 from arboleda.model.errors import ArboledaError, StartError
 signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
 room = int(sys.argv[2])

@@ -12,10 +12,6 @@ from typing import Any
 
 import pytest
 
-from arboleda.adapters.store import Store
-from arboleda.adapters.task_rows import TaskQuery
-from arboleda.app.parts import orchestrator
-from arboleda.app.parts.orchestrator import KeptStateUnknown, Orchestrator
 from arboleda.core import stop_lane
 from arboleda.core.leaving import StopLeft, ends_motion
 from arboleda.core.plant import Plant
@@ -33,6 +29,10 @@ from arboleda.model.messages import (
     Undelivered,
     Verb,
 )
+from arboleda.runtime.parts import orchestrator
+from arboleda.runtime.parts.orchestrator import KeptStateUnknown, Orchestrator
+from arboleda.store.sqlite import Store
+from arboleda.store.task_rows import TaskQuery
 from arboleda.testing.plants import shipped
 
 SOON_S = 20.0  # nothing here takes as long; a machine that is busy may

@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 from arboleda.adapters import clock
-from arboleda.app.parts.systemd import SystemdPart, systemd_part
+from arboleda.runtime.parts.systemd import SystemdPart, systemd_part
 
 LONG_S = 60.0
 

@@ -6,9 +6,9 @@ from pathlib import Path
 
 import pytest
 
-from arboleda.app import config, layout_check
 from arboleda.model.errors import ConfigError
 from arboleda.model.plant_model import PlantModel
+from arboleda.plant_file import layout_check, loader
 
 TEXT = """name: shop
 cells:
@@ -80,7 +80,7 @@ MISTAKES = {
 
 def load(tmp_path: Path, text: str = TEXT) -> PlantModel:
     (tmp_path / "plant.yaml").write_text(text, "utf-8")
-    return config.load(tmp_path / "plant.yaml", recipes=False)
+    return loader.load(tmp_path / "plant.yaml", recipes=False)
 
 
 def test_targets_lie_row_by_row_between_the_corners(tmp_path: Path) -> None:

@@ -6,10 +6,10 @@ from pathlib import Path
 
 import pytest
 
-from arboleda.app import config
 from arboleda.model.errors import ConfigError
 from arboleda.model.messages import Verb
 from arboleda.model.plant_model import Interlock, PlantModel
+from arboleda.plant_file import loader
 
 from ..kinds.lab import Bench
 
@@ -113,7 +113,7 @@ def read(folder: Path, plant: str = PLANT) -> PlantModel:
     folder.joinpath("recipes.py").write_text(RECIPES, "utf-8")
     file = folder / "plant.yaml"
     file.write_text(plant, "utf-8")
-    return config.load(file)
+    return loader.load(file)
 
 
 def test_robots_have_their_targets_tools_and_zones(tmp_path: Path) -> None:

@@ -13,16 +13,16 @@ import pytest
 import typer
 from typer.testing import CliRunner
 
-from arboleda.adapters.store import Store
-from arboleda.adapters.task_rows import TaskQuery
-from arboleda.app.cli import cli
-from arboleda.app.state import StateDir
-from arboleda.app.tasks_command import moment
+from arboleda.cli.main import cli
+from arboleda.cli.tasks import moment
 from arboleda.core.choosing import LATER
 from arboleda.model.errors import StartError
 from arboleda.model.messages import Check, Reason, TaskAnswer, TaskChanged, TaskState
 from arboleda.model.sentence import OWN
 from arboleda.model.task import UNCHECKED
+from arboleda.runtime.state import StateDir
+from arboleda.store.sqlite import Store
+from arboleda.store.task_rows import TaskQuery
 
 NOW = time.time()
 

@@ -9,12 +9,12 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
-from arboleda.adapters.web.auth import Role
-from arboleda.app import tokens
-from arboleda.app.cli import cli
-from arboleda.app.state import StateDir
-from arboleda.app.tokens import TOKENS, TokenFile
+from arboleda.cli.main import cli
 from arboleda.model.errors import StartError
+from arboleda.runtime import tokens
+from arboleda.runtime.state import StateDir
+from arboleda.runtime.tokens import TOKENS, TokenFile
+from arboleda.web.auth import Role
 
 
 def test_tokens_are_made_once_long_and_for_their_owner_only(tmp_path: Path) -> None:

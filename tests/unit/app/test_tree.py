@@ -8,8 +8,8 @@ from unittest import mock
 import pytest
 from typer.testing import CliRunner, Result
 
-from arboleda.app.cli import cli
-from arboleda.app.client import PlantClient
+from arboleda.cli.client import PlantClient
+from arboleda.cli.main import cli
 from arboleda.model.errors import ArboledaError
 from arboleda.model.sentence import in_json
 from arboleda.testing.plants import shipped

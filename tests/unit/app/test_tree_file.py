@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner, Result
 
-from arboleda.app.cli import cli
+from arboleda.cli.main import cli
 from arboleda.model.errors import ConfigError
 
 GOOD = """<root BTCPP_format="4" main_tree_to_execute="Main">

@@ -10,10 +10,10 @@ from xml.etree import ElementTree
 import pytest
 from typer.testing import CliRunner
 
-from arboleda.app import config
-from arboleda.app.cli import cli, main
-from arboleda.app.urdf import robot_urdf
+from arboleda.cli.main import cli, main
 from arboleda.model.errors import ConfigError, StartError
+from arboleda.plant_file import loader
+from arboleda.plant_file.urdf import robot_urdf
 from arboleda.testing import shipped
 from arboleda_description import urdf as drawings
 
@@ -33,7 +33,7 @@ def test_a_robot_is_printed_with_the_names_it_has_in_the_plant(robot: str, root:
 
 
 def test_every_robot_of_every_plant_can_be_drawn() -> None:
-    for plant in (shipped(), *map(config.load, sorted(EXAMPLES.glob("*.yaml")))):
+    for plant in (shipped(), *map(loader.load, sorted(EXAMPLES.glob("*.yaml")))):
         for robot in plant.robots:
             assert robot_urdf(plant, robot).startswith("<?xml")
 
@@ -82,7 +82,7 @@ def test_without_the_xacro_library_a_sentence_says_what_to_install(
 
 
 def test_the_command_starts_without_the_xacro_library() -> None:
-    code = "import sys; sys.modules['xacro'] = None; import arboleda.app.cli"
+    code = "import sys; sys.modules['xacro'] = None; import arboleda.cli.main"
     subprocess.run([sys.executable, "-c", code], env={"PYTHONPATH": ":".join(sys.path)}, check=True)
 
 

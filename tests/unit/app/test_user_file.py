@@ -10,9 +10,9 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
-from arboleda.app import user_file
-from arboleda.app.cli import cli
+from arboleda.cli.main import cli
 from arboleda.model.errors import ConfigError
+from arboleda.plant_file import user_file
 
 READS = {
     "check": lambda file: ["check", file],

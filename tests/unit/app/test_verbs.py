@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
-from arboleda.app import verbs
-from arboleda.app.cli import cli, main
+from arboleda.cli import verbs
+from arboleda.cli.main import cli, main
 from arboleda.model.errors import ArboledaError, TextError
 from arboleda.model.messages import Verb
 from arboleda.views.verb_words import ABOUT

@@ -5,9 +5,9 @@ from typing import Any
 
 import pytest
 
-from arboleda.app import view_text
-from arboleda.app.parts.slices import Slices
 from arboleda.model.sentence import in_json
+from arboleda.runtime import view_text
+from arboleda.runtime.parts.slices import Slices
 from arboleda.testing import Rig, shipped
 
 

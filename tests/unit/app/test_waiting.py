@@ -11,7 +11,7 @@ from queue import SimpleQueue
 
 import pytest
 
-from arboleda.app import waiting
+from arboleda.runtime import waiting
 
 WAITS: dict[str, Callable[[], object]] = {
     "for an event": lambda: waiting.until(threading.Event()),
@@ -53,7 +53,7 @@ def test_what_is_put_is_taken_in_order_up_to_none() -> None:
 
 PROGRAM = """
 from contextlib import suppress
-from arboleda.app.waiting import interruptible
+from arboleda.runtime.waiting import interruptible
 
 with suppress(KeyboardInterrupt), interruptible():
     exec("import signal; signal.raise_signal(signal.{name}); print('not ended')")
@@ -71,8 +71,8 @@ def test_a_signal_while_a_class_is_made_from_a_text_leaves_a_clean_end(tmp_path:
 
 DROPPED = """
 import signal, threading
-from arboleda.app import waiting
-from arboleda.app.waiting import interruptible, until, until_interrupted
+from arboleda.runtime import waiting
+from arboleda.runtime.waiting import interruptible, until, until_interrupted
 
 waiting.LOOK_S = 0.01
 

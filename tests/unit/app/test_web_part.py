@@ -9,11 +9,11 @@ from pathlib import Path
 import pytest
 
 from arboleda.adapters.server_tls import ServerTls
-from arboleda.adapters.web.names import names_for
-from arboleda.app.parts.web import Side
-from arboleda.app.web_options import WebOptions
 from arboleda.model.errors import ArboledaError, QueueFull, StartError
 from arboleda.model.messages import TaskChanged, TaskState
+from arboleda.runtime.parts.web import Side
+from arboleda.runtime.web_options import WebOptions
+from arboleda.web.names import names_for
 
 
 class Plant:

@@ -12,13 +12,13 @@ from types import SimpleNamespace
 import pytest
 import yaml
 
-from arboleda.app import cli as command
-from arboleda.app import remote_plant
-from arboleda.app.cli import main
-from arboleda.app.client import PlantClient
-from arboleda.app.plant_options import located
-from arboleda.app.state import StateDir, default_state, running_plants
+from arboleda.cli import main as command
+from arboleda.cli import remote_plant
+from arboleda.cli.client import PlantClient
+from arboleda.cli.main import main
+from arboleda.cli.plant_options import located
 from arboleda.model.errors import ArboledaError
+from arboleda.runtime.state import StateDir, default_state, running_plants
 
 Typed = Callable[..., tuple[int, str, str]]
 SHIPPED = files("arboleda").joinpath("plants", "plant.yaml")

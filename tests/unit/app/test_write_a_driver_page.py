@@ -8,11 +8,11 @@ from pathlib import Path
 import pytest
 
 import arboleda.drivers as public
-from arboleda.app import config
 from arboleda.drivers.supervisor import FIRST_RETRY_S, LAST_RETRY_S
 from arboleda.model.errors import ConfigError
 from arboleda.model.messages import Report
 from arboleda.model.plant_model import Link, MotionState
+from arboleda.plant_file import loader
 
 from ..kinds.station import STATION, plant
 
@@ -40,7 +40,7 @@ def test_the_driver_of_the_page_is_one_and_its_device_is_heard(folder: Path) -> 
         .replace("line_tcp:", "my_plc:")
     )
     Path("plant.yaml").write_text(text, "utf-8")
-    use = config.load(Path("plant.yaml")).robots["press"].driver
+    use = loader.load(Path("plant.yaml")).robots["press"].driver
     assert use is not None
     driver, heard = use.make(), list[Report]()
     driver.start(tuple(plant().robots.values()), heard.append, lambda: 5.0)
@@ -60,7 +60,7 @@ def test_the_plant_file_of_the_page_is_that_of_the_example(folder: Path) -> None
     _, _, cells = USE.partition("cells:")
     assert USE.splitlines()[0] in head
     Path("plant.yaml").write_text(f"{head}cells:{cells}", "utf-8")
-    assert config.load(Path("plant.yaml")).robots["press"].link is Link.DRIVER
+    assert loader.load(Path("plant.yaml")).robots["press"].link is Link.DRIVER
 
 
 def test_check_says_of_mistakes_what_the_page_says(folder: Path) -> None:
@@ -74,7 +74,7 @@ def test_check_says_of_mistakes_what_the_page_says(folder: Path) -> None:
         Path("plant.yaml").write_text(text.replace("{host:", "{" + plc + "host:"), "utf-8")
         Path("drivers/line_tcp.py").write_text(driver, "utf-8")
         with pytest.raises(ConfigError) as refusal:
-            config.load(Path("plant.yaml"))
+            loader.load(Path("plant.yaml"))
         found += refusal.value.problems
     lines = PAGE.splitlines()
     assert [problem for problem in found if problem.partition(": ")[2] not in PAGE] == [], found

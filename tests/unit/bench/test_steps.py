@@ -5,11 +5,11 @@ from dataclasses import replace
 
 import pytest
 
-from arboleda.app.config import load
 from arboleda.kinds.arm import MoveJoints
 from arboleda.kinds.mobile import FollowPath
 from arboleda.model.commands import Command
 from arboleda.model.messages import TaskState
+from arboleda.plant_file.loader import load
 from arboleda.recipes.storage_cell import StorageCell
 from arboleda.testing.rig import Rig
 from arboleda_bench import plants, steps

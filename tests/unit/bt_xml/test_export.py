@@ -8,9 +8,9 @@ from typing import Any
 import pytest
 from typer.testing import CliRunner
 
-from arboleda.app.cli import cli
 from arboleda.bt_xml.export import LARGEST, PART, export
 from arboleda.bt_xml.forest import Forest, Node
+from arboleda.cli.main import cli
 
 from .told import looked_at
 

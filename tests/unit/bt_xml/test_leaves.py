@@ -8,12 +8,12 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner, Result
 
-from arboleda.app import config
-from arboleda.app.cli import cli
 from arboleda.bt_xml import checking, leaves, reading
 from arboleda.bt_xml.findings import Findings
 from arboleda.bt_xml.nodes import Category, PortDirection
+from arboleda.cli.main import cli
 from arboleda.model.errors import ConfigError
+from arboleda.plant_file import loader
 
 from .told import looked_at, tree
 
@@ -22,7 +22,7 @@ PLANT = Path(__file__).parents[3] / "examples/machine_tending/plant.yaml"
 
 @pytest.fixture(scope="module")
 def kinds() -> dict[str, leaves.Kind]:
-    return leaves.of_cells(config.load(PLANT).cells)
+    return leaves.of_cells(loader.load(PLANT).cells)
 
 
 def run(*words: object) -> Result:
@@ -114,7 +114,7 @@ def test_a_tree_is_checked_against_a_plant_on_the_command_line(tmp_path: Path) -
 
 
 def test_nodes_of_one_name_in_two_cells_must_be_the_same() -> None:
-    (cell,) = config.load(PLANT).cells
+    (cell,) = loader.load(PLANT).cells
     other = replace(cell, name="other")
     assert leaves.of_cells([cell, other]) == leaves.of_cell(cell)
     rows = [(role, cell.roles["belt"] if role == "mill" else robot) for role, robot in cell.members]

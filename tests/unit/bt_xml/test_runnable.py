@@ -7,11 +7,11 @@ from shutil import copytree
 
 import pytest
 
-from arboleda.app.config import load
 from arboleda.bt_xml.nodes import BUILT_IN
 from arboleda.bt_xml.runnable import INSTEAD
 from arboleda.bt_xml.running.build import MAKERS
 from arboleda.model.errors import ConfigError
+from arboleda.plant_file.loader import load
 
 EXAMPLE = Path(__file__).parents[3] / "examples" / "own_tree"
 PAGE = Path(__file__).parents[3] / "docs/reference/bt-xml.md"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from arboleda.app.simulate.request import shared
+from arboleda.campaigns.request import shared
 from arboleda.model.messages import Verb
 
 from .conftest import Hand

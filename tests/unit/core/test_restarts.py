@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from py_trees.common import Status
 
-from arboleda.app.simulate.request import shared
+from arboleda.campaigns.request import shared
 from arboleda.core.plant import SHORTEST_ABSENCE_S, Plant
 from arboleda.model.messages import Fact, MotionState, Notice, Remember, Report, Verb
 from arboleda.model.plant_model import Evidence, PlantModel

@@ -6,10 +6,10 @@ from importlib.resources import as_file, files
 
 import pytest
 
-from arboleda.app.config import load
 from arboleda.kinds.arm import MoveJoints
 from arboleda.model.messages import OperatorRequest, Verb
 from arboleda.model.plant_model import MotionState
+from arboleda.plant_file.loader import load
 
 from .conftest import Hand
 

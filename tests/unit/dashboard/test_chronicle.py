@@ -7,9 +7,9 @@ from typing import Any
 
 import pytest
 
-from arboleda.app.parts.orchestrator import act_line
 from arboleda.dashboard.faces.moment import clock
 from arboleda.model.messages import Journal, Verb
+from arboleda.runtime.parts.orchestrator import act_line
 from arboleda.testing import Rig, shipped
 from arboleda.views import view
 from arboleda.views.chronicle import EVENTS, Chronicle

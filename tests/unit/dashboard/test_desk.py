@@ -10,13 +10,13 @@ from typing import Any
 
 import pytest
 
-from arboleda.adapters.web.auth import Role
 from arboleda.dashboard import desk
 from arboleda.dashboard.desk import Desk
 from arboleda.dashboard.feed import Feed
 from arboleda.dashboard.wording import words
 from arboleda.model.messages import OperatorAnswer, Outcome, Verb
 from arboleda.model.sentence import OWN
+from arboleda.web.auth import Role
 
 WHY = OWN(text="jaw: it is stuck")
 

@@ -6,12 +6,12 @@ import json
 import time
 from dataclasses import replace
 
-from arboleda.adapters.task_rows import TaskRow
 from arboleda.core.intake import CUT_OFF
 from arboleda.dashboard.faces.history import face
 from arboleda.dashboard.wording import words
 from arboleda.model.messages import Check
 from arboleda.model.task import UNCHECKED
+from arboleda.store.task_rows import TaskRow
 
 NOW = time.mktime((2026, 5, 4, 12, 0, 0, 0, 0, -1))
 CUT = TaskRow(

@@ -6,8 +6,7 @@ from typing import Any
 
 import pytest
 
-from arboleda.app.plant_file.poses import HOME, STATION
-from arboleda.app.simulate.request import Request
+from arboleda.campaigns.request import Request
 from arboleda.core import text
 from arboleda.core.cell_states import CellState
 from arboleda.core.plant import Plant
@@ -16,6 +15,7 @@ from arboleda.dispatch import belief, dispatcher, evidence, zones
 from arboleda.dispatch.ledger import State
 from arboleda.model.messages import Reason, TaskState, Verb
 from arboleda.model.sentence import Sentence
+from arboleda.plant_file.poses import HOME, STATION
 from arboleda.recipes import storage
 from arboleda.trees import steps
 from arboleda.trees.tree_run import IN_RECOVERY

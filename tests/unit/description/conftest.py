@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from arboleda.app import config
 from arboleda.model.plant_model import PlantModel
+from arboleda.plant_file import loader
 
 CHANGES = {
     "twin: r1": "twin: r1\n      limits: {q1_deg: [-90, 80], q3_mm: [0, 60]}\n      speeds: {q2_deg_s: 30}",
@@ -29,4 +29,4 @@ def narrowed(tmp_path_factory: pytest.TempPathFactory) -> PlantModel:
     text = GRID.sub(r"\1, yaw_deg: 30, pitch_mm: 350}\n      speed_mm_s: 50", text)
     file: Path = tmp_path_factory.mktemp("plant") / "narrowed.yaml"
     file.write_text(text, encoding="utf-8")
-    return config.load(file)
+    return loader.load(file)

@@ -9,9 +9,9 @@ from functools import cache
 import pytest
 from urdf_parser_py.urdf import Robot
 
-from arboleda.app.urdf import robot_urdf, root_link
 from arboleda.kinds.mobile import Mobile
 from arboleda.model.plant_model import PlantModel
+from arboleda.plant_file.urdf import robot_urdf, root_link
 from arboleda.testing import shipped
 from arboleda_description.urdf import render
 

@@ -9,11 +9,11 @@ from typing import Any
 
 import pytest
 
-from arboleda.app.plant_file.robot_models import arm_models, mobile_models
-from arboleda.app.urdf import prefix, robot_urdf
 from arboleda.kinds.arm import Arm
 from arboleda.kinds.mobile import Mobile
 from arboleda.model.plant_model import PlantModel
+from arboleda.plant_file.robot_models import arm_models, mobile_models
+from arboleda.plant_file.urdf import prefix, robot_urdf
 from arboleda.sim.devices import Devices
 from arboleda.testing import shipped
 from arboleda.wire import units

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from arboleda.app.simulate.request import shared
+from arboleda.campaigns.request import shared
 from arboleda.dispatch.evidence import QUIET_S
 from arboleda.dispatch.underway import PATIENCE_S, UnderWay, Unnamed
 from arboleda.kinds.arm import MoveJoints

@@ -9,7 +9,7 @@ import pytest
 from PIL import Image
 
 from arboleda.adapters.png import SCALE, plain
-from arboleda.app.draw import Format, draw
+from arboleda.cli.draw import Format, draw
 from arboleda.drawing.picture import LOOKS, MARK, Box, Word, picture
 
 SVG = "{http://www.w3.org/2000/svg}"

@@ -7,7 +7,6 @@ from pathlib import Path
 
 import pytest
 
-from arboleda.app.config import load
 from arboleda.drivers import MotionState, NotSent, Stop, StopMode
 from arboleda.drivers.modbus.machine import Block, ModbusDevice, Raw, WriteRequest, blocks, joined
 from arboleda.drivers.modbus.registers import Register
@@ -15,6 +14,7 @@ from arboleda.drivers.modbus.settings import Settings
 from arboleda.drivers.plc.plc_snapshot import UnreadableValue
 from arboleda.kinds.declared import Device
 from arboleda.model.commands import Command
+from arboleda.plant_file.loader import load
 
 EXAMPLE = Path(__file__).parents[3] / "examples/plc_conveyor/plant.yaml"
 

@@ -7,13 +7,13 @@ from pathlib import Path
 
 import pytest
 
-from arboleda.app.config import load
 from arboleda.drivers import MotionState, NotSent, Stop, StopMode
 from arboleda.drivers.opcua.machine import Call, OpcUaDevice
 from arboleda.drivers.opcua.settings import Settings
 from arboleda.drivers.plc.plc_snapshot import UnreadableValue
 from arboleda.kinds.declared import Device
 from arboleda.model.commands import Command
+from arboleda.plant_file.loader import load
 
 EXAMPLE = Path(__file__).parents[3] / "examples/plc_conveyor/opcua.yaml"
 BELT = "ns=2;s=Device"

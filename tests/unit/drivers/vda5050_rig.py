@@ -6,7 +6,6 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from arboleda.app.config import load
 from arboleda.drivers.vda5050.settings import Settings
 from arboleda.kinds.declared import Device
 from arboleda.kinds.mobile import FollowPath
@@ -14,6 +13,7 @@ from arboleda.model.commands import Stop, StopMode
 from arboleda.model.facts import Value
 from arboleda.model.messages import Report
 from arboleda.model.plant_model import Robot
+from arboleda.plant_file.loader import load
 from arboleda.virtual.faults import Faults
 from arboleda.virtual.vda5050.faults import FAULTS
 from arboleda.virtual.vda5050.loopback import Loopback

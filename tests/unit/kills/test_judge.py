@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import pytest
 
-from arboleda.adapters.task_rows import TaskRow
+from arboleda.store.task_rows import TaskRow
 from arboleda_kills.deeds import ALONE, Deed, Did
 from arboleda_kills.judge import AGAIN, FAILED, HELD, WENT_ON, Kill, Verdict, judge
 from arboleda_kills.people import Said

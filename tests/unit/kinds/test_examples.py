@@ -17,9 +17,7 @@ from typer.testing import CliRunner
 import arboleda.drivers
 import arboleda.kinds
 import arboleda.recipes
-from arboleda.app import config
-from arboleda.app.cli import cli
-from arboleda.app.urdf import robot_urdf
+from arboleda.cli.main import cli
 from arboleda.core.text import parse
 from arboleda.dashboard.twin import bodies, kinematics
 from arboleda.kinds.arm import Arm, MoveJoints, SetEffector
@@ -29,6 +27,8 @@ from arboleda.model.commands import Command, Position, Question
 from arboleda.model.facts import Value
 from arboleda.model.messages import TaskState, Verb
 from arboleda.model.plant_model import Link, PlantModel, Workspace
+from arboleda.plant_file import loader
+from arboleda.plant_file.urdf import robot_urdf
 from arboleda.sim.arm import ArmBody
 from arboleda.sim.machine import MachineBody
 from arboleda.testing.following import follow, works
@@ -150,7 +150,7 @@ WITH_DEVICES = [each for each in PLAIN if each.folder != "nav2"]
 @cache
 def load(folder: str) -> PlantModel:
     """The plant of an example, as it is simulated."""
-    return config.load(EXAMPLES / folder / "plant.yaml").on_boards(Link.DRIVER)
+    return loader.load(EXAMPLES / folder / "plant.yaml").on_boards(Link.DRIVER)
 
 
 def tried(folder: str, name: str, answers: Iterable[Value]) -> set[Value]:

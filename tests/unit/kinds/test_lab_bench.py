@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from arboleda.app import config
 from arboleda.model.messages import TaskState
+from arboleda.plant_file import loader
 
 from .lab import Bench
 
@@ -17,7 +17,7 @@ FOLDER = Path(__file__).parents[3] / "examples/lab_bench"
 
 @pytest.fixture(scope="module")
 def here() -> Bench:
-    return Bench(config.load(FOLDER / "plant.yaml"))
+    return Bench(loader.load(FOLDER / "plant.yaml"))
 
 
 @pytest.mark.parametrize(

@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from arboleda.app.screen import parting
+from arboleda.cli.screen import parting
 from arboleda.kinds.person import person
 from arboleda.model.messages import Reason, TaskAnswer, Verb
 from arboleda.model.plant_model import PlantModel

@@ -10,13 +10,13 @@ from unicodedata import normalize
 import pytest
 from typer.testing import CliRunner
 
-from arboleda.app import config
-from arboleda.app.cli import cli, main
+from arboleda.cli.main import cli, main
 from arboleda.dashboard.page_state import PageState
 from arboleda.kinds.declared import Device
 from arboleda.model.errors import ConfigError, PayloadError
 from arboleda.model.messages import Report
 from arboleda.model.plant_model import MotionState, PlantModel
+from arboleda.plant_file import loader
 from arboleda.views import view
 from arboleda.wire import order
 from arboleda.wire.payloads import DEVICE, decode
@@ -72,7 +72,7 @@ def folder(tmp_path: Path) -> Path:
 
 
 def plant(folder: Path, text: str = PLANT) -> PlantModel:
-    return config.parse("plant.yaml", text.encode(), folder)
+    return loader.parse("plant.yaml", text.encode(), folder)
 
 
 def kiln(folder: Path) -> Device:

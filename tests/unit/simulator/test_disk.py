@@ -5,12 +5,12 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 
-from arboleda.adapters.store import Store
-from arboleda.app.memory import kept_tasks, remembered
 from arboleda.core.intake import HISTORY
 from arboleda.model.messages import Fact, Reason, Remember, TaskChanged, TaskState
 from arboleda.model.sentence import OWN
+from arboleda.runtime.memory import kept_tasks, remembered
 from arboleda.simulator.disk import Disk, is_kept
+from arboleda.store.sqlite import Store
 
 
 def said(id: str, state: TaskState = TaskState.QUEUED, **why: object) -> TaskChanged:

@@ -9,12 +9,12 @@ from typing import Any
 
 import pytest
 
-from arboleda.app.plant_file import shapes
-from arboleda.app.plant_file.robot_models import arm_models, mobile_models
-from arboleda.app.simulate.plants import Plant
-from arboleda.app.simulate.random_plants import RandomPlants, loaded
+from arboleda.campaigns.plants import Plant
+from arboleda.campaigns.random_plants import RandomPlants, loaded
 from arboleda.model.errors import ConfigError
 from arboleda.model.plant_model import Evidence, Link, PlantModel
+from arboleda.plant_file import shapes
+from arboleda.plant_file.robot_models import arm_models, mobile_models
 from arboleda.simulator.plants import NOT_DRAWN, draw, smaller
 
 SEEDS = range(120)

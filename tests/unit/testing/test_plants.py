@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from arboleda.app.config import load
 from arboleda.model.plant_model import Evidence, Link
+from arboleda.plant_file.loader import load
 from arboleda.testing import shipped
 
 

@@ -6,13 +6,13 @@ from pathlib import Path
 
 import pytest
 
-from arboleda.app.config import load
 from arboleda.drivers import MotionState, Report, Stop, StopMode
 from arboleda.drivers.modbus.machine import ModbusDevice, Raw
 from arboleda.drivers.modbus.settings import Settings
 from arboleda.drivers.plc.plc_snapshot import UnreadableValue
 from arboleda.kinds.declared import Device
 from arboleda.model.commands import Command
+from arboleda.plant_file.loader import load
 from arboleda.virtual.faults import Faults
 from arboleda.virtual.modbus.memory import DEVICE_BUSY, FAULTS, ILLEGAL_ADDRESS, BeltMemory
 

@@ -7,13 +7,13 @@ from pathlib import Path
 import pytest
 
 from arboleda.adapters.opcua_server import Bad
-from arboleda.app.config import load
 from arboleda.drivers import MotionState, Report, Stop, StopMode
 from arboleda.drivers.opcua.machine import OpcUaDevice, Read
 from arboleda.drivers.opcua.settings import Settings
 from arboleda.drivers.plc.plc_snapshot import UnreadableValue
 from arboleda.kinds.declared import Device
 from arboleda.model.commands import Command
+from arboleda.plant_file.loader import load
 from arboleda.virtual.faults import Faults
 from arboleda.virtual.opcua.faults import FAULTS
 from arboleda.virtual.opcua.program import BeltProgram

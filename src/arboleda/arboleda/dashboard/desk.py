@@ -12,12 +12,12 @@ from typing import TypeVar
 from fastapi.concurrency import run_in_threadpool
 from nicegui import Client
 
-from arboleda.adapters.task_rows import PAGE
-from arboleda.adapters.web.auth import SUBMIT, allowed
 from arboleda.core.advice import BY_HAND
 from arboleda.model.errors import ArboledaError
 from arboleda.model.messages import Outcome, Verb
 from arboleda.model.sentence import Sentence, in_json
+from arboleda.store.task_rows import PAGE
+from arboleda.web.auth import SUBMIT, allowed
 
 from . import demo
 from .feed import Feed

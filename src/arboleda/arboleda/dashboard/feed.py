@@ -10,7 +10,7 @@ from collections.abc import Callable
 from contextlib import suppress
 from typing import Any
 
-from arboleda.adapters.task_rows import TaskRow
+from arboleda.store.task_rows import TaskRow
 
 from .faces import Face
 from .frames import Frames, Viewer

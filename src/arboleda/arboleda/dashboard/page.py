@@ -11,8 +11,8 @@ from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import JSONResponse
 from nicegui import Client, app, ui
 
-from arboleda.adapters.oee_rows import OeeQuery
-from arboleda.adapters.task_rows import TaskQuery
+from arboleda.store.oee_rows import OeeQuery
+from arboleda.store.task_rows import TaskQuery
 
 from . import demo, header, links, panel, reports, shell, tasks, timeline, trees
 from .desk import Desk

@@ -5,7 +5,7 @@ from __future__ import annotations
 from itertools import takewhile
 from typing import Any
 
-from arboleda.adapters.task_rows import TaskRow
+from arboleda.store.task_rows import TaskRow
 from arboleda.views.chronicle import Chronicle, is_failure
 
 from .faces import Face, task, whole_page

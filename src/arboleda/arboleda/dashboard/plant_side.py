@@ -6,9 +6,9 @@ from collections.abc import Callable
 from concurrent.futures import Future
 from typing import TYPE_CHECKING, Any, Protocol
 
-from arboleda.adapters.oee_rows import OeeQuery
-from arboleda.adapters.task_rows import TaskQuery, TaskRow
 from arboleda.model.messages import OperatorAnswer, Verb
+from arboleda.store.oee_rows import OeeQuery
+from arboleda.store.task_rows import TaskQuery, TaskRow
 from arboleda.views.oee import Oee
 
 if TYPE_CHECKING:  # a page of a plant without a record does without the libraries that read one

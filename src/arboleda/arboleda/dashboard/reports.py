@@ -8,8 +8,8 @@ from fastapi import FastAPI, Request
 from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import HTMLResponse, Response
 
-from arboleda.adapters.web import plain_page
 from arboleda.model.errors import ArboledaError
+from arboleda.web import plain_page
 
 from .plant_side import PlantSide
 from .shell import language_of

@@ -11,8 +11,8 @@ from importlib import resources
 from fastapi import FastAPI, Request
 from nicegui import Client, app, ui
 
-from arboleda.adapters.web.api import refuse
 from arboleda.model.errors import StartError
+from arboleda.web.api import refuse
 
 from . import trees
 from .page_budget import PageBudget

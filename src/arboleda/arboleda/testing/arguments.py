@@ -5,10 +5,10 @@ from __future__ import annotations
 import math
 from pathlib import Path
 
-from arboleda.app import config
-from arboleda.app.simulate.plants import Plant
+from arboleda.campaigns.plants import Plant
 from arboleda.model.errors import ConfigError
 from arboleda.model.plant_model import PlantModel
+from arboleda.plant_file import loader
 from arboleda.simulator.chance import Dice
 from arboleda.simulator.faults import ON_ONE_HOST, Fault
 from arboleda.simulator.faults.kind import NONE, Kind
@@ -26,7 +26,7 @@ def plant(named: PlantModel | Path | str | None, folder: Path | None) -> PlantMo
     try:
         if isinstance(named, PlantModel):
             return Plant(declared=named).model
-        declared = config.load(_file(Path(named), folder) if named is not None else None)
+        declared = loader.load(_file(Path(named), folder) if named is not None else None)
         return Plant(declared=declared).model
     except ConfigError as error:
         raise Misuse(str(error)) from None

@@ -6,9 +6,9 @@ from dataclasses import replace
 from functools import cache
 from typing import Any
 
-from arboleda.app.config import load
 from arboleda.kinds.arm import Arm
 from arboleda.model.plant_model import PlantModel
+from arboleda.plant_file.loader import load
 from arboleda.recipes.storage_cell import StorageCell
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable
 
-from arboleda.app.simulate.words import told
+from arboleda.campaigns.words import told
 from arboleda.model.counting import counted
 from arboleda.simulator.invariants import Invariant
 from arboleda.simulator.judged_world import BrokenInvariant, JudgedWorld

@@ -8,13 +8,13 @@ import json
 
 import pytest
 
-from arboleda.adapters.web import changes
-from arboleda.adapters.web.changes import Reader, changed
-from arboleda.adapters.web.schema import Snapshot
 from arboleda.core.plant import Plant
 from arboleda.model.sentence import in_json
 from arboleda.testing.plants import shipped
 from arboleda.views import view
+from arboleda.web import changes
+from arboleda.web.changes import Reader, changed
+from arboleda.web.schema import Snapshot
 
 
 @pytest.fixture

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from arboleda.adapters.web.limits import Buckets
+from arboleda.web.limits import Buckets
 
 
 class Clock:

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from arboleda.app.urdf import robot_urdf
 from arboleda.dashboard.twin import bodies
 from arboleda.dashboard.twin.bodies import Body
+from arboleda.plant_file.urdf import robot_urdf
 from arboleda.testing import shipped
 
 

@@ -6,9 +6,9 @@ import re
 
 import pytest
 
-from arboleda.app.urdf import root_link
 from arboleda.dashboard.twin import bodies, kinematics
 from arboleda.dashboard.twin.bodies import Body
+from arboleda.plant_file.urdf import root_link
 from arboleda.testing import shipped
 
 ROBOT = """<robot name="r"><link name="a"/><link name="b"><visual><geometry>{shape}</geometry></visual></link>

@@ -7,9 +7,9 @@ from collections.abc import Sequence
 
 import pytest
 
-from arboleda.app.urdf import robot_urdf
 from arboleda.dashboard.twin import kinematics
 from arboleda.dashboard.twin.bodies import Body, links
+from arboleda.plant_file.urdf import robot_urdf
 from arboleda.testing import shipped
 
 from ...description import drawn

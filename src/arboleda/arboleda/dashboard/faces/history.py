@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from arboleda.adapters.task_rows import TaskRow, sentence_of
+from arboleda.store.task_rows import TaskRow, sentence_of
 
 from ..wording import Words
 from . import Face

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from arboleda.adapters.task_rows import TaskRow, answers_of, choice_of, sentence_of
+from arboleda.store.task_rows import TaskRow, answers_of, choice_of, sentence_of
 
 from ..tree_memory import EndedTree
 from . import Face, answers

@@ -10,11 +10,11 @@ from fastapi import FastAPI, Request
 from fastapi.responses import JSONResponse
 from nicegui import Client, app, ui
 
-from arboleda.adapters.web.api import task_asked
-from arboleda.adapters.web.auth import SUBMIT, allowed, require
-from arboleda.adapters.web.schema import TaskText
 from arboleda.model.errors import PayloadError
 from arboleda.model.messages import Verb
+from arboleda.web.api import task_asked
+from arboleda.web.auth import SUBMIT, allowed, require
+from arboleda.web.schema import TaskText
 
 from .. import header, shell
 from ..frames import Background, Frames

@@ -1,6 +1,6 @@
 """The store of a plant that two hosts reach: the row that says who leads, and what is kept behind it.
 
-The row does as the statements of `adapters/postgres` do on a server; `tests/contract/test_leader_row.py`
+The row does as the statements of `store/postgres` do on a server; `tests/contract/test_leader_row.py`
 holds the one against the other.
 """
 

@@ -1,1 +1,0 @@
-"""Composition: plant file, parts, command line. The only code that knows everything."""

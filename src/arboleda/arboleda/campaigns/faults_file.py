@@ -1,0 +1,107 @@
+"""What `--faults FILE` holds: what goes wrong and what people do, or a broken seed of `--json`."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import yaml
+
+from arboleda.model.errors import ConfigError
+from arboleda.plant_file import user_file
+from arboleda.plant_file.yaml_marks import LARGEST, MOST_VALUES, YamlFault, parse
+from arboleda.simulator.run import MINUTE_S
+
+LARGEST_SUMMARY = 16 * 1024 * 1024  # bytes of what --json wrote of many thousand seeds
+SUMMARY = "seeds"  # the key that a file of --json has, and no other
+SIMULATED = ("faults", "people")  # what of a broken seed is simulated again
+
+
+@dataclass(frozen=True, kw_only=True)
+class FaultsFile:
+    """`climate` is what Climate.from_file and script_from take; of a broken seed also which it is, and how
+    long it ran.
+
+    `plant_file` is the content of the plant's file, where it was drawn; `standby`: it ran on two hosts.
+    """
+
+    climate: Any
+    seed: int | None = None
+    plant: str | None = None
+    plant_file: dict[str, Any] | None = None
+    seconds: float | None = None
+    standby: bool = False
+
+
+def read(path: Path, seed: int | None) -> FaultsFile:
+    """The file; of a summary the broken seed of that number, None for its first one. Else ConfigError."""
+    data = _data(path)
+    if not isinstance(data, dict):
+        return FaultsFile(climate=data)
+    if SUMMARY not in data:
+        return FaultsFile(climate=data, plant=_plant(path, data))
+    try:
+        return replace(_broken(path, data[SUMMARY], seed), standby=data.get("standby") is True)
+    except (KeyError, TypeError):
+        raise ConfigError((f"{path}: is not what `arboleda simulate --json` writes",)) from None
+
+
+def _broken(path: Path, rows: list[dict[str, Any]], seed: int | None) -> FaultsFile:
+    broken = [row for row in rows if row["broken"]]
+    for row in broken:
+        if seed in (None, row["seed"]):
+            seconds = row["broken"]["minutes"] * MINUTE_S
+            climate = {key: row["broken"][key] for key in SIMULATED if key in row["broken"]}
+            file = row["broken"].get("plant_file")
+            return FaultsFile(
+                climate=climate, seed=row["seed"], plant=row["plant"], plant_file=file, seconds=seconds
+            )
+    there = f"; there are {', '.join(str(row['seed']) for row in broken)}" if broken else ""
+    raise ConfigError((f"{path}: has no broken seed{'' if seed is None else f' {seed}'}{there}",))
+
+
+def _plant(path: Path, data: dict[str, Any]) -> str | None:
+    plant = data.get("plant")
+    if plant is None or isinstance(plant, str):
+        return plant
+    raise ConfigError((f"{path}: {line_of(path, ('plant',))}plant is the name of a plant, not {plant!r}",))
+
+
+def line_of(path: Path, place: Sequence[str | int]) -> str:
+    """Where in the file this is, for the beginning of a sentence; empty where that cannot be said."""
+    try:
+        node, mark = parse(user_file.read_bytes(path, LARGEST))[0], None
+    except (ConfigError, YamlFault):
+        return ""
+    for step in place:
+        if step not in node.children:
+            break
+        node, mark = node.children[step], node.keys.get(step, node.children[step].mark)
+    return f"line {mark.line}: " if mark is not None else ""
+
+
+def _data(path: Path) -> Any:
+    written_by_us = path.suffix == ".json"
+    text = user_file.read_text(path, LARGEST_SUMMARY if written_by_us else LARGEST)
+    try:
+        data = json.loads(text) if written_by_us else yaml.safe_load(text)
+    except (ValueError, yaml.YAMLError, RecursionError) as error:
+        sentence = " ".join(str(error).split())
+        raise ConfigError((f"{path}: cannot be read: {sentence}",)) from None
+    if not written_by_us and _values(data) > MOST_VALUES:
+        raise ConfigError((f"{path}: has more than {MOST_VALUES} values",))
+    return data
+
+
+def _values(data: Any) -> int:
+    """How many values there are, at most MOST_VALUES + 1: ten anchors in ten lines, each of which repeats the
+    one before nine times, are hundreds of millions."""
+    count, left = 0, [data]
+    while left and count <= MOST_VALUES:
+        value = left.pop()
+        count += 1
+        left += value.values() if isinstance(value, dict) else value if isinstance(value, list) else ()
+    return count

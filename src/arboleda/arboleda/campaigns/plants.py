@@ -1,0 +1,59 @@
+"""Which plant a seed is simulated on; `random_plants.py` has those that seeds draw."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, Protocol
+
+from arboleda.model.plant_model import Link, PlantModel
+from arboleda.recorder.preamble import NO_FILES, PlantFiles
+
+ELSEWHERE = (Link.ROS, Link.NONE, Link.DRIVER)  # who has no board on MQTT, and gets a virtual one
+
+
+@dataclass(frozen=True, kw_only=True)
+class Plant:
+    """One plant: `declared` as its file says it, `file` its content where no file of the user has it.
+
+    `files` are those that it was read from, for a record of it.
+    """
+
+    declared: PlantModel
+    file: dict[str, Any] | None = None
+    files: PlantFiles = NO_FILES
+
+    @property
+    def name(self) -> str:
+        return self.declared.name
+
+    @cached_property
+    def model(self) -> PlantModel:
+        """As it is simulated: every robot on MQTT, where the simulator has boards for them."""
+        return self.declared.on_boards(*ELSEWHERE)
+
+
+class Plants(Protocol):
+    """The plant of each seed."""
+
+    def of(self, seed: int) -> Plant: ...
+
+
+@dataclass(frozen=True, kw_only=True)
+class PlantRotation:
+    """Some plants, seed n on number n modulo their count."""
+
+    plants: tuple[Plant, ...]
+
+    def of(self, seed: int) -> Plant:
+        return self.plants[seed % len(self.plants)]
+
+
+def notes(plants: Iterable[Plant]) -> list[str]:
+    """What a person should know about how these plants are simulated."""
+    robots = [robot for plant in plants for robot in plant.declared.robots.values()]
+    names = {link: ", ".join(robot.name for robot in robots if robot.link is link) for link in Link}
+    instead = "simulated as if each had a virtual board on MQTT"
+    others = [link for link in ELSEWHERE if names[link]]
+    return [f"declared link: {link.value}, {instead}: {names[link]}" for link in others]

@@ -1,0 +1,305 @@
+"""`arboleda certs`: an authority of a lab's own, and what it signs for a plant and its boards."""
+
+from __future__ import annotations
+
+import os
+import re
+import socket
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from datetime import datetime, timedelta, timezone
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from arboleda.adapters.broker_login import CA as MQTT_CA
+from arboleda.adapters.broker_login import CERTIFICATE as MQTT_CERTIFICATE
+from arboleda.adapters.broker_login import KEY as MQTT_KEY
+from arboleda.model.errors import StartError
+from arboleda.model.outside import quoted
+from arboleda.model.plant_model import Link, PlantModel
+from arboleda.plant_file import loader
+from arboleda.plant_file.user_file import read_bytes
+from arboleda.runtime import invocation
+from arboleda.web.names import own_names
+from arboleda.web.own_addresses import own_addresses
+
+from . import mosquitto_files
+from .plant_options import PlantFile
+
+if TYPE_CHECKING:  # most installs are without its library
+    from arboleda.adapters.authority import Authority, Pair
+
+CA, PLANT, BOARDS, BROKER, MOSQUITTO = "ca", "plant", "boards", "broker", "mosquitto"
+DAYS = 825  # what browsers and their systems take at most
+SOON = timedelta(days=30)
+LARGEST = 100_000  # bytes of a file of certificates
+NAME = re.compile(
+    r"(?=.{1,253}$)[A-Za-z0-9]([A-Za-z0-9-]*[A-Za-z0-9])?(\.[A-Za-z0-9]([A-Za-z0-9-]*[A-Za-z0-9])?)*"
+)
+ADDRESS = re.compile(r"[0-9.]+|[0-9A-Fa-f:.]*:[0-9A-Fa-f:.]*")
+
+Folder = Annotated[Path, typer.Argument(metavar="FOLDER", help="Where they are, or are to be.")]
+Names = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--name",
+        metavar="NAME",
+        help="Another name or address by which this machine is called; those that it has itself are there.",
+    ),
+]
+Mosquitto = Annotated[
+    list[str] | None,
+    typer.Option(
+        metavar="NAME",
+        help="Write a folder `mosquitto` as well, for a broker with that name or address: its certificate, "
+        "its configuration, and who may do what there.",
+    ),
+]
+At = Annotated[
+    Path, typer.Option(metavar="PATH", help="Where the machine of that broker is to have that folder.")
+]
+Days = Annotated[int, typer.Option(metavar="N", min=1, max=3650, help="How long a new certificate holds.")]
+Renew = Annotated[
+    list[str] | None,
+    typer.Option(metavar="WHO", help="Make that one anew: plant, or a board's MQTT name."),
+]
+
+
+def certs(
+    folder: Folder = Path("certs"),
+    name: Names = None,
+    mosquitto: Mosquitto = None,
+    at: At = Path("/etc/mosquitto/arboleda"),
+    days: Days = DAYS,
+    renew: Renew = None,
+    plant: PlantFile = None,
+) -> None:
+    """Make a small authority for a lab, and certificates for the plant on this machine and for each board.
+
+    What is there already stays as it is; a board that came into the plant file since gets its own.
+
+    Exit status: 0 all of them are there, 1 they could not be made, and nothing is changed; 2 bad input.
+    """
+    model = loader.load(plant, recipes=False)
+    named, of_broker = ([_checked(each) for each in names or ()] for names in (name, mosquitto))
+    boards = _boards(model)
+    if taken := {PLANT, BROKER} & set(boards):
+        raise StartError(f"a board cannot have the MQTT name {taken.pop()} here: it is that of another")
+    hosts = (PLANT, BROKER) if of_broker else (PLANT,)
+    if unknown := sorted(set(renew or ()) - {*hosts, *boards}):
+        raise typer.BadParameter(
+            f"nobody here is called {quoted(unknown[0])}; there are {', '.join((*hosts, *boards))}"
+        )
+    now = datetime.now(timezone.utc).replace(microsecond=0)
+    with _library():
+        found = _found(folder, now)
+    lab = _Lab(folder=folder, authority=found, now=now, days=days, renewed=frozenset(renew or ()))
+    own = ["localhost", *sorted(own_names()), *own_addresses(), "::1"]
+    lab.host(folder / PLANT, PLANT, named, own)
+    for board in boards:
+        lab.board(board)
+    if of_broker:
+        lab.host(folder / MOSQUITTO / BROKER, BROKER, of_broker, ())
+        for called, text in mosquitto_files.texts(at, PLANT).items():
+            lab.text(folder / MOSQUITTO / called, text.encode())
+        lab.text(folder / MOSQUITTO / f"{CA}.crt", found.pair.certificate)
+    lab.write()
+    print("\n".join([*lab.lines, "", *_next(folder, boards), *(_of_broker(folder, at) if of_broker else ())]))
+
+
+@dataclass(kw_only=True)
+class _Lab:
+    """What is there of a lab's certificates, and what is to be written."""
+
+    folder: Path
+    authority: Authority
+    now: datetime
+    days: int
+    renewed: frozenset[str]
+    lines: list[str] = field(default_factory=list)  # one of each certificate, for a person
+    _fresh: list[tuple[Path, bytes, int]] = field(default_factory=list)  # with its mode
+
+    def __post_init__(self) -> None:
+        path = self.folder / CA
+        made = not path.with_suffix(".crt").exists()
+        if made:
+            self._add(path, self.authority.pair)
+        self._say(path, made, self.authority.until, "who believes it believes the others")
+
+    def host(self, path: Path, user: str, named: Sequence[str], own: Sequence[str]) -> None:
+        """The certificate of a server with the names that somebody gave it, and those that it has itself."""
+        names = list(dict.fromkeys([*named, *(each for each in own if _is_name(each))]))
+        there = self._there(path, user)
+        if there is None:
+            self._make(path, self.authority.host(user, names, self.now, self.days), " ".join(names))
+            return
+        until, has = there
+        if lacks := [each for each in named if each not in has]:
+            raise StartError(
+                f"{path}.crt is there and does not have {quoted(lacks[0])}; --renew {user} makes it anew"
+            )
+        new = [each for each in names if each not in has]
+        more = f"; not {' '.join(new)}, which this machine is called now: --renew {user}" if new else ""
+        self._say(path, False, until, " ".join(has) + more, user)
+
+    def board(self, user: str) -> None:
+        """The certificate by which a board logs in."""
+        path = self.folder / BOARDS / user
+        there = self._there(path, user)
+        if there is None:
+            self._make(path, self.authority.client(user, self.now, self.days), user)
+        else:
+            self._say(path, False, there[0], user, user)
+
+    def text(self, path: Path, content: bytes) -> None:
+        """Another file; StartError where one of that name says something else."""
+        if not os.path.lexists(path):
+            self._fresh.append((path, content, 0o644))
+        elif read_bytes(path, LARGEST) != content:
+            raise StartError(f"{path} is there and says something else; move it away to have it written anew")
+
+    def write(self) -> None:
+        """All that is new; StartError, and nothing changed, where the machine does not take it."""
+        done: list[tuple[Path, Path]] = []
+        try:
+            self._makedirs()
+            for path, content, mode in self._fresh:
+                fresh = path.with_name(f".{path.name}.{os.getpid()}")
+                done.append((fresh, path))
+                with os.fdopen(os.open(fresh, os.O_WRONLY | os.O_CREAT | os.O_EXCL, mode), "wb") as file:
+                    file.write(content)
+            for fresh, path in done:
+                os.replace(fresh, path)
+        except OSError as error:
+            raise StartError(f"{self.folder} cannot be written: {error.strerror}") from error
+        finally:
+            for fresh, _ in done:
+                fresh.unlink(missing_ok=True)
+
+    def _makedirs(self) -> None:
+        for each in sorted({self.folder, *(path.parent for path, _, _ in self._fresh)}):
+            each.mkdir(mode=0o700, parents=True, exist_ok=True)
+
+    def _there(self, path: Path, user: str) -> tuple[datetime, tuple[str, ...]] | None:
+        """Until when the certificate of those files holds, and its names; None where it is to be made."""
+        if user in self.renewed or not _is_there(path):
+            return None
+        with _about(f"{path}.crt"):
+            facts = self.authority.signed(read_bytes(Path(f"{path}.crt"), LARGEST))
+        if facts is None:
+            raise StartError(f"{path}.crt is not of {self.folder / CA}.crt; --renew {user} makes it anew")
+        return facts.until, facts.names
+
+    def _make(self, path: Path, pair: Pair, says: str) -> None:
+        self._add(path, pair)
+        facts = self.authority.signed(pair.certificate)
+        assert facts is not None
+        self._say(path, True, facts.until, says)
+
+    def _add(self, path: Path, pair: Pair) -> None:
+        self._fresh += [
+            (Path(f"{path}.key"), pair.key, 0o600),
+            (Path(f"{path}.crt"), pair.certificate, 0o644),
+        ]
+
+    def _say(self, path: Path, made: bool, until: datetime, says: str, user: str = "") -> None:
+        held = f"until {until:%Y-%m-%d}"
+        if until < self.now + SOON:
+            how = f"--renew {user}" if user else "a new folder, and its ca.crt to everybody"
+            held = f"{'HAS EXPIRED' if until < self.now else 'expires'} {until:%Y-%m-%d}: {how}"
+        self.lines.append(f"{path}.crt  {'made' if made else 'was there'}, {held}  {says}")
+
+
+def _found(folder: Path, now: datetime) -> Authority:
+    """The authority of that folder, a new one where it has none."""
+    from arboleda.adapters import authority
+
+    path = folder / CA
+    if not _is_there(path):
+        return authority.new(f"{socket.gethostname()[:40]} {now:%Y-%m-%d}", now)
+    pair = [read_bytes(Path(f"{path}{ending}"), LARGEST) for ending in (".crt", ".key")]
+    with _about(f"{path}.crt"):
+        known = authority.Authority(authority.Pair(certificate=pair[0], key=pair[1]))
+        if known.until <= now:
+            raise StartError(f"has expired on {known.until:%Y-%m-%d}; make a new folder")
+    return known
+
+
+def _is_there(path: Path) -> bool:
+    """Whether both files of a certificate are; StartError where one is missing."""
+    there = [ending for ending in (".crt", ".key") if os.path.lexists(f"{path}{ending}")]
+    if len(there) == 1:
+        other = ".key" if there == [".crt"] else ".crt"
+        raise StartError(
+            f"{path}{there[0]} is there without {path}{other}; put it back, or move {path}{there[0]} away"
+        )
+    return bool(there)
+
+
+def _boards(model: PlantModel) -> list[str]:
+    """The MQTT names of the robots that are reached so, drivers of one's own left out."""
+    return [robot.mqtt for robot in model.robots.values() if robot.link is Link.MQTT]
+
+
+def _checked(name: str) -> str:
+    if not _is_name(name):
+        raise typer.BadParameter(
+            f"{quoted(name)} is neither a name of a machine nor an address; write e.g. plant.lab"
+        )
+    return name.lower()
+
+
+def _is_name(text: str) -> bool:
+    if ADDRESS.fullmatch(text):
+        family = socket.AF_INET6 if ":" in text else socket.AF_INET
+        try:
+            return socket.inet_ntop(family, socket.inet_pton(family, text)) == text.lower()
+        except OSError:
+            return False
+    return NAME.fullmatch(text) is not None
+
+
+@contextmanager
+def _about(file: str) -> Iterator[None]:
+    """Put before what is wrong which file it is about."""
+    try:
+        yield
+    except StartError as error:
+        raise StartError(f"{file} {error}") from error
+
+
+@contextmanager
+def _library() -> Iterator[None]:
+    try:
+        yield
+    except ModuleNotFoundError as error:
+        raise StartError(
+            f"certificates are made with the library {error.name}, which is not installed here; type "
+            f"`{invocation.python()} -m pip install 'arboleda[certs]'`"
+        ) from error
+
+
+def _next(folder: Path, boards: Sequence[str]) -> list[str]:
+    """What is to be done with the files."""
+    lines = [
+        f"{folder}/{CA}.key signs: who has it is believed by all of them. Keep it off the network.",
+        f"{folder}/{CA}.crt goes to everybody who is to believe this plant: boards, browsers, "
+        f"other machines (${MQTT_CA}).",
+        f"{folder}/{PLANT}.crt and .key stay on this machine, for --tls-cert and --tls-key of `arboleda up`.",
+    ]
+    if boards:
+        lines.append(f"{folder}/{BOARDS}/NAME.crt and .key go to the board of that name, and nowhere else.")
+    return lines
+
+
+def _of_broker(folder: Path, at: Path) -> list[str]:
+    """What is to be done with the files of mosquitto."""
+    return [
+        f"{folder}/{MOSQUITTO}/ goes to {at} of the broker's machine, owned by the user that mosquitto has "
+        f"there: mosquitto -c {at}/{mosquitto_files.CONFIGURATION}",
+        f"The plant uses it with --broker mqtts://NAME, ${MQTT_CA}={folder}/{CA}.crt, "
+        f"${MQTT_CERTIFICATE}={folder}/{PLANT}.crt and ${MQTT_KEY}={folder}/{PLANT}.key",
+    ]

@@ -1,0 +1,253 @@
+"""Talks to a plant for the commands that need one: to the process on its state directory, or where that does
+not lead it, to who does."""
+
+from __future__ import annotations
+
+import sys
+import time
+from collections.abc import Iterator
+from contextlib import suppress
+from pathlib import Path
+from typing import Any
+from urllib.parse import quote, urlencode
+
+from arboleda.model.errors import ArboledaError
+from arboleda.model.messages import ENDED, Outcome, TaskState, Verb
+from arboleda.model.outside import plain
+from arboleda.runtime import endpoints
+from arboleda.runtime.leader import of_standby
+from arboleda.runtime.state import Running, find_running, running_plants
+
+from .line import TIMEOUT_S, Answer, FarLine, Line, PlantSilent
+from .remote_plant import NoLeader, RemotePlant
+
+LONGEST = 500  # characters of a line
+NEXT_S = 30.0  # by then a plant that lost its leader has the next one
+NOBODY_S = 5.0  # who stood by needs less to begin; while it does, nobody leads and nobody waits
+LOOK_S = 0.2
+FOLLOWED_S = 120.0  # a homing may take a minute
+URGENT_S = 1.5  # a stop is answered within some ms
+STANDS_BY = "this process stands by and does nothing itself: it {it}"
+LOST_TASK = (
+    "It may have taken the task: `arboleda tasks` says so. With an id of yours, as in `sis_a 0B 7 #lot42`, it"
+    " can be sent again and is one task."
+)
+
+
+class PlantGone(ArboledaError):
+    """The plant was there, and is no more."""
+
+    def __init__(self) -> None:
+        super().__init__("the plant has ended")
+
+
+class PlantClient:
+    """One-sentence ArboledaErrors: no plant, no answer, or what the plant said.
+
+    Whom it asks on another host it says once, on standard error.
+    """
+
+    def __init__(self, state: Path, elsewhere: RemotePlant | None = None) -> None:
+        self._state = state
+        self._elsewhere = elsewhere or RemotePlant(state, lambda: ("", ""), dict)
+        self._listening: Line | None = None  # whoever tells changes is asked, too
+        self._said = ""
+
+    def submit(self, text: str) -> dict[str, Any]:
+        """The queued task; TextError where the text is refused, QueueFull where the plant takes none now."""
+        try:
+            # An id makes it one task, however often it is sent; without one it is never sent again.
+            return self._ask("POST", "/api/tasks", {"text": text}, repeatable="#" in text)
+        except PlantSilent as error:
+            if not error.may_have_heard:
+                raise
+            raise PlantSilent(f"{error} {LOST_TASK}", may_have_heard=True) from error
+
+    def status(self) -> dict[str, Any]:
+        """The view of the plant."""
+        return self._ask("GET", "/api/plant")
+
+    def task(self, task: str) -> dict[str, Any]:
+        """One task by its id."""
+        return self._ask("GET", f"/api/tasks/{task}")
+
+    def operate(self, verb: Verb, scope: str = "", *, by_hand: bool = False) -> dict[str, Any]:
+        """Have the plant (no scope) or one cell, robot, zone or task do it; Refused where it does not."""
+        where = f"cells/{quote(scope, safe='')}" if scope else "plant"
+        body = {"by_hand": True} if by_hand else None
+        stops = verb is Verb.STOP
+        return self._ask("POST", f"/api/{where}/{verb.value}", body, repeatable=stops, urgent=stops)
+
+    def outcome(self, act: int) -> dict[str, Any]:
+        """What has become of an act, once it has ended; after FOLLOWED_S as it is then."""
+        until = time.monotonic() + FOLLOWED_S
+        while True:
+            row: dict[str, Any] = self._ask("GET", f"/api/acts/{act}")
+            if row["outcome"] != Outcome.UNDER_WAY.value or time.monotonic() > until:
+                return row
+            time.sleep(LOOK_S)
+
+    def changes(self) -> Iterator[tuple[str, dict[str, Any]]]:
+        """What `GET /api/events` says, as it happens: the kind of each event and its row, `snapshot` first.
+
+        A reader that was too slow is told a new snapshot, and so is that of a plant with a database whose
+        next leader is there within NEXT_S; Gone where the plant has ended.
+        """
+        epoch, cut_at = None, None
+        while True:
+            running, trouble = find_running(self._state), None
+            try:
+                line = self._leading()
+                for kind, row in line.events():
+                    if kind == "snapshot":
+                        self._say(line, "asked" if epoch in (None, row["epoch"]) else "followed")
+                        epoch = row["epoch"]
+                    self._listening, cut_at = line, None
+                    yield kind, row
+            except ArboledaError as error:
+                if epoch is None:
+                    raise
+                trouble = error
+            finally:
+                self._listening = None
+            cut_at = cut_at or time.monotonic()
+            if time.monotonic() - cut_at > self._patience_s(running, trouble):
+                raise PlantGone from trouble
+            time.sleep(LOOK_S)
+
+    def _patience_s(self, before: Running | None, trouble: ArboledaError | None) -> float:
+        """For how long after a cut somebody may tell on."""
+        if not self._elsewhere.is_known:
+            return NEXT_S if trouble is None and find_running(self._state) == before else 0.0
+        return NOBODY_S if isinstance(trouble, NoLeader) and not trouble.awaited else NEXT_S
+
+    def follow(self, task: dict[str, Any]) -> Iterator[dict[str, Any]]:
+        """The task each time that its state changes, until it has ended; ArboledaError where the plant ends
+        before."""
+        if TaskState(task["state"]) in ENDED:
+            return
+        try:
+            for now in self._told_of(task["id"]):
+                if now["state"] != task["state"]:
+                    yield (task := now)
+                if TaskState(task["state"]) in ENDED:
+                    return
+        except PlantGone as error:
+            raise ArboledaError(
+                f"the plant has ended, and #{task['id']} has not: its next start has it again"
+            ) from error
+
+    def _told_of(self, id: str) -> Iterator[dict[str, Any]]:
+        for kind, row in self.changes():
+            rows = row["tasks"] if kind == "snapshot" else [row] if kind == "task" else []
+            found = [each for each in rows if each["id"] == id]
+            yield from found or (self._kept(id) if kind == "snapshot" else ())
+
+    def _kept(self, id: str) -> list[dict[str, Any]]:
+        """The task as the history has it: a leader need not know what ended under the one before."""
+        rows = self._ask("GET", f"/api/history?{urlencode({'words': id})}")
+        return [row for row in rows if row["id"] == id]
+
+    def _ask(
+        self,
+        method: str,
+        path: str,
+        body: dict[str, Any] | None = None,
+        *,
+        repeatable: bool = False,
+        urgent: bool = False,
+    ) -> Any:
+        """`repeatable`: nothing is done twice where two processes of the plant hear it. `urgent`: a process
+        here that is slow keeps it from a leader elsewhere for no longer than URGENT_S."""
+        line = self._listening or self._near() or self._far()
+        hurries = urgent and self._elsewhere.is_known and not isinstance(line, FarLine)
+        try:
+            answer = line.ask(method, path, body, within_s=URGENT_S if hurries else TIMEOUT_S)
+        except PlantSilent as error:
+            other = self._instead(line, error, repeatable=repeatable or method == "GET")
+            if other is None and not hurries:
+                raise
+            line = other or line  # with the rest of its time
+            answer = line.ask(method, path, body)
+        if answer.stands_by and not isinstance(line, FarLine):
+            line = self._beyond(answer)
+            answer = line.ask(method, path, body)
+        self._say(line, "asked")
+        return line.taken(answer)
+
+    def _leading(self) -> Line:
+        """To whoever leads the plant now."""
+        line = self._near()
+        if line is None:
+            return self._far()
+        answer = line.ask("GET", "/api/plant")
+        return self._beyond(answer) if answer.stands_by else line
+
+    def _near(self) -> Line | None:
+        """To the process on the state directory, None where none can be asked."""
+        running = find_running(self._state)
+        if running is None or running.port is None:
+            return None
+        return Line(
+            endpoints.here(self._state, running), f"The plant on {self._state} (process {running.pid})"
+        )
+
+    def _beyond(self, answer: Answer) -> FarLine:
+        """To the process that leads the plant, as one that stands by says it."""
+        sentence = answer.sentence if answer.status >= 300 else STANDS_BY.format(it=answer.sentence)
+        led = of_standby(answer.said)
+        if not led.url:
+            raise ArboledaError(sentence)
+        try:
+            return self._elsewhere.line(led)
+        except ArboledaError as error:
+            raise ArboledaError(f"{sentence}. {error}") from error
+
+    def _far(self) -> FarLine:
+        """To the process that leads the plant, as its database says it; else what is the matter here."""
+        running = find_running(self._state)
+        if running is None:
+            here = f"No plant is running on {self._state}"
+        else:
+            here = f"The plant on {self._state} (process {running.pid}) is still starting or ending"
+        try:
+            led = self._elsewhere.led()
+            if led is not None:
+                return self._elsewhere.line(led)
+        except NoLeader as error:
+            raise NoLeader(f"{here}. {error}", awaited=error.awaited or running is not None) from error
+        except ArboledaError as error:
+            raise ArboledaError(f"{here}. {error}") from error
+        raise ArboledaError(f"{here}; {_others()}." if running is None else f"{here}.")
+
+    def _instead(self, line: Line, silent: PlantSilent, *, repeatable: bool) -> Line | None:
+        """To another process that leads the plant, where one on this host was silent; None where none does,
+        Silent where it must not be asked as well."""
+        led, running = None, find_running(self._state)
+        if not isinstance(line, FarLine):
+            with suppress(ArboledaError):  # what matters is that the one here was silent
+                led = self._elsewhere.led()
+        if led is None or (led.here and running is not None and led.process == running.pid):
+            return None
+        if silent.may_have_heard and not repeatable:
+            sentence = f"{silent} Plant {led.plant} is led on {led.host} now."
+            raise PlantSilent(sentence, may_have_heard=True) from silent
+        return self._elsewhere.line(led)
+
+    def _say(self, line: Line, done: str) -> None:
+        """Whom it asks, where that is not the process here."""
+        if not isinstance(line, FarLine) and done == "asked":
+            return
+        said = f"plant {line.place.plant} is led on {line.host}: {done} there"
+        if said != self._said:
+            print(plain(said, LONGEST), file=sys.stderr, flush=True)
+            self._said = said
+
+
+def _others() -> str:
+    """What to do where no plant runs on a state directory: those that run are named."""
+    found = running_plants()
+    if not found:
+        return "start one with `arboleda up`, or name its directory where it was started with --state"
+    named = ", ".join(f"{plain(path.name)} (--state {plain(str(path), LONGEST)})" for path in found)
+    return f"{'the one that runs is' if len(found) == 1 else 'those that run are'} {named}"

@@ -1,0 +1,72 @@
+"""The command `arboleda new`: a folder with a plant of one's own that runs."""
+
+from __future__ import annotations
+
+import shlex
+from collections.abc import Mapping
+from importlib.resources import files
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from arboleda.model.errors import ConfigError, StartError
+from arboleda.model.outside import quoted
+from arboleda.plant_file.shapes import PLANT_NAME_RULE, is_plant_name
+from arboleda.runtime import invocation
+
+# by what they are called here; pytest must not take the tests of the new plant for tests of Arboleda
+WRITTEN = {"plant.yaml": "plant.yaml", "recipes.py": "recipes.py", "tests_of_plant.py": "test_plant.py"}
+NAMED = "PLANT"  # stands for the plant's name in what is written
+
+
+def new(
+    folder: Annotated[
+        Path, typer.Argument(metavar="FOLDER", help="The folder to write; its name is that of the plant.")
+    ],
+) -> None:
+    """Write a plant of your own: an arm, a device, a recipe and a test, in a folder of its own."""
+    written = write(folder)
+    command, plant = invocation.command(), shlex.quote(str(written[0]))
+    for file in written:
+        typer.echo(f"wrote {file}")
+    typer.echo(
+        f"""
+What is wrong with it, line by line:
+  {command} check {plant}
+On virtual devices, with a page:
+  {command} up "cell press feed 3" --plant {plant}
+With faults; the first line once, for pytest has to be beside Arboleda:
+  {invocation.python()} -m pip install pytest
+  {invocation.python()} -m pytest {shlex.quote(str(folder))}
+
+What the devices can do is in plant.yaml, what they do together in recipes.py. Change them, check again."""
+    )
+
+
+def write(folder: Path) -> list[Path]:
+    """The files of a new plant; errors are those of `write_files`, and ConfigError for a bad name."""
+    name = folder.resolve().name
+    if not is_plant_name(name):
+        raise ConfigError((f"{quoted(name)} cannot be the name of a plant; it must be {PLANT_NAME_RULE}",))
+    starter = files("arboleda").joinpath("starter")
+    texts = {called: starter.joinpath(source).read_text("utf-8") for source, called in WRITTEN.items()}
+    return write_files(folder, {called: text.replace(NAMED, name) for called, text in texts.items()})
+
+
+def write_files(folder: Path, texts: Mapping[str, str]) -> list[Path]:
+    """The files of a folder, by their paths in it; ConfigError, and nothing written, where one is there.
+
+    StartError where the machine does not take them.
+    """
+    targets = {folder / called: text for called, text in texts.items()}
+    there = next((each for each in targets if each.exists()), None)
+    if there is not None:
+        raise ConfigError((f"{there} is there already; nothing was written. Choose another folder",))
+    try:
+        for target, text in targets.items():
+            target.parent.mkdir(parents=True, exist_ok=True)
+            target.write_text(text, "utf-8")
+    except OSError as error:
+        raise StartError(f"{folder} cannot be written: {error.strerror or error}") from error
+    return list(targets)

@@ -1,0 +1,62 @@
+"""The command `arboleda nodes`: what a tree can be made of in a plant, for people and for editors."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Annotated
+
+import typer
+
+from arboleda.bt_xml import leaves, writing
+from arboleda.bt_xml.nodes import Kind, PortDirection
+from arboleda.bt_xml.recipe import TreeRecipe
+from arboleda.model.plant_model import PlantModel
+from arboleda.plant_file import loader
+
+from .plant_options import PlantFile
+
+CellName = Annotated[str | None, typer.Option("--cell", help="Those of one cell. [default: of all]")]
+
+
+def nodes(
+    plant: PlantFile = None,
+    cell: CellName = None,
+    as_xml: Annotated[
+        bool, typer.Option("--xml", help="Print a TreeNodesModel, which editors of trees read.")
+    ] = False,
+) -> None:
+    """List what a tree can tell the devices of a plant, and ask them, with values.
+
+    An editor such as Groot2 draws with it: `arboleda nodes --xml > plant_nodes.xml`. `arboleda check tend.xml
+    --plant FILE` checks a tree against it.
+    """
+    known = of_plant(loader.load(plant), cell)
+    if as_xml:
+        print(writing.document([writing.models(known.values())]), end="")
+        return
+    for kind in known.values():
+        print(_line(kind))
+
+
+def of_plant(model: PlantModel, cell: str | None) -> Mapping[str, Kind]:
+    """The kinds of nodes of a plant, or of one of its cells, by name; those in Python with them."""
+    names = [each.name for each in model.cells]
+    if cell is not None and cell not in names:
+        raise typer.BadParameter(f"'{cell}' is not a cell; there are {', '.join(names)}", param_hint="--cell")
+    chosen = [each for each in model.cells if cell in (None, each.name)]
+    trees = [each for each in model.recipes if isinstance(each, TreeRecipe)]
+    return leaves.of_cells(chosen, {name: own for tree in trees for name, own in tree.own.items()}.values())
+
+
+def _line(kind: Kind) -> str:
+    ports = (kind.ports or {}).values()
+    said = [
+        f"{'gives ' if each.way is PortDirection.OUT else ''}{each.name} ({_what(each.words, each.about)})"
+        for each in ports
+    ]
+    about = [f"  {kind.about}"] if kind.about else []
+    return "\n".join([f"{kind.category.value} {kind.name}{': ' if said else ''}{'; '.join(said)}", *about])
+
+
+def _what(words: tuple[str, ...], about: str) -> str:
+    return ", ".join(words) or about

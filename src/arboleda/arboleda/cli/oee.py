@@ -1,0 +1,74 @@
+"""`arboleda oee`: how much of their planned time the cells did good work."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from datetime import datetime
+from typing import Annotated
+
+import typer
+from rich.console import Console
+from rich.table import Table
+from rich.text import Text
+
+from arboleda.model.outside import plain
+from arboleda.store.oee_rows import OeeQuery
+from arboleda.views.oee import Oee
+
+from . import plant_options
+from .plant_options import PlantFile, StateFolder, StoreAddress
+from .tasks import moment
+
+HEADINGS = ("cell", "OEE", "availability", "performance", "quality", "planned", "done", "failed")
+
+
+def oee(
+    cell: Annotated[str, typer.Option(metavar="CELL", help="Only this cell.")] = "",
+    since: Annotated[
+        str, typer.Option(metavar="TIME", help="From then on: 8h ago, 7d, or 2026-11-21T06:00.")
+    ] = "24h",
+    until: Annotated[str | None, typer.Option(metavar="TIME", help="Until then. [default: now]")] = None,
+    as_json: Annotated[bool, typer.Option("--json", help="Print an object per line.")] = False,
+    plant: PlantFile = None,
+    state: StateFolder = None,
+    store: StoreAddress = "",
+) -> None:
+    """OEE of the cells, availability x performance x quality, whether the plant runs or not.
+
+    What counts as what is in docs/how-to/oee.md. Figures are of cells that had a task, of what the history
+    keeps.
+
+    Exit status: 0 printed, 1 the plant's memory cannot be read, 2 bad input.
+    """
+    query = OeeQuery(cell=cell, since_s=moment(since), until_s=moment(until))
+    rows = plant_options.history(plant, state, store).oee(query)
+    if as_json:
+        for row in rows:
+            print(json.dumps(row.data(), ensure_ascii=False))
+        return
+    console = Console(highlight=False)
+    if not rows:
+        console.print("no cell had a task in that time")
+        return
+    console.print(_table(rows))
+    for row in rows:
+        if row.missing is not None:
+            console.print(Text(f"{plain(row.cell)}: {row.missing}"), soft_wrap=True)
+
+
+def _table(rows: Sequence[Oee]) -> Table:
+    begin = datetime.fromtimestamp(max(row.since_s for row in rows)).isoformat(sep=" ", timespec="minutes")
+    drawn = Table(box=None, pad_edge=False, title=f"since {begin}", title_justify="left")
+    for heading in HEADINGS:
+        drawn.add_column(heading, overflow="fold")
+    for row in rows:
+        shares = (row.oee, row.availability, row.performance, row.quality)
+        numbers = (f"{row.planned_s / 3600:.1f} h", str(row.done), str(row.failed))
+        drawn.add_row(Text(plain(row.cell)), *map(percent, shares), *numbers)
+    return drawn
+
+
+def percent(share: float | None) -> str:
+    """`87 %`; a dash where nobody can say."""
+    return "-" if share is None else f"{100 * share:.0f} %"

@@ -1,0 +1,135 @@
+"""Which plant a command talks to: its file, its state directory, and the client of both."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from arboleda.model.outside import plain
+from arboleda.plant_file import loader
+from arboleda.runtime.endpoints import tokens_of
+from arboleda.runtime.state import default_state, find_running, last_run, plants_of_databases, running_plants
+from arboleda.runtime.stores import history_of, leadership_of
+from arboleda.store.task_rows import History
+
+from .client import PlantClient
+from .remote_plant import RemotePlant
+
+if TYPE_CHECKING:
+    from arboleda.store.postgres.leadership import Leadership
+
+LONGEST = 500  # characters of a line
+PlantFile = Annotated[
+    Path | None,
+    typer.Option(
+        "--plant", metavar="FILE", envvar="ARBOLEDA_PLANT", help="Plant file. [default: the shipped plant]"
+    ),
+]
+StateFolder = Annotated[
+    Path | None,
+    typer.Option(
+        "--state",
+        metavar="DIR",
+        envvar="ARBOLEDA_STATE",
+        help="Where the plant keeps its state. [default: $XDG_STATE_HOME/arboleda/<plant name>]",
+    ),
+]
+
+
+StoreAddress = Annotated[
+    str,
+    typer.Option(
+        "--store",
+        metavar="URL",
+        envvar="ARBOLEDA_STORE",
+        help="Database that keeps the plant's memory, postgresql://USER@HOST/DATABASE; its password is in"
+        " PGPASSWORD or ~/.pgpass. [default: what the plant file says, else a file in the state directory]",
+        show_default=False,
+    ),
+]
+
+
+TokensFile = Annotated[
+    Path | None,
+    typer.Option(
+        "--tokens",
+        metavar="FILE",
+        envvar="ARBOLEDA_TOKENS",
+        help="Lines of ADDRESS TOKEN, or PLANT TOKEN, for a plant that another host leads; mode 0600."
+        " [default: the tokens in the state directory here]",
+        show_default=False,
+    ),
+]
+
+
+def client(
+    plant: Path | None, state: Path | None, store: str = "", tokens: Path | None = None
+) -> PlantClient:
+    """The client of the plant that runs on `state`, or where that plant file keeps its state; on whatever
+    host it is led."""
+    where = located(plant, state)
+    elsewhere = RemotePlant(
+        where,
+        kept_in=lambda: _kept_in(plant, where, store),
+        known=lambda: {} if tokens is None else tokens_of(tokens),
+    )
+    return PlantClient(where, elsewhere)
+
+
+def located(plant: Path | None, state: Path | None) -> Path:
+    """The `folder`; where neither is named and the shipped plant does not run, that of the only plant that
+    runs, else of the only one that other hosts may lead, which is said then."""
+    named = folder(plant, state)
+    if plant is not None or state is not None or find_running(named) is not None:
+        return named
+    found, why = running_plants(), "that runs"
+    if not found and named not in (kept := plants_of_databases()):
+        found, why = kept, "here whose memory is in a database"
+    if len(found) != 1:
+        return named
+    print(plain(f"plant {found[0].name}, the only one {why}", LONGEST), file=sys.stderr)
+    return found[0]
+
+
+def history(plant: Path | None, state: Path | None, store: str) -> History:
+    """What became of the tasks of that plant, where it keeps them."""
+    where = located(plant, state)
+    kept_in, name = _kept_in(plant, where, store)
+    return history_of(kept_in, where, name if kept_in else name_of(plant))
+
+
+def database(plant: Path | None, state: Path | None, store: str) -> Leadership:
+    """Who leads that plant; StartError where its memory is no database."""
+    return leadership_of(*_kept_in(plant, located(plant, state), store))
+
+
+def _kept_in(plant: Path | None, where: Path, store: str) -> tuple[str, str]:
+    """The database of a plant, "" for none, and its name: that which was named, of the plant that runs there,
+    of the plant file, of the last start there."""
+    last, runs = last_run(where), find_running(where) is not None
+    if last is not None and last.store and not store and (runs or not store_of(plant)):
+        return last.store, last.plant
+    kept_in = store or store_of(plant)
+    if not kept_in:
+        return "", ""
+    if plant is None and last is not None and last.plant:
+        return kept_in, last.plant
+    return kept_in, loader.load(plant, recipes=False).name
+
+
+def store_of(plant: Path | None) -> str:
+    """The database that the plant file names, "" where it names none."""
+    return loader.load(plant, recipes=False).store
+
+
+def folder(plant: Path | None, state: Path | None) -> Path:
+    """`state`, or where that plant file keeps its state."""
+    return state or default_state(loader.load(plant, recipes=False).name)
+
+
+def name_of(plant: Path | None) -> str:
+    """The name of the plant of that file; "" where none is named."""
+    return "" if plant is None else loader.load(plant, recipes=False).name

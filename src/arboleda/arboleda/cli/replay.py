@@ -1,0 +1,291 @@
+"""`arboleda replay`: a record executed again through the core that is installed, and compared."""
+
+from __future__ import annotations
+
+import json
+import time
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from datetime import datetime
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from arboleda import __version__
+from arboleda.model.errors import ConfigError
+from arboleda.model.messages import ENDED
+from arboleda.model.outside import plain
+from arboleda.model.plant_model import PlantModel
+from arboleda.playback.record_text import moment, sentence_of
+from arboleda.playback.recorded_plant import model_of
+from arboleda.recorder.errors import NoRecord
+from arboleda.recorder.preamble import Beginning
+
+from .plant_options import StateFolder
+from .record import File, changes, last_of
+
+if TYPE_CHECKING:
+    from arboleda.recorder.reader import Record
+    from arboleda.recorder.replay import ReplayedStep
+    from arboleda.recorder.steps import RecordedStep
+
+    from .fork import Options
+
+DIFFERS = 1
+ENDS = {state.value for state in ENDED}
+LONGEST = 500  # characters of a line
+SHOWN = 120  # characters of a value that differs
+WHAT = "Execute a record again, and compare every step with what it was."
+HOW = (
+    "The plant file of the record and the files of Python that it uses are those that are run: replay only "
+    "records that you trust."
+)
+EXIT = (
+    "Exit status: 0 all steps are equal, or all of a fork happens as recorded; 1 something does not, or is "
+    "damaged; 2 no record, or one that cannot be replayed."
+)
+
+
+@dataclass(frozen=True)
+class Chosen:
+    """What of a record somebody wants to see, and how fast."""
+
+    until_ns: int | None = None
+    task: str | None = None
+    speed: float | None = None
+
+
+def add_to(cli: typer.Typer) -> None:
+    """Add the command."""
+    cli.command(help=f"{WHAT}\n\n{HOW}\n\n{EXIT}", short_help=WHAT)(replay)
+
+
+def replay(
+    file: File = None,
+    until: Annotated[
+        str | None,
+        typer.Option(metavar="TIME", help="Up to 2026-11-22T03:15:00, or 03:15:00 of its first day."),
+    ] = None,
+    task: Annotated[
+        str | None,
+        typer.Option(metavar="ID", help="Show this task only, up to its end; a fork begins as it does."),
+    ] = None,
+    speed: Annotated[
+        float | None,
+        typer.Option(metavar="X", min=0.01, help="X times as fast as it was. [default: at once]"),
+    ] = None,
+    plant: Annotated[
+        Path | None,
+        typer.Option(
+            "--plant",
+            metavar="FILE",
+            help="Another plant file: where it first does otherwise, or what it does in a fork.",
+        ),
+    ] = None,
+    fork_at: Annotated[
+        str | None,
+        typer.Option(metavar="TIME", help="From there on with virtual devices: what is otherwise."),
+    ] = None,
+    setting: Annotated[
+        list[str] | None,
+        typer.Option("--set", metavar="KEY=VALUE", help="A fork with another value: timing.stale_after_s=3"),
+    ] = None,
+    recipe: Annotated[
+        Path | None,
+        typer.Option(metavar="FILE", help="A fork whose new tasks have the recipes of this file of Python."),
+    ] = None,
+    healthy: Annotated[
+        bool, typer.Option("--healthy", help="A fork in which nothing befalls devices any more.")
+    ] = False,
+    page: Annotated[
+        bool, typer.Option("--page", help="Look at it on the page, from --until or the end of --task on.")
+    ] = False,
+    port: Annotated[
+        int | None, typer.Option(metavar="PORT", min=0, max=65535, help="Of the page. [default: 8080]")
+    ] = None,
+    state: StateFolder = None,
+) -> None:
+    from arboleda.recorder import reader
+
+    record = reader.opened(last_of(file, None, state))
+    other = any((fork_at, setting, recipe, healthy))
+    if page:
+        if speed or plant or other:
+            only = "only --until, --task and --port go with it"
+            raise ConfigError((f"--page shows a record as it was: {only}",))
+        _show(record, until, task, port)
+        return
+    _refuse_part(record)
+    for line in _notes(record.first.beginning, plant):
+        _say(line)
+    began_ns = record.first.began_ns
+    end_ns = None if until is None else _time("--until", until, began_ns)
+    if not other:
+        _compare(record, plant, Chosen(end_ns, task, speed))
+        return
+    from . import fork
+
+    at_ns = None if fork_at is None else _time("--fork-at", fork_at, began_ns)
+    settings = tuple(setting or ())
+    changed = fork.Options(settings=settings, plant=plant, recipe=recipe, healthy=healthy)
+    _fork(record, replace(changed, at_ns=at_ns, task=task, until_ns=end_ns))
+
+
+def _refuse_part(record: Record) -> None:
+    if record.missing:
+        gone = f"its first {record.missing} files were deleted to make room"
+        raise NoRecord(f"{record.paths[0]} cannot be replayed, only read: {gone}.")
+
+
+def _compare(record: Record, plant: Path | None, chosen: Chosen) -> None:
+    """Say whether every step is what it was."""
+    last = _run(record, model_of(record.first.beginning, plant), chosen)
+    if last is None:
+        raise NoRecord(f"{_nothing(record, chosen)}, so that nothing was compared.")
+    _finish(record, last)
+
+
+def _nothing(record: Record, chosen: Chosen) -> str:
+    if record.broken:
+        return _extent(record, 0)
+    until = " up to the time that --until names" if chosen.until_ns is not None else ""
+    return f"{record.paths[0]} has no step{until}"
+
+
+def _extent(record: Record, number: int) -> str:
+    """How many of its steps were read, where it is damaged."""
+    from arboleda.recorder.reader import steps_there
+
+    there = steps_there(record.paths)
+    known = f"{there} steps, " if there is not None and there >= number else ""
+    return f"{known}{number} read, then {record.broken}"
+
+
+def _fork(record: Record, options: Options) -> None:
+    """Say what came of a fork."""
+    from arboleda.playback.fork.run import forked
+
+    from . import fork
+
+    found = forked(record.first.beginning, record.steps(), fork.asked(record, options), sentence_of)
+    if found.difference is not None:
+        _finish(record, found.difference)
+    for line in fork.lines(found, options):
+        _say(line)
+    if record.broken:
+        _say(f"the record ends early: {record.broken}")
+    if not all(pair.same for pair in fork.compared(found, options.task)):
+        raise typer.Exit(DIFFERS)
+
+
+def _show(record: Record, until: str | None, task: str | None, port: int | None) -> None:
+    """The page, where a task ended or at a time; else at the last failure."""
+    from arboleda.playback import replay_page  # its libraries take a second
+
+    at_s = None if until is None else _time("--until", until, record.first.began_ns) / 1e9
+    query = {"at": "task" if task else "failure" if at_s is None else f"{at_s:.3f}"}
+    of_task = {"tab": "tasks", "task": task} if task else {}
+    replay_page.show(record, model_of(record.first.beginning, None), query | of_task, port)
+
+
+def _finish(record: Record, last: ReplayedStep) -> None:
+    """Say what came of it."""
+    if last.difference is not None:
+        for line in _difference(last):
+            _say(line)
+        raise typer.Exit(DIFFERS)
+    if record.broken:
+        _say(f"{_extent(record, last.number)}; those that were read are equal")
+        raise typer.Exit(DIFFERS)
+    _say(f"{last.number} steps, all equal")
+
+
+def _notes(beginning: Beginning, plant: Path | None) -> Iterator[str]:
+    if beginning.version != __version__:
+        yield f"note: recorded by Arboleda {beginning.version}, replayed by {__version__}"
+    if plant is not None:
+        yield f"note: replayed with {plant} instead of the plant file of the record"
+
+
+def _time(option: str, text: str, began_ns: int) -> int:
+    """Nanoseconds of Unix time; ConfigError for what is no time."""
+    day = datetime.fromtimestamp(began_ns / 1e9).date().isoformat()
+    for candidate in (text, f"{day}T{text}"):
+        try:
+            return int(datetime.fromisoformat(candidate).timestamp() * 1e9)
+        except (OverflowError, ValueError):
+            continue
+    raise ConfigError((f"{option} {plain(text, 40)}: is no time; write 2026-11-22T03:15:00, or 03:15:00",))
+
+
+def _run(record: Record, model: PlantModel, chosen: Chosen) -> ReplayedStep | None:
+    """Make the steps again and tell what becomes of tasks; the last of them."""
+    from arboleda.recorder.replay import plant_of, replayed
+
+    last: ReplayedStep | None = None
+    pace = Pace(chosen.speed)
+    known = False
+    for last in replayed(plant_of(record.first.beginning, model), _until(record, chosen.until_ns)):
+        pace.wait(last.recorded.now)
+        rows = [row for row in changes(last.recorded.said) if chosen.task in (None, row["task"])]
+        for row in rows:
+            known = True
+            _say(f"{moment(last.recorded.unix_ns, 'milliseconds')} {_line(row)}")
+        if chosen.task is not None and any(row["state"] in ENDS for row in rows):
+            break
+    if chosen.task is not None and not known and (last is None or last.difference is None):
+        raise ConfigError((f"--task {plain(chosen.task, 80)}: there is no such task in this record",))
+    return last
+
+
+def _until(record: Record, end_ns: int | None) -> Iterator[RecordedStep]:
+    for step in record.steps():
+        if end_ns is not None and step.unix_ns > end_ns:
+            return
+        yield step
+
+
+class Pace:
+    """Waits, so that a replay is `speed` times as fast as it was; not at all where that is None."""
+
+    def __init__(self, speed: float | None) -> None:
+        self._speed = speed
+        self._begun: tuple[float, float] | None = None
+
+    def wait(self, now: float) -> None:
+        if self._speed is None:
+            return
+        if self._begun is None:
+            self._begun = now, time.monotonic()
+        first, at = self._begun
+        time.sleep(max(0.0, at + (now - first) / self._speed - time.monotonic()))
+
+
+def _line(row: dict[str, Any]) -> str:
+    sentence = sentence_of(row.get("sentence"))
+    why = f"  {sentence}" if sentence else ""
+    return f"{row['state']:<9} {row['text']} (id {row['task']}){why}"
+
+
+def _difference(last: ReplayedStep) -> Iterator[str]:
+    step, found = last.recorded, last.difference
+    assert found is not None
+    asked = ", ".join(_event(each) for each in step.events) or "no event, a deadline"
+    when = moment(step.unix_ns, "microseconds")
+    yield f"{last.number - 1} steps are equal; step {last.number}, of {when}, is not"
+    yield f"  what went in: {asked}"
+    yield f"  {found.field} was {_value(found.recorded)}, is now {_value(found.now)}"
+
+
+def _event(event: Any) -> str:
+    whose = getattr(event, "robot", None) or getattr(event, "text", None) or getattr(event, "scope", None)
+    return type(event).__name__ + (f" {whose}" if whose else "")
+
+
+def _value(value: Any) -> str:
+    return plain(json.dumps(value), SHOWN)
+
+
+def _say(line: str) -> None:
+    print(plain(line, LONGEST), flush=True)

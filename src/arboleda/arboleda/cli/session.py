@@ -1,0 +1,149 @@
+"""One run of a plant in a terminal: start it, show it, end it cleanly."""
+
+from __future__ import annotations
+
+import logging
+import time
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from functools import partial
+from importlib.metadata import entry_points
+from queue import SimpleQueue
+from typing import Any
+
+from rich.console import Console
+from rich.text import Text
+
+from arboleda.model.errors import StartError
+from arboleda.model.outside import plain
+from arboleda.runtime import invocation
+from arboleda.runtime.build import App
+from arboleda.runtime.log_file import LogFile
+from arboleda.runtime.log_queue import LogQueue, log_to
+from arboleda.runtime.waiting import interruptible, taken_from, until_interrupted
+
+from .errand import Errand
+from .screen import LONGEST, Screen, logged, parting, summary
+
+NO_ROS = (
+    "ROS 2 for Python is not installed here; install it with `pip install 'arboleda[ros]'`, "
+    "or source a ROS 2 installation"
+)
+
+
+class RosMissing(StartError):
+    """There is no rclpy here."""
+
+
+def ros_link(*, lan: bool) -> Any:
+    """The ROS 2 link behind the entry point `arboleda.links: ros`; RosMissing where there is none."""
+    found = next(iter(entry_points(group="arboleda.links", name="ros")), None)
+    if found is None:
+        raise RosMissing(NO_ROS)
+    try:
+        connect = found.load()
+    except ImportError as error:
+        raise RosMissing(f"{NO_ROS} ({error})") from error
+    return connect(lan=lan)
+
+
+class Session:
+    """A plant in a terminal. Whatever is printed is printed by the thread that calls `run`: no trouble with
+    the terminal can reach the plant."""
+
+    def __init__(
+        self,
+        app: App,
+        texts: Sequence[str],
+        console: Console,
+        *,
+        stay: bool,
+        patience_s: float | None = None,
+    ) -> None:
+        self._app = app
+        self._console = console
+        self._stay = stay
+        self._news: SimpleQueue[Callable[[], None] | None] = SimpleQueue()
+        self._patience_s = patience_s  # for devices that are offline, where it does not stay
+        self._errand = Errand(
+            texts,
+            lambda: self._log.then(lambda: self._news.put(self._finished)),
+            patience_s=patience_s,
+        )
+        self._screen = Screen(console, app.snapshot, app.log_file)
+        self._stopping = False
+
+    def run(self) -> int:
+        """Run the plant, without `stay` until the tasks ended; 0, or 1 where one was not done."""
+        self._app.listen(self._errand.changed)
+        self._app.watch(lambda snapshot: self._later(self._screen.stepped, snapshot, time.time()))
+        self._app.watch(self._errand.seen)
+        self._app.when_over(lambda: self._news.put(None))
+        with interruptible(), self._logging() as self._log:
+            self._start()
+            try:
+                with until_interrupted():
+                    self._tell_notes()
+                    self._errand.start(self._app.submit)
+                    with self._screen:
+                        self._show()
+                        self._app.wait()
+            finally:
+                self._stop()
+        return 0 if self._stay or self._errand.ok else 1
+
+    @contextmanager
+    def _logging(self) -> Iterator[LogQueue]:
+        """What matters to the terminal; details, tracebacks among them, to a file for whoever has to look."""
+        tell = partial(self._later, self._console.print)
+        details = LogFile(self._app.log_file, tell)
+        try:
+            with log_to(details.handle, self._say, *self._app.log_outputs) as queue:
+                yield queue
+        finally:
+            details.close()
+
+    def _say(self, line: logging.LogRecord) -> None:
+        if line.levelno >= logging.INFO:
+            self._later(self._screen.say, logged(line), line.created)
+
+    def _later(self, show: Callable[..., None], *what: Any) -> None:
+        self._news.put(partial(show, *what))
+
+    def _show(self) -> None:
+        for news in taken_from(self._news):
+            news()
+
+    def _start(self) -> None:
+        with self._console.status("starting ..."):
+            self._app.start()
+
+    def _tell_notes(self) -> None:
+        for line in self._app.notes:
+            self._console.print(Text(line, style="dim"))
+
+    def _finished(self) -> None:
+        if not self._errand.texts or self._stopping:
+            return
+        self._console.print(summary(self._errand.results, self._errand.seconds))
+        if self._errand.missing:
+            waited = f"After {self._patience_s:g} s no task can begin without devices that are offline"
+            self._console.print(Text(f"{waited}; --wait-for-devices SECONDS waits longer:", style="red"))
+        for line in self._errand.missing:
+            self._console.print(Text(f"  {plain(str(line), LONGEST)}", style="red"), soft_wrap=True)
+        if not self._stay:
+            self._app.end()
+            return
+        hint = f"The plant stays up for more tasks: {invocation.command()} submit 'TASK'. Ctrl-C ends it."
+        self._console.print(Text(hint))
+
+    def _stop(self) -> None:
+        """Halt everything and say how each robot was left."""
+        self._stopping = True
+        self._console.print(Text("stopping: whatever moves is halted ...", style="dim"))
+        self._app.stop()
+        self._log.flush()
+        self._news.put(None)
+        self._show()
+        for line in parting(self._app.snapshot()):
+            self._console.print(Text(f"  {line}", style="dim"))

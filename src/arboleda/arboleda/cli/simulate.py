@@ -1,0 +1,174 @@
+"""The command `arboleda simulate`: its options, and how it ends."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.text import Text
+
+from arboleda.campaigns.defaults import CYCLES, LEVEL, SEED, SEEDS
+from arboleda.plant_file.user_file import check_new, check_writable
+from arboleda.runtime.stores import refuse_without_library
+from arboleda.simulator.levels import CRASHES, LEVELS
+
+from .plant_options import StoreAddress
+
+HELP = f"""Run whole plants under virtual time, with faults drawn from a seed, and judge every step.
+
+\b
+arboleda simulate                            {SEEDS} seeds on two plants
+arboleda simulate --plant my_plant.yaml      your plant
+arboleda simulate --drawn-plants             a plant of its own for each seed
+arboleda simulate --standby                  on two hosts, of which one stands by
+arboleda simulate --until-failure            seed after seed until something breaks
+arboleda simulate --seed 4711 --trace        one seed, line by line, the same every time
+arboleda simulate --seed 4711 --record seed.mcap  and look at it: arboleda replay seed.mcap --page
+arboleda simulate --seeds 500 --json out.json
+arboleda simulate --seeds 9999 --store postgresql://... --worker  on as many hosts as there are
+arboleda simulate --faults out.json --trace  what broke in there, with the faults it takes
+arboleda simulate --faults night.yaml        what a plant did: arboleda record export night.yaml
+
+Exit status: 0 every invariant held, 1 one was broken, 2 bad input, 130 Ctrl-C."""
+
+Plant = Annotated[
+    Path | None,
+    typer.Option(
+        metavar="FILE",
+        help="Plant file. [default: odd seeds the shipped plant, even seeds one with shared zones]",
+    ),
+]
+DrawnPlants = Annotated[
+    bool,
+    typer.Option("--drawn-plants", help="Draw a plant file from each seed, any that `arboleda check` takes."),
+]
+Seed = Annotated[int | None, typer.Option(metavar="N", min=0, help=f"The first seed. [default: {SEED}]")]
+Seeds = Annotated[
+    int | None,
+    typer.Option(
+        metavar="N",
+        min=1,
+        help=f"How many seeds. [default: {SEEDS}; 1 with --trace or --record; no end with --until-failure]",
+    ),
+]
+Cycles = Annotated[
+    int,
+    typer.Option(metavar="N", min=1, help="How many tasks are ended in each seed, at least."),
+]
+Faults = Annotated[
+    str,
+    typer.Option(
+        metavar="LEVEL|FILE",
+        help=f"How much goes wrong: {', '.join(LEVELS)}; or a file of faults, or one that --json wrote.",
+    ),
+]
+AnyOf = Annotated[
+    bool,
+    typer.Option(
+        "--any-of", help="Have about half of the tasks name several cells, of which the plant chooses one."
+    ),
+]
+Standby = Annotated[
+    bool,
+    typer.Option(
+        "--standby",
+        help="Simulate each plant on two hosts and one store, with what befalls those: leaders that are"
+        " killed, frozen or cut off, clocks that drift, planned changes.",
+    ),
+]
+UntilFailure = Annotated[bool, typer.Option("--until-failure", help="End at the first broken invariant.")]
+Json = Annotated[
+    Path | None, typer.Option("--json", metavar="FILE", help="Write what came of every seed to this file.")
+]
+Record = Annotated[
+    Path | None,
+    typer.Option(
+        "--record",
+        metavar="FILE",
+        help="Write one seed: to FILE.mcap as a flight record, else all that happens, an object per line.",
+    ),
+]
+Trace = Annotated[bool, typer.Option("--trace", help="Print all that happens in one seed.")]
+Jobs = Annotated[
+    int | None,
+    typer.Option(metavar="N", min=1, help="How many processes share the seeds. [default: one per processor]"),
+]
+
+Worker = Annotated[
+    bool,
+    typer.Option(
+        "--worker",
+        help="Share the seeds with every worker of the same options: they are rows of the --store.",
+    ),
+]
+
+
+def add_to(cli: typer.Typer) -> None:
+    """Add the command."""
+    cli.command("simulate", help=HELP, short_help=HELP.partition("\n")[0])(simulate)
+
+
+def simulate(
+    plant: Plant = None,
+    drawn_plants: DrawnPlants = False,
+    seed: Seed = None,
+    seeds: Seeds = None,
+    cycles: Cycles = CYCLES,
+    faults: Faults = LEVEL,
+    any_of: AnyOf = False,
+    standby: Standby = False,
+    until_failure: UntilFailure = False,
+    json: Json = None,
+    record: Record = None,
+    trace: Trace = False,
+    jobs: Jobs = None,
+    store: StoreAddress = "",
+    worker: Worker = False,
+) -> None:
+    from arboleda.campaigns import (
+        screen,
+        single_seed,
+    )  # the simulator takes a while to load, and only this command needs it
+    from arboleda.campaigns.flight import SUFFIX
+    from arboleda.campaigns.request import Request
+    from arboleda.campaigns.seed_campaign import SeedCampaign
+    from arboleda.campaigns.workers import processors
+
+    alone = trace or record is not None
+    if alone and ((seeds or 1) > 1 or until_failure):
+        raise typer.BadParameter("--trace and --record are for one seed; choose it with --seed")
+    if drawn_plants and plant is not None:
+        raise typer.BadParameter("--drawn-plants and --plant exclude each other")
+    if standby and faults == CRASHES:
+        raise typer.BadParameter("--standby has deaths of its own: leave out --faults crashes")
+    request = Request(
+        plant=plant,
+        drawn_plants=drawn_plants,
+        seed=seed,
+        seeds=1 if alone else seeds,
+        cycles=cycles,
+        faults=faults,
+        until_failure=until_failure,
+        any_of=any_of,
+        standby=standby,
+    )
+    if worker and (not store or alone or until_failure or jobs is not None):
+        raise typer.BadParameter(
+            "--worker needs --store, and is one process: not with --jobs, --trace, --record, --until-failure"
+        )
+    if json is not None:
+        check_writable(json)
+    if record is not None:
+        (check_new if record.suffix == SUFFIX else check_writable)(record)
+    console = screen.console()
+    for note in request.notes:
+        console.print(Text(note, style="dim"), soft_wrap=True)
+    if worker:
+        refuse_without_library()
+        from arboleda.campaigns.shared import work
+
+        raise typer.Exit(work(request, console, store, json))
+    if alone:
+        raise typer.Exit(single_seed.run(request, console, trace=trace, record=record, file=json))
+    raise typer.Exit(SeedCampaign(request, console, json).run(jobs or processors()))

@@ -1,0 +1,161 @@
+"""`arboleda tasks`: what became of every task, also of those of earlier starts."""
+
+from __future__ import annotations
+
+import json
+import re
+import time
+from collections.abc import Iterator, Sequence
+from dataclasses import asdict
+from datetime import datetime
+from enum import Enum
+from typing import Annotated
+
+import typer
+from rich.console import Console
+from rich.table import Table
+from rich.text import Text
+
+from arboleda.model.messages import TaskState
+from arboleda.model.outside import plain
+from arboleda.store.task_rows import History, TaskQuery, TaskRow, answers_of, choice_of, table, unchecked_of
+
+from . import plant_options
+from .plant_options import PlantFile, StateFolder, StoreAddress
+from .screen import STYLES, heard
+
+AGO = re.compile(r"(\d{1,6})\s*([smhdw])")
+SECONDS = {"s": 1.0, "m": 60.0, "h": 3600.0, "d": 86_400.0, "w": 604_800.0}
+LOOK_S = 0.5  # a file tells nobody that it has changed
+HEADINGS = ("accepted", "by", "id", "task", "state", "tries", "took", "why")
+ANSWERS = "answers"  # where a task of the list has any
+
+
+class KeptState(str, Enum):
+    """The states that a kept task can be in."""
+
+    QUEUED = "queued"
+    RUNNING = "running"
+    DONE = "done"
+    FAILED = "failed"
+    CANCELLED = "cancelled"
+
+
+def moment(text: str | None) -> float | None:
+    """A point in time as Unix time: `2h` ago, or `2026-11-21`, `2026-11-21T14:30` of this machine's clock."""
+    if text is None:
+        return None
+    if found := AGO.fullmatch(text.strip()):
+        return time.time() - int(found[1]) * SECONDS[found[2]]
+    try:
+        return datetime.fromisoformat(text.strip()).timestamp()
+    except ValueError:
+        raise typer.BadParameter(
+            f"'{text}' is no time; write how long ago, as 30m, 2h or 7d, or when, as 2026-11-21T14:30"
+        ) from None
+
+
+def tasks(
+    words: Annotated[
+        str, typer.Argument(metavar="WORDS", help="Only tasks with these words in their text or id.")
+    ] = "",
+    cell: Annotated[str, typer.Option(metavar="CELL", help="Only tasks of this cell.")] = "",
+    status: Annotated[KeptState | None, typer.Option(help="Only tasks in this state.")] = None,
+    recipe: Annotated[str, typer.Option(metavar="NAME", help="Only tasks of this recipe.")] = "",
+    since: Annotated[
+        str | None, typer.Option(metavar="TIME", help="Accepted since then: 2h ago, or 2026-11-21T14:30.")
+    ] = None,
+    until: Annotated[str | None, typer.Option(metavar="TIME", help="Accepted before then.")] = None,
+    limit: Annotated[int, typer.Option(metavar="N", min=1, help="At most so many, the last ones.")] = 50,
+    as_json: Annotated[bool, typer.Option("--json", help="Print an object per line.")] = False,
+    as_csv: Annotated[bool, typer.Option("--csv", help="Print a table for other programs.")] = False,
+    follow: Annotated[
+        bool, typer.Option("--follow", help="Go on printing what changes, until Ctrl-C.")
+    ] = False,
+    plant: PlantFile = None,
+    state: StateFolder = None,
+    store: StoreAddress = "",
+) -> None:
+    """What became of the tasks, also of earlier starts, whether the plant runs or not.
+
+    Ended tasks are kept for `history_days` of the plant file, 90 where it says nothing.
+
+    Exit status: 0 printed, 1 the plant's memory cannot be read, 2 bad input, 130 Ctrl-C.
+    """
+    if as_json and as_csv:
+        raise typer.BadParameter("choose one of --json and --csv")
+    query = TaskQuery(
+        cell=cell,
+        state=status.value if status else "",
+        recipe=recipe,
+        words=words,
+        since_s=moment(since),
+        until_s=moment(until),
+        limit=limit,
+    )
+    history = plant_options.history(plant, state, store)
+    show = _json if as_json else _csv if as_csv else _lines if follow else _table
+    if not follow:
+        show(list(reversed(history.select(query))), first=True)
+        return
+    for number, rows in enumerate(_changes(history, query)):
+        show(rows, first=not number)
+
+
+def _changes(history: History, query: TaskQuery) -> Iterator[Sequence[TaskRow]]:
+    """What there is, and then again and again what is new or has changed."""
+    known: dict[str, TaskRow] = {}
+    while True:
+        rows = list(reversed(history.select(query)))
+        news = [row for row in rows if known.get(row.id) != row]
+        if news or not known:
+            yield news
+        known = {row.id: row for row in rows}
+        time.sleep(LOOK_S)
+
+
+def _table(rows: Sequence[TaskRow], *, first: bool) -> None:
+    console = Console(highlight=False)
+    if not rows:
+        console.print("no such task was kept")
+        return
+    drawn = Table(box=None, pad_edge=False)
+    answered = [ANSWERS] if any(row.answers for row in rows) else []
+    for heading in (*HEADINGS, *answered):
+        whole = max(len(plain(row.id)) for row in rows) if heading == "id" else None  # it is copied
+        drawn.add_column(heading, overflow="fold", min_width=whole)
+    for row in rows:
+        at, by, id, text, _, took, why, answers = _said(row)
+        state = Text(row.state, style=STYLES[TaskState(row.state)])
+        tries, last = str(row.attempts or ""), [Text(answers)] if answered else []
+        drawn.add_row(at, Text(by), Text(id), Text(text), state, tries, took, Text(why), *last)
+    console.print(drawn)
+
+
+def _lines(rows: Sequence[TaskRow], *, first: bool) -> None:
+    for row in rows:
+        print("  ".join(each for each in _said(row) if each), flush=True)
+
+
+def _json(rows: Sequence[TaskRow], *, first: bool) -> None:
+    for row in rows:
+        answers = [vars(each) for each in answers_of(row)]
+        parsed = {key: json.loads(text) if text else None for key, text in _json_of(row).items()}
+        said = asdict(row) | parsed | {"answers": answers, "unchecked": unchecked_of(row)}
+        print(json.dumps(said, ensure_ascii=False), flush=True)
+
+
+def _json_of(row: TaskRow) -> dict[str, str | None]:
+    return {"said": row.said, "choice": row.choice, "course": row.course}
+
+
+def _csv(rows: Sequence[TaskRow], *, first: bool) -> None:
+    print(table(rows, names=first), end="", flush=True)
+
+
+def _said(row: TaskRow) -> tuple[str, ...]:
+    at = datetime.fromtimestamp(row.accepted_s).isoformat(sep=" ", timespec="seconds")
+    took = "" if None in (row.started_s, row.ended_s) else f"{row.ended_s - row.started_s:.1f} s"
+    texts = (plain(each) for each in (row.asked_by or "", row.id, row.text))
+    why = row.sentence or str(choice_of(row) or "")
+    return at, *texts, row.state, took, plain(why), plain(heard(map(vars, answers_of(row))))

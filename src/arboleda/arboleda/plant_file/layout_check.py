@@ -1,0 +1,246 @@
+"""Whether what a plant file puts somewhere could stand there."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import combinations, pairwise
+
+from arboleda.dashboard.twin import bodies, kinematics
+from arboleda.dashboard.twin.bodies import Body
+from arboleda.dashboard.twin.hull import hull
+from arboleda.dashboard.twin.kinematics import Matrix, Point
+from arboleda.dashboard.twin.parts import PART_HEIGHT_M, PART_RADIUS_M
+from arboleda.dashboard.twin.scene import deck
+from arboleda.kinds.arm import Arm
+from arboleda.kinds.floor import Placement
+from arboleda.kinds.mobile import Mobile
+from arboleda.model.errors import ArboledaError
+from arboleda.model.plant_model import PlantModel, Pose, Robot
+from arboleda.recipes.storage_cell import StorageCell
+
+from .arrays import Array
+from .urdf import robot_urdf
+
+BESIDE_M = 0.010  # a pick-up may be so far beside the part that it takes
+ABOVE_M = 0.010  # and so far above it, which a suction cup bridges
+ROUNDING_M = 0.001
+EVEN_M = 0.001  # a target of an array may be so far beside an even grid
+Outline = Sequence[Sequence[float]]  # counterclockwise corners of a convex shape on the floor
+
+
+def warnings(plant: PlantModel) -> tuple[str, ...]:
+    """What cannot be as the file says it; also where that cannot be told."""
+    try:
+        cells = [Stand.of(plant, cell) for cell in plant.cells if cell.is_storage]
+        uneven = [*_uneven(plant)]
+    except ArboledaError as error:
+        return (f"nobody has looked where things stand: {error}",)
+    found = [each for cell in cells for each in (*_pickups(cell), *_stations(cell), *_below(cell))]
+    return (*found, *_crowded(cells), *uneven)
+
+
+def _uneven(plant: PlantModel) -> Iterator[str]:
+    """Arrays of targets in which the tool of an arm is beside an even grid between the corners."""
+    for cell in plant.cells:
+        for group, rows, columns in cell.grids:
+            array = Array(group=group, rows=rows, columns=columns)
+            for space in cell.spaces:
+                poses = {pose.name: pose for pose in space.poses}
+                if space.robot.has_joints and array.names[0] in poses:
+                    yield from _uneven_of(plant, space.robot, array, [poses[name] for name in array.names])
+
+
+def _uneven_of(plant: PlantModel, arm: Robot, array: Array, poses: Sequence[Pose]) -> Iterator[str]:
+    body, base = _body(plant, arm.name), _frame(arm.base)
+    points = [kinematics.at(kinematics.tool(body, pose.q, base)) for pose in poses]
+    corners = [points[index] for index in array.corners]
+    off = [math.dist(point, array.even(index, corners)) for index, point in enumerate(points)]
+    worst = max(range(len(off)), key=off.__getitem__)
+    if off[worst] > EVEN_M:
+        where = f"{array.names[worst]}, {_mm(off[worst])} beside an even grid"
+        why = f"the joints of {arm.name} are interpolated between the corners of {array.group}"
+        yield f"{where}: {why}; where that matters, name these targets one by one"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Stand:
+    """One cell as it stands in the world, in m: its arm's body, and the outlines of what is on the floor."""
+
+    cell: StorageCell
+    body: Body
+    deck_m: float
+    base: Outline
+    grid: Outline
+
+    @classmethod
+    def of(cls, plant: PlantModel, cell: StorageCell) -> Stand:
+        arm, mobile = (_body(plant, name) for name in (cell.arm.name, cell.mobile.name))
+        x, y = cell.arm.base.x, cell.arm.base.y
+        return cls(
+            cell=cell,
+            body=arm,
+            deck_m=deck(mobile),
+            base=hull([(x, y)], _wide(_fixed(arm))),
+            grid=_grid(cell.mobile, _wide(bodies.links(mobile))),
+        )
+
+    def tool(self, pose: Pose) -> Matrix:
+        """The tool's frame at a pose."""
+        return kinematics.tool(self.body, pose.q, _frame(self.cell.arm.base))
+
+    def node(self, node: int) -> Point:
+        """Where the upper end of a part is that a mobile on this node carries."""
+        x, y = self.cell.mobile.grid.position(node)
+        frame = _frame(self.cell.mobile.grid.origin)
+        return kinematics.at(frame, (x, y, self.deck_m + PART_HEIGHT_M))
+
+    def part(self, pose: Pose) -> Point:
+        """The middle of a part that the tool holds at a pose."""
+        return kinematics.at(self.tool(pose), (0, 0, PART_HEIGHT_M / 2))
+
+    @property
+    def reach_m(self) -> float:
+        """No point is farther from the arm's foot, in plan, than its tool can be."""
+        frames = kinematics.place(self.body, self.cell.arm.reference)
+        way = bodies.way(self.body)
+        moving = [link for link in way if link["moves"]]
+        turning = [link for link in moving if link["moves"]["type"] == "turn"]
+        upright = all(_is_upright(frames, link) for link in turning)
+        points = [kinematics.at(frames[link["link"]]) for link in way[way.index(moving[0]) :]]
+        if upright:
+            points = [(x, y, 0.0) for x, y, _ in points]
+        slides = sum(_slide_m(self.cell.arm, frames, link, upright) for link in moving)
+        first = math.hypot(*points[0][:2])
+        return first + sum(math.dist(a, b) for a, b in pairwise(points)) + slides
+
+
+def _pickups(stand: Stand) -> Iterator[str]:
+    """Pick-ups that are not where the mobile robot brings the part."""
+    cell = stand.cell
+    ends = {(path.nodes[-1], cell.pickup_of(path).name): path for path in reversed(cell.paths)}
+    for (node, _), path in ends.items():
+        pickup, (x, y, top) = cell.pickup_of(path), stand.node(node)
+        tool = kinematics.at(stand.tool(pickup))
+        beside, over = math.dist(tool[:2], (x, y)), tool[2] - top
+        where = f"{cell.name}: {pickup.name} is"
+        part = f"a part on {cell.mobile.name} at node {node}, where path {path.code} ends"
+        away = math.dist((x, y), (cell.arm.base.x, cell.arm.base.y))
+        if away > stand.reach_m + BESIDE_M:
+            reach = f"{cell.arm.name} reaches {stand.reach_m:.2f} m"
+            yield f"{cell.name}: node {node} is out of reach, {away:.2f} m away; {reach} (path {path.code})"
+        elif beside > BESIDE_M:
+            yield f"{where} {_mm(beside)} beside {part}"
+        elif not -ROUNDING_M <= over <= ABOVE_M:
+            yield f"{where} {_mm(abs(over))} {'above' if over > 0 else 'below'} the top of {part}"
+
+
+def _stations(stand: Stand) -> Iterator[str]:
+    """Stations whose parts would be in each other."""
+    size = f"a part is {_mm(2 * PART_RADIUS_M)} wide and {_mm(PART_HEIGHT_M)} high"
+    places = [(pose.name, stand.part(pose)) for pose in stand.cell.stations]
+    for (one, a), (other, b) in combinations(places, 2):
+        apart, over = math.dist(a[:2], b[:2]), abs(a[2] - b[2])
+        if apart < 2 * PART_RADIUS_M and over < PART_HEIGHT_M - ROUNDING_M:
+            number = other.removeprefix("station ")
+            yield f"{stand.cell.name}: {one} and {number} are {_mm(math.dist(a, b))} apart; {size}"
+
+
+def _below(stand: Stand) -> Iterator[str]:
+    """Poses at which a part, or at home the tool, would be below the floor."""
+    for pose in stand.cell.poses:
+        tool = stand.tool(pose)
+        points = [kinematics.at(tool)]
+        if pose.name != stand.cell.home.name:
+            points.append(kinematics.at(tool, (0, 0, PART_HEIGHT_M)))
+        low = min(z for _, _, z in points)
+        if low < -ROUNDING_M:
+            what = "the tool" if low == points[0][2] else "the part in the tool"
+            yield f"{stand.cell.name}: at {pose.name} {what} is {_mm(-low)} below the floor"
+
+
+def _crowded(stands: Sequence[Stand]) -> Iterator[str]:
+    """Bases, grids and stations that take the same piece of floor."""
+    floor = [(f"the base of {stand.cell.arm.name}", stand.base) for stand in stands]
+    floor += [(f"the grid of {stand.cell.mobile.name}", stand.grid) for stand in stands]
+    for (one, a), (other, b) in combinations(floor, 2):
+        if _overlap(a, b):
+            yield f"{one} and {other} overlap"
+    for stand in stands:
+        for pose in stand.cell.stations:
+            x, y, _ = stand.part(pose)
+            spot = hull([(x, y)], PART_RADIUS_M)
+            for what, outline in floor:
+                if _overlap(spot, outline):
+                    yield f"{stand.cell.name}: {pose.name} stands on {what}"
+
+
+def _body(plant: PlantModel, name: str) -> Body:
+    return bodies.read(robot_urdf(plant, name))
+
+
+def _frame(placement: Placement) -> Matrix:
+    return kinematics.floor((placement.x, placement.y, placement.yaw))
+
+
+def _grid(mobile: Mobile, margin: float) -> Outline:
+    """Around all nodes, as far as the mobile robot reaches beyond its node."""
+    frame = _frame(mobile.grid.origin)
+    far_x, far_y = mobile.grid.position(mobile.grid.size - 1)
+    corners = ((-1, -1), (1, -1), (1, 1), (-1, 1))
+    ends = [((x > 0) * far_x + x * margin, (y > 0) * far_y + y * margin, 0.0) for x, y in corners]
+    return [kinematics.at(frame, end)[:2] for end in ends]
+
+
+def _fixed(body: Body) -> Iterator[Body]:
+    """The links that no joint moves."""
+    if body["moves"] is None:
+        yield body
+        for child in body["children"]:
+            yield from _fixed(child)
+
+
+def _wide(links: Iterable[Body]) -> float:
+    """How far the boxes and upright cylinders of some links reach from the middle, in plan."""
+    shapes = [shape for link in links for shape in link["shapes"] if not any(shape["rpy"])]
+    return max((_half(shape) for shape in shapes), default=0.0)
+
+
+def _half(shape: Body) -> float:
+    return max(shape["size"][:2]) / 2 if shape["kind"] == "box" else float(shape["size"][0])
+
+
+def _is_upright(frames: Mapping[str, Matrix], link: Body) -> bool:
+    return abs(kinematics.upright(frames[link["link"]], link["moves"]["axis"])) > 1 - 1e-6
+
+
+def _slide_m(arm: Arm, frames: Mapping[str, Matrix], link: Body, upright: bool) -> float:
+    """How far a sliding joint may lengthen the arm, in plan where all else turns upright."""
+    if link["moves"]["type"] == "turn" or (upright and _is_upright(frames, link)):
+        return 0.0
+    joint = arm.joints[link["moves"]["index"]]
+    return max(abs(joint.lower), abs(joint.upper))
+
+
+def _overlap(a: Outline, b: Outline) -> bool:
+    """Whether two convex outlines share a piece of floor: no edge of either has them on two sides.
+
+    What is too thin for an outline takes none.
+    """
+    return bool(a and b) and not any(_parts(edge, a, b) for outline in (a, b) for edge in _edges(outline))
+
+
+def _edges(outline: Outline) -> Iterator[tuple[Sequence[float], Sequence[float]]]:
+    return zip(outline, [*outline[1:], outline[0]], strict=True)
+
+
+def _parts(edge: tuple[Sequence[float], Sequence[float]], a: Outline, b: Outline) -> bool:
+    (x0, y0), (x1, y1) = edge
+    across = (y1 - y0, x0 - x1)
+    of_a, of_b = ([x * across[0] + y * across[1] for x, y in outline] for outline in (a, b))
+    return max(of_a) <= min(of_b) or max(of_b) <= min(of_a)
+
+
+def _mm(metres: float) -> str:
+    return f"{metres * 1000:.0f} mm"

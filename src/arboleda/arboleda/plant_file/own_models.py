@@ -1,0 +1,203 @@
+"""A model of the plant's own: a URDF or YAML file beside the plant file, and what `model:` says of it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from arboleda.kinds.arm import Description, Joint
+from arboleda.model.errors import ConfigError
+from arboleda.model.outside import plain
+from arboleda.wire.units import to_wire
+
+from . import urdf_file, user_file, xml_marks, yaml_marks, yaml_model
+from .document import Document, Place, choice, shown
+from .drawing import drawing, lifts
+from .robot_models import PINION_MM, TO_SI, ArmModel, millimetres
+from .shapes import DAY_S, MAPPING, POSITIVE, ModelShape, OffsetShape
+from .urdf_file import Axis, Chain
+from .yaml_marks import clipped
+
+ENDINGS = (".urdf", ".yaml", ".yml")
+LONGEST = 500  # characters of a path as a sentence shows it
+MOST_JOINTS = 12  # what one MQTT message of 512 bytes has room for
+FARTHEST = 99_999.0  # deg on the wire
+FASTEST = 1e6  # steps/s, one per microsecond of a board's clock
+FULL_SPEED_S = 0.5  # how long a joint takes to its full speed where nobody says it
+STEP_DEG, STEP_MM = 0.01, 0.1  # a motor step where nobody says it
+LONGEST_RAMP = 250_000  # steps to full speed; a virtual board counts each of them
+LEAST_STEP = 0.001  # deg or mm: MQTT says four decimals
+
+
+def is_own(value: Any) -> bool:
+    """Whether `model:` names a file rather than a model that comes with arboleda."""
+    if isinstance(value, dict):
+        return True
+    return isinstance(value, str) and ("/" in value or value.endswith((*ENDINGS, ".xacro")))
+
+
+def own_model(document: Document, place: Place) -> ArmModel | None:
+    """The arm of that file; None, with its problems kept, where something is wrong with it."""
+    shape = _shape(document, place)
+    if shape is None:
+        return None
+    spot = (*place, "file") if isinstance(document.value(place), dict) else place
+    mount, tool = (_offset(document, (*place, key)) for key in ("mount", "tool"))
+    raw = _content(document, spot, shape.file)
+    if raw is None or not _fits(document, place, shape):
+        return None
+    try:
+        chain = _chain(shape, raw, _path(document, shape.file))
+    except urdf_file.WrongLink as error:
+        document.problem((*place, error.key), error.sentence)
+        return None
+    except ConfigError as error:
+        document.keep_those_of(error)
+        return None
+    joints = _joints(document, place, spot, chain)
+    if joints is None:
+        return None
+    _find_meshes(chain, _path(document, shape.file).parent)
+    urdf = drawing(chain, mount, tool)
+    lifting = [replace(joint, up=up) for joint, up in zip(joints, lifts(urdf, joints), strict=True)]
+    name = clipped(Path(shape.file).name)
+    notes = tuple(f"{name}: {note}" for note in (*chain.notes, *_assumed(document, place, chain)))
+    return ArmModel(name=name, joints=tuple(lifting), description=Description(urdf=urdf, notes=notes))
+
+
+def _shape(document: Document, place: Place) -> ModelShape | None:
+    value = document.value(place)
+    return document.read(ModelShape, place) if isinstance(value, dict) else ModelShape(file=value)
+
+
+def _offset(document: Document, place: Place) -> OffsetShape | None:
+    return document.read(OffsetShape, place) if document.has(place) else None
+
+
+def _path(document: Document, file: str) -> Path:
+    return (document.folder or Path()) / file
+
+
+def _content(document: Document, place: Place, file: str) -> bytes | None:
+    """The file, read whole; None, with the problem kept, where it cannot be."""
+    if file.endswith(".xacro"):
+        made = file.removesuffix(".xacro")
+        made = made if made.endswith(".urdf") else f"{made}.urdf"
+        type_this = f"xacro {plain(file)} > {plain(made)}"
+        document.problem(place, f"xacro is not read here; type `{type_this}` and name that")
+    elif not file.endswith(ENDINGS):
+        document.problem(place, f"must be a file that ends in {choice(ENDINGS)}, is {shown(file)}")
+    elif document.folder is None:
+        document.problem(place, "this plant file lies in no folder, so no model can lie beside it")
+    else:
+        largest = xml_marks.LARGEST if file.endswith(".urdf") else yaml_marks.LARGEST
+        try:
+            path = _path(document, file)
+            content = document.files[path] = user_file.read_bytes(path, largest)
+            return content
+        except ConfigError as error:
+            document.problem(place, plain(str(error), LONGEST))
+    return None
+
+
+def _fits(document: Document, place: Place, shape: ModelShape) -> bool:
+    """Whether links are named only where the file has some."""
+    of_urdf = [key for key in ("base_link", "tip_link") if getattr(shape, key) is not None]
+    foreign = of_urdf if not shape.file.endswith(".urdf") else []
+    for key in foreign:
+        document.problem((*place, key), "only a URDF has links; delete it")
+    return not foreign
+
+
+def _chain(shape: ModelShape, raw: bytes, path: Path) -> Chain:
+    if path.suffix == ".urdf":
+        return urdf_file.read(plain(str(path), LONGEST), raw, base=shape.base_link, tip=shape.tip_link)
+    return yaml_model.read(plain(str(path), LONGEST), raw)
+
+
+def _find_meshes(chain: Chain, folder: Path) -> None:
+    """Have meshes that are named from where the file lies found from everywhere."""
+    for mesh in chain.robot.iter("mesh"):
+        name = mesh.get("filename", "")
+        if "://" not in name:
+            mesh.set("filename", (folder / name).absolute().as_uri())
+
+
+def _joints(document: Document, place: Place, spot: Place, chain: Chain) -> tuple[Joint, ...] | None:
+    """The joints with all that a motor needs; None, with the problems kept, where one cannot be driven."""
+    if len(chain.axes) > MOST_JOINTS:
+        most = f"at most {MOST_JOINTS}; one MQTT message has room for no more"
+        document.problem(spot, f"has {len(chain.axes)} joints that move, {most}")
+        return None
+    given = [_given(document, place, number, axis) for number, axis in enumerate(chain.axes, start=1)]
+    for key, unit in (("accelerations", "_s2"), ("steps", "")):
+        known = [f"q{number}_{_unit(axis)}{unit}" for number, axis in enumerate(chain.axes, start=1)]
+        for name in document.read_plain(MAPPING, (*place, key)) or () if document.has((*place, key)) else ():
+            if name not in known:
+                document.unknown((*place, key, name), known)
+    good = [_is_drivable(document, spot, joint) for joint in given]
+    return tuple(given) if all(good) else None
+
+
+def _given(document: Document, place: Place, number: int, axis: Axis) -> Joint:
+    """The joint as its file and the plant file have it, with defaults where both say nothing."""
+    si = TO_SI[_unit(axis)]
+    acceleration = document.read_plain(POSITIVE, (*place, "accelerations", f"q{number}_{_unit(axis)}_s2"))
+    step = document.read_plain(POSITIVE, (*place, "steps", f"q{number}_{_unit(axis)}"))
+    slides = axis.type == "prismatic"
+    return Joint(
+        name=axis.name,
+        lower=axis.lower,
+        upper=axis.upper,
+        speed=axis.speed,
+        acceleration=si(acceleration) if acceleration else axis.acceleration or axis.speed / FULL_SPEED_S,
+        step=si(step) if step else axis.step or si(STEP_MM if slides else STEP_DEG),
+        pinion_radius_m=(axis.pinion_radius_m or millimetres(PINION_MM)) if slides else None,
+    )
+
+
+def _unit(axis: Axis) -> str:
+    return "mm" if axis.type == "prismatic" else "deg"
+
+
+def _is_drivable(document: Document, place: Place, joint: Joint) -> bool:
+    """Whether a board can count, say and drive it."""
+    least = TO_SI["mm" if joint.unit == "m" else "deg"](LEAST_STEP)
+    wide = joint.upper - joint.lower
+    if max(abs(to_wire(joint, end)) for end in (joint.lower, joint.upper)) > FARTHEST:
+        said = f"has limits beyond {FARTHEST:g} deg on MQTT"
+    elif not least <= joint.step <= wide:
+        said = f"has a motor step that is not from {LEAST_STEP:g} deg or mm to all of its way"
+    elif joint.speed / joint.step > FASTEST:
+        steps = joint.speed / joint.step
+        said = f"takes {steps:.3g} motor steps a second; at most {FASTEST:g}, so give it larger ones"
+    elif not joint.travel_s(wide) <= DAY_S:
+        said = "needs more than a day for its whole way"
+    elif min(joint.speed**2 / joint.acceleration, wide) / 2 / joint.step > LONGEST_RAMP:
+        said = f"needs more than {LONGEST_RAMP} motor steps to its full speed; give it larger ones"
+    else:
+        return True
+    document.problem(place, f"the joint {joint.name} {said}")
+    return False
+
+
+def _assumed(document: Document, place: Place, chain: Chain) -> Sequence[str]:
+    """What is taken for joints of which nobody says how they speed up and step."""
+    open_: dict[str, list[str]] = {"accelerations": [], "steps": []}
+    for number, axis in enumerate(chain.axes, start=1):
+        given = {"accelerations": axis.acceleration, "steps": axis.step}
+        for key, value in given.items():
+            own = f"q{number}_{_unit(axis)}" + ("_s2" if key == "accelerations" else "")
+            if value is None and not document.has((*place, key, own)):
+                open_[key].append(f"q{number}")
+    taken = {
+        "accelerations": f"accelerations to full speed in {FULL_SPEED_S:g} s",
+        "steps": f"motor steps of {STEP_DEG:g} deg or {STEP_MM:g} mm",
+    }
+    return [
+        f'{what} are assumed for {", ".join(open_[key])}; "{key}" says otherwise'
+        for key, what in taken.items()
+        if open_[key]
+    ]

@@ -1,0 +1,272 @@
+"""Recipes, kinds and drivers that a plant file uses: of Python files beside it, or of installed modules."""
+
+from __future__ import annotations
+
+import ast
+import importlib
+import inspect
+import re
+import sys
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager, suppress
+from hashlib import sha256
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+from arboleda.bt_xml import checking, reading, runnable
+from arboleda.bt_xml.findings import Findings
+from arboleda.bt_xml.nodes import OTHER_SPELLINGS, Category, built_in
+from arboleda.bt_xml.recipe import tree_recipe
+from arboleda.drivers.port import spec_of
+from arboleda.model.errors import ConfigError
+from arboleda.model.outside import plain
+from arboleda.model.plant_model import Link
+from arboleda.model.recipe import Recipe
+from arboleda.recipes import WrittenNode
+from arboleda.recipes.storage import RECIPES
+
+from . import tree_includes, user_file
+from .document import Document, Place, nearest, shown
+from .python_uses import LONGEST, PythonUses, Spot, Watch, Written, said
+from .registry import IN_PYTHON, RESERVED
+from .shapes import NAME_RULE, WORDS, is_name
+
+SECTION: Place = ("uses",)
+NODE = re.compile("[A-Za-z_][A-Za-z0-9_]*", re.ASCII)
+CATEGORIES = tuple(each.value for each in Category)
+ENDING, TREES = ".py", ".xml"
+LARGEST = 256 * 1024  # bytes of a file
+TAKEN = tuple(each.name for each in RECIPES)
+LINKS = tuple(each.value for each in Link)
+
+
+def listed(document: Document) -> tuple[str, ...]:
+    """The files and modules that the plant file uses; none, with the problem kept, where that is no list."""
+    words = document.read_plain(WORDS, SECTION) or ()
+    for index, word in enumerate(words):
+        if word in words[:index]:
+            document.problem((*SECTION, index), f"{shown(word)} is there twice")
+    return tuple(dict.fromkeys(words))
+
+
+def imported(document: Document, words: Sequence[str], watch: Watch) -> PythonUses:
+    """What all of them bring; the problems of those that cannot be imported are kept."""
+    used = PythonUses(watch=watch)
+    for index, word in enumerate(words):
+        place = (*SECTION, index)
+        if word.endswith(TREES):
+            _trees(document, place, word, used)
+            continue
+        is_file = word.endswith(ENDING) or "/" in word
+        module = (_file if is_file else _module)(document, place, word, used, watch)
+        if module is None:
+            used.is_whole = False
+        else:
+            _collect(document, place, module, used)
+    return used
+
+
+def _file(document: Document, place: Place, word: str, used: PythonUses, watch: Watch) -> ModuleType | None:
+    if document.folder is None:
+        document.problem(place, "this plant file lies in no folder, so no recipes can lie beside it")
+        return None
+    if not word.endswith(ENDING):
+        document.problem(place, f"must be a file that ends in {ENDING}, or a module; is {shown(word)}")
+        return None
+    path = (document.folder / word).absolute()
+    known_as = str(document.folder / word)
+    try:
+        source = user_file.read_bytes(path, LARGEST)
+    except ConfigError as error:
+        near = nearest(word, (each.name for each in _beside(path)))
+        document.problem(place, plain(str(error).replace(str(path), known_as), LONGEST) + near)
+        return None
+    used.files |= {str(each): str(Path(known_as).parent / each.name) for each in _beside(path)}
+    used.files[str(path)] = known_as
+    document.files[path] = source
+    watch(Spot(file=known_as), "importing this")
+    try:
+        with _importing(path.parent, document.files):
+            module = _run(path, source)
+    except (Exception, SystemExit) as error:  # noqa: BLE001 - it is user code: whatever it raises is told
+        spot = used.where(error, Spot(file=known_as))
+        used.keep(document, spot.problem(f"cannot be imported: {said(error)}"))
+        return None
+    _check_twice(document, known_as, source)
+    return module
+
+
+def _trees(document: Document, place: Place, word: str, used: PythonUses) -> None:
+    """The recipe of a file of trees; nothing of it is executed."""
+    if document.folder is None:
+        document.problem(place, "this plant file lies in no folder, so no trees can lie beside it")
+        return
+    known_as = str(document.folder / word)
+
+    def fetch(file: str, path: str, package: str) -> tuple[str, bytes]:
+        found, content = tree_includes.read(file, path, package)
+        document.files[Path(found).absolute()] = content
+        return found, content
+
+    findings = Findings()
+    try:
+        content = user_file.read_bytes(Path(known_as), LARGEST)
+    except ConfigError as error:
+        document.problem(place, plain(str(error), LONGEST))
+        used.is_whole = False
+        return
+    document.files[Path(known_as).absolute()] = content
+    forest = reading.read(known_as, content, findings, fetch)
+    checking.check(forest, findings, leaves_are_checked_later=True)
+    name = Path(word).stem
+    problems = list(findings.mistakes)
+    if not problems and forest.main not in forest.trees:
+        problems.append(f'{known_as}:1:1: which tree? <root main_tree_to_execute="...">')
+    elif not problems and forest.main is not None:
+        forest = runnable.part_of(forest, forest.main)
+        runnable.check(forest, findings)
+        problems += findings.mistakes
+    if not problems:
+        recipe = tree_recipe(name, known_as, forest, used.nodes)
+        problem = _objection("recipe", recipe, used.recipes, TAKEN, used)
+        problems += [] if problem is None else [used.spot(recipe).problem(problem)]
+        used.recipes.setdefault(name, recipe)
+    for problem in problems:
+        used.keep(document, problem)
+
+
+def _module(document: Document, place: Place, word: str, used: PythonUses, watch: Watch) -> ModuleType | None:
+    watch(Spot(file=word), "importing this")
+    try:
+        module = importlib.import_module(word)
+    except ModuleNotFoundError as error:
+        if error.name is not None and (word == error.name or word.startswith(f"{error.name}.")):
+            hint = f'; a file beside this one is written with its ending, "{word}{ENDING}"'
+            document.problem(place, f"no module {shown(word)} is installed{hint}")
+        else:
+            document.problem(place, plain(f"{shown(word)} cannot be imported: {said(error)}", LONGEST))
+        return None
+    except (Exception, SystemExit) as error:  # noqa: BLE001 - it is user code: whatever it raises is told
+        document.problem(place, plain(f"{shown(word)} cannot be imported: {said(error)}", LONGEST))
+        return None
+    if file := getattr(module, "__file__", None):
+        used.files[file] = file
+    return module
+
+
+def _beside(path: Path) -> list[Path]:
+    """The files of Python in the folder of one."""
+    return sorted(path.parent.glob(f"*{ENDING}")) if path.parent.is_dir() else []
+
+
+def _run(path: Path, source: bytes) -> ModuleType:
+    """A module of its own of this file; Python keeps no compiled file of it beside the user's."""
+    code = compile(source, str(path), "exec", dont_inherit=True)
+    module = ModuleType(f"arboleda_uses_{sha256(str(path).encode()).hexdigest()[:12]}_{path.stem}")
+    module.__file__ = str(path)
+    sys.modules[module.__name__] = module  # where dataclasses and annotations look for it
+    exec(code, module.__dict__)
+    return module
+
+
+@contextmanager
+def _importing(folder: Path, files: dict[Path, bytes]) -> Iterator[None]:
+    """What lies in `folder` can be imported meanwhile, is added to `files`, and is forgotten: other plants
+    have other files."""
+    before, writes = set(sys.modules), sys.dont_write_bytecode
+    sys.path.insert(0, str(folder))
+    sys.dont_write_bytecode = True
+    try:
+        yield
+    finally:
+        sys.dont_write_bytecode = writes
+        if str(folder) in sys.path:
+            sys.path.remove(str(folder))
+        for name in set(sys.modules) - before:
+            file = getattr(sys.modules[name], "__file__", None)
+            if file is not None and folder in Path(file).parents and not name.startswith("arboleda_uses_"):
+                with suppress(OSError):  # whoever imports may have deleted it since
+                    files[Path(file)] = Path(file).read_bytes()
+                del sys.modules[name]
+
+
+def _collect(document: Document, place: Place, module: ModuleType, used: PythonUses) -> None:
+    recipes = {id(each): each for each in vars(module).values() if isinstance(each, Recipe)}
+    kinds = {id(each): each for each in vars(module).values() if isinstance(each, IN_PYTHON)}
+    drivers = {id(spec): spec for each in vars(module).values() if (spec := spec_of(each)) is not None}
+    nodes = {id(each): each for each in vars(module).values() if isinstance(each, WrittenNode)}
+    if not recipes and not kinds and not drivers and not nodes:
+        how = 'one is a function with @recipe("its name") or @kind("its name") before it'
+        document.problem(place, f"has neither a recipe nor a kind; {how}, a driver a class with @driver")
+        used.is_whole = False
+    for recipe in recipes.values():
+        if not inspect.isfunction(inspect.unwrap(recipe.build)):
+            document.problem(place, f"the recipe {shown(recipe.name)} is no function")
+        elif problem := _objection("recipe", recipe, used.recipes, TAKEN, used):
+            used.keep(document, used.spot(recipe).problem(problem))
+        else:
+            used.recipes[recipe.name] = recipe
+    for kind in kinds.values():
+        if problem := _objection("kind", kind, used.kinds, RESERVED, used):
+            used.keep(document, used.spot(kind).problem(problem))
+        else:
+            used.kinds[kind.name] = kind
+    for node in nodes.values():
+        if problem := _objection_to_node(node, used):
+            used.keep(document, used.spot(node).problem(problem))
+        else:
+            used.nodes[node.name] = node
+    for spec in drivers.values():
+        if problem := _objection("driver", spec, used.drivers, LINKS, used):
+            used.keep(document, used.spot(spec).problem(problem))
+        else:
+            used.drivers[spec.name] = spec
+
+
+def _objection(
+    what: str, found: Written, there: Mapping[str, Any], taken: Sequence[str], used: PythonUses
+) -> str | None:
+    """Why it cannot be one beside those that there are."""
+    name = found.name
+    if not isinstance(name, str) or not is_name(name):
+        return f"{shown(name)} cannot be the name of a {what}; it must be {NAME_RULE}"
+    if name in taken:
+        return f"the {what} {shown(name)} comes with Arboleda; give this one another name"
+    return _twice(what, found, there, used)
+
+
+def _objection_to_node(found: WrittenNode, used: PythonUses) -> str | None:
+    """Why trees of XML cannot have a node."""
+    if not isinstance(found.name, str) or not NODE.fullmatch(found.name):
+        return f"{shown(found.name)} cannot be the name of a node; it must be letters, digits and _"
+    if built_in(found.name) is not None or found.name in (*OTHER_SPELLINGS, *CATEGORIES):
+        return f"the node {shown(found.name)} comes with BehaviorTree.CPP; give this one another name"
+    return _twice("node", found, used.nodes, used)
+
+
+def _twice(what: str, found: Written, there: Mapping[str, Any], used: PythonUses) -> str | None:
+    other = there.get(found.name)
+    if other is None or other is found:
+        return None
+    first = used.spot(other)
+    return f"the {what} {shown(found.name)} is there twice; the other is on line {first.line} of {first.file}"
+
+
+def _check_twice(document: Document, known_as: str, source: bytes) -> None:
+    """Keeps a problem for each of these functions whose name a later one has: Python forgets it."""
+    lines: dict[str, int] = {}
+    for node in ast.parse(source).body:
+        if not isinstance(node, ast.FunctionDef | ast.ClassDef):
+            continue
+        marked = [each for each in node.decorator_list if isinstance(each, ast.Call) and _marks(each.func)]
+        first = lines.setdefault(node.name, node.lineno)
+        if first != node.lineno and marked:
+            spot = Spot(file=known_as, line=node.lineno)
+            sentence = f"the function {node.name} is there twice, so Python forgets that on line {first}"
+            document.keep_those_of(ConfigError((spot.problem(sentence),)))
+
+
+def _marks(decorator: ast.expr) -> bool:
+    name = decorator.attr if isinstance(decorator, ast.Attribute) else getattr(decorator, "id", "")
+    return name in ("recipe", "kind", "node", "function")

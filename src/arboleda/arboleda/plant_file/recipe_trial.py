@@ -1,0 +1,183 @@
+"""Recipes and kinds tried in a process of their own: whatever never ends, or ends Python, is a problem."""
+
+from __future__ import annotations
+
+import faulthandler
+import json
+import os
+import re
+import subprocess
+import sys
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+from arboleda.model.plant_model import Cell
+from arboleda.model.recipe import Recipe
+
+from . import drivers, own_kinds, own_recipes
+from .devices import CELLS, is_of_devices
+from .document import Document
+from .problems import Kept
+from .python_uses import PythonUses, Spot, unwatched
+
+LONGEST_S = 10.0  # for the import of a file, and for each build of a recipe
+STUCK_S = 60.0  # after which not even the watch in the other process has done its work
+SLOW = f"nothing came of it for {STUCK_S:g} s; try again when this machine has less to do"
+PATH = "import sys, json; sys.path[:] = json.loads(sys.argv[1]); "
+START = PATH + "from arboleda.plant_file import recipe_trial; recipe_trial.main(sys.argv[2])"
+FRAME = re.compile(r'^  File "(.*)", line (\d+) in ', re.MULTILINE)
+PLANT, REQUEST, RESULT, PHASE, STACK = "plant", "request.json", "result.json", "phase.json", "stack.txt"
+
+
+@dataclass
+class Verdict:
+    """What came of it: problems of the plant file with their marks, those of other files, and offers."""
+
+    here: list[Kept] = field(default_factory=list)
+    elsewhere: list[str] = field(default_factory=list)
+    offers: dict[str, list[str]] = field(default_factory=dict)
+
+
+@dataclass
+class PlantPython:
+    """What a plant has of Python, and which recipes each of its cells offers."""
+
+    document: Document
+    used: PythonUses = field(default_factory=PythonUses)
+    offers: dict[str, list[str]] = field(default_factory=dict)
+
+    def offered(self, cells: Sequence[Cell]) -> dict[str, tuple[Recipe, ...]]:
+        """The recipes of one's own of each of these cells."""
+        known = {cell.name: self.offers.get(cell.name, []) for cell in cells}
+        rows = {name: [self.used.recipes[each] for each in offers] for name, offers in known.items()}
+        beside = {cell.name: cell.recipes for cell in cells}  # those that come with its shape
+        return {name: _marked(self.document, name, each, beside[name]) for name, each in rows.items() if each}
+
+
+def brought(document: Document, content: bytes) -> PlantPython:
+    """What of Python a plant file uses, tried before; nothing, with the problems kept, where it is wrong."""
+    places = [(*CELLS, name) for name in document.keys(CELLS)]
+    of_devices = [place for place in places if is_of_devices(document, place)]
+    words = own_recipes.listed(document) if document.has(own_recipes.SECTION) else ()
+    if not document.has(own_recipes.SECTION):
+        for place in of_devices:
+            how = 'name a file that has one at the top of this one: "uses: [recipes.py]"'
+            document.problem(place, f"offers no recipe; {how}", at=place)
+    if not (words or own_kinds.needs_python(document) or any(drivers.named(document))):
+        return PlantPython(document)
+    found = verdict(document.name, document.folder, content)
+    document.keep_all(found.here, found.elsewhere)
+    if any(document.kept):
+        return PlantPython(document, PythonUses(is_whole=False, may_import=False))
+    used = own_recipes.imported(document, words, unwatched)
+    if any(document.kept):  # a file may do another thing the second time
+        return PlantPython(document, used)
+    has_effect = of_devices or used.recipes or any(drivers.named(document))
+    if words and not has_effect:
+        document.problem(own_recipes.SECTION, "brings no recipe, so this has no effect; delete it")
+    return PlantPython(document, used, found.offers)
+
+
+def _marked(
+    document: Document, cell: str, recipes: Sequence[Recipe], beside: Sequence[Recipe]
+) -> tuple[Recipe, ...]:
+    """The recipes of a cell, with the one that a task means which names none: as it says, or the only one."""
+    default = document.value((*CELLS, cell, "default_recipe"))
+    alone = len(recipes) == 1 and not beside
+    return tuple(replace(each, is_default=each.name == default or alone) for each in recipes)
+
+
+def verdict(name: str, beside: Path | None, content: bytes) -> Verdict:
+    """What the recipes that a plant file uses come to, in a process of its own."""
+    with TemporaryDirectory(prefix="arboleda-") as made:
+        folder = Path(made)
+        (folder / PLANT).write_bytes(content)
+        request = {"name": name, "folder": None if beside is None else str(beside), "longest_s": LONGEST_S}
+        (folder / REQUEST).write_text(json.dumps(request), "utf-8")
+        status = _run(folder)
+        if (folder / RESULT).exists():
+            found = json.loads((folder / RESULT).read_text("utf-8"))
+            return Verdict(**found)
+        return Verdict(elsewhere=[broken_off(folder, status)])
+
+
+def main(name: str) -> None:
+    """The other process: import, build, write down what came of it, end."""
+    from . import loader  # which imports this module
+
+    folder = Path(name)
+    request = json.loads((folder / REQUEST).read_text("utf-8"))
+    beside = None if request["folder"] is None else Path(request["folder"])
+    with watching(folder, request["longest_s"]) as watch:
+        found = loader.trial(request["name"], (folder / PLANT).read_bytes(), beside, watch)
+    _write_whole(folder / RESULT, vars(found))
+    os._exit(0)  # whatever threads the files have started
+
+
+def _write_whole(path: Path, data: dict[str, Any]) -> None:
+    """Write it so that whoever reads finds it whole, or what was there before, whenever this process ends."""
+    half = path.with_suffix(".half")
+    half.write_text(json.dumps(data), "utf-8")
+    half.replace(path)
+
+
+@contextmanager
+def watching(folder: Path, longest_s: float) -> Iterator[Any]:
+    """A watch that ends this process, with the line that it was at, where something takes too long."""
+    with open(folder / STACK, "w", encoding="utf-8") as stack:
+
+        def watch(spot: Spot, doing: str) -> None:
+            _write_whole(folder / PHASE, {**vars(spot), "doing": doing})
+            faulthandler.dump_traceback_later(longest_s, exit=True, file=stack)
+
+        try:
+            yield watch
+        finally:
+            faulthandler.cancel_dump_traceback_later()
+
+
+def _run(folder: Path) -> int | None:
+    command = [sys.executable, "-I", "-c", START, json.dumps(sys.path), str(folder)]
+    null = subprocess.DEVNULL
+    with subprocess.Popen(command, stdin=null, stdout=null, stderr=null) as process:
+        try:
+            return _ended(process, folder / PHASE)
+        finally:
+            process.kill()
+
+
+def _ended(process: subprocess.Popen[bytes], phase: Path) -> int | None:
+    """Its status; None for one that neither ends nor begins anything for long."""
+    before: float | None = None
+    while True:
+        try:
+            return process.wait(STUCK_S)
+        except subprocess.TimeoutExpired:
+            now = phase.stat().st_mtime if phase.exists() else None
+            if now == before:
+                return None
+            before = now
+
+
+def broken_off(folder: Path, status: int | None) -> str:
+    """Why the other process told nothing, with the line that it was at; None: it was given up."""
+    if not (folder / PHASE).exists():
+        ended = SLOW if status is None else f"Python ended with status {status}"
+        return f"the recipes could not be tried: {ended}"
+    phase = json.loads((folder / PHASE).read_text("utf-8"))
+    spot = Spot(file=phase["file"], line=phase["line"])
+    stack = (folder / STACK).read_text("utf-8", "replace")
+    if not stack:
+        late = f"takes more than {STUCK_S:g} s"
+        ended = late if status is None else f"ends Python, with status {status}"
+        return spot.problem(f"{phase['doing']} {ended}")
+    beside = Path(spot.file).absolute().parent
+    for file, line in FRAME.findall(stack):
+        if Path(file).parent == beside:  # the innermost comes first
+            spot = Spot(file=str(Path(spot.file).parent / Path(file).name), line=int(line))
+            break
+    return spot.problem(f"{phase['doing']} takes more than {LONGEST_S:g} s; this is where it was then")

@@ -1,0 +1,82 @@
+"""The robots of a plant as URDF: each with its prefix, its limits and its speeds."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from xml.etree.ElementTree import SubElement, fromstring, indent, tostring
+
+from arboleda.kinds.arm import Arm
+from arboleda.kinds.mobile import Mobile
+from arboleda.model.errors import ConfigError, StartError
+from arboleda.model.plant_model import PlantModel
+from arboleda_description.urdf import Limits, render
+
+from .document import nearest, shown
+
+NO_XACRO = (
+    "a URDF is made with the library xacro, which is not installed here; type `pip install xacro`, "
+    "or `sudo apt install ros-$ROS_DISTRO-xacro` where ROS 2 is"
+)
+
+
+def robot_urdf(plant: PlantModel, name: str) -> str:
+    """The URDF of a robot, from `root_link` outwards.
+
+    ConfigError for a robot that the plant does not have; StartError without xacro or a usable drawing.
+    """
+    robot = _named(plant, name)
+    if robot.has_joints and robot.description is not None:
+        return _described(robot.description.urdf, prefix(robot), limits(robot))
+    try:
+        return render(robot.model, prefix=prefix(robot), limits=limits(robot))
+    except ModuleNotFoundError as error:
+        raise StartError(NO_XACRO) from error
+    except ValueError as error:
+        raise StartError(f"the model {robot.model} of {name} cannot be drawn: {error}") from error
+
+
+def prefix(robot: Arm | Mobile) -> str:
+    """What the names of its links and joints begin with, as in its `joint_states`."""
+    return f"{robot.twin if robot.has_joints else robot.name}_"
+
+
+def root_link(robot: Arm | Mobile) -> str:
+    """The link whose place in `world` is the arm's base, or node 0 of the mobile's grid."""
+    return prefix(robot) + ("base_link" if robot.has_joints else "grid_link")
+
+
+def limits(robot: Arm | Mobile) -> dict[str, Limits]:
+    """By joint name without prefix, in SI units; a mobile's joints end where its grid does."""
+    if robot.has_joints:
+        return {joint.name: Limits(joint.lower, joint.upper, joint.speed) for joint in robot.joints}
+    far = robot.grid.position(robot.grid.size - 1)
+    return {f"{axis}_joint": Limits(0.0, end, robot.speed) for axis, end in zip("xy", far, strict=True)}
+
+
+def _described(urdf: str, prefix: str, limits: Mapping[str, Limits]) -> str:
+    """The URDF of a model of the plant's own, with its prefix, and with ends for every joint that moves."""
+    robot = fromstring(urdf)
+    for named in (*robot.findall("link"), *robot.findall("joint")):
+        named.set("name", prefix + named.get("name", ""))
+    for end in (*robot.findall("joint/parent"), *robot.findall("joint/child")):
+        end.set("link", prefix + end.get("link", ""))
+    for joint in robot.findall("joint"):
+        if narrowed := limits.get(joint.get("name", "").removeprefix(prefix)):
+            limit = joint.find("limit")
+            limit = SubElement(joint, "limit", {"effort": "0"}) if limit is None else limit
+            joint.set("type", "revolute" if joint.get("type") == "continuous" else joint.get("type", ""))
+            limit.attrib |= {key: repr(value) for key, value in narrowed._asdict().items()}
+    indent(robot)
+    return '<?xml version="1.0"?>\n' + tostring(robot, encoding="unicode") + "\n"
+
+
+def _named(plant: PlantModel, name: str) -> Arm | Mobile:
+    robot = plant.robots.get(name)
+    if robot is None:
+        known = f"there are {', '.join(plant.robots)}{nearest(name, plant.robots)}"
+        raise ConfigError((f"{shown(name)} is not a robot of the plant {plant.name}; {known}",))
+    if not robot.goes:
+        raise ConfigError(
+            (f"{shown(name)} is neither an arm nor a mobile robot, so there is no drawing of it",)
+        )
+    return robot

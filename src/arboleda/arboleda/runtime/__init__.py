@@ -1,0 +1,1 @@
+"""Running plants: the parts that a plant is built of, its loop, its state directory, its leader."""

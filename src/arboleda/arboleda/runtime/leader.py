@@ -1,0 +1,92 @@
+"""Who leads a plant, as its database or a process that stands by says it."""
+
+from __future__ import annotations
+
+import socket
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from arboleda.model.errors import StartError
+from arboleda.model.outside import plain
+from arboleda.web.names import is_near_only, public_origin
+
+if TYPE_CHECKING:
+    from arboleda.store.postgres.leadership import Leader
+
+
+@dataclass(frozen=True, kw_only=True)
+class LeaderInfo:
+    """The process and its host, the address of its page, "" where it has said none that is one, and the
+    number of its start."""
+
+    plant: str
+    host: str
+    process: int
+    url: str
+    epoch: int
+
+    @property
+    def here(self) -> bool:
+        """Whether its host is called as this one."""
+        return _is_here(self.host)
+
+    @property
+    def is_far(self) -> bool:
+        """Whether the address leads there from its own host alone, and that is not this one."""
+        return bool(self.url) and not way_to(self.host, self.url)
+
+    @property
+    def way(self) -> str:
+        """The address, where it leads there from this host; else ""."""
+        return way_to(self.host, self.url)
+
+
+def of_leader(plant: str, leader: Leader) -> LeaderInfo:
+    """As the database says it."""
+    return LeaderInfo(
+        plant=plant,
+        host=leader.host,
+        process=leader.process,
+        url=_origin(leader.url),
+        epoch=leader.epoch,
+    )
+
+
+def said_of(led: LeaderInfo | None) -> dict[str, Any]:
+    """What a process that stands by says of it, for `of_standby`."""
+    if led is None:
+        return {"leader": "", "host": "", "process": 0, "epoch": 0}
+    return {"leader": led.url, "host": led.host, "process": led.process, "epoch": led.epoch}
+
+
+def of_standby(said: Mapping[str, Any]) -> LeaderInfo:
+    """As a process that stands by says it."""
+    return LeaderInfo(
+        plant=plain(str(said.get("plant", ""))),
+        host=plain(str(said.get("host", ""))),
+        process=_number(said.get("process")),
+        url=_origin(str(said.get("leader", ""))),
+        epoch=_number(said.get("epoch")),
+    )
+
+
+def way_to(host: str, url: str) -> str:
+    """The address of a process of that host, where it is one and leads there from this host; else ""."""
+    url = _origin(url)
+    return "" if url and is_near_only(url) and not _is_here(host) else url
+
+
+def _is_here(host: str) -> bool:
+    return host == plain(socket.gethostname())
+
+
+def _number(said: object) -> int:
+    return said if isinstance(said, int) else 0
+
+
+def _origin(url: str) -> str:
+    try:
+        return public_origin(url)
+    except StartError:
+        return ""

@@ -1,0 +1,76 @@
+"""What a plant remembers of earlier starts, checked before it believes it."""
+
+from __future__ import annotations
+
+from arboleda.core.intake import HISTORY
+from arboleda.dispatch.dispatcher import CLEARED, DISPLACED, EMPTIED, LATCHED
+from arboleda.model.errors import StartError
+from arboleda.model.grips import Grip
+from arboleda.model.messages import Fact, Failure, KeptTask, Reason, TaskState
+from arboleda.model.outside import quoted
+from arboleda.store.plant_memory import PlantMemory
+from arboleda.store.task_rows import (
+    TaskQuery,
+    TaskRow,
+    answers_of,
+    choice_of,
+    course_of,
+    sentence_of,
+    unchecked_of,
+)
+
+MEANS = {  # a quarantined zone has the name of a robot, which may be none of the plant file any more
+    Fact.LATCH: frozenset({LATCHED, CLEARED}),
+    Fact.EFFECTOR: frozenset(grip.value for grip in Grip),
+    Fact.DISPLACED: frozenset({DISPLACED}),
+    Fact.EMPTIED: frozenset({EMPTIED}),
+}
+
+
+def remembered(store: PlantMemory) -> dict[Fact, dict[str, str]]:
+    """Name to value by kind of fact; StartError where a value means nothing: it may have been a latch."""
+    facts = {fact: store.facts(fact) for fact in Fact}
+    for fact, allowed in MEANS.items():
+        for name, value in facts[fact].items():
+            if value not in allowed:
+                what = f"{quoted(value)} as {fact.value} of {quoted(name)}, which means nothing"
+                raise StartError(f"The plant's memory {store.name} says {what}: {store.remedy}.")
+    return facts
+
+
+def kept_tasks(store: PlantMemory, *, clock_s: float, unix_s: float) -> list[KeptTask]:
+    """The tasks that have not ended, and the last that have, in the order of their acceptance.
+
+    Their times are on the clock that says `clock_s` at the Unix time `unix_s`.
+    """
+    waiting = store.tasks(TaskQuery(is_open=True, limit=None))
+    rows = [*waiting, *store.tasks(TaskQuery(is_open=False, limit=HISTORY))]
+    in_order = sorted(rows, key=lambda row: row.number)
+    return [kept_task(row, clock_s=clock_s, unix_s=unix_s) for row in in_order]
+
+
+def kept_task(row: TaskRow, *, clock_s: float, unix_s: float) -> KeptTask:
+    """A task as the plant takes it back, its times on the clock that says `clock_s` at `unix_s`."""
+    back_s = clock_s - unix_s
+    return KeptTask(
+        id=row.id,
+        text=row.text,
+        cell=row.cell,
+        state=TaskState(row.state),
+        failure=failure_of(row),
+        started_at=None if row.started_s is None else row.started_s + back_s,
+        ended_at=None if row.ended_s is None else row.ended_s + back_s,
+        attempts=row.attempts,
+        answers=answers_of(row),
+        recipe=row.recipe,
+        choice=choice_of(row),
+        course=course_of(row),
+        unchecked=unchecked_of(row),
+    )
+
+
+def failure_of(row: TaskRow) -> Failure | None:
+    """Why a task failed, as far as that was kept."""
+    if row.reason is None:
+        return None
+    return Failure(reason=Reason(row.reason), sentence=sentence_of(row))

@@ -1,0 +1,75 @@
+"""When the cells of a plant did no work, and when the plant ran, kept for the OEE."""
+
+from __future__ import annotations
+
+import logging
+import time
+from collections.abc import Callable
+
+from arboleda.core.cell_states import CellState
+from arboleda.core.plant import Plant
+from arboleda.model.errors import ArboledaError
+from arboleda.store.plant_memory import PlantMemory
+from arboleda.views.oee import SEEN_S
+
+LOG = logging.getLogger(__name__)
+DAY_S = 86_400.0
+WORKS = frozenset({CellState.IDLE, CellState.EXECUTE})
+
+
+class CellTimes:
+    """Writes what changes into the store, in the plant's thread once a step's commands have left.
+
+    Where the store cannot be written, that is said once, and nothing more is kept of this start: figures must
+    not be what ends a plant.
+    """
+
+    def __init__(
+        self, store: PlantMemory, history_days: float, clock: Callable[[], float] = time.time
+    ) -> None:
+        self._store = store
+        self._history_days = history_days
+        self._clock = clock
+        self._version = -1
+        self._seen_s = 0.0
+        self._down: dict[str, CellState] = {}
+        self._keeps = False
+
+    def start(self) -> None:
+        self._seen_s = now_s = self._clock()
+        self._keeps = True
+        self._kept(lambda store: store.began(now_s, now_s - self._history_days * DAY_S))
+
+    def stepped(self, plant: Plant) -> None:
+        """Keep which cells stand since this step, and now and then that the plant runs."""
+        if not self._keeps:
+            return
+        now_s = self._clock()
+        if not 0 <= now_s - self._seen_s < SEEN_S:
+            self._seen_s = now_s
+            self._kept(lambda store: store.seen(now_s))
+        if plant.version == self._version:
+            return
+        self._version = plant.version
+        for name, run in plant.cells.items():
+            state = None if run.state in WORKS else run.state
+            if state is not self._down.get(name):
+                self._down.pop(name, None)
+                if state is not None:
+                    self._down[name] = state
+                word = None if state is None else state.value
+                self._kept(lambda store, name=name, word=word: store.stands(name, word, now_s))
+
+    def stop(self) -> None:
+        """The plant was ended, and is not down: nobody wants work of it; idempotent."""
+        self._kept(lambda store: store.seen(self._clock(), ended=True))
+        self._keeps = False
+
+    def _kept(self, keep: Callable[[PlantMemory], None]) -> None:
+        if not self._keeps:
+            return
+        try:
+            keep(self._store)
+        except ArboledaError as error:
+            self._keeps = False
+            LOG.warning("the times of cells are not kept any more, `arboleda oee` lacks them: %s", error)

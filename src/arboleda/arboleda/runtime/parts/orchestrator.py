@@ -1,0 +1,637 @@
+"""The plant in its loop, and who listens to it."""
+
+from __future__ import annotations
+
+import logging
+import threading
+import time
+from collections import deque
+from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
+from concurrent.futures import Future
+from dataclasses import replace
+from itertools import groupby
+from typing import Any, NamedTuple, Protocol
+from uuid import uuid4
+
+from arboleda.adapters import clock
+from arboleda.core.leading import Standing, may_leave
+from arboleda.core.leaving import SENT_TOO_LATE, StopLeft, departure, is_too_late, leaves_unkept, stop_left
+from arboleda.core.plant import Plant
+from arboleda.core.text import spelled
+from arboleda.dispatch.dispatcher import Memory
+from arboleda.model.commands import Command, Stop
+from arboleda.model.errors import ArboledaError
+from arboleda.model.facts import Value
+from arboleda.model.messages import (
+    ENDED,
+    Absence,
+    Event,
+    InternalError,
+    Journal,
+    KeptTask,
+    Notice,
+    OperatorAnswer,
+    OperatorRequest,
+    Outcome,
+    Remember,
+    Report,
+    Shutdown,
+    TaskChanged,
+    TaskRequest,
+    TaskState,
+    Undelivered,
+    Verb,
+)
+from arboleda.model.plant_model import PlantModel
+from arboleda.model.sentence import Phrase, as_sentence
+from arboleda.store.plant_memory import PlantMemory, Superseded
+from arboleda.store.task_rows import COMMAND, ROS, History, TaskQuery
+from arboleda.views import diagnostics, forms, twin_view, view
+
+from ..loop import Loop, StepInFlight
+from ..memory import kept_task, kept_tasks, remembered
+from .part import Crash
+from .router import PlantPort
+from .slices import PAUSE_S, Slices
+from .stops import CommandOvertaken, Stops, StopsAway
+from .urgency import Urgency
+
+LOG = logging.getLogger(__name__)
+TASKS = logging.getLogger("arboleda.tasks")
+REQUESTS = logging.getLogger("arboleda.requests")  # those that were refused
+OPERATORS = logging.getLogger("arboleda.operators")
+VIEW_S = 1.0
+# A snapshot takes as long as several steps: it waits until whoever was sent a command had the processor.
+SETTLE_S = 0.01
+SHARE = 0.1  # of the thread's time for snapshots, at most: one of 100 busy cells takes as long as 500 steps
+DAY_S = 86_400.0
+PATIENCE_S = 6.0  # a stop is confirmed within stop_timeout_s, 5 s in the shipped plant
+READ_S = 1.0  # counted from a step: who reads it waits so long for its commits
+GLANCE_S = 0.03  # the same in the server's thread, which waits meanwhile, and with it the next stop
+
+
+NOT_KEPT = Phrase(
+    "plant.not_kept", "the plant has not kept yet what it did last, so it cannot tell of it; ask again later"
+)
+
+
+class FlightRecorder(Protocol):
+    """What writes the flight record: told of each step, and of what screens see, in the plant's thread.
+
+    `trouble` is why it stopped.
+    """
+
+    trouble: str
+
+    def stepped(self, plant: Plant, now: float, events: Sequence[Any], messages: Sequence[Any]) -> None: ...
+    def saw(self, snapshot: dict[str, Any], drawn: dict[str, Any]) -> None: ...
+
+
+class RosPort(PlantPort, Protocol):
+    """The plant's port on ROS 2, which carries snapshots too and knows whether it is alone."""
+
+    @property
+    def watched(self) -> bool: ...
+    @property
+    def diagnosed(self) -> bool: ...
+    def check_alone(self) -> None: ...
+    def publish_view(self, view: dict[str, Any]) -> Iterator[None]: ...
+    def publish_diagnostics(self, statuses: Iterable[diagnostics.Diagnostic]) -> Iterator[None]: ...
+
+
+class StartState(NamedTuple):
+    """What a plant was made of beside its file and its epoch: its clock's time, and what was remembered."""
+
+    now: float
+    memory: Memory
+    kept: Sequence[KeptTask]
+
+
+class KeptStateUnknown(ArboledaError):
+    """Nobody can say now what of the plant is kept."""
+
+    def __init__(self) -> None:
+        super().__init__(NOT_KEPT())
+
+
+class CommandTooLate(ArboledaError):
+    """A command was not sent: it is older than a robot's silence may be."""
+
+
+class Orchestrator:
+    """The plant in its loop; `connect` its port before `start`.
+
+    What the plant wants remembered is in the `store` before anything after it leaves, and before anybody is
+    told of it; only stops leave before that. Where that fails, the plant ends: from then on robots are told
+    to stop, nothing else, and screens see what was kept last. Tasks that wait at the end are left for the
+    next start, unless it `drops_waiting`. Where its thread is busy when somebody asks for a stop, that leaves
+    beside it, by `stops`.
+    """
+
+    def __init__(
+        self,
+        model: PlantModel,
+        epoch: int,
+        crash: Crash,
+        store: PlantMemory | None = None,
+        *,
+        history: History | None = None,
+        drops_waiting: bool = False,
+    ) -> None:
+        now, memory = clock.seconds(), remembered(store) if store is not None else {}
+        kept = kept_tasks(store, clock_s=now, unix_s=time.time()) if store is not None else []
+        self.plant = Plant(model, epoch=epoch, now=now, memory=memory, kept=kept)
+        self.began = StartState(now, memory, kept)
+        self.loop: Loop[Any, Any] = Loop(
+            "orchestrator",
+            self.plant,
+            self._send,
+            on_crash=crash,
+            on_send_error=self._not_sent,
+            arrange=self._arrange,
+            on_step=self._stepped,
+        )
+        self.stops = Stops(model, epoch, self._send_beside)
+        self.listeners: list[Callable[[TaskChanged], None]] = []
+        self.watchers: list[Callable[[dict[str, Any]], None]] = []
+        self.observers: list[Callable[[Plant], None]] = []  # told after each step; they must not wait
+        self.reacted: Callable[[float], None] = lambda _seconds: None
+        self.recorder: FlightRecorder | None = None
+        self.diagnoses: list[Callable[[], diagnostics.Diagnostic]] = []  # of what is no robot and no cell
+        self._store = store
+        self._history = history
+        self._drops_waiting = drops_waiting
+        self._crash = crash
+        self._amnesia: Exception | None = None
+        self._writes: deque[list[Remember]] = deque()  # for each fact of a step that is still to come
+        self._port: PlantPort | None = None
+        self._ros: RosPort | None = None
+        self._shown = (-1, 0.0)
+        self._show_after = 0.0
+        self._kept: dict[str, Any] = {}  # the last snapshot of what was kept, as screens got it
+        self._blind = ""  # the defect for which screens saw nothing last
+        self._show_at: float | None = None  # while there is a change that nobody was shown
+        self._showing: Slices[None] | None = None  # a snapshot that is being made and shown
+        self._urgency = Urgency(self.plant)
+        self._waiting: dict[str, Future[Any]] = {}
+        self._asked_by: dict[str, str] = {}  # by token, the way by which a task came
+        self._at_rest = threading.Event()
+
+    def hear(self, event: Event) -> None:
+        """What comes in by the port, from its thread; a report that is no news may wait for others."""
+        if isinstance(event, OperatorRequest):
+            self._take(event)
+            return
+        if isinstance(event, TaskRequest):
+            event = self._recalled(event)
+        self.loop.post(event, self._urgency.within_s(event) if isinstance(event, Report) else 0.0)
+
+    def _recalled(self, request: TaskRequest) -> TaskRequest:
+        """The request, with the task of its id where that ended too long ago for the plant to know it."""
+        id = request.text.rpartition("#")[2]
+        if self._history is None or id == request.text or id in self.plant.intake.tasks:
+            return request
+        found = self._history.select(TaskQuery(id=id, is_open=False, limit=1))
+        kept = [kept_task(row, clock_s=request.at, unix_s=time.time()) for row in found]
+        return replace(request, kept=next(iter(kept), None))
+
+    def connect(self, port: PlantPort) -> None:
+        self._port = port
+
+    def connect_ros(self, port: RosPort) -> None:
+        """What it shows itself on; its commands go by the port of `connect`."""
+        self._ros = port
+
+    def start(self) -> None:
+        """StartError where another node already commands these robots.
+
+        Where a database says who leads, that is the one before, which ends or was cut off; nobody obeys it.
+        """
+        if self._ros is not None and (self._store is None or self._store.renew_s is None):
+            self._ros.check_alone()
+        for run in self.plant.cells.values():
+            if run.found is not None:
+                TASKS.warning("%s", run.found)
+            if run.left_over:
+                TASKS.warning("%s", run.why_paused)
+        self._kept = self._first_view()
+        self.stops.loop.start()
+        self.loop.start()
+
+    def _first_view(self) -> dict[str, Any]:
+        """A snapshot for those who look before the first one that screens get."""
+        try:
+            return view.snapshot(self.plant)
+        except Exception as error:  # noqa: BLE001 - a screen that cannot be drawn must not end the plant
+            _log_defect("the screens", error)
+            return {}
+
+    def submit(self, text: str, asked_by: str = COMMAND, choice: str = "") -> Future[TaskChanged]:
+        """Ask for a task; the future holds the answer: queued, refused, or the known task's state.
+
+        `choice` is why it was given to its cell, where somebody chose between plants.
+        """
+        answer, token = self._expect()
+        self._asked_by[token] = asked_by
+        self.hear(TaskRequest(at=clock.seconds(), text=text, request=token, choice=choice))
+        return answer
+
+    def operate(self, verb: Verb, scope: str = "", by_hand: bool = False) -> Future[OperatorAnswer]:
+        """Ask for an operator's act; the future holds the answer, with a refusal where nothing was done."""
+        answer, token = self._expect()
+        now = clock.seconds()
+        self._take(OperatorRequest(at=now, verb=verb, scope=scope, by_hand=by_hand, request=token))
+        return answer
+
+    def _take(self, request: OperatorRequest) -> None:
+        """Have the plant do what an operator asks for; a stop does not wait until its thread is free."""
+        if request.verb is not Verb.STOP:
+            self.loop.post(request)
+            return
+        request = self.stops.open(request)
+        self.loop.post(request)
+        if self.loop.busy and self._leads_for_certain:  # a step that has taken it sends its stops first
+            self.stops.leave_beside(request)
+
+    @property
+    def _leads_for_certain(self) -> bool:
+        """Whether a stop may leave without a question to the store, which may hang."""
+        if self._store is None or self._amnesia is not None:
+            return self._standing is not Standing.SUPERSEDED
+        return self._store.leads_for_certain
+
+    def act(self, number: int) -> dict[str, Any] | None:
+        """One of the last acts of operators, None where the plant knows it no more."""
+        return self.loop.read(lambda plant: view.act_by_number(plant, number))
+
+    def promises(self, text: str) -> list[dict[str, Any]]:
+        """What each cell that a task text names promises now; TextError, QueueFull."""
+        return self.loop.read(lambda plant: view.promises(plant, text))
+
+    def offers(self) -> list[dict[str, Any]]:
+        """What each cell can be asked for."""
+        return forms.offers(self.plant.model)
+
+    def spelled(self, *, cell: str, recipe: str, values: Mapping[str, Value], id: str) -> str:
+        """The task text of named values; TextError for what is no task of this plant."""
+        return spelled(self.plant.model, cell=cell, recipe=recipe, values=values, id=id)
+
+    def snapshot(self, within_s: float = READ_S) -> dict[str, Any]:
+        """A snapshot of what is kept, made in slices between which the plant is stepped; not in its thread.
+
+        Where the plant waits for its disk for longer, it is the last one that screens got.
+        """
+        slices = Slices(view.in_parts(self.plant))
+        try:
+            while not self._read(lambda _plant: slices.cut(clock.seconds()), within_s):
+                time.sleep(PAUSE_S)
+        except StepInFlight:
+            return self._last_kept
+        return slices.result
+
+    def _read(self, fn: Callable[[Plant], Any], within_s: float) -> Any:
+        """`fn(plant)` of a plant all of which is kept; UnderWay where it is not, or will not be any more."""
+
+        def look(plant: Plant) -> Any:
+            if self._amnesia is not None:
+                raise StepInFlight
+            return fn(plant)
+
+        return self.loop.read_handed_on(look, within_s)
+
+    @property
+    def _last_kept(self) -> dict[str, Any]:
+        """The last snapshot that screens got; NotKept where there is none."""
+        if not self._kept:
+            raise KeptStateUnknown
+        return self._kept if self._amnesia is None else {**self._kept, "ending": True}
+
+    @property
+    def stepped_at(self) -> float:
+        """When the plant made its last step, on its clock; it makes one for each of its heartbeats."""
+        return self.loop.read(lambda plant: plant.now)
+
+    def positions(self) -> dict[str, Any]:
+        """What moves; `now` is on the plant's clock."""
+        return {"now": clock.seconds(), **self.loop.read(twin_view.positions)}
+
+    def find(self, task: str) -> dict[str, Any] | None:
+        """A task as it is kept; NotKept where that cannot be said now."""
+        try:
+            found: dict[str, Any] | None = self._read(lambda plant: view.task_by_id(plant, task), READ_S)
+        except StepInFlight:
+            found = next((row for row in self._last_kept["tasks"] if row["id"] == task), None)
+            if found is None:
+                raise KeptStateUnknown from None
+        return found
+
+    def halt(self) -> None:
+        """Halt whatever moves, accept nothing more, and wait for nothing."""
+        self.loop.post(Shutdown(at=clock.seconds(), drops_waiting=self._drops_waiting))
+
+    def stop(self) -> None:
+        """Halt whatever moves and wait until the robots confirm it, at most PATIENCE_S."""
+        self.halt()
+        if self.loop.running:
+            self._at_rest.wait(PATIENCE_S)
+        self.loop.stop()
+        self.stops.loop.stop()
+
+    def _send(self, message: Command | Notice | StopsAway) -> None:
+        if isinstance(message, Remember | Journal):
+            self._keep(message)
+            return
+        if isinstance(message, StopsAway):
+            self.stops.departed(message)
+            return
+        if isinstance(message, InternalError):
+            _log_defect(message.cell or "plant", message.error)
+            return
+        if isinstance(message, Absence):
+            LOG.warning(
+                "the plant was away for %.1f s; cells that were at work are held, see `arboleda status`",
+                message.seconds,
+            )
+            return
+        if self._amnesia is not None and not leaves_unkept(message):
+            self._refuse_unkept(message, self._amnesia)
+            return
+        if isinstance(message, TaskChanged):
+            self._keep_task(message)
+        if isinstance(message, TaskChanged | OperatorAnswer):
+            _log(message)
+            self._answer(message)
+        if isinstance(message, TaskChanged):
+            for listener in self.listeners:
+                listener(message)
+        if self._port is not None and self._may_leave(message):
+            self._refuse_late(message)
+            if self.stops.ahead:
+                self.stops.refuse_overtaken(message)
+            self._port.send(message)
+            if self.stops.ahead:  # one may have left meanwhile
+                self.stops.stop_again(message)
+
+    def _send_beside(self, message: Stop | StopLeft) -> None:
+        """What the lane sends, in its thread."""
+        if isinstance(message, StopLeft):
+            waiting = self._waiting.pop(message.request or "", None)
+            if waiting is not None:
+                waiting.set_result(message)
+        if self._port is not None and self._standing is not Standing.SUPERSEDED:
+            self._port.send(message)
+
+    def _may_leave(self, message: Command | Notice) -> bool:
+        """Whether this plant may send at all: one that another process has taken over sends nothing more, not
+        even a stop; one that cannot find out stops what moves, and ends."""
+        if self._store is not None and self._amnesia is None:
+            try:
+                self._store.confirm()
+            except ArboledaError as error:
+                self._forget(error)
+        leaves = may_leave(message, self._standing)
+        if not leaves and isinstance(message, Command) and self._amnesia is not None:
+            raise self._amnesia
+        return leaves
+
+    @property
+    def _standing(self) -> Standing:
+        if self._amnesia is None:
+            return Standing.LEADS
+        return Standing.SUPERSEDED if isinstance(self._amnesia, Superseded) else Standing.UNSURE
+
+    def _forget(self, error: Exception) -> None:
+        """Nothing can be kept any more: the plant ends."""
+        self._amnesia = error
+        self._crash("orchestrator", error)
+
+    def _refuse_unkept(self, message: Command | Notice, amnesia: Exception) -> None:
+        """Whoever waits for an answer hears why there is none; nobody else hears what is not kept."""
+        if isinstance(message, Command):
+            raise amnesia
+        if isinstance(message, TaskChanged | OperatorAnswer):
+            self._answer(message)
+        if isinstance(message, OperatorAnswer):
+            said = self._unkept(message, amnesia)
+            _log(said)
+            if self._port is not None:
+                self._port.send(said)
+
+    def _unkept(self, answer: OperatorAnswer, why: Exception) -> OperatorAnswer:
+        """The answer to an act that is not kept: only a stop has left all the same."""
+        is_left = answer.verb is Verb.STOP and answer.refusal is None
+        if is_left and self._standing is not Standing.SUPERSEDED:
+            return stop_left(answer, as_sentence(why))
+        return replace(answer, refusal=answer.refusal or as_sentence(why))
+
+    def _refuse_late(self, message: Command | Notice) -> None:
+        """A process that was stopped in the middle of a step must not send what was right before."""
+        now = clock.seconds()
+        if is_too_late(message, self.plant, now):
+            raise CommandTooLate(SENT_TOO_LATE(seconds=now - self.plant.now))
+
+    def _arrange(self, messages: Sequence[Any]) -> Sequence[Any]:
+        """The messages of a step in the order in which they leave: its stops wait for no commit."""
+        stops: Sequence[Any] = ()
+        if Stop in map(type, messages):
+            stops, messages, overtaken = departure(messages)
+            for command in overtaken:
+                self._not_sent(command, CommandOvertaken(command))
+        if self.stops.ahead and (away := self.stops.stepped(messages)) is not None:
+            stops = [*stops, away]
+        self._writes = _writes(messages)
+        return [*stops, *messages] if stops else messages
+
+    def _keep(self, message: Remember | Journal) -> None:
+        if isinstance(message, Journal):
+            level = logging.WARNING if message.outcome is Outcome.FAILED else logging.INFO
+            OPERATORS.log(level, "%s", act_line(message))
+        if self._store is None or self._amnesia is not None:
+            return
+        if isinstance(message, Remember):
+            if facts := self._writes.popleft():
+                self._store.keep(*facts)
+            return
+        self._store.journal(message, time.time())
+        if message.verb is Verb.RETRY and message.outcome is None:
+            for name in [message.cell] if message.cell else self.plant.cells:
+                task = self.plant.cells[name].task
+                if task is not None:
+                    self._store.attempted(task.id, task.attempts)
+
+    def _keep_task(self, change: TaskChanged) -> None:
+        """Whoever asked for a task, or waits for its end, hears of it once it is kept."""
+        if self._store is None:
+            return
+        known, unix_s = self.plant.intake.tasks.get(change.task), time.time()
+        asked_by = self._asked_by.get(change.request or "", ROS)
+        recipe, answers = (known.order.recipe, known.answers) if known else ("", [])
+        self._store.task(change, recipe, unix_s, asked_by, answers)
+        if change.state in ENDED:
+            self._store.forget_tasks(unix_s - self.plant.model.history_days * DAY_S)
+
+    def _expect(self) -> tuple[Future[Any], str]:
+        """A future, and the token of the request whose answer it will hold."""
+        answer, token = Future[Any](), uuid4().hex
+        self._waiting[token] = answer
+        return answer, token
+
+    def _answer(self, answer: TaskChanged | OperatorAnswer) -> None:
+        self._asked_by.pop(answer.request or "", None)
+        if isinstance(answer, OperatorAnswer):
+            self.stops.closed(answer)
+        waiting = self._waiting.pop(answer.request or "", None)
+        if waiting is None:
+            return
+        if self._amnesia is None:
+            waiting.set_result(answer)
+            return
+        said = self._unkept(answer, self._amnesia) if isinstance(answer, OperatorAnswer) else answer
+        if isinstance(said, StopLeft):
+            waiting.set_result(said)
+        else:
+            waiting.set_exception(self._amnesia)
+
+    def _not_sent(self, message: Any, error: Exception) -> None:
+        if isinstance(message, Remember | Journal | TaskChanged):
+            self._forget(error)
+            if isinstance(message, TaskChanged):
+                self._answer(message)
+        elif isinstance(message, Command):
+            event = Undelivered(
+                at=clock.seconds(), id=message.id, robot=message.robot, sentence=as_sentence(error)
+            )
+            self.loop.post(event)
+        else:
+            raise error
+
+    def _stepped(self, now: float, events: Sequence[Any], messages: Sequence[Any]) -> None:
+        if events and any(isinstance(message, Command) for message in messages):
+            # What is no news may have waited for the last event, which is why this step was made.
+            self.reacted(clock.seconds() - max(event.at for event in events))
+        if self.recorder is not None:
+            self.recorder.stepped(self.plant, now, events, messages)
+        for observer in self.observers if self._amnesia is None else ():
+            try:
+                observer(self.plant)
+            except Exception as error:  # noqa: BLE001 - whatever is told of a plant must not end it
+                _log_defect("what is told of the plant", error)
+        if self.plant.intake.closed and self.plant.at_rest:
+            self._at_rest.set()
+        if self._showing is not None:
+            self._show_on(now)
+        if self._showing is not None:
+            return
+        version, shown_at = self._shown
+        if version == self.plant.version and (now - shown_at < VIEW_S or not self._watched):
+            return
+        if self._show_at is None:
+            self._show_at = max(now + SETTLE_S, self._show_after)
+        if now < self._show_at and not self.plant.intake.closed:  # what is shown at the end may be the last
+            self.loop.wake_by(self._show_at)
+        else:
+            self._show(now)
+
+    @property
+    def _watched(self) -> bool:
+        """Whether somebody wants to see how old what he sees is."""
+        return bool(self.watchers) or (self._ros is not None and self._ros.watched)
+
+    def _show(self, now: float) -> None:
+        self._shown, self._show_at = (self.plant.version, now), None
+        self._showing = Slices(self._publication())
+        self._show_on(now)
+
+    def _show_on(self, now: float) -> None:
+        """Go on with what is shown: one slice, and all that is left once the plant ends."""
+        assert self._showing is not None
+        if now < self._showing.due and not self.plant.intake.closed:
+            self.loop.wake_by(self._showing.due)
+            return
+        try:
+            while not self._showing.cut(now) and self.plant.intake.closed:
+                pass
+        except Exception as error:  # noqa: BLE001 - a screen that cannot be drawn must not end the plant
+            if repr(error) != self._blind:
+                _log_defect("the screens", error)
+            self._blind = repr(error)
+        if self._showing.over:
+            _, begun = self._shown
+            self._show_after = begun + self._showing.spent_s / SHARE
+            self._showing = None
+        else:
+            self.loop.wake_by(self._showing.due)
+
+    def _publication(self) -> Generator[None, None, None]:
+        """Make a snapshot and show it to all who watch, in parts between which the plant may be stepped."""
+        snapshot = yield from view.in_parts(self.plant)
+        if self._amnesia is not None:  # what happens now is not kept
+            if not self._kept:
+                return
+            snapshot = self._last_kept
+        before, self._kept = self._kept, snapshot
+        if self.recorder is not None and not self.recorder.trouble:
+            drawn = yield from twin_view.in_parts(self.plant)
+            self.recorder.saw(snapshot, drawn)
+        for watcher in self.watchers:
+            watcher(snapshot)
+            yield
+        if self._ros is not None:
+            yield from self._ros.publish_view(snapshot)
+            if self._ros.diagnosed:
+                recorder = [] if self.recorder is None else [diagnostics.record(self.recorder.trouble)]
+                rows = (*diagnostics.diagnostics(snapshot), *recorder, *(each() for each in self.diagnoses))
+                yield from self._ros.publish_diagnostics(rows)
+        rows = [row for kind in ("cells", "robots", "tasks") for row in before.get(kind, ())]
+        del before
+        while rows:  # to give back the memory of them all at once takes as long as some slices
+            rows.pop()
+            yield
+
+
+def _writes(messages: Sequence[Any]) -> deque[list[Remember]]:
+    """For each fact of a step what is committed when it comes.
+
+    It is all that stand side by side when the first of them comes, and nothing with the others: nothing
+    leaves between them, and a commit waits for the disk, or for the database's host.
+    """
+    writes: deque[list[Remember]] = deque()
+    for is_fact, run in groupby(messages, lambda each: isinstance(each, Remember)):
+        if is_fact:
+            facts = list(run)
+            writes.append(facts)
+            writes.extend([] for _ in facts[1:])
+    return writes
+
+
+def _log_defect(where: str, error: Exception) -> None:
+    """One line for people; the whole error, with its traceback, for the log file."""
+    LOG.error("internal error in %s (%s: %s)", where, type(error).__name__, error)
+    LOG.debug("the error in %s, whole", where, exc_info=error)
+
+
+def task_line(change: TaskChanged) -> str:
+    """One line on a change of a task."""
+    why = f"  {change.sentence}" if change.sentence else ""
+    return f"{change.state.value:<9} {change.text}{why}" + (
+        f" ({change.reason.value})" if change.reason else ""
+    )
+
+
+def act_line(act: Journal) -> str:
+    """One line on what an operator did, or what became of it, with the cell where no sentence names it."""
+    return str(act.sentence) if act.cell in (None, act.scope) else f"{act.sentence} ({act.cell})"
+
+
+def _log(message: TaskChanged | OperatorAnswer) -> None:
+    """A line for each change of a task, and for what is refused; `change` is for who shows it in colours."""
+    if isinstance(message, OperatorAnswer):
+        if message.refusal is not None:
+            OPERATORS.info(
+                "%s %s was refused: %s", message.verb.value, message.scope or "plant", message.refusal
+            )
+    elif message.state is TaskState.REFUSED:
+        REQUESTS.warning("%s", task_line(message), extra={"change": message})
+    else:
+        level = logging.WARNING if message.state is TaskState.FAILED else logging.INFO
+        TASKS.log(level, "%s", task_line(message), extra={"change": message})

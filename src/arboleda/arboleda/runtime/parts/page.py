@@ -1,0 +1,106 @@
+"""The plant as the page sees it, and the page on the server's application."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from fastapi import FastAPI
+
+from arboleda.model.plant_model import PlantModel
+from arboleda.model.sentence import Phrase
+from arboleda.plant_file.urdf import robot_urdf
+from arboleda.recorder.errors import NoRecord
+from arboleda.views import view
+
+from .web import Side
+
+if TYPE_CHECKING:  # it takes a while to load, and only who looks at a record needs it
+    from arboleda.dashboard.past.past import Past
+    from arboleda.dashboard.past.side import Start
+
+    from .records import Records
+
+NOT_YET = Phrase("record.not_yet", "There is no record of this start yet; try again in some seconds.")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Sources:
+    """What the page shows besides snapshots; each is asked from the server's thread."""
+
+    model: PlantModel
+    links: Callable[[], dict[str, Any]]
+    positions: Callable[[], dict[str, Any]]
+    past_acts: Callable[[], list[dict[str, Any]]]
+    recorded: Path | None  # the state directory of a plant that writes a record
+    report: Callable[[str], str | None]
+    end_demo: Callable[[], None] | None = None  # None: this start is no demonstration
+
+
+class PageSide:
+    """`arboleda.dashboard.plant_side.PlantSide`."""
+
+    def __init__(self, side: Side, sources: Sources) -> None:
+        self._model = sources.model
+        self._layout = view.layout(sources.model) | {
+            "recorded": sources.recorded is not None,
+            "demo": sources.end_demo is not None,
+        }
+        self._sources = sources
+        self.snapshot = side.snapshot
+        self.submit = side.submit
+        self.operate = side.operate
+        self.act = side.act
+        self.history = side.history
+        self.oee = side.oee
+        self.watch = side.watch
+        self.links = sources.links
+        self.positions = sources.positions
+        self.past_acts = sources.past_acts
+        self.report = sources.report
+
+    def layout(self) -> dict[str, Any]:
+        return self._layout
+
+    def end_demo(self) -> None:
+        if self._sources.end_demo is not None:
+            self._sources.end_demo()
+
+    def past(self, epoch: int | None = None) -> Past:
+        return self._recorded.past(epoch)
+
+    def starts(self) -> list[Start]:
+        return self._recorded.starts()
+
+    @cached_property
+    def _recorded(self) -> Records:
+        from .records import Records
+
+        return Records(self._own, self._layout)
+
+    def _own(self) -> Path:
+        from arboleda.recorder import files
+
+        state, epoch = self._sources.recorded, self.snapshot()["epoch"]
+        found = files.parts_in(state / files.FOLDER) if state else []
+        parts = [part for part in found if part.epoch == epoch]
+        if not parts:
+            raise NoRecord(NOT_YET())
+        return parts[-1].path
+
+    def urdf(self, robot: str) -> str:
+        return robot_urdf(self._model, robot)
+
+
+def mounting(sources: Sources) -> Callable[[FastAPI, Side], None]:
+    """What puts the page on the server's application."""
+
+    def mount(app: FastAPI, side: Side) -> None:
+        from arboleda.dashboard import page  # it takes most of a second: only who shows a page waits for it
+
+        page.mount(app, PageSide(side, sources))
+
+    return mount

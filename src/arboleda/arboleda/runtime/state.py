@@ -1,0 +1,251 @@
+"""The state directory of a running plant: one owner at a time, and where to reach it."""
+
+from __future__ import annotations
+
+import errno
+import fcntl
+import json
+import os
+import re
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import asdict, dataclass, replace
+from datetime import datetime, timezone
+from pathlib import Path
+
+from arboleda.model.errors import ArboledaError, ConfigError, StartError
+from arboleda.plant_file.user_file import read_bytes
+from arboleda.store.held_files import HeldFiles
+from arboleda.wire import epochs
+
+from .place_claim import PlaceClaim
+
+STORE = "plant.sqlite"
+LOCK = "plant.lock"
+FACTS = "plant.json"
+EPOCH = "epoch"
+EPOCH_SAID, EPOCH_BYTES = re.compile(rb"[0-9]{1,10}\s*"), 64
+KNOWN_TIME_S = 1_577_836_800  # 2020: a clock that says less has forgotten the time
+NO_ROOM = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG}
+LOCK_TRIES, LOCK_PAUSE_S = 5, 0.05  # a `status` looks at the lock for a moment; that is no owner
+
+
+def default_state(plant: str) -> Path:
+    """`$XDG_STATE_HOME/arboleda/<plant>`, else `~/.local/state/arboleda/<plant>`."""
+    return _default_root() / plant
+
+
+def running_plants() -> list[Path]:
+    """The default state directories on which a plant runs now, by name."""
+    try:
+        return [path for path in sorted(_default_root().iterdir()) if find_running(path) is not None]
+    except OSError:
+        return []
+
+
+def plants_of_databases() -> list[Path]:
+    """The default state directories whose last plant had its memory in a database, by name."""
+    try:
+        return [path for path in sorted(_default_root().iterdir()) if (last := last_run(path)) and last.store]
+    except OSError:
+        return []
+
+
+def state_root() -> Path:
+    """`$XDG_STATE_HOME`, else `~/.local/state`."""
+    base = os.environ.get("XDG_STATE_HOME", "")
+    return Path(base) if os.path.isabs(base) else Path.home() / ".local" / "state"
+
+
+def _default_root() -> Path:
+    return state_root() / "arboleda"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Running:
+    """Who runs the plant, and where this machine reaches its HTTP API: `port` is None until it listens,
+    `host` is as in a URL (`[::1]`). `guarded` where it wants a token of everybody; `certificate` is what it
+    shows where it speaks TLS, as PEM. `plant` is its name, `store` the database that keeps its memory, "" a
+    file of this directory."""
+
+    pid: int
+    started: str
+    port: int | None = None
+    host: str = "127.0.0.1"
+    guarded: bool = False
+    certificate: str = ""
+    plant: str = ""
+    store: str = ""
+
+    @property
+    def url(self) -> str:
+        return f"{'https' if self.certificate else 'http'}://{self.host}:{self.port}"
+
+
+class StateDir:
+    """The exclusive owner of a state directory from `open` to `close`, as `with` does it."""
+
+    def __init__(self, path: Path, *, plant: str = "", store: str = "") -> None:
+        self.path = path
+        self._lock: int | None = None
+        self._held = HeldFiles()
+        self._claim = PlaceClaim(path)
+        started = datetime.now(timezone.utc).isoformat(timespec="seconds")
+        self._running = Running(pid=os.getpid(), started=started, plant=plant, store=store)
+
+    def open(self) -> None:
+        """Take the directory; StartError says who holds it, or why it cannot be used."""
+        with self._explained():
+            self.path.mkdir(mode=0o700, parents=True, exist_ok=True)
+            lock = os.open(self.path / LOCK, os.O_RDWR | os.O_CREAT, 0o600)
+        if not take(lock):
+            os.close(lock)
+            raise StartError(
+                f"{holder(self.path)} End it first, or give this plant its own --state directory."
+            )
+        self._lock, self._held = lock, HeldFiles([self.path / LOCK])
+        try:
+            self._claim.take()
+            with self._explained():
+                (self.path / FACTS).unlink(missing_ok=True)
+                os.ftruncate(lock, 0)
+                os.pwrite(lock, json.dumps(asdict(self._running)).encode(), 0)
+        except StartError:
+            self.close()
+            raise
+
+    def next_epoch(self, unix_s: int) -> int:
+        """A number for this start, higher than that of any start before, though the clock was set back;
+        StartError where nobody knows what the last one was, or no robot would obey the next."""
+        last = self._last_epoch()
+        epoch = max(unix_s, last + 1)
+        if epochs.objection(epoch, unix_s if unix_s >= KNOWN_TIME_S else None) is not None:
+            raise StartError(
+                f"Robots would not obey this start: {self.path / EPOCH} says that the last one was number"
+                f" {last}, and this machine's clock says {unix_s}. Set the clock if it is wrong; if the file"
+                " is wrong, delete it and restart the boards that were told that number."
+            )
+        with self._explained():
+            replace_file(self.path / EPOCH, str(epoch))
+        return epoch
+
+    def _last_epoch(self) -> int:
+        file = self.path / EPOCH
+        try:
+            said = read_bytes(file, EPOCH_BYTES) if os.path.lexists(file) else b"0"
+        except ConfigError:
+            said = b""
+        if not EPOCH_SAID.fullmatch(said):
+            raise StartError(
+                f"{file} does not say the number of the last start: delete it if this machine's clock is "
+                "right, or write a number into it that is higher than any before; robots obey no lower one."
+            )
+        return int(said)
+
+    def announce(
+        self, port: int, *, host: str = "127.0.0.1", guarded: bool = False, certificate: str = ""
+    ) -> None:
+        """Say where the HTTP API is reached and what it wants and shows (see `Running`)."""
+        known = replace(self._running, port=port, host=host, guarded=guarded, certificate=certificate)
+        with self._explained():
+            replace_file(self.path / FACTS, json.dumps(asdict(known)))
+
+    def close(self) -> None:
+        """Give the directory back; idempotent. The lock file stays: removing it would let two owners in."""
+        if self._lock is not None:
+            self._held = HeldFiles()
+            (self.path / FACTS).unlink(missing_ok=True)
+            os.close(self._lock)
+            self._lock = None
+        self._claim.release()
+
+    def confirm(self) -> None:
+        """ArboledaError where the lock that this process has is not in its place; from any thread."""
+        loss = self._held.loss()
+        if loss is not None:
+            raise ArboledaError(
+                f"The state directory {self.path} cannot be used any more ({loss}), so that a second plant"
+                " could start beside this one: put back what else was deleted or moved away there, and start"
+                " again."
+            )
+
+    @contextmanager
+    def _explained(self) -> Iterator[None]:
+        """Turn what the system raises into one sentence."""
+        try:
+            yield
+        except OSError as error:
+            advice = "; make room on the disk and start again" if error.errno in NO_ROOM else ""
+            sentence = f"The state directory {self.path} cannot be used: {error.strerror}{advice}."
+            raise StartError(sentence) from error
+
+    def __enter__(self) -> StateDir:
+        self.open()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+
+def replace_file(file: Path, content: str) -> None:
+    """The file appears with all of its content, readable by its owner only, also after a power cut; OSError,
+    and all is as before, where it cannot."""
+    fresh = file.with_name(f".{file.name}.{os.getpid()}")
+    try:
+        with os.fdopen(os.open(fresh, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o600), "w") as opened:
+            opened.write(content)
+            opened.flush()
+            os.fsync(opened.fileno())
+        os.replace(fresh, file)
+    except OSError:
+        fresh.unlink(missing_ok=True)
+        raise
+
+
+def find_running(path: Path) -> Running | None:
+    """Who runs a plant on `path`; None if nobody does, whatever a killed one left behind."""
+    try:
+        lock = os.open(path / LOCK, os.O_RDONLY)
+    except OSError:
+        return None
+    try:
+        fcntl.flock(lock, fcntl.LOCK_SH | fcntl.LOCK_NB)
+    except BlockingIOError:
+        return read_facts(path / FACTS) or read_facts(path / LOCK)
+    finally:
+        os.close(lock)
+    return None
+
+
+def last_run(path: Path) -> Running | None:
+    """Who runs a plant on `path`, or was the last to do so."""
+    return read_facts(path / LOCK)
+
+
+def read_facts(file: Path) -> Running | None:
+    """What the file says, None where it is absent or half written."""
+    try:
+        return Running(**json.loads(file.read_bytes()))
+    except (OSError, ValueError, TypeError):
+        return None
+
+
+def holder(path: Path) -> str:
+    """One sentence on who holds the directory."""
+    running = read_facts(path / LOCK)
+    who = f"process {running.pid}, since {running.started}" if running else "another process"
+    return f"A plant is already running on {path} ({who})."
+
+
+def take(lock: int) -> bool:
+    """Whether the exclusive lock was free."""
+    for attempt in range(LOCK_TRIES):
+        try:
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            if attempt + 1 < LOCK_TRIES:
+                time.sleep(LOCK_PAUSE_S)
+        else:
+            return True
+    return False

@@ -1,0 +1,60 @@
+"""Where the HTTP server listens, and for whom."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from arboleda.web.auth import Door
+from arboleda.web.names import DEFAULT_PORT, EVERY_NETWORK, LOCAL, is_loopback, listen_address, url_host
+
+from . import tokens
+
+if TYPE_CHECKING:  # it takes a while to load, and only who speaks TLS needs it
+    from arboleda.adapters.server_tls import ServerTls
+
+
+@dataclass(frozen=True, kw_only=True)
+class WebOptions:
+    """Where to listen; `port` None is `usual_port` or a free one. `public_url` is how a proxy is reached.
+    With `tls` everybody speaks TLS. `door` is that of who listened there before, with its sessions."""
+
+    host: str = LOCAL
+    port: int | None = None
+    public_url: str | None = None
+    tls: ServerTls | None = None
+    usual_port: int = DEFAULT_PORT
+    door: Door | None = None
+
+    @property
+    def scheme(self) -> str:
+        """That of the server itself."""
+        return "https" if self.tls else "http"
+
+    @property
+    def guarded(self) -> bool:
+        """Whether everybody needs a token; StartError for a host that is no address."""
+        return not is_loopback(self.host) or self.public_url is not None
+
+    @property
+    def address(self) -> str:
+        """The IP address to listen on; StartError for a host that is none."""
+        return listen_address(self.host)
+
+    @property
+    def near(self) -> str:
+        """The host part of a URL that reaches the server from this machine."""
+        return url_host(self.address)
+
+    def origin(self, port: int, own_address: Callable[[], str]) -> str:
+        """Where people and other hosts reach it, where any do. What listens on every network has no address
+        of its own: then `own_address()` is that of this host, "" for none."""
+        own = own_address() if self.address in EVERY_NETWORK else ""
+        host = url_host(own) if own else self.near
+        return self.public_url or f"{self.scheme}://{host}:{port}"
+
+    def door_of(self, state: Path) -> Door:
+        """Who is let in: with the tokens of that state directory, where everybody needs one."""
+        return self.door or Door(tokens.TokenFile(state) if self.guarded else None)

@@ -1,0 +1,79 @@
+"""The HTTP API of one plant, asked without ever waiting long for it."""
+
+from __future__ import annotations
+
+import asyncio
+from typing import Any
+
+import httpx
+
+from arboleda.model.errors import ArboledaError
+from arboleda.model.outside import plain, said_by
+from arboleda.model.sentence import Phrase
+from arboleda.runtime.endpoints import Place
+from arboleda.web.plant_side import COMMAND_LINE
+
+ANSWER_S = 2.5  # a browser gives a stop up after 3 s
+LONGEST = 300  # characters of what a plant says that are shown
+
+NOBODY_LEADS = Phrase("site.nobody_leads", "nobody leads this plant")
+NO_ANSWER = Phrase("site.no_answer", "no answer in {seconds:g} s")
+NOT_REACHED = Phrase("site.not_reached", "{url} cannot be reached ({error})")
+NO_PLANT = Phrase("site.no_plant", "what answers at {url} is no plant")
+REFUSED = Phrase("site.refused", "it answers {status}: {said}")
+
+
+class PlantSilent(ArboledaError):
+    """A plant gave no answer of use; the sentence says why."""
+
+
+class PlantRefusal(ArboledaError):
+    """A plant refused what was asked, in its own words."""
+
+
+class Reach:
+    """One address; Silent and Said where it gives no answer, or refuses."""
+
+    def __init__(self, place: Place) -> None:
+        self.place = place
+        headers = {"user-agent": COMMAND_LINE}
+        if place.token:
+            headers["authorization"] = f"Bearer {place.token}"
+        self._http = httpx.AsyncClient(
+            trust_env=False,
+            timeout=ANSWER_S,
+            headers=headers,
+            verify=place.believed(),
+            follow_redirects=False,
+        )
+
+    async def get(self, path: str) -> Any:
+        """What the plant answers there."""
+        return await self._asked("GET", path, None)
+
+    async def post(self, path: str, body: dict[str, Any] | None = None) -> Any:
+        return await self._asked("POST", path, body)
+
+    async def close(self) -> None:
+        await self._http.aclose()
+
+    async def _asked(self, method: str, path: str, body: dict[str, Any] | None) -> Any:
+        url = self.place.url
+        if not url:
+            raise PlantSilent(NOBODY_LEADS())
+        try:
+            asked = self._http.request(method, f"{url}{path}", json=body)
+            answer = await asyncio.wait_for(asked, ANSWER_S)
+            said = answer.json()
+        except (asyncio.TimeoutError, httpx.TimeoutException) as error:
+            raise PlantSilent(NO_ANSWER(seconds=ANSWER_S)) from error
+        except httpx.HTTPError as error:
+            raise PlantSilent(NOT_REACHED(url=url, error=said_by(error)[:LONGEST])) from error
+        except ValueError as error:
+            raise PlantSilent(NO_PLANT(url=url)) from error
+        if answer.is_success:
+            return said
+        sentence = plain(str(said.get("sentence", "") if isinstance(said, dict) else ""))[:LONGEST]
+        if sentence and answer.status_code in (404, 409, 422):
+            raise PlantRefusal(sentence)
+        raise PlantSilent(REFUSED(status=answer.status_code, said=sentence))

@@ -1,0 +1,161 @@
+"""The way to a PostgreSQL server: connections that do not wait for ever, and its errors in words."""
+
+from __future__ import annotations
+
+import ipaddress
+import os
+import re
+import socket
+import time
+from collections.abc import Generator, Iterator
+from contextlib import contextmanager
+from typing import Any, TypeVar
+
+import psycopg
+from psycopg import sql
+
+from arboleda.model.errors import ArboledaError, StartError
+
+from ..address import has_password, is_address
+
+OLDEST = 13  # the oldest version of the server with which this was made
+ANSWER_S = 1.0  # a server that says nothing for so long counts as away
+CONNECT_S = 2  # libpq takes no less
+SETTINGS = {
+    "connect_timeout": CONNECT_S,
+    # a network that is cut in the middle of an answer is noticed, too
+    "keepalives": 1,
+    "keepalives_idle": 1,
+    "keepalives_interval": 1,
+    "keepalives_count": 2,
+    "tcp_user_timeout": 2000,
+    "application_name": "arboleda",
+}
+WORDS = {  # what a person does about it, by the class or the code that PostgreSQL gives an error
+    "28": "look at the user and its password, which are in PGPASSWORD or ~/.pgpass",
+    "3D": "make the database, or correct its name",
+    "42501": "let this user use and make schemas and tables there",
+    "53": "make room on the server, and start again",
+}
+CONNECTING = r"^connection failed: (connection to server .*? failed: )?(FATAL: *)?"
+T = TypeVar("T")
+
+
+class NoAnswer(psycopg.OperationalError):
+    """The server said nothing for ANSWER_S."""
+
+
+class Impatient(psycopg.Connection[Any]):
+    """A connection that is closed when its server says nothing for ANSWER_S.
+
+    The answer may still come, and nobody could tell it from that to the next statement.
+    """
+
+    def wait(self, gen: Generator[Any, Any, T], *options: Any, **named: Any) -> T:
+        try:
+            return super().wait(_limited(gen, time.monotonic() + ANSWER_S), *options, **named)
+        except NoAnswer:
+            self.close()
+            raise
+
+
+def _limited(gen: Generator[Any, Any, T], until: float) -> Generator[Any, Any, T]:
+    """The same, where it ends in time; psycopg asks at each interval."""
+    ready = None
+    while True:
+        try:
+            wanted = gen.send(ready)
+        except StopIteration as end:
+            return end.value
+        ready = yield wanted
+        if not ready and time.monotonic() > until:
+            raise NoAnswer(f"the server gave no answer for {ANSWER_S:g} s")
+
+
+def checked(address: str) -> str:
+    """An address of a database, as people write it; StartError where it has a password or is none."""
+    if not is_address(address):
+        raise StartError("A store is written as postgresql://USER@HOST:PORT/DATABASE.")
+    if has_password(address):
+        raise StartError(
+            "The address of a store has a password in it, which others can read there: leave it out, and put"
+            " it into PGPASSWORD or ~/.pgpass."
+        )
+    try:
+        psycopg.conninfo.conninfo_to_dict(address)
+    except psycopg.Error as error:
+        raise StartError(f"{address} is no address of a PostgreSQL database ({in_words(error)}).") from None
+    return address
+
+
+def connected(address: str, schema: str, *, idle_s: float = 1.0) -> Impatient:
+    """A connection on which each statement is a transaction of its own; psycopg.Error, StartError.
+
+    Who is frozen between a statement and its end keeps others out for `idle_s` and no longer.
+    """
+    known = psycopg.conninfo.conninfo_to_dict(address)
+    limits = f"-c idle_in_transaction_session_timeout={1000 * idle_s:.0f} -c statement_timeout=5000"
+    wanted = SETTINGS | {"options": f"{limits} -c timezone=UTC"}
+    ours = {key: value for key, value in wanted.items() if key not in known}
+    db = Impatient.connect(address, autocommit=True, **ours)
+    try:
+        if db.info.server_version < OLDEST * 10_000:
+            raise StartError(
+                f"The PostgreSQL server of {address} is of version {db.info.server_version // 10_000}, and"
+                f" this needs {OLDEST} or newer."
+            )
+        db.execute(sql.SQL("SET search_path TO {}").format(sql.Identifier(schema)))
+        db.prepare_threshold = 1
+    except BaseException:  # whatever it is, Ctrl-C too, the connection is not left open
+        db.close()
+        raise
+    return db
+
+
+def own_address(db: Impatient) -> str:
+    """The address of this host on its way to the server; "" where both are on one, or no URL can have it."""
+    with socket.socket(fileno=os.dup(db.fileno())) as end:
+        name = end.getsockname()
+    if not isinstance(name, tuple) or "%" in name[0] or ipaddress.ip_address(name[0]).is_loopback:
+        return ""
+    return str(name[0])
+
+
+def translated(statement: str) -> str:
+    """A statement of ours as psycopg takes it; PostgreSQL knows large and small letters apart in LIKE."""
+    return statement.replace("%", "%%").replace("?", "%s").replace(" LIKE ", " ILIKE ")
+
+
+def plain_values(values: tuple[object, ...]) -> tuple[object, ...]:
+    """The values, without what PostgreSQL has in no text."""
+    return tuple(
+        each.replace("\0", "\N{REPLACEMENT CHARACTER}") if isinstance(each, str) else each for each in values
+    )
+
+
+@contextmanager
+def explained(name: str, kind: type[ArboledaError], cannot: str = "cannot be used") -> Iterator[None]:
+    """Turn what PostgreSQL raises into one sentence on the plant's memory."""
+    try:
+        yield
+    except psycopg.Error as error:
+        raise kind(f"The plant's memory {name} {cannot} ({in_words(error)}): {advice(error)}.") from error
+
+
+def in_words(error: psycopg.Error) -> str:
+    """What it says, on one line, without the address that is named beside it."""
+    said = error.diag.message_primary or next(iter(str(error).splitlines()), type(error).__name__)
+    return re.sub(r"^connection failed: (connection to server .*? failed: )?(FATAL: *)?", "", said).rstrip(
+        "."
+    )
+
+
+def advice(error: psycopg.Error) -> str:
+    """What to do about it."""
+    said, code = str(error), error.sqlstate or ""
+    if "password" in said or "no pg_hba.conf entry" in said or "role" in said:
+        code = code or "28"
+    elif "does not exist" in said and "database" in said:
+        code = code or "3D"
+    known = (WORDS[each] for each in WORDS if code.startswith(each))
+    return next(known, "look whether the server runs and can be reached; what was kept before is not lost")

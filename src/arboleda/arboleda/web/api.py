@@ -1,0 +1,327 @@
+"""The routes of the HTTP API."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import logging
+from collections.abc import Callable
+from concurrent.futures import Future
+from contextlib import suppress
+from dataclasses import asdict
+from typing import Any, TypeVar
+from urllib.parse import quote
+
+from fastapi import APIRouter, FastAPI, Request
+from fastapi.concurrency import run_in_threadpool
+from fastapi.responses import JSONResponse, PlainTextResponse
+from pydantic import BaseModel, ValidationError
+from starlette.exceptions import HTTPException
+
+from arboleda import __version__
+from arboleda.core.leaving import StopLeft
+from arboleda.model.errors import ArboledaError, PayloadError, QueueFull, TextError
+from arboleda.model.messages import Outcome, Verb
+from arboleda.model.outside import plain, quoted
+from arboleda.store.task_rows import COMMAND, HTTP, TaskRow, answers_of, choice_of, table, unchecked_of
+
+from . import limits, login, metrics, openapi, stream
+from .auth import SUBMIT, Forbidden, require
+from .limits import LATER_S
+from .not_found import NotFound
+from .plain_json import PlainJson, explained
+from .plant_side import COMMAND_LINE, PlantSide
+from .schema import (
+    Act,
+    ByHand,
+    CellOee,
+    Done,
+    KeptTask,
+    OeeFilter,
+    Offer,
+    Promise,
+    PromiseFilter,
+    Sentence,
+    Snapshot,
+    Task,
+    TaskFilter,
+    TaskForm,
+    TaskText,
+)
+
+log = logging.getLogger(__name__)
+Answer = TypeVar("Answer")
+Query = TypeVar("Query", bound=BaseModel)
+
+ANSWER_S = 5.0
+ABOUT = """Look at a running plant, give it tasks, and operate it. What is refused says why in one sentence.
+Where the plant is open to a network every request carries a token (Authorization: Bearer ...). A process
+that stands by for the plant answers 307 with the address of the one that leads it, to which a client shows
+its token itself, or 503 with Retry-After. Who names a plant in a header Arboleda-Plant is refused with 421
+where another one answers. The stop is a stop in software and no safety function."""
+STATUS = {TextError: 422, PayloadError: 422, Forbidden: 403}
+Answers = dict[int | str, dict[str, Any]]
+OTHERS: Answers = {
+    "default": {"model": Sentence, "description": "401 without a token, 413 too long, 429 too often, ..."}
+}
+REFUSED: Answers = {
+    403: {"model": Sentence, "description": "The role is not enough, or a page of another site asks."},
+    422: {"model": Sentence, "description": "The request is wrong."},
+    503: {"model": Sentence, "description": "Not now; with Retry-After where a queue is full."},
+}
+WRONG: Answers = {422: {"model": Sentence, "description": "The request is wrong."}}
+ACCEPTED: Answers = {
+    202: {
+        "model": Done,
+        "description": "Devices do it now, and its act tells its end; or it is a stop that has left for its "
+        "robots, and the plant cannot keep it, or not yet.",
+    }
+}
+CONFLICT: Answers = {409: {"model": Sentence, "description": "The plant does not do this now."}}
+NO_ACT: Answers = {404: {"model": Sentence, "description": "The plant does not know this act (any more)."}}
+UNKNOWN: Answers = {404: {"model": Sentence, "description": "There is no such task."}}
+
+
+def make_app(
+    side: PlantSide, *, streams: int = limits.STREAMS, counts: Callable[[], bytes] | None = None
+) -> FastAPI:
+    """An application with the routes; pages may be mounted on it afterwards. It wants a Guard before it.
+
+    At most so many `streams` of changes are open at a time; `counts` is what Prometheus gets, in its format.
+    """
+    app = FastAPI(
+        title="Arboleda",
+        version=__version__,
+        description=ABOUT,
+        docs_url=None,
+        redoc_url=None,
+        openapi_url=None,
+        redirect_slashes=False,
+    )
+    app.add_exception_handler(ArboledaError, refuse)
+    app.add_exception_handler(HTTPException, refuse)
+    app.add_exception_handler(Exception, own_up)
+    routers = [routes(side), stream.routes(side, streams), login.routes(), openapi.routes(app)]
+    routers += [metrics.routes(counts)] if counts is not None else []
+    for router in routers:
+        app.include_router(router, responses=OTHERS)
+    app.router.routes.append(NotFound([route for router in routers for route in router.routes]))
+    return app
+
+
+def routes(side: PlantSide) -> APIRouter:
+    """Look, submit, operate."""
+    api = APIRouter(prefix="/api")
+    _look(api, side)
+    _submit(api, side)
+    _operate(api, side)
+    _follow(api, side)
+    return api
+
+
+def _look(api: APIRouter, side: PlantSide) -> None:
+    @api.get("/plant", response_model=Snapshot)
+    async def plant() -> JSONResponse:
+        """The whole plant: cells with their trees, robots, tasks, zones."""
+        return PlainJson(await run_in_threadpool(side.latest))
+
+    @api.get("/tasks", response_model=list[Task])
+    async def tasks() -> JSONResponse:
+        """Every open task and those that ended last, in the order of their acceptance."""
+        seen = await run_in_threadpool(side.latest)
+        return PlainJson([explained(task) for task in seen["tasks"]])
+
+    wanted: dict[str, Any] = {"responses": WRONG, "openapi_extra": _query(TaskFilter)}
+
+    @api.get("/history", response_model=list[KeptTask], **wanted)
+    async def history(request: Request) -> JSONResponse:
+        """Tasks of all starts, the last accepted first; the next page is `before` the last `number`."""
+        rows = await run_in_threadpool(side.history, asked(request, TaskFilter).query())
+        return PlainJson([_kept(row) for row in rows])
+
+    @api.get("/history.csv", response_class=PlainTextResponse, **wanted)
+    async def history_as_table(request: Request) -> PlainTextResponse:
+        """The same as a table for other programs, with a line of names."""
+        rows = await run_in_threadpool(side.history, asked(request, TaskFilter).query())
+        return PlainTextResponse(table(rows), media_type="text/csv; charset=utf-8")
+
+    about: dict[str, Any] = {"responses": WRONG, "openapi_extra": _query(OeeFilter)}
+
+    @api.get("/oee", response_model=list[CellOee], **about)
+    async def oee(request: Request) -> JSONResponse:
+        """The OEE of the cells, of the last 24 hours where no time is asked for; docs/how-to/oee.md."""
+        rows = await run_in_threadpool(side.oee, asked(request, OeeFilter).query())
+        return PlainJson([row.data() for row in rows])
+
+    @api.get("/recipes", response_model=list[Offer])
+    async def recipes() -> JSONResponse:
+        """What each cell can be asked for: its recipes, their parameters, and what these can be."""
+        return PlainJson(side.offers())
+
+    @api.get("/promises", response_model=list[Promise], responses=WRONG, openapi_extra=_query(PromiseFilter))
+    async def promises(request: Request) -> JSONResponse:
+        """When each cell that a task text names would have done it; nothing is asked of them."""
+        return PlainJson(side.promises(asked(request, PromiseFilter).text))
+
+    @api.get("/tasks/{task_id}", response_model=Task, responses=UNKNOWN)
+    async def task(task_id: str) -> JSONResponse:
+        """One task."""
+        known = await run_in_threadpool(side.find, task_id)
+        if known is None:
+            raise HTTPException(404, f"The plant knows no task {quoted(task_id, 80)}.")
+        return PlainJson(explained(known))
+
+
+def _follow(api: APIRouter, side: PlantSide) -> None:
+    @api.get("/acts/{number}", response_model=Act, responses=NO_ACT)
+    async def act(number: int) -> JSONResponse:
+        """What has become of an operator's act by now; the last 20 are known."""
+        known = side.act(number)
+        if known is None:
+            raise HTTPException(404, f"The plant knows no act {number} of an operator, or no more.")
+        return PlainJson(known)
+
+
+def _submit(api: APIRouter, side: PlantSide) -> None:
+    @api.post(
+        "/tasks",
+        status_code=202,
+        response_model=Task,
+        responses=REFUSED,
+        openapi_extra=_body(TaskText, TaskForm),
+    )
+    async def add_task(request: Request) -> JSONResponse:
+        """Queue a task, written or as a form; 422 where it is refused, 503 where the queue is full."""
+        require(request.scope["arboleda.role"], SUBMIT)
+        asked = task_asked(await request.body())
+        text = asked.text if isinstance(asked, TaskText) else side.spelled(**asked.named())
+        is_ours = request.headers.get("user-agent", "").startswith(COMMAND_LINE)
+        why = asked.why if isinstance(asked, TaskText) else ""
+        asked_by = COMMAND if is_ours else HTTP
+        # The history may be asked for its id, and a stop must not wait behind that.
+        task = await in_time(await run_in_threadpool(side.submit, text, asked_by, why))
+        return PlainJson(explained(task), status_code=422 if task["state"] == "refused" else 202)
+
+
+def _operate(api: APIRouter, side: PlantSide) -> None:
+    verb_route: dict[str, Any] = {
+        "response_model": Done,
+        "responses": ACCEPTED | REFUSED | CONFLICT,
+        "openapi_extra": _body(ByHand, required=False),
+    }
+
+    @api.post("/plant/{verb}", **verb_route)
+    async def operate_plant(verb: str, request: Request) -> JSONResponse:
+        """Have the whole plant do a Verb: in each cell where it can be done, refused where that is none."""
+        return await operated(verb, "", request)
+
+    @api.post("/cells/{scope}/{verb}", **verb_route)
+    async def operate_one(scope: str, verb: str, request: Request) -> JSONResponse:
+        """Have one cell, robot, zone or task do a Verb; which is for what says its table."""
+        return await operated(verb, scope, request)
+
+    async def operated(word: str, scope: str, request: Request) -> JSONResponse:
+        verb, by_hand = verb_of(word), said_by_hand(await request.body())
+        require(request.scope["arboleda.role"], verb.value)
+        answer = await in_time(side.operate(verb, scope, by_hand=by_hand))
+        if answer.refusal is not None:
+            return PlainJson(explained({"sentence": answer.refusal}), status_code=409)
+        known = {"act": answer.act, "outcome": answer.outcome, "why": answer.why}
+        told = {name: value for name, value in known.items() if value is not None}
+        is_open = isinstance(answer, StopLeft) or answer.outcome is Outcome.UNDER_WAY
+        return PlainJson({"verb": verb.value, "scope": scope, **told}, status_code=202 if is_open else 200)
+
+
+async def in_time(answer: Future[Answer]) -> Answer:
+    """What the plant answers; ArboledaError where it takes longer than ANSWER_S."""
+    try:
+        # the plant still sets its future after that, which a cancelled one does not allow
+        return await asyncio.wait_for(asyncio.shield(asyncio.wrap_future(answer)), ANSWER_S)
+    except asyncio.TimeoutError:
+        raise ArboledaError(
+            "The plant did not answer in time; see its state before sending this again."
+        ) from None
+
+
+def verb_of(word: str) -> Verb:
+    """The operator's verb of that name; PayloadError where there is none."""
+    try:
+        return Verb(word)
+    except ValueError:
+        names = ", ".join(verb.value for verb in Verb)
+        raise PayloadError(f"{quoted(word, 80)} is not an operator's verb; there are {names}.") from None
+
+
+def said_by_hand(body: bytes) -> bool:
+    """The value in `{"by_hand": true}`, False where there is no body; PayloadError for anything else."""
+    try:
+        return ByHand.model_validate_json(body or b"{}").by_hand
+    except ValidationError:
+        raise PayloadError(
+            'The body may be empty or JSON like {"by_hand": true}, and nothing else.'
+        ) from None
+
+
+def task_asked(body: bytes) -> TaskText | TaskForm:
+    """`{"text": "..."}`, or cell, recipe and values; PayloadError for anything else."""
+    for form in (TaskText, TaskForm):
+        with suppress(ValidationError):
+            return form.model_validate_json(body)
+    raise PayloadError(
+        'The body must be JSON like {"text": "sis_a 0B 7"} or '
+        '{"cell": "sis_a", "values": {"path": "0B", "station": 7}}, for several cells '
+        '{"any_of": ["sis_a", "sis_b"], "values": {...}}, and nothing else.'
+    )
+
+
+def asked(request: Request, model: type[Query]) -> Query:
+    """What the query says; PayloadError names the first thing that is wrong in it."""
+    try:
+        return model.model_validate(dict(request.query_params))
+    except ValidationError as error:
+        found = error.errors(include_url=False, include_context=False)[0]
+        name = quoted(str(found["loc"][0]), 80)
+        if found["type"] == "extra_forbidden":
+            raise PayloadError(
+                f"{name} is nothing to ask for; there are {', '.join(model.model_fields)}."
+            ) from None
+        raise PayloadError(f"{name} is {quoted(str(found['input']), 80)}: {found['msg'].lower()}.") from None
+
+
+async def refuse(_request: Request, error: Exception) -> JSONResponse:
+    """A refusal as status and sentence; with the headers that belong to it, such as Allow."""
+    if isinstance(error, HTTPException):
+        return JSONResponse({"sentence": error.detail}, status_code=error.status_code, headers=error.headers)
+    headers = {"retry-after": LATER_S} if isinstance(error, QueueFull) else None
+    said = {"sentence": error.sentence if isinstance(error, ArboledaError) else str(error)}
+    return PlainJson(explained(said), status_code=STATUS.get(type(error), 503), headers=headers)
+
+
+async def own_up(request: Request, error: Exception) -> JSONResponse:
+    """An error of ours: the log names it, the caller gets a sentence."""
+    log.error("%s %s failed: %s", plain(request.method), plain(quote(request.url.path)), plain(repr(error)))
+    return JSONResponse({"sentence": "The plant could not answer: internal error."}, status_code=500)
+
+
+def _body(*models: type[BaseModel], required: bool = True) -> dict[str, Any]:
+    """What is sent: one of these."""
+    schemas = [model.model_json_schema() for model in models]
+    schema = schemas[0] if len(schemas) == 1 else {"anyOf": schemas}
+    return {"requestBody": {"content": {"application/json": {"schema": schema}}, "required": required}}
+
+
+def _query(model: type[BaseModel]) -> dict[str, Any]:
+    """What may stand in the query."""
+    properties = model.model_json_schema()["properties"]
+    return {
+        "parameters": [{"name": name, "in": "query", "schema": each} for name, each in properties.items()]
+    }
+
+
+def _kept(row: TaskRow) -> dict[str, Any]:
+    answers = [vars(each) for each in answers_of(row)]
+    data = asdict(row) | {"sentence": row.sentence or "", "answers": answers, "choice": choice_of(row)}
+    data["unchecked"] = unchecked_of(row)
+    said = json.loads(data.pop("said") or "{}")
+    del data["course"]  # for the plant, which expects by it how long the next one takes
+    return {**data, **said} if row.sentence else data

@@ -1,0 +1,354 @@
+"""What the API takes and gives, for its description; screens get more keys than are listed."""
+
+from __future__ import annotations
+
+from typing import Any, Literal
+
+from pydantic import BaseModel, ConfigDict, Field, FiniteFloat, model_validator
+
+from arboleda.core.cell_states import CellState
+from arboleda.core.text import BETWEEN_CELLS
+from arboleda.model.messages import Outcome, Verb
+from arboleda.store.oee_rows import OeeQuery
+from arboleda.store.task_rows import TaskQuery
+
+
+class _RequestModel(BaseModel):
+    """What a client sends: these keys and no others, of exactly these types."""
+
+    model_config = ConfigDict(extra="forbid", strict=True)
+
+
+class _ResponseModel(BaseModel):
+    """What a client gets; more keys may come."""
+
+    model_config = ConfigDict(extra="allow")
+
+
+class TaskFilter(BaseModel):
+    """Which tasks of the history: all of what is asked; nothing asks for the last `limit`."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    cell: str = ""
+    state: Literal["", "queued", "running", "done", "failed", "cancelled"] = ""
+    recipe: str = ""
+    words: str = Field(default="", description="In the task's text or id.")
+    since: float | None = Field(default=None, description="Accepted since then, Unix time in seconds.")
+    until: float | None = Field(default=None, description="Accepted before then.")
+    before: int | None = Field(default=None, description="With a lower number, as the next page begins.")
+    limit: int = Field(default=100, ge=1, le=1000)
+
+    def query(self) -> TaskQuery:
+        """What it asks of the plant's memory."""
+        return TaskQuery(
+            cell=self.cell,
+            state=self.state,
+            recipe=self.recipe,
+            words=self.words,
+            since_s=self.since,
+            until_s=self.until,
+            before=self.before,
+            limit=self.limit,
+        )
+
+
+class OeeFilter(BaseModel):
+    """Of which time the figures are; nothing asks for the last 24 hours of all cells."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    cell: str = ""
+    since: FiniteFloat | None = Field(default=None, description="Unix time in seconds.")
+    until: FiniteFloat | None = Field(default=None, description="Not later than now.")
+
+    def query(self) -> OeeQuery:
+        """What it asks of the plant's memory."""
+        return OeeQuery(cell=self.cell, since_s=self.since, until_s=self.until)
+
+
+class PromiseFilter(BaseModel):
+    """Of which task."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    text: str = Field(max_length=200, examples=["sis_a,sis_b 0B 7"])
+
+
+class TaskText(_RequestModel):
+    text: str = Field(examples=["sis_a 0B 7"], description="A task, as on the command line.")
+    why: str = Field(
+        default="", max_length=500, description="Why it is given to this cell, by who chose between plants."
+    )
+
+
+class TaskForm(_RequestModel):
+    """A task as a form of `/api/recipes` has it; either for a `cell`, or for `any_of` several."""
+
+    model_config = ConfigDict(json_schema_extra={"oneOf": [{"required": ["cell"]}, {"required": ["any_of"]}]})
+
+    cell: str = Field(default="", examples=["sis_a"])
+    any_of: list[str] = Field(
+        default=[], examples=[["sis_a", "sis_b"]], description="Cells of which the plant chooses one."
+    )
+    recipe: str = Field(default="", description="One of the cell's recipes; without it the default one.")
+    values: dict[str, bool | int | float | str] = Field(
+        default={}, examples=[{"path": "0B", "station": 7}], description="A value for each parameter."
+    )
+    id: str = Field(default="", description="Of your choice; the same id again asks for the same task.")
+
+    @model_validator(mode="after")
+    def _check_cell(self) -> TaskForm:
+        if bool(self.cell) is bool(self.any_of):
+            raise ValueError("either cell or any_of is needed")
+        return self
+
+    def named(self) -> dict[str, Any]:
+        """What `spelled` takes."""
+        named = self.model_dump(exclude={"any_of"})
+        return named | {"cell": self.cell or BETWEEN_CELLS.join(self.any_of)}
+
+
+class ByHand(_RequestModel):
+    by_hand: bool = Field(
+        default=False,
+        description="Nothing moves, you declare what was done by hand: for home, that the robot is at its "
+        "reference; for release, that the part was taken out.",
+    )
+
+
+class Sentence(_ResponseModel):
+    """What went wrong, for a person and as data."""
+
+    sentence: str = Field(examples=["'sis_z' is not a cell of this plant; there are sis_a, sis_b, sis_c"])
+    key: str | None = Field(
+        default=None, examples=["text.unknown"], description="What it says, whatever its language."
+    )
+    values: dict[str, Any] | None = Field(default=None, description="What stands in it, by name.")
+
+
+class TaskAnswer(_ResponseModel):
+    """What a device or a person answered while a task ran."""
+
+    by: str
+    asked: str = Field(description="The question, or the verb and its values.")
+    answer: bool | int | float | str
+
+
+OUTCOME = (
+    "sent: a stop; whether robots stand shows in what they report. under_way: devices were told to. done. "
+    "unchecked: devices were told, and report nothing of it. failed."
+)
+CHOICE = "Why it is done in this cell, where several were allowed."
+UNCHECKED = "Of one that is done what no device confirmed: grip, release; its sentence says it for people."
+
+
+class Task(_ResponseModel):
+    id: str
+    text: str
+    cell: str | None
+    state: str = Field(description="queued, running, done, failed, cancelled or refused.")
+    reason: str | None = None
+    sentence: str = ""
+    key: str | None = Field(default=None, description="What its sentence says, as of a Sentence.")
+    values: dict[str, Any] | None = None
+    answers: list[TaskAnswer] = Field(default=[], description="Of this task, in the order they came.")
+    choice: str | None = Field(default=None, description=CHOICE)
+    unchecked: list[str] = Field(default=[], description=UNCHECKED)
+
+
+class Promise(_ResponseModel):
+    """What a cell promises of a task that it was not given."""
+
+    cell: str
+    text: str = Field(description="The task for this cell.")
+    seconds: float = Field(description="Until it would have done it, as far as past tasks tell.")
+    hindrance: str | None = Field(description="Why it could not begin it now.")
+    full: bool = Field(description="Whether its queue has no room.")
+
+
+class KeptTask(_ResponseModel):
+    """A task of this start or of an earlier one; times are Unix times, in seconds."""
+
+    number: int = Field(description="Grows by one with each task that the plant accepts.")
+    id: str
+    text: str
+    cell: str
+    recipe: str
+    state: str = Field(description="queued, running, done, failed or cancelled.")
+    reason: str | None = None
+    sentence: str = ""
+    key: str | None = Field(default=None, description="What its sentence says, as of a Sentence.")
+    values: dict[str, Any] | None = None
+    accepted_s: float
+    started_s: float | None = None
+    ended_s: float | None = None
+    asked_by: str | None = Field(
+        default=None,
+        description="The way by which it came: command, page, http, ros2, demo; null: not known.",
+    )
+    attempts: int = Field(default=0, description="How often it was begun, or tried again by `retry`.")
+    answers: list[TaskAnswer] = Field(default=[], description="Of one that has ended, in their order.")
+    unchecked: list[str] = Field(default=[], description=UNCHECKED)
+
+
+class CellOee(_ResponseModel):
+    """OEE of one cell; shares from 0 to 1, null where `missing` says why nobody can say."""
+
+    cell: str
+    since_s: float = Field(description="Unix time; later than asked where nothing was kept before.")
+    until_s: float
+    planned_s: float = Field(description="A task waited or was at work.")
+    worked_s: float = Field(description="Of that, the cell was at work.")
+    done: int
+    failed: int
+    timed: int = Field(description="Of these, tasks whose shortest time is known.")
+    availability: float | None
+    performance: float | None
+    quality: float | None
+    oee: float | None = Field(description="The three of them multiplied.")
+    missing: str | None
+
+
+class Parameter(_ResponseModel):
+    """What a recipe wants to know; more types may come."""
+
+    name: str
+    called: str = Field(description="Its name for people.")
+    type: str = Field(description="`choice`: one of its `choices`; `integer`, `number`: within its limits.")
+    choices: list[str]
+    lower: float | None = None
+    upper: float | None = None
+
+
+class Recipe(_ResponseModel):
+    name: str
+    about: str = Field(description="What it does, in a line.")
+    default: bool = Field(description="A task that names no recipe means this one.")
+    form: str = Field(examples=["<cell> <path> <station>"], description="How its task text is written.")
+    example: str = Field(examples=["sis_a 0A 8"])
+    parameters: list[Parameter]
+
+
+class Offer(_ResponseModel):
+    cell: str
+    recipes: list[Recipe]
+
+
+class Done(_ResponseModel):
+    """A verb that is not refused; where it is `under_way`, `GET /api/acts/<act>` tells its end."""
+
+    verb: Verb
+    scope: str = Field(description="A cell, robot, zone or task id; empty for the whole plant.")
+    act: int | None = Field(default=None, description="Its number, in this start of the plant.")
+    outcome: Outcome | None = Field(default=None, description=OUTCOME)
+    why: str | None = Field(default=None, description="Why it failed, cannot be checked, or is not kept.")
+
+
+class Act(_ResponseModel):
+    """What an operator did, and what has become of it."""
+
+    number: int = Field(description="Grows by one with each act; of this start of the plant.")
+    at: float = Field(description="On the plant's clock.")
+    verb: Verb
+    scope: str
+    cell: str | None = Field(description="Null where it is of several.")
+    sentence: str
+    outcome: Outcome = Field(description=OUTCOME)
+    why: str | None = Field(description="Why it failed, or cannot be checked.")
+    ended_at: float | None = Field(description="When that was known, where it was not with the act.")
+    ended: str | None = Field(description="Its end in words, then.")
+
+
+class Advice(_ResponseModel):
+    """One thing to do that leads a cell out of its state."""
+
+    do: str = Field(description="A verb; or, where `hand`: bring_back, repair, reference, check or free.")
+    hand: bool = Field(description="Only a person at the machine can do it.")
+    scope: str = Field(description="A cell, a robot or a zone.")
+    by_hand: bool = Field(
+        description="For `home`: the robot was put at its reference; for `release`: the part was taken out."
+    )
+    instead: bool = Field(description="It begins another way out than those before it.")
+    said: str = Field(description="In words, as the command line takes a verb.")
+    why: str
+    moves: list[str] = Field(description="Robots that it may set in motion.")
+    drops: list[str] = Field(description="Arms whose part falls.")
+    refusal: str | None = Field(description="Why it would be refused now.")
+
+
+class Device(_ResponseModel):
+    role: str
+    name: str
+    kind: str = Field(description="arm, mobile, or a kind of your own.")
+    position: str | None = Field(description="The key of its row under `robots` that has its position.")
+    holds: str | None = Field(description="The fact that says whether it holds a part.")
+    asked: bool = Field(description="Whether it is a person, who answers on the plant's own screens.")
+
+
+class Cell(_ResponseModel):
+    """Cells of storage also have the names of their `arm` and `mobile` under these keys."""
+
+    name: str
+    state: CellState = Field(description="By PackML's word, as everywhere; an idle one may have `not_ready`.")
+    devices: list[Device] = Field(description="Who works in it, by role.")
+    task: Task | None
+    step: str | None = Field(description="The step that runs.")
+    queue: list[str] = Field(description="Ids of the tasks that wait.")
+    paused: bool
+    waiting_for: str | None
+    not_ready: str | None = Field(description="Why an idle cell would start no task, and what can be done.")
+    blocked_by: str | None = Field(description="The robot whose obstacle that is.")
+    held_by: str | None = Field(description="Why the cell is held, and what can be done.")
+    advice: list[Advice] = Field(description="What leads it out of its state, in the order to do it.")
+    refused: dict[str, str] = Field(description="The verbs that would be refused for it now, and why.")
+    tree: list[dict[str, Any]] = Field(description="The behavior tree, depth first.")
+
+
+class Asking(_ResponseModel):
+    """What a person is being asked; `POST /api/cells/<person> <answer>/answer` answers it."""
+
+    id: str
+    text: str
+    answers: list[str]
+    left_s: float = Field(description="Until the question ends unanswered.")
+
+
+class Robot(_ResponseModel):
+    """A device of any kind."""
+
+    name: str
+    kind: str
+    holder: str | None = Field(default=None, description="Of what cells share: the cell that holds it.")
+    online: bool
+    obstacle: str | None = Field(description="Why it gets no command now.")
+    state: int | None = Field(
+        description="motion_state: 0 stopped, 1 moving, 2 fault, 3 not homed, 4 latched."
+    )
+    age_s: float | None
+    q: list[float] | None = Field(description="Joints of an arm in rad and m, measured.")
+    node: int | None = Field(description="Node of a mobile robot on its grid.")
+    facts: dict[str, bool | int | float | str | None] = Field(
+        description="What it reports besides, by name; null where it was not said yet."
+    )
+    answer: bool | int | float | str | None = Field(description="To its last command, where that asked.")
+    question: Asking | None = Field(default=None, description="What a person is being asked now.")
+    homed: bool | None
+    latched: bool
+    refused: dict[str, str] = Field(description="The verbs that would be refused for it now, and why.")
+
+
+class Snapshot(_ResponseModel):
+    """The plant as of its last step."""
+
+    plant: str
+    epoch: int
+    at: float = Field(description="Monotonic seconds of the plant's clock.")
+    ending: bool
+    cells: list[Cell]
+    robots: list[Robot]
+    tasks: list[Task]
+    zones: list[dict[str, Any]] = Field(
+        description="Zones and devices that cells share, each with its state, who holds it and who waits."
+    )
+    acts: list[Act] = Field(default=[], description="What operators did last, oldest first.")
