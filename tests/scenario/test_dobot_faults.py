@@ -8,16 +8,16 @@ from arboleda.drivers.dobot import work
 from arboleda.drivers.dobot.frames import Feedback, Mode
 from arboleda.kinds.arm import Arm
 from arboleda.testing.plants import shipped
-from arboleda.virtual import campaign
-from arboleda.virtual.dobot.campaign import CAUSES, DobotTrial
 from arboleda.virtual.dobot.faults import FAULTS
+from arboleda_driver_faults.dobot import CAUSES, DobotTrial
+from arboleda_driver_faults.trial import run
 
 SHIPPED = shipped()
 SEEDS = 12
 
 
 def breaches(seed: int, *names: str) -> list[str]:
-    return campaign.run(DobotTrial(SHIPPED), seed, names).breaches
+    return run(DobotTrial(SHIPPED), seed, names).breaches
 
 
 @pytest.mark.parametrize("seed", range(SEEDS))

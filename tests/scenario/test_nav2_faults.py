@@ -9,16 +9,16 @@ import pytest
 from arboleda.drivers.ros_action.goal import Rest
 from arboleda.kinds.mobile import Mobile
 from arboleda.plant_file.loader import load
-from arboleda.virtual import campaign
-from arboleda.virtual.nav2.campaign import BASE_CAUSES, RoundTrial, WaypointsTrial
 from arboleda.virtual.nav2.machine import FAULTS
+from arboleda_driver_faults.nav2 import BASE_CAUSES, RoundTrial, WaypointsTrial
+from arboleda_driver_faults.trial import run
 
 EXAMPLE = load(Path(__file__).parents[2] / "examples/nav2/plant.yaml")
 SEEDS = 2
 
 
 def breaches(seed: int, *names: str, trial: type[RoundTrial] = RoundTrial) -> list[str]:
-    return campaign.run(trial(EXAMPLE), seed, [f"cart.{name}" for name in names]).breaches
+    return run(trial(EXAMPLE), seed, [f"cart.{name}" for name in names]).breaches
 
 
 @pytest.mark.parametrize("trial", [RoundTrial, WaypointsTrial])

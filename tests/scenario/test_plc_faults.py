@@ -9,12 +9,12 @@ import pytest
 from arboleda.dispatch import evidence
 from arboleda.drivers.plc.numbers import Numbers
 from arboleda.plant_file.loader import load
-from arboleda.virtual import campaign
-from arboleda.virtual.modbus.campaign import ModbusTrial, Registers
 from arboleda.virtual.modbus.memory import FAULTS as MODBUS_FAULTS
-from arboleda.virtual.opcua.campaign import OpcUaTrial
 from arboleda.virtual.opcua.faults import FAULTS as OPCUA_FAULTS
-from arboleda.virtual.plc.campaign import BeltTrial
+from arboleda_driver_faults.modbus import ModbusTrial, Registers
+from arboleda_driver_faults.opcua import OpcUaTrial
+from arboleda_driver_faults.plc import BeltTrial
+from arboleda_driver_faults.trial import run
 
 EXAMPLES = Path(__file__).parents[2] / "examples/plc_conveyor"
 MODBUS, OPCUA = load(EXAMPLES / "plant.yaml"), load(EXAMPLES / "opcua.yaml")
@@ -22,7 +22,7 @@ SEEDS = 4
 
 
 def breaches(trial: BeltTrial, seed: int, *names: str) -> list[str]:
-    return campaign.run(trial, seed, names).breaches
+    return run(trial, seed, names).breaches
 
 
 @pytest.mark.parametrize("seed", range(SEEDS))

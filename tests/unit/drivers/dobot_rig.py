@@ -10,9 +10,9 @@ from arboleda.drivers import MoveJoints, Report
 from arboleda.model.plant_model import Evidence, Link
 from arboleda.testing.plants import shipped
 from arboleda.virtual.dobot.faults import FAULTS
-from arboleda.virtual.dobot.loopback import Loopback as Pair
 from arboleda.virtual.dobot.machine import VirtualDobot
 from arboleda.virtual.faults import Faults
+from arboleda_driver_faults.dobot_loopback import Loopback as Pair
 
 START_S = 100.0
 ARM = replace(shipped("sis_c").cells[0].arm, link=Link.DRIVER, evidence=Evidence.IDS)

@@ -16,8 +16,8 @@ from arboleda.model.plant_model import Robot
 from arboleda.plant_file.loader import load
 from arboleda.virtual.faults import Faults
 from arboleda.virtual.vda5050.faults import FAULTS
-from arboleda.virtual.vda5050.loopback import Loopback
 from arboleda.virtual.vda5050.machine import VirtualAgv
+from arboleda_driver_faults.vda5050_loopback import Loopback
 
 EXAMPLE = Path(__file__).parents[3] / "examples/agv/plant.yaml"
 STEP_S = 0.05

@@ -11,11 +11,11 @@ from arboleda.model.commands import Command
 from arboleda.model.messages import Reason, Report
 from arboleda.model.plant_model import Evidence, Link, MotionState, PlantModel, Robot
 from arboleda.recipes.storage_cell import StorageCell
+from arboleda.virtual.dobot.faults import FAULTS
+from arboleda.virtual.dobot.machine import VirtualDobot
 
-from ..campaign import EPOCH, Hear, Trial
-from .faults import FAULTS
-from .loopback import Loopback
-from .machine import VirtualDobot
+from .dobot_loopback import Loopback
+from .trial import EPOCH, Hear, Trial
 
 FRAME_S = 0.04  # a fifth of a real one's frames is enough to see every state
 NEAR_DEG = 0.02

@@ -10,9 +10,9 @@ from arboleda.drivers.nav2.pose import Pose
 from arboleda.kinds.mobile import Mobile
 from arboleda.model.messages import Reason
 from arboleda.model.plant_model import PlantModel
+from arboleda.virtual.nav2.machine import BaseBody, Drive
 
-from ..ros_action.campaign import CAUSES, NO_LINK, ActionTrial, Part
-from .machine import BaseBody, Drive
+from .ros_action import CAUSES, NO_LINK, ActionTrial, Part
 
 STANDS_M = 0.15  # somewhat more than what the driver calls standing on a node
 BESIDE = {Reason.DEVICE_FAULT, Reason.NOT_REACHED}

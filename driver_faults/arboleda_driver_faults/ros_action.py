@@ -10,11 +10,11 @@ from arboleda.drivers.ros_action.machine import Machine
 from arboleda.model.commands import Command, Stop
 from arboleda.model.messages import Reason
 from arboleda.model.plant_model import Cell, PlantModel, Robot
+from arboleda.virtual.faults import Faults
+from arboleda.virtual.ros_action.machine import Body, VirtualServer
 
-from ..campaign import Causes, Hear, Trial
-from ..faults import Faults
-from .loopback import Loopback
-from .machine import Body, VirtualServer
+from .ros_action_loopback import Loopback
+from .trial import Causes, Hear, Trial
 
 MEASURE_S = 0.05  # less often than by default: a campaign has to see every state, and no more
 NEAR = 1e-3  # m or rad

@@ -21,8 +21,7 @@ from arboleda.drivers.ros_action.events import Message as Told
 from arboleda.drivers.ros_action.machine import Machine
 from arboleda.model.commands import Command
 from arboleda.model.messages import Report
-
-from .machine import CancelDecision, CancelRequest, GoalRequest, VirtualServer
+from arboleda.virtual.ros_action.machine import CancelDecision, CancelRequest, GoalRequest, VirtualServer
 
 LOOK_S = 0.1  # as often as the driver looks which servers there are
 

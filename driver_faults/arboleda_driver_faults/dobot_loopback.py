@@ -23,8 +23,7 @@ from arboleda.drivers.dobot.settings import Settings
 from arboleda.model.commands import Command
 from arboleda.model.messages import Report
 from arboleda.model.plant_model import Robot
-
-from .machine import Answer, ClientText, Disconnect, Frame, VirtualDobot
+from arboleda.virtual.dobot.machine import Answer, ClientText, Disconnect, Frame, VirtualDobot
 
 
 class Loopback:

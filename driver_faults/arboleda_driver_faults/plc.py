@@ -10,10 +10,10 @@ from arboleda.kinds.declared import Device
 from arboleda.model.commands import Command, Stop
 from arboleda.model.messages import Reason
 from arboleda.model.plant_model import PlantModel, Robot
+from arboleda.virtual.plc.machine import CLOSED, ENTRY, EXIT, OPEN, Belt
 
-from ..campaign import START_S, Causes, Hear, Trial
-from .loopback import Loopback, Wire
-from .machine import CLOSED, ENTRY, EXIT, OPEN, Belt
+from .plc_loopback import Loopback, Wire
+from .trial import START_S, Causes, Hear, Trial
 
 NO_LINK = {Reason.LINK_LOST}
 CAUSES: Causes = {

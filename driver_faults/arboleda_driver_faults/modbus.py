@@ -11,11 +11,11 @@ from arboleda.drivers.modbus.settings import Settings
 from arboleda.model.commands import Command
 from arboleda.model.messages import Reason
 from arboleda.model.plant_model import PlantModel
+from arboleda.virtual.modbus.memory import FAULTS, BeltMemory
 
-from ..campaign import Causes
-from ..plc.campaign import NO_LINK, BeltTrial
-from ..plc.loopback import LineBroken
-from .memory import FAULTS, BeltMemory
+from .plc import NO_LINK, BeltTrial
+from .plc_loopback import LineBroken
+from .trial import Causes
 
 CAUSES: Causes = {
     "mute": NO_LINK,

@@ -9,10 +9,10 @@ from arboleda.drivers.gripper_command.machine import Width
 from arboleda.drivers.joint_trajectory import machine as arm_driver
 from arboleda.drivers.joint_trajectory.machine import Trajectory
 from arboleda.model.messages import Reason
+from arboleda.virtual.gripper.machine import Grip, GripperBody
+from arboleda.virtual.trajectory.machine import ArmBody, Points
 
-from ..ros_action.campaign import CAUSES, NO_LINK, ActionTrial, Part, near, spot
-from ..trajectory.machine import ArmBody, Points
-from .machine import Grip, GripperBody
+from .ros_action import CAUSES, NO_LINK, ActionTrial, Part, near, spot
 
 JOINTS = ("joint1", "joint2", "joint3", "joint4", "joint5", "joint6")
 PART_M = 0.04

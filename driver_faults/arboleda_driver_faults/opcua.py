@@ -9,12 +9,12 @@ from arboleda.drivers.opcua.settings import Settings
 from arboleda.model.commands import Command, Stop
 from arboleda.model.messages import Reason
 from arboleda.model.plant_model import PlantModel
+from arboleda.virtual.opcua.faults import FAULTS
+from arboleda.virtual.opcua.program import BeltProgram
 
-from ..campaign import Causes
-from ..plc.campaign import NO_LINK, BeltTrial
-from ..plc.loopback import LineBroken
-from .faults import FAULTS
-from .program import BeltProgram
+from .plc import NO_LINK, BeltTrial
+from .plc_loopback import LineBroken
+from .trial import Causes
 
 CAUSES: Causes = {
     "mute": NO_LINK,

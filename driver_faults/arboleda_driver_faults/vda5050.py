@@ -8,11 +8,11 @@ from arboleda.drivers.vda5050.settings import Settings
 from arboleda.model.commands import Command, Stop
 from arboleda.model.messages import Reason
 from arboleda.model.plant_model import PlantModel, Robot
+from arboleda.virtual.vda5050.faults import FAULTS
+from arboleda.virtual.vda5050.machine import VirtualAgv
 
-from ..campaign import Hear, Trial
-from .faults import FAULTS
-from .loopback import Loopback
-from .machine import VirtualAgv
+from .trial import Hear, Trial
+from .vda5050_loopback import Loopback
 
 SILENT_S = 3.0  # the shortest silence that states of each second allow
 NO_LINK = {Reason.LINK_LOST}

@@ -16,10 +16,15 @@ from arboleda.drivers.vda5050.settings import Settings
 from arboleda.model.commands import Command
 from arboleda.model.messages import Report
 from arboleda.model.plant_model import Robot
-
-from .machine import Connect, ConnectionCut, OutgoingMessage, VehicleMessage, VirtualAgv
-from .machine import Message as Said
-from .words import BROKEN
+from arboleda.virtual.vda5050.machine import (
+    Connect,
+    ConnectionCut,
+    OutgoingMessage,
+    VehicleMessage,
+    VirtualAgv,
+)
+from arboleda.virtual.vda5050.machine import Message as Said
+from arboleda.virtual.vda5050.words import BROKEN
 
 
 class Loopback:

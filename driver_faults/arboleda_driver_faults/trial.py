@@ -40,8 +40,7 @@ from arboleda.model.messages import (
 )
 from arboleda.model.plant_model import PlantModel, Robot
 from arboleda.model.sentence import OWN
-
-from .faults import Faults
+from arboleda.virtual.faults import Faults
 
 START_S, EPOCH = 100.0, 7
 TASKS = 4

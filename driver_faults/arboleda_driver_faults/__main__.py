@@ -1,0 +1,66 @@
+"""Trials of one driver, seed by seed, under the faults of its virtual controller.
+
+Usage: scripts/driver-faults DRIVER [SEEDS] [FIRST]
+
+The plant's core, the supervisor of drivers and the driver are the shipped ones; device and time are
+virtual. A breach is printed with its seed, and the status is 1.
+"""
+
+from __future__ import annotations
+
+import sys
+import time
+from collections import Counter
+from collections.abc import Callable
+from functools import partial
+from pathlib import Path
+
+from arboleda.plant_file.loader import load
+
+from .dobot import DobotTrial
+from .gripper import CarryTrial
+from .modbus import ModbusTrial
+from .nav2 import RoundTrial, WaypointsTrial
+from .opcua import OpcUaTrial
+from .trial import Trial, run
+from .vda5050 import AgvTrial
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+TRIALS: dict[str, tuple[Path | None, Callable[..., Trial]]] = {
+    "dobot": (None, DobotTrial),
+    "modbus": (EXAMPLES / "plc_conveyor/plant.yaml", ModbusTrial),
+    "opcua": (EXAMPLES / "plc_conveyor/opcua.yaml", OpcUaTrial),
+    "ros2_control": (EXAMPLES / "ros2_control/plant.yaml", CarryTrial),
+    "navigate_to_pose": (EXAMPLES / "nav2/plant.yaml", RoundTrial),
+    "follow_waypoints": (EXAMPLES / "nav2/plant.yaml", WaypointsTrial),
+    **{
+        f"vda5050-{version}": (EXAMPLES / "agv/plant.yaml", partial(AgvTrial, version=version))
+        for version in ("2.0", "2.1", "3.0")
+    },
+}
+
+
+def main() -> int:
+    driver, *numbers = sys.argv[1:] or [""]
+    if driver not in TRIALS:
+        print(f"usage: scripts/driver-faults {' | '.join(TRIALS)} [SEEDS] [FIRST]")
+        return 2
+    seeds, first = (int(value) for value in (*numbers, *("200", "0")[len(numbers) :]))
+    plant, trial = TRIALS[driver]
+    model, began = load(plant), time.perf_counter()
+    ends, faults, wrong = Counter[str](), Counter[str](), 0
+    for seed in range(first, first + seeds):
+        result = run(trial(model), seed)
+        faults.update(each.name for each in result.faults)
+        ends.update(each.reason.value if each.reason else each.state.value for each in result.ended)
+        for breach in result.breaches:
+            wrong += 1
+            print(f"seed {seed} ({', '.join(each.name for each in result.faults)}): {breach}")
+    print(f"faults: {', '.join(f'{name} {count}' for name, count in sorted(faults.items()))}")
+    print(f"tasks: {', '.join(f'{name} {count}' for name, count in ends.most_common())}")
+    print(f"{seeds} seeds in {time.perf_counter() - began:.0f} s: {wrong} wrong")
+    return 1 if wrong else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
