@@ -43,7 +43,7 @@ class Plant:
     def submit(self, text: str) -> None:
         """Ask for a task; the answer is printed when it comes."""
         print(f"submit {text!r}", flush=True)
-        self.app.submit(text)
+        self.app.plant.submit(text)
 
     def wait(self, arrived: Callable[[], object]) -> None:
         """Until what the plant told makes it true."""

@@ -82,7 +82,7 @@ class Customers:
 
     def _ask(self, cell: str) -> None:
         self._number += 1
-        self._app.submit(f"{cell} 0B {self._number % 9}")
+        self._app.plant.submit(f"{cell} 0B {self._number % 9}")
 
 
 def main(plant: str, state: str, move_s: str, seconds: str) -> None:

@@ -168,7 +168,7 @@ def test_reconnect(shop: Shop) -> None:
     assert (end.state, end.reason) == (TaskState.FAILED, Reason.LINK_LOST)
     shop.device.come_back()
     shop.until(online=True)
-    shop.app.operate(Verb.STOP, "shop").result(20)
+    shop.app.plant.operate(Verb.STOP, "shop").result(20)
     after = [shop.device.told()[0]]
     while after[-1] != LATCH:
         after.append(shop.device.told()[0])
@@ -193,7 +193,7 @@ def test_a_disk_that_hangs(shop: Shop, monkeypatch: pytest.MonkeyPatch) -> None:
     shop.submit(WORK)
     shop.device.accepts(shop.told(WORK))
     with hung_disk(monkeypatch):
-        stop = shop.app.operate(Verb.STOP, "shop")
+        stop = shop.app.plant.operate(Verb.STOP, "shop")
         assert shop.device.told()[0] in {HALT, LATCH}
         shop.device.latches()
     assert stop.result(PATIENCE_S).refusal is None

@@ -26,7 +26,7 @@ def outcome(app: App, text: str) -> TaskChanged:
     app.listen(lambda change: None if change.state in under_way else ends.put(change))
     app.start()
     try:
-        app.submit(text)
+        app.plant.submit(text)
         return ends.get(timeout=PATIENCE_S)
     finally:
         app.stop()

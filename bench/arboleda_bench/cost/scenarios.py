@@ -25,12 +25,13 @@ from arboleda.model.plant_model import PlantModel
 from arboleda.plant_file.loader import load
 from arboleda.recorder.state import state_of
 from arboleda.recorder.steps import Step, as_json
+from arboleda.runtime.parts.local_plant import LocalPlant
 from arboleda.runtime.parts.orchestrator import Orchestrator
-from arboleda.runtime.parts.web import Side
 from arboleda.simulator.people import Attendant, Customers
 from arboleda.simulator.run import MINUTE_S
 from arboleda.simulator.world import World
 from arboleda.store.sqlite import IN_MEMORY, Store
+from arboleda.store.task_rows import TaskHistory
 from arboleda.views import view
 from arboleda.web.api import make_app
 from arboleda.web.auth import Role
@@ -127,25 +128,19 @@ def from_http() -> Iterator[Act]:
         for words in Yard(model).words.values():
             plant.hear(replace(words, at=clock.seconds()))
         plant.loop.turn()
-        transport = httpx.ASGITransport(app=Logged(make_app(Side(plant))))
+        transport = httpx.ASGITransport(app=Logged(make_app(LocalPlant(plant, TaskHistory(Path("none"))))))
         client = httpx.AsyncClient(transport=transport, base_url="http://plant")
         yield lambda: asyncio.run(_ask_by_http(client, plant, port))
 
 
 class WholePlant(Orchestrator):
-    """A plant as the web part wants it, without a history; `heard` is called after each event."""
+    """A plant that nothing is asked of but by HTTP; `heard` is called after each event."""
 
     heard: Callable[[], object] = staticmethod(lambda: None)
 
     def hear(self, event: Any) -> None:
         super().hear(event)
         self.heard()
-
-    def history(self, query: object) -> list[Any]:
-        return []
-
-    def oee(self, query: object) -> list[Any]:
-        return []
 
 
 class Port:

@@ -91,7 +91,7 @@ class Shop:
         app.watch(self._linger)
 
     def submit(self, recipe: str, id: str = "t1") -> None:
-        self.app.submit(f"shop {recipe} #{id}").result(PATIENCE_S)
+        self.app.plant.submit(f"shop {recipe} #{id}").result(PATIENCE_S)
 
     def told(self, word: str) -> Ref:
         """How the device names the next order, which is this one."""
@@ -106,7 +106,7 @@ class Shop:
         return change
 
     def cancel(self) -> None:
-        assert self.app.operate(Verb.CANCEL, "shop").result(PATIENCE_S).refusal is None
+        assert self.app.plant.operate(Verb.CANCEL, "shop").result(PATIENCE_S).refusal is None
 
     def until(self, *, online: bool) -> None:
         """Wait until screens show that the device is heard, or that it is not."""

@@ -60,10 +60,9 @@ def disk(monkeypatch: pytest.MonkeyPatch) -> Disk:
 @pytest.fixture
 def app(tmp_path: Path, robots: Robots, disk: Disk) -> Iterator[App]:
     made = build(shipped("sis_a"), {"orchestrator", "web"}, Options(state_dir=tmp_path, page=False))
-    assert made.orchestrator is not None
-    made.orchestrator.connect(robots)
+    made.plant.connect(robots)
     made.start()
-    made.submit("sis_a 0B 1 #a")
+    made.plant.submit("sis_a 0B 1 #a")
     assert disk.reached.wait(PATIENCE_S)
     yield made
     disk.let_go.set()

@@ -130,7 +130,7 @@ def test_the_command_and_a_plant_that_runs_say_the_same(rig: Rig, store: Store, 
         done(rig, task)
     store.close()
     app = build(shipped("sis_a"), {"orchestrator"}, Options(state_dir=tmp_path, page=False))
-    (running,) = app.oee(OeeQuery(since_s=BEGAN, until_s=BEGAN + rig.now))
+    (running,) = app.local.oee(OeeQuery(since_s=BEGAN, until_s=BEGAN + rig.now))
     app.stop()
     said = json.loads(typed(tmp_path, "--since", when(BEGAN), "--until", when(BEGAN + rig.now), "--json"))
     known = running.data()

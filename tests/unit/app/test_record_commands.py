@@ -34,8 +34,8 @@ def state(tmp_path_factory: pytest.TempPathFactory) -> Path:
     app = build(model, {"orchestrator"}, Options(state_dir=folder, recording=SHIPPED, rate=2.0))
     app.start()
     try:
-        assert app.submit(TASK).result(30.0).state.value == "queued"
-        assert app.submit("sis_z 0B 7").result(30.0).state.value == "refused"
+        assert app.plant.submit(TASK).result(30.0).state.value == "queued"
+        assert app.plant.submit("sis_z 0B 7").result(30.0).state.value == "refused"
     finally:
         app.stop()
     return folder
@@ -240,7 +240,7 @@ def test_without_its_library_the_plant_goes_on_without_a_record(
     app = build(loader.load(), {"orchestrator"}, Options(state_dir=tmp_path, recording=SHIPPED))
     app.start()
     try:
-        assert app.submit(TASK).result(30.0).state.value == "queued"
+        assert app.plant.submit(TASK).result(30.0).state.value == "queued"
     finally:
         app.stop()
     assert "no record is written: " in caplog.text and not (tmp_path / files.FOLDER).exists()

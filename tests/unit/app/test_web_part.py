@@ -11,9 +11,12 @@ import pytest
 from arboleda.adapters.server_tls import ServerTls
 from arboleda.model.errors import ArboledaError, QueueFull, StartError
 from arboleda.model.messages import TaskChanged, TaskState
-from arboleda.runtime.parts.web import Side
+from arboleda.runtime.parts.local_plant import LocalPlant
 from arboleda.runtime.web_options import WebOptions
+from arboleda.store.task_rows import TaskHistory
 from arboleda.web.names import names_for
+
+NO_HISTORY = TaskHistory(Path("none"))
 
 
 class Plant:
@@ -32,12 +35,6 @@ class Plant:
     def find(self, task: str) -> None:
         return None
 
-    def history(self, _query: object) -> list:
-        return []
-
-    def oee(self, _query: object) -> list:
-        return []
-
     def operate(self, *_args: object, **_options: object) -> Future:
         return Future()
 
@@ -53,11 +50,11 @@ class Plant:
 
 
 @pytest.fixture
-def side() -> Side:
-    return Side(Plant())
+def side() -> LocalPlant:
+    return LocalPlant(Plant(), NO_HISTORY)
 
 
-def test_every_watcher_is_told_until_it_ends_that(side: Side) -> None:
+def test_every_watcher_is_told_until_it_ends_that(side: LocalPlant) -> None:
     one, other = [], []
     end = side.watch(one.append)
     side.watch(other.append)
@@ -68,7 +65,7 @@ def test_every_watcher_is_told_until_it_ends_that(side: Side) -> None:
     assert (one, other) == ([{"at": 1}], [{"at": 1}, {"at": 2}])
 
 
-def test_a_watcher_that_fails_is_told_no_more_and_the_others_are(side: Side, caplog) -> None:
+def test_a_watcher_that_fails_is_told_no_more_and_the_others_are(side: LocalPlant, caplog) -> None:
     heard = []
     side.watch(lambda snapshot: 1 / 0)
     side.watch(heard.append)
@@ -80,7 +77,7 @@ def test_a_watcher_that_fails_is_told_no_more_and_the_others_are(side: Side, cap
 
 def test_a_task_and_an_error_come_as_plain_data_and_as_the_error() -> None:
     plant = Plant()
-    side = Side(plant)
+    side = LocalPlant(plant, NO_HISTORY)
     good, bad = side.submit("a", "http"), side.submit("b", "http")
     plant.asked[0].set_result(TaskChanged(task="t-1", text="a", cell="sis_a", state=TaskState.QUEUED))
     plant.asked[1].set_exception(ArboledaError("The disk is full."))
@@ -91,7 +88,7 @@ def test_a_task_and_an_error_come_as_plain_data_and_as_the_error() -> None:
 
 def test_a_task_that_is_refused_for_now_is_an_error_of_its_own() -> None:
     plant = Plant()
-    side = Side(plant)
+    side = LocalPlant(plant, NO_HISTORY)
     full, wrong = side.submit("a", "http"), side.submit("b", "http")
     facts = {"task": "", "cell": None, "state": TaskState.REFUSED}
     plant.asked[0].set_result(TaskChanged(text="a", sentence="20 tasks wait", for_now=True, **facts))

@@ -11,7 +11,7 @@ from arboleda.model.errors import ArboledaError, QueueFull, TextError
 from arboleda.model.outside import plain, said_by
 from arboleda.runtime.endpoints import Place
 from arboleda.web.limits import BEAT_S
-from arboleda.web.plant_side import COMMAND_LINE
+from arboleda.web.plant_api import COMMAND_LINE
 from arboleda.web.request_head import PLANT
 
 if TYPE_CHECKING:  # it takes a while to load, and only who asks a plant needs it

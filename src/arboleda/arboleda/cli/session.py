@@ -70,7 +70,7 @@ class Session:
             lambda: self._log.then(lambda: self._news.put(self._finished)),
             patience_s=patience_s,
         )
-        self._screen = Screen(console, app.snapshot, app.log_file)
+        self._screen = Screen(console, app.plant.snapshot, app.log_file)
         self._stopping = False
 
     def run(self) -> int:
@@ -84,7 +84,7 @@ class Session:
             try:
                 with until_interrupted():
                     self._tell_notes()
-                    self._errand.start(self._app.submit)
+                    self._errand.start(self._app.plant.submit)
                     with self._screen:
                         self._show()
                         self._app.wait()
@@ -145,5 +145,5 @@ class Session:
         self._log.flush()
         self._news.put(None)
         self._show()
-        for line in parting(self._app.snapshot()):
+        for line in parting(self._app.plant.snapshot()):
             self._console.print(Text(f"  {line}", style="dim"))

@@ -22,7 +22,7 @@ from arboleda.web.auth import SUBMIT, allowed
 from . import demo
 from .feed import Feed
 from .open_page import OpenPage
-from .plant_side import PlantSide
+from .page_api import PageApi
 from .wording import Words
 
 ANSWER_S = 5.0
@@ -37,7 +37,7 @@ Answer = TypeVar("Answer")
 class Desk(OpenPage):
     """The only way from the events of a page to the plant."""
 
-    def __init__(self, client: Client, plant: PlantSide, feed: Feed, words: Words) -> None:
+    def __init__(self, client: Client, plant: PageApi, feed: Feed, words: Words) -> None:
         super().__init__(client, words, feed.seen)
         self._plant = plant
         self._feed = feed

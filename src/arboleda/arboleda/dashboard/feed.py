@@ -14,8 +14,8 @@ from arboleda.store.task_rows import TaskRow
 
 from .faces import Face
 from .frames import Frames, Viewer
+from .page_api import PageApi
 from .page_state import PageState
-from .plant_side import PlantSide
 
 FRAMES_HZ = 10.0
 BEAT_S = 1.0  # after so long without news the plant is asked, and pages are told that it answers
@@ -27,7 +27,7 @@ log = logging.getLogger(__name__)
 class Feed:
     """`add` and `remove` viewers, `run` in the server's event loop. The plant's thread only appends."""
 
-    def __init__(self, plant: PlantSide) -> None:
+    def __init__(self, plant: PageApi) -> None:
         self._plant = plant
         self._told: deque[tuple[float, dict[str, Any]]] = deque(maxlen=WAITING)
         self._story: PageState | None = None

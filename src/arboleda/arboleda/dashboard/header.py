@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from .plant_side import Layout
+from .page_api import Layout
 from .tags import link, live, rows, tag, way
 from .wording import LANGUAGES, Words
 

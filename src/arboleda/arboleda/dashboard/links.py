@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from . import panel
 from .cell_filter import cell_filter
-from .plant_side import Layout
+from .page_api import Layout
 from .tags import live, rows, tag
 from .wording import Words
 

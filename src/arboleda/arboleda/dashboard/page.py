@@ -19,10 +19,10 @@ from .desk import Desk
 from .faces import history, oee
 from .feed import Feed
 from .frames import Background
+from .page_api import PageApi
 from .past import page as past_page
 from .past.frame_queue import BESIDE_S, FrameQueue
 from .past.stills import Stills
-from .plant_side import PlantSide
 from .shell import Parts, language_of, role_shown
 from .twin import pane, window
 from .twin.show import Show
@@ -41,7 +41,7 @@ Hours = Annotated[float, Query(gt=0, le=1000)]
 Most = Annotated[int, Query(ge=1, le=200)]
 
 
-def mount(server: FastAPI, plant: PlantSide) -> None:
+def mount(server: FastAPI, plant: PageApi) -> None:
     """Put the page at `/` of this app; StartError where this process shows a page already."""
     feed, show = Feed(plant), Show(plant)
     stills, turns = Stills(), FrameQueue(BESIDE_S)
@@ -74,7 +74,7 @@ def mount(server: FastAPI, plant: PlantSide) -> None:
     _keep_running(feed, show)
 
 
-def _serve_tasks(server: FastAPI, plant: PlantSide, feed: Feed) -> None:
+def _serve_tasks(server: FastAPI, plant: PageApi, feed: Feed) -> None:
     """What is sent on demand only: the tree of a task that has ended, and the tasks of earlier starts."""
 
     async def one_task(request: Request, id: str) -> JSONResponse:

@@ -9,7 +9,7 @@ from typing import Any
 from arboleda.model.messages import Verb
 from arboleda.views.view import devices_once
 
-from .plant_side import Layout
+from .page_api import Layout
 from .tags import act_button, live, rows, tag
 from .wording import Words
 

@@ -11,7 +11,7 @@ from fastapi.responses import HTMLResponse, Response
 from arboleda.model.errors import ArboledaError
 from arboleda.web import plain_page
 
-from .plant_side import PlantSide
+from .page_api import PageApi
 from .shell import language_of
 from .wording import Words, words
 
@@ -24,7 +24,7 @@ POLICY = (
 )
 
 
-def serve(server: FastAPI, plant: PlantSide) -> None:
+def serve(server: FastAPI, plant: PageApi) -> None:
     """Have `/report?task=ID` answered: with the report, or with a page that waits until it is written."""
 
     async def report(request: Request, task: str = "") -> Response:

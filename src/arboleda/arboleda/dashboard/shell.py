@@ -15,8 +15,8 @@ from arboleda.model.errors import StartError
 from arboleda.web.api import refuse
 
 from . import trees
+from .page_api import Layout
 from .page_budget import PageBudget
-from .plant_side import Layout
 from .tags import markup, tag
 from .wording import LANGUAGES, Words
 

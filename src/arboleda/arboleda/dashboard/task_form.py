@@ -7,7 +7,7 @@ from typing import Any
 
 from arboleda.core.text import BETWEEN_CELLS as BETWEEN
 
-from .plant_side import Layout
+from .page_api import Layout
 from .tags import act_button, tag
 from .wording import Words
 

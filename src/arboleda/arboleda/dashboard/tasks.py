@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from . import task_form
 from .cell_filter import cell_filter
-from .plant_side import Layout
+from .page_api import Layout
 from .tags import link, live, report, rows, tag, way
 from .trees import heard, zooms
 from .wording import Words

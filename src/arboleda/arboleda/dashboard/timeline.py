@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from .cell_filter import cell_filter
-from .plant_side import Layout
+from .page_api import Layout
 from .tags import act_button, rows, tag
 from .wording import Words
 

@@ -6,7 +6,7 @@ from typing import Any
 
 from arboleda.views.view import devices_once
 
-from .plant_side import Layout
+from .page_api import Layout
 from .tags import link, live, report, rows, tag, way
 from .wording import Words
 

@@ -8,8 +8,7 @@ import logging
 import os
 import threading
 import time
-from collections.abc import Callable, Collection, Mapping
-from concurrent.futures import Future
+from collections.abc import Callable, Collection
 from dataclasses import asdict, dataclass, field
 from importlib import import_module
 from pathlib import Path
@@ -20,15 +19,11 @@ from arboleda.adapters import clock, descriptors
 from arboleda.adapters.broker_login import MQTT_PORT, Credentials, address
 from arboleda.core.operator import ACTS_TOLD
 from arboleda.model.errors import ArboledaError, StartError
-from arboleda.model.facts import Value
-from arboleda.model.messages import OperatorAnswer, TaskChanged, Verb
+from arboleda.model.messages import TaskChanged
 from arboleda.model.plant_model import Link, MqttVersion, PlantModel
 from arboleda.model.sentence import OWN, Sentence, from_data
 from arboleda.recorder.preamble import Beginning, Recording
-from arboleda.store.oee_rows import OeeQuery
 from arboleda.store.plant_memory import JournalEntry, PlantMemory, Superseded
-from arboleda.store.task_rows import COMMAND, TaskQuery, TaskRow
-from arboleda.views.oee import Oee
 from arboleda.web.own_addresses import other_address
 
 from .alarm_options import AlarmOptions
@@ -46,8 +41,9 @@ from .parts.groot2 import Groot2Options, Groot2Part
 from .parts.handover import CellResumption, hold_all
 from .parts.lease import LeasePart
 from .parts.linux_boards import LinuxBoards, on_linux
+from .parts.local_plant import LocalPlant
 from .parts.memory_pace import MemoryPace
-from .parts.orchestrator import READ_S, Orchestrator
+from .parts.orchestrator import Orchestrator
 from .parts.part import Part
 from .parts.periodic import Periodic
 from .parts.reports import NO_RECORD, NoReport, ReportsPart
@@ -215,47 +211,14 @@ class App:
 
     def listen(self, *listeners: Callable[[TaskChanged], None]) -> None:
         """Have every change of a task told, in the plant's thread; before `start`."""
-        self._plant.listeners.extend(listeners)
+        self.plant.listeners.extend(listeners)
 
     def watch(self, watcher: Callable[[dict[str, Any]], None]) -> None:
         """Have a snapshot told when more than a position changed; in the plant's thread, before `start`."""
-        self._plant.watchers.append(watcher)
-
-    def submit(self, text: str, asked_by: str = COMMAND, choice: str = "") -> Future[TaskChanged]:
-        return self._plant.submit(text, asked_by, choice)
-
-    def promises(self, text: str) -> list[dict[str, Any]]:
-        return self._plant.promises(text)
-
-    def operate(self, verb: Verb, scope: str = "", *, by_hand: bool = False) -> Future[OperatorAnswer]:
-        return self._plant.operate(verb, scope, by_hand)
-
-    def act(self, number: int) -> dict[str, Any] | None:
-        return self._plant.act(number)
-
-    def snapshot(self, within_s: float = READ_S) -> dict[str, Any]:
-        return self._plant.snapshot(within_s)
-
-    def positions(self) -> dict[str, Any]:
-        return self._plant.positions()
-
-    def find(self, task: str) -> dict[str, Any] | None:
-        return self._plant.find(task)
-
-    def history(self, query: TaskQuery) -> list[TaskRow]:
-        return self._history.select(query)
-
-    def oee(self, query: OeeQuery) -> list[Oee]:
-        return self._history.oee(query, [cell.name for cell in self.model.cells])
-
-    def offers(self) -> list[dict[str, Any]]:
-        return self._plant.offers()
-
-    def spelled(self, *, cell: str, recipe: str, values: Mapping[str, Value], id: str) -> str:
-        return self._plant.spelled(cell=cell, recipe=recipe, values=values, id=id)
+        self.plant.watchers.append(watcher)
 
     def links(self) -> dict[str, Any]:
-        """Broker, ROS 2, refused messages, standbys, the memory's pace, as `PlantSide` has them; from any
+        """Broker, ROS 2, refused messages, standbys, the memory's pace, as `PageApi` has them; from any
         thread."""
         connected, refused = self._bridge.links() if self._bridge else (False, {})
         broker = {"address": str(self._broker.address), "connected": connected} if self._bridge else None
@@ -279,16 +242,16 @@ class App:
         sources = page.Sources(
             model=self.model,
             links=self.links,
-            positions=self.positions,
+            positions=self.plant.positions,
             past_acts=lambda: self._past_acts,
             end_demo=self.end_demo if options.demo else None,
             recorded=None if options.recording is None else self._state.path,
             report=self.report,
         )
         mount = page.mounting(sources) if options.page else None
-        metrics = self._metrics = Metrics(self.snapshot, self.links)
+        metrics = self._metrics = Metrics(self.plant.snapshot, self.links)
         return WebPart(
-            self,
+            self.local,
             self.model.name,
             self._state.path,
             self._announce,
@@ -299,7 +262,13 @@ class App:
         )
 
     @property
-    def _plant(self) -> Orchestrator:
+    def local(self) -> LocalPlant:
+        """PlantApi of the plant of this process; ArboledaError where it has none."""
+        return LocalPlant(self.plant, self._history)
+
+    @property
+    def plant(self) -> Orchestrator:
+        """The plant of this process; ArboledaError where it has none."""
         if self.orchestrator is None:
             raise ArboledaError("there is no orchestrator in this process")
         return self.orchestrator
@@ -353,8 +322,6 @@ class App:
         if "web" in parts and options.page:
             import_module("arboleda.dashboard.page")  # takes longer than a leader may say nothing
         epoch = self._lead(now) if "orchestrator" in parts else now
-        if "web" in parts:  # a process has one page, so it is made by who leads
-            self._web = self._web_part(options)
         if "bridge" in parts:
             waits = virtual and scout
             bridge = self._bridge = BridgePart(
@@ -387,8 +354,9 @@ class App:
                 self._pace.listeners.append(self._alarms.paced)
                 self.orchestrator.observers.append(self._alarms.stepped)
             self._parts.append(self.orchestrator)
-        if self._web is not None:
-            self.watch(self._web.side.saw)
+        if "web" in parts:  # a process has one page, so it is made by who leads
+            self._web = self._web_part(options)
+            self.watch(self._web.plant.saw)
             self._count()
             self._parts.append(self._web)
         if self._groot2 is not None:
@@ -396,14 +364,14 @@ class App:
             self._parts.append(self._groot2)
         if options.demo and self._devices is not None and self.orchestrator is not None:
             befall = self._devices.befall
-            self._demo = DemoPart(Demo(self.model), self.submit, befall, self._crash)
+            self._demo = DemoPart(Demo(self.model), self.plant.submit, befall, self._crash)
             self.watch(self._demo.saw)
             self._parts.append(self._demo)
         if self.orchestrator is not None and self._store.renew_s is not None:
-            self._parts.append(CellResumption(self, self._store.going, epoch))
+            self._parts.append(CellResumption(self.plant, self._store.going, epoch))
         self._join(bridge, drivers, self._link)
         if self.orchestrator is not None:
-            systemd = systemd_part(os.environ, lambda: self._plant.stepped_at)
+            systemd = systemd_part(os.environ, lambda: self.plant.stepped_at)
             self._parts += [systemd] if systemd else []
 
     def _looks(self) -> list[Callable[[], None]]:
@@ -423,7 +391,7 @@ class App:
         """Hold what is at work, for the next leader to go on with, and end."""
         LOG.warning("another process is to lead the plant: what is at work is held")
         try:
-            self._store.hand_over(hold_all(self))
+            self._store.hand_over(hold_all(self.plant))
         except (ArboledaError, TimeoutError) as error:
             LOG.warning("the next leader is not told what was at work: %s", error)
         self.end()

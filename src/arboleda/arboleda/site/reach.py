@@ -11,7 +11,7 @@ from arboleda.model.errors import ArboledaError
 from arboleda.model.outside import plain, said_by
 from arboleda.model.sentence import Phrase
 from arboleda.runtime.endpoints import Place
-from arboleda.web.plant_side import COMMAND_LINE
+from arboleda.web.plant_api import COMMAND_LINE
 
 ANSWER_S = 2.5  # a browser gives a stop up after 3 s
 LONGEST = 300  # characters of what a plant says that are shown

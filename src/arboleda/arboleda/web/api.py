@@ -30,7 +30,7 @@ from .auth import SUBMIT, Forbidden, require
 from .limits import LATER_S
 from .not_found import NotFound
 from .plain_json import PlainJson, explained
-from .plant_side import COMMAND_LINE, PlantSide
+from .plant_api import COMMAND_LINE, PlantApi
 from .schema import (
     Act,
     ByHand,
@@ -83,7 +83,7 @@ UNKNOWN: Answers = {404: {"model": Sentence, "description": "There is no such ta
 
 
 def make_app(
-    side: PlantSide, *, streams: int = limits.STREAMS, counts: Callable[[], bytes] | None = None
+    side: PlantApi, *, streams: int = limits.STREAMS, counts: Callable[[], bytes] | None = None
 ) -> FastAPI:
     """An application with the routes; pages may be mounted on it afterwards. It wants a Guard before it.
 
@@ -109,7 +109,7 @@ def make_app(
     return app
 
 
-def routes(side: PlantSide) -> APIRouter:
+def routes(side: PlantApi) -> APIRouter:
     """Look, submit, operate."""
     api = APIRouter(prefix="/api")
     _look(api, side)
@@ -119,7 +119,7 @@ def routes(side: PlantSide) -> APIRouter:
     return api
 
 
-def _look(api: APIRouter, side: PlantSide) -> None:
+def _look(api: APIRouter, side: PlantApi) -> None:
     @api.get("/plant", response_model=Snapshot)
     async def plant() -> JSONResponse:
         """The whole plant: cells with their trees, robots, tasks, zones."""
@@ -172,7 +172,7 @@ def _look(api: APIRouter, side: PlantSide) -> None:
         return PlainJson(explained(known))
 
 
-def _follow(api: APIRouter, side: PlantSide) -> None:
+def _follow(api: APIRouter, side: PlantApi) -> None:
     @api.get("/acts/{number}", response_model=Act, responses=NO_ACT)
     async def act(number: int) -> JSONResponse:
         """What has become of an operator's act by now; the last 20 are known."""
@@ -182,7 +182,7 @@ def _follow(api: APIRouter, side: PlantSide) -> None:
         return PlainJson(known)
 
 
-def _submit(api: APIRouter, side: PlantSide) -> None:
+def _submit(api: APIRouter, side: PlantApi) -> None:
     @api.post(
         "/tasks",
         status_code=202,
@@ -203,7 +203,7 @@ def _submit(api: APIRouter, side: PlantSide) -> None:
         return PlainJson(explained(task), status_code=422 if task["state"] == "refused" else 202)
 
 
-def _operate(api: APIRouter, side: PlantSide) -> None:
+def _operate(api: APIRouter, side: PlantApi) -> None:
     verb_route: dict[str, Any] = {
         "response_model": Done,
         "responses": ACCEPTED | REFUSED | CONFLICT,

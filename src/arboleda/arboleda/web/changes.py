@@ -11,7 +11,7 @@ from typing import Any
 
 from arboleda.model.sentence import in_json
 
-from .plant_side import PlantSide, Snapshot
+from .plant_api import PlantApi, Snapshot
 
 HISTORY, WAITING, PENDING = 200, 256, 64
 Row = dict[str, Any]
@@ -106,7 +106,7 @@ class Reader:
 class Changes:
     """Turns snapshots into numbered events. Everything but `_saw` runs in the server's thread."""
 
-    def __init__(self, side: PlantSide) -> None:
+    def __init__(self, side: PlantApi) -> None:
         self._side = side
         self._readers: set[Reader] = set()
         self._history: deque[Event] = deque(maxlen=HISTORY)

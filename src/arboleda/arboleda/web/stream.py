@@ -12,7 +12,7 @@ from starlette.exceptions import HTTPException
 
 from . import limits
 from .changes import Changes
-from .plant_side import PlantSide
+from .plant_api import PlantApi
 
 ABOUT: dict[int | str, dict[str, Any]] = {
     200: {
@@ -24,7 +24,7 @@ ABOUT: dict[int | str, dict[str, Any]] = {
 }
 
 
-def routes(side: PlantSide, most: int) -> APIRouter:
+def routes(side: PlantApi, most: int) -> APIRouter:
     """`GET /api/events`, for at most so many readers at a time."""
     api = APIRouter(prefix="/api")
     changes = Changes(side)

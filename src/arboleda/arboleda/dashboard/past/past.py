@@ -92,7 +92,7 @@ class Past:
             return found if id is None else found | still.without_acts(self._task(then, at_ns, id))
 
     def positions(self, moment: int) -> Row:
-        """What the twin shows at a moment, as `PlantSide.positions` has it."""
+        """What the twin shows at a moment, as `PageApi.positions` has it."""
         with self._one:
             return self._views.positions(until_ns(moment))
 

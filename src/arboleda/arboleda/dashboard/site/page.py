@@ -19,7 +19,7 @@ from arboleda.web.schema import TaskText
 from .. import header, shell
 from ..frames import Background, Frames
 from ..open_page import LONGEST, OpenPage
-from ..plant_side import Layout
+from ..page_api import Layout
 from ..shell import language_of, role_shown
 from ..tags import act_button, rows, tag
 from ..wording import Words, words

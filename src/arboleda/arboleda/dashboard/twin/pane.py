@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ..plant_side import Layout
+from ..page_api import Layout
 from ..tags import tag
 from ..trees import beside
 from ..wording import Words

@@ -9,7 +9,7 @@ from typing import Any, Protocol
 
 from arboleda.views.changes import changed
 
-from ..plant_side import PlantSide
+from ..page_api import PageApi
 from .twin import Twin
 
 FRAMES_HZ = 20.0
@@ -40,7 +40,7 @@ class ViewerProgress:
 class Show:
     """`look` and `leave` for browsers, `run` in the server's event loop."""
 
-    def __init__(self, plant: PlantSide) -> None:
+    def __init__(self, plant: PageApi) -> None:
         self._plant = plant
         self._twin: Twin | None = None
         self._lookers: dict[TwinViewer, ViewerProgress] = {}

@@ -5,14 +5,14 @@ from __future__ import annotations
 import logging
 import threading
 from collections.abc import Sequence
-from concurrent.futures import Future
 from contextlib import suppress
-from typing import Any, Protocol
 
 from arboleda.adapters import clock
 from arboleda.core.leading import all_stand, at_work
 from arboleda.model.errors import ArboledaError
-from arboleda.model.messages import OperatorAnswer, Verb
+from arboleda.model.messages import Verb
+
+from .orchestrator import Orchestrator
 
 LOG = logging.getLogger("arboleda.handover")
 HELD_S = 10.0  # by then what is held stands still
@@ -21,14 +21,7 @@ LOOK_S = 0.05
 PATIENCE_S = 3.0
 
 
-class OperatedPlant(Protocol):
-    """The plant as it is operated."""
-
-    def operate(self, verb: Verb, scope: str = "") -> Future[OperatorAnswer]: ...
-    def snapshot(self) -> dict[str, Any]: ...
-
-
-def hold_all(plant: OperatedPlant) -> list[str]:
+def hold_all(plant: Orchestrator) -> list[str]:
     """Hold every cell that is at work, and wait until all of them stand; their names."""
     working = at_work(_states(plant))
     held = [name for name in working if plant.operate(Verb.HOLD, name).result(HELD_S).refusal is None]
@@ -38,14 +31,14 @@ def hold_all(plant: OperatedPlant) -> list[str]:
     return held
 
 
-def _states(plant: OperatedPlant) -> dict[str, str]:
+def _states(plant: Orchestrator) -> dict[str, str]:
     return {row["name"]: row["state"] for row in plant.snapshot()["cells"]}
 
 
 class CellResumption:
     """Resumes the cells that the leader before held for the change alone, once their robots are heard."""
 
-    def __init__(self, plant: OperatedPlant, cells: Sequence[str], epoch: int) -> None:
+    def __init__(self, plant: Orchestrator, cells: Sequence[str], epoch: int) -> None:
         self._plant = plant
         self._cells = cells
         self._epoch = epoch

@@ -236,7 +236,7 @@ class Orchestrator:
         self.hear(TaskRequest(at=clock.seconds(), text=text, request=token, choice=choice))
         return answer
 
-    def operate(self, verb: Verb, scope: str = "", by_hand: bool = False) -> Future[OperatorAnswer]:
+    def operate(self, verb: Verb, scope: str = "", *, by_hand: bool = False) -> Future[OperatorAnswer]:
         """Ask for an operator's act; the future holds the answer, with a refusal where nothing was done."""
         answer, token = self._expect()
         now = clock.seconds()

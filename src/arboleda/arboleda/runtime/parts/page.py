@@ -16,7 +16,7 @@ from arboleda.plant_file.urdf import robot_urdf
 from arboleda.recorder.errors import NoRecord
 from arboleda.views import view
 
-from .web import Side
+from .local_plant import LocalPlant
 
 if TYPE_CHECKING:  # it takes a while to load, and only who looks at a record needs it
     from arboleda.dashboard.past.past import Past
@@ -41,22 +41,22 @@ class Sources:
 
 
 class PageSide:
-    """`arboleda.dashboard.plant_side.PlantSide`."""
+    """`arboleda.dashboard.page_api.PageApi`."""
 
-    def __init__(self, side: Side, sources: Sources) -> None:
+    def __init__(self, plant: LocalPlant, sources: Sources) -> None:
         self._model = sources.model
         self._layout = view.layout(sources.model) | {
             "recorded": sources.recorded is not None,
             "demo": sources.end_demo is not None,
         }
         self._sources = sources
-        self.snapshot = side.snapshot
-        self.submit = side.submit
-        self.operate = side.operate
-        self.act = side.act
-        self.history = side.history
-        self.oee = side.oee
-        self.watch = side.watch
+        self.snapshot = plant.snapshot
+        self.submit = plant.submit
+        self.operate = plant.operate
+        self.act = plant.act
+        self.history = plant.history
+        self.oee = plant.oee
+        self.watch = plant.watch
         self.links = sources.links
         self.positions = sources.positions
         self.past_acts = sources.past_acts
@@ -95,12 +95,12 @@ class PageSide:
         return robot_urdf(self._model, robot)
 
 
-def mounting(sources: Sources) -> Callable[[FastAPI, Side], None]:
+def mounting(sources: Sources) -> Callable[[FastAPI, LocalPlant], None]:
     """What puts the page on the server's application."""
 
-    def mount(app: FastAPI, side: Side) -> None:
+    def mount(app: FastAPI, plant: LocalPlant) -> None:
         from arboleda.dashboard import page  # it takes most of a second: only who shows a page waits for it
 
-        page.mount(app, PageSide(side, sources))
+        page.mount(app, PageSide(plant, sources))
 
     return mount

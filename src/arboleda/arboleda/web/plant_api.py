@@ -16,7 +16,7 @@ COMMAND_LINE = "arboleda"  # what our own command says it is, before its version
 Snapshot = dict[str, Any]
 
 
-class PlantSide(Protocol):
+class PlantApi(Protocol):
     """The plant as the server sees it; no call blocks that does not say so, and all data is plain."""
 
     def snapshot(self) -> Snapshot:

@@ -2,30 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from concurrent.futures import Future
 from typing import TYPE_CHECKING, Any, Protocol
 
-from arboleda.model.messages import OperatorAnswer, Verb
-from arboleda.store.oee_rows import OeeQuery
-from arboleda.store.task_rows import TaskQuery, TaskRow
-from arboleda.views.oee import Oee
+from arboleda.web.plant_api import PlantApi
 
 if TYPE_CHECKING:  # a page of a plant without a record does without the libraries that read one
     from .past.past import Past
     from .past.side import Start
 
 
-Snapshot = dict[str, Any]
 Layout = dict[str, Any]
 Links = dict[str, Any]
 
 
-class PlantSide(Protocol):
-    """The plant as seen from the page; no call blocks, all data is plain and never changed by the page."""
-
-    def snapshot(self) -> Snapshot:
-        """`views.view.snapshot` as of now."""
+class PageApi(PlantApi, Protocol):
+    """PlantApi with what only the page shows; all data is plain and never changed by the page."""
 
     def layout(self) -> Layout:
         """`views.view.layout`: what never changes. With `recorded` there is a `past`, with `demo` a
@@ -58,21 +49,3 @@ class PlantSide(Protocol):
 
     def past_acts(self) -> list[dict[str, Any]]:
         """What operators did before this start, oldest first: {at (unix s), scope, sentence}."""
-
-    def history(self, query: TaskQuery) -> list[TaskRow]:
-        """Tasks as they are kept, of earlier starts too; it waits for the disk, so not in the event loop."""
-
-    def oee(self, query: OeeQuery) -> list[Oee]:
-        """The figures of its cells, in the order of the plant file; it waits for the disk."""
-
-    def submit(self, text: str, asked_by: str) -> Future[dict[str, Any]]:
-        """A task, refused ones too; an ArboledaError says why there is none."""
-
-    def operate(self, verb: Verb, scope: str, *, by_hand: bool = False) -> Future[OperatorAnswer]:
-        """An operator's act; `scope` is "" for the plant."""
-
-    def act(self, number: int) -> dict[str, Any] | None:
-        """What has become of an operator's act by now; None where the plant knows it no more."""
-
-    def watch(self, callback: Callable[[Snapshot], None]) -> Callable[[], None]:
-        """Have every changed snapshot told in the plant's thread; returns what ends that."""

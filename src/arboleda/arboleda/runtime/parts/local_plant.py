@@ -1,0 +1,77 @@
+"""PlantApi of the plant in this process, for its HTTP server and its page."""
+
+from __future__ import annotations
+
+import logging
+import threading
+from collections.abc import Callable
+from concurrent.futures import Future
+from functools import partial
+from typing import Any
+
+from arboleda.model.errors import QueueFull
+from arboleda.model.messages import TaskChanged
+from arboleda.store.oee_rows import OeeQuery
+from arboleda.store.task_rows import History
+from arboleda.views import view
+from arboleda.views.oee import Oee
+from arboleda.web.plant_api import Snapshot
+
+from .orchestrator import GLANCE_S, Orchestrator
+
+LOG = logging.getLogger(__name__)
+
+
+class LocalPlant:
+    """PlantApi of the plant in this process: its orchestrator, and the history of its tasks."""
+
+    def __init__(self, plant: Orchestrator, history: History) -> None:
+        self._plant = plant
+        self._history = history
+        self._watchers: tuple[Callable[[Snapshot], None], ...] = ()
+        self._changing = threading.Lock()
+        self.snapshot = partial(plant.snapshot, GLANCE_S)
+        self.latest = plant.snapshot
+        self.offers = plant.offers
+        self.find = plant.find
+        self.history = history.select
+        self.spelled = plant.spelled
+        self.promises = plant.promises
+        self.operate = plant.operate
+        self.act = plant.act
+
+    def oee(self, query: OeeQuery) -> list[Oee]:
+        return self._history.oee(query, [cell.name for cell in self._plant.plant.model.cells])
+
+    def submit(self, text: str, asked_by: str, choice: str = "") -> Future[dict[str, Any]]:
+        plain: Future[dict[str, Any]] = Future()
+        self._plant.submit(text, asked_by, choice).add_done_callback(lambda answer: _pass_on(answer, plain))
+        return plain
+
+    def watch(self, callback: Callable[[Snapshot], None]) -> Callable[[], None]:
+        with self._changing:
+            self._watchers = (*self._watchers, callback)
+        return lambda: self._forget(callback)
+
+    def saw(self, snapshot: Snapshot) -> None:
+        """Tell every watcher, in the plant's thread; one that fails is told no more."""
+        for callback in self._watchers:
+            try:
+                callback(snapshot)
+            except Exception as error:  # noqa: BLE001 - whatever a screen does, the plant goes on
+                LOG.error("a watcher of the plant failed and is told no more: %r", error)
+                self._forget(callback)
+
+    def _forget(self, callback: Callable[[Snapshot], None]) -> None:
+        with self._changing:
+            self._watchers = tuple(each for each in self._watchers if each is not callback)
+
+
+def _pass_on(answer: Future[TaskChanged], plain: Future[dict[str, Any]]) -> None:
+    error = answer.exception()
+    if error is not None:
+        plain.set_exception(error)
+    elif answer.result().for_now:
+        plain.set_exception(QueueFull(answer.result().sentence))
+    else:
+        plain.set_result(view.change(answer.result()))
