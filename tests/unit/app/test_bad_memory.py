@@ -34,8 +34,8 @@ class Refused(Exception):
 def _at_once(monkeypatch: pytest.MonkeyPatch) -> None:
     """Nobody waits for a lock, no plant runs whose memory was not refused, a process has one page at most."""
     monkeypatch.setattr(build, "PARTS", tuple(part for part in build.PARTS if part != "web"))
-    for module in ("store", "memory_file", "backups"):
-        monkeypatch.setattr(f"arboleda.adapters.{module}.BUSY_S", 0)
+    for module in ("sqlite", "memory_file", "backups"):
+        monkeypatch.setattr(f"arboleda.store.{module}.BUSY_S", 0)
 
     def run(_: session.Session) -> int:
         raise Refused

@@ -29,9 +29,9 @@ TOLD_BY = (
     "bt_xml",
     "recorder",
     "wire",
-    "app.parts",
-    "app.plant_file",
-    "app.site",
+    "runtime",
+    "plant_file",
+    "site",
     "dashboard",
 )
 OTHERS = LANGUAGES[1:]

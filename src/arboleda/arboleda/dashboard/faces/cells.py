@@ -79,8 +79,8 @@ def _heard(moment: Moment, cell: Row, devices: list[Row]) -> Face:
     """What was answered last to the task of a cell, where one of its devices can answer."""
     if all(each["position"] for each in devices):
         return {}
-    answers = cell["task"]["answers"] if cell["task"] else []
-    return answers.rows(moment.words, f"heard.{cell['name']}", answers, SHOWN_ANSWERS)
+    given = cell["task"]["answers"] if cell["task"] else []
+    return answers.rows(moment.words, f"heard.{cell['name']}", given, SHOWN_ANSWERS)
 
 
 def _cause(words: Words, cell: Row, task: Row | None, memory: TreeMemory) -> str:
