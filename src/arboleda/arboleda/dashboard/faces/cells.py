@@ -11,7 +11,7 @@ from arboleda.views.view import devices_once, standing
 from ..tree_drawing import drawing, label
 from ..tree_memory import FAILURE, HALTED, RUNNING, SUCCESS, EndedTree, TreeMemory, phases
 from ..wording import Words
-from . import Face, links
+from . import Face, answers, links
 from .moment import Moment, clock, seconds
 
 SHOWN_CHANGES = 12
