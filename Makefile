@@ -1,6 +1,6 @@
 # Everything a person types here; what each target does is in `make help`.
 .DEFAULT_GOAL := help
-.PHONY: run test integration-test test-tools judge-test ros-test campaign drawn-campaign devices-campaign crash-campaign standby-campaign kills hosts mutants cost firmware firmware-test firmware-robot fuzz install lint diagrams reference shots example-pictures clean help docs
+.PHONY: run test integration-test test-tools judge-test ros-test campaign drawn-campaign devices-campaign crash-campaign standby-campaign kills hosts mutants cost firmware firmware-test firmware-robot fuzz install lint diagrams reference shots example-pictures moving-picture clean help docs
 
 export PYTHON
 export PYTHONDONTWRITEBYTECODE := # what a target here runs hundreds of times is compiled once
@@ -126,6 +126,10 @@ shots:  ## take pictures of the page, on screens of several sizes, into shots/; 
 example-pictures:  ## take the pictures of the examples for their pages in docs/; needs chromium
 	@scripts/install test
 	$(BIN)/python scripts/shots --examples
+
+moving-picture:  ## take the picture of README.md that moves, docs/images/task.webp; needs chromium
+	@scripts/install test
+	$(BIN)/python scripts/shots --moving
 
 clean:  ## remove .venv and whatever builds and tests left behind
 	rm -rf .venv .colcon build firmware/build install log dist .hypothesis .import_linter_cache .mypy_cache .pytest_cache .ruff_cache
