@@ -8,6 +8,7 @@ from functools import cache
 from pathlib import Path
 
 import pytest
+from PIL import Image
 
 ROOT = Path(__file__).parents[2]
 FORBIDDEN = {
@@ -56,6 +57,19 @@ def heading_levels(name: str) -> list[int]:
 def test_the_spanish_readme_has_the_headings_of_the_english_one() -> None:
     assert heading_levels("README.md")
     assert heading_levels("README.es.md") == heading_levels("README.md")
+
+
+@pytest.mark.parametrize("name", ["README.md", "README.es.md"])
+def test_a_readme_is_read_in_five_minutes(name: str) -> None:
+    assert len(texts()[name].splitlines()) <= 200
+
+
+def test_the_picture_of_the_readme_moves_and_is_small() -> None:
+    file = ROOT / "docs/images/task.webp"
+    assert all(f"docs/images/{file.name}" in texts()[name] for name in ("README.md", "README.es.md"))
+    assert file.stat().st_size < 1_000_000
+    with Image.open(file) as picture:
+        assert getattr(picture, "n_frames", 1) > 10
 
 
 def test_make_help_explains_every_target() -> None:
