@@ -36,6 +36,7 @@ OTHER = """\
 """
 Warned = Callable[[str], tuple[str, ...]]
 
+
 @pytest.fixture
 def warned(tmp_path: Path) -> Warned:
     def read(text: str) -> tuple[str, ...]:
@@ -44,6 +45,7 @@ def warned(tmp_path: Path) -> Warned:
         return layout_check.warnings(loader.load(file))
 
     return read
+
 
 WRONG = {  # text in the file, put in its place, what is said
     "beside its node": (
@@ -98,15 +100,18 @@ WRONG = {  # text in the file, put in its place, what is said
     ),
 }
 
+
 @pytest.mark.parametrize(("old", "new", "said"), WRONG.values(), ids=WRONG)
 def test_what_could_not_stand_there_is_a_warning(warned: Warned, old: str, new: str, said: str) -> None:
     good = GOOD + OTHER
     assert old in good and warned(good) == ()
     assert said in warned(good.replace(old, new))
 
+
 @pytest.mark.parametrize("file", EXAMPLES, ids=lambda file: file.name)
 def test_an_example_could_be_built(file: Path) -> None:
     assert layout_check.warnings(loader.load(file)) == ()
+
 
 @pytest.mark.parametrize("page", PAGES)
 def test_the_plant_of_a_page_could_be_built(warned: Warned, page: str) -> None:
@@ -114,8 +119,10 @@ def test_the_plant_of_a_page_could_be_built(warned: Warned, page: str) -> None:
     block = next(part for part in text.split("```yaml\n")[1:] if "pickup:" in part).split("```")[0]
     assert warned(block) == ()
 
+
 def test_the_shipped_plant_could_be_built() -> None:
     assert layout_check.warnings(shipped()) == ()
+
 
 def test_check_says_it_and_takes_the_file(tmp_path: Path) -> None:
     file = tmp_path / "plant.yaml"
@@ -123,6 +130,7 @@ def test_check_says_it_and_takes_the_file(tmp_path: Path) -> None:
     said = CliRunner().invoke(cli, ["check", str(file)])
     assert said.exit_code == 0
     assert "warning: a: pick-up is 78 mm below the top of a part on ma" in " ".join(said.stdout.split())
+
 
 def test_a_model_without_a_drawing_is_said_not_to_have_been_looked_at(
     monkeypatch: pytest.MonkeyPatch,
