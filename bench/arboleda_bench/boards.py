@@ -58,7 +58,7 @@ class Boards:
 
     @property
     def missing(self) -> list[str]:
-        """Nothing: a task waits until its robots are heard."""
+        """Nothing, ever: a task waits anyway until its robots are heard."""
         return []
 
     def start(self) -> None:
@@ -83,7 +83,7 @@ class Boards:
 
 
 class Board:
-    """One board: it acknowledges, moves for `move_s()`, and is at its goal then."""
+    """One board: it acknowledges a command, moves for `move_s()`, and is at its goal then."""
 
     def __init__(
         self,
@@ -111,16 +111,16 @@ class Board:
         self._done: int | None = None
 
     def appear(self) -> None:
-        """Its client is connected."""
+        """Take in that its client is connected."""
         present = topic(self._robot.mqtt, Channel.PRESENCE)
         self._say(Publication(topic=present, payload=encode(Presence(online=True)), retain=True))
 
     def tell(self) -> None:
-        """Telemetry."""
+        """Publish telemetry."""
         self._say(self._telemetry())
 
     def obey(self, at: float, channel: Channel, payload: bytes) -> None:
-        """One command, received at `at`."""
+        """Carry out one command, received at `at`."""
         goal = decode(channel, payload, axes=self._axes)
         if isinstance(goal, StopGoal):
             self._moving = None
@@ -165,7 +165,7 @@ class Board:
         return Publication(topic=topic(self._robot.mqtt, Channel.TELEMETRY), payload=encode(said), qos=0)
 
     def _command(self, goal: JointsGoal | PathGoal | EffectorGoal) -> Command:
-        """What the plant must have meant."""
+        """The command of the plant that led to this goal."""
         id, robot = f"{goal.epoch}-{goal.seq}", self._robot
         if isinstance(goal, EffectorGoal):
             return SetEffector(id=id, robot=robot.name, on=goal.on)

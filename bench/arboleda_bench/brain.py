@@ -1,4 +1,4 @@
-"""What the nodes of the benchmarks' own have in common: one cell's topics, and an end with their parent."""
+"""Common part of the benchmarks' own nodes: one cell's topics, and an end together with their parent."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def stand(name: str, make: Callable[[Node, PlantModel, StorageCell], object]) ->
 
 
 def voices(node: Node, cell: StorageCell) -> dict[tuple[str, type[Command]], Publisher]:
-    """A publisher for every command of the cell's robots."""
+    """The publishers for all commands to the cell's robots."""
     return {
         (robot.name, kind): node.create_publisher(
             convert.message_type(kind), f"{robot.name}/{PLAIN[kind]}", qos.COMMAND

@@ -1,4 +1,4 @@
-"""Both ends of a bridge between MQTT and ROS 2: the boards of its arms, and who hears and commands them."""
+"""Both ends of a bridge between MQTT and ROS 2: the boards of its arms, and the plant that commands them."""
 
 from __future__ import annotations
 
@@ -69,7 +69,7 @@ class Ends:
         self._boards.disconnect()
 
     def _tell(self, name: str, number: int) -> None:
-        """A board says that its arm has moved on."""
+        """Publish a board's report that its arm has moved on."""
         self._word += 1
         first = number % NUMBERS * DEG
         said = Telemetry(
@@ -85,7 +85,7 @@ class Ends:
         self._boards.publish(f"{self._arms[name].mqtt}/sensores", encode(said))
 
     def _command(self, name: str, number: int) -> None:
-        """A plant sends a goal."""
+        """Publish a goal of the plant."""
         goal = MoveJoints(
             id=f"{PLANT_EPOCH}-{number}", robot=name, q=(math.radians(number % NUMBERS * DEG), 0.1, 0.01)
         )
@@ -95,7 +95,7 @@ class Ends:
         self.goals.arrive(name, message.payload)
 
     def _pump(self, seconds: float) -> None:
-        """Receive as boards for a while; plant and boards say now and then that they are there."""
+        """Receive as boards for a while; plant and boards show now and then that they are there."""
         now = time.monotonic()
         for act, due in self._due.items():
             if now >= due:

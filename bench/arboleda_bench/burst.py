@@ -86,7 +86,7 @@ def _measured(burst: Burst, user: CrewOnRos, node: Process) -> list[Figure]:
 
 
 def _asked(burst: Burst, user: CrewOnRos) -> Sequence[str]:
-    """Ask for all tasks of a burst; their ids."""
+    """Ask for all tasks of a burst; return their ids."""
     began = time.monotonic()
     ids = [f"b{time.monotonic_ns()}-{number}" for number in range(burst.tasks)]
     for number, id in enumerate(ids):
@@ -97,7 +97,7 @@ def _asked(burst: Burst, user: CrewOnRos) -> Sequence[str]:
 
 
 def _await_rest(ids: Sequence[str], user: CrewOnRos, node: Process) -> None:
-    """Wait until every task has ended or was refused, or nothing has been told of any for QUIET_S."""
+    """Wait until every task has ended or was refused, or until nothing was reported of any for QUIET_S."""
     heard, since = -1, time.monotonic()
 
     def rests() -> bool:
@@ -112,7 +112,7 @@ def _await_rest(ids: Sequence[str], user: CrewOnRos, node: Process) -> None:
 
 
 def _told(user: CrewOnRos) -> dict[str, Counter[str]]:
-    """How often each state was told, by the task's id; of a refusal it stands in the text."""
+    """The number of reports of each state, by the task's id; in a refusal the id stands in the text."""
     told: dict[str, Counter[str]] = {}
     for change in list(user.changes):
         id = change["id"] or change["text"].rpartition("#")[2]

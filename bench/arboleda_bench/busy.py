@@ -38,7 +38,7 @@ class Topics:
         self.send = crew.send
 
     def check_alone(self) -> None:
-        """There is no network."""
+        """Do nothing: there is no network, so no other plant."""
 
     def publish_view(self, snapshot: dict[str, Any]) -> Iterator[None]:
         yield from view_text.in_parts(snapshot)
@@ -107,7 +107,7 @@ def main(plant: str, state: str, move_s: str, seconds: str) -> None:
 
 
 def _measured(crew: Crew, customers: Customers, seconds: float) -> dict[str, Any]:
-    """Measure from one end of a task to another: with few cells a part of a task would count."""
+    """The figures from one end of a task to another: with few cells a part of a task would count."""
     customers.await_end()
     crew.reactions.clear()
     before, ended, began = _clocks(), customers.ended, time.monotonic()
@@ -126,7 +126,7 @@ def _measured(crew: Crew, customers: Customers, seconds: float) -> dict[str, Any
 
 
 def _clocks() -> tuple[float, float]:
-    """Processor time of this process and of the plant's thread."""
+    """The processor times of this process and of the plant's thread."""
     plant = next(each for each in threading.enumerate() if each.name == "orchestrator")
     assert plant.ident is not None
     return time.process_time(), time.clock_gettime(time.pthread_getcpuclockid(plant.ident))

@@ -34,7 +34,7 @@ NAMES = (
 
 
 def module(name: str) -> ModuleType:
-    """The benchmark of that name; ArboledaError where a library of it is missing."""
+    """The module of a benchmark; raises ArboledaError if a library that it needs is missing."""
     try:
         return importlib.import_module(f".{name}", __package__)
     except ImportError as error:

@@ -1,4 +1,4 @@
-"""Things that happen when their time has come: how long a robot's move takes, when it reports."""
+"""Clockwork: calls functions at their times, as for the end of a robot's move and for its reports."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from itertools import count
 
 
 def now() -> float:
-    """Seconds, on the plant's clock."""
+    """The time on the plant's clock, s."""
     return time.monotonic()
 
 
 class Clockwork:
-    """Calls what it was given, each at its time, in one thread of its own between `start` and `stop`."""
+    """Calls each given function at its time, in one thread of its own between `start` and `stop`."""
 
     def __init__(self) -> None:
         self._due: list[tuple[float, int, Callable[[], None]]] = []
@@ -40,7 +40,7 @@ class Clockwork:
         self.at(now() + seconds, act)
 
     def every(self, seconds: float, act: Callable[[], None], *, first: float | None = None) -> None:
-        """Call `act` again and again, at `first` or after the first period."""
+        """Call `act` again and again, from `first` on or after the first period."""
         due = now() + seconds if first is None else first
 
         def again() -> None:
@@ -50,7 +50,7 @@ class Clockwork:
         self.at(due, again)
 
     def do_one(self) -> bool:
-        """Do the one thing that has been due for longest; False where nothing is due."""
+        """Do the one thing that has been due for longest; False if nothing is due."""
         with self._awake:
             if not self._due or self._due[0][0] > now():
                 return False
@@ -59,7 +59,7 @@ class Clockwork:
         return True
 
     def stop(self) -> None:
-        """End; what is not yet due is forgotten. Idempotent."""
+        """End; what is not yet due is dropped. May be called twice."""
         with self._awake:
             self._ending = True
             self._awake.notify()

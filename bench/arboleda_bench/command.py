@@ -23,9 +23,9 @@ DONE, FAILED, INTERRUPTED = 0, 1, 130
 
 
 def run(names: Sequence[str], *, quick: bool, file: Path | None, listed: bool) -> int:
-    """Run the named benchmarks, all where there are none; the figures go to the screen and to `file`.
+    """Run the named benchmarks, or all of them; the figures go to the screen and to `file`.
 
-    The exit status; ConfigError for a name that is not one, or a file that cannot be written.
+    Returns the exit status; raises ConfigError for an unknown name, or a file that cannot be written.
     """
     screen = console()
     if listed:
@@ -41,7 +41,7 @@ def run(names: Sequence[str], *, quick: bool, file: Path | None, listed: bool) -
 
 
 def _all(names: Sequence[str], screen: Console, quick: bool, file: Path | None) -> int:
-    """Whatever one of them lacks, the others run all the same; the exit status."""
+    """Run all, also if one of them lacks something; return the exit status."""
     results: dict[str, Result] = {}
     status = DONE
     for name in names:

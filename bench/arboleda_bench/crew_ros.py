@@ -1,4 +1,4 @@
-"""Played robots over ROS 2, through the topics of the shipped bridge, and tasks as a user asks for them."""
+"""Crew on ROS 2: played robots behind the topics of the shipped bridge, and a user who asks for tasks."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ HEARD = 10_000  # lines of /task_status that may wait to be read
 class CrewOnRos:
     """The robots of a plant file in this process, and a user; made before the plant's node answers.
 
-    `changes` is what /task_status told, in order.
+    `changes` are the messages on /task_status, in order.
     """
 
     def __init__(self, plant: Path, *, move_s: float = 1.0) -> None:
@@ -68,7 +68,7 @@ class CrewOnRos:
         wait_for(lambda: self._node.count_publishers("task_status"), "task_status", node.check, DISCOVERY_S)
 
     def fall_silent(self) -> None:
-        """No robot says anything any more."""
+        """Have the robots report nothing any more."""
         self.crew.stop()
 
     def ask(self, text: str) -> None:
@@ -81,7 +81,7 @@ class CrewOnRos:
             self._ask_cell(cell)
 
     def reactions_in(self, seconds: float) -> Sequence[float]:
-        """The reactions of so many seconds, once every cell has begun; ArboledaError where a task fails."""
+        """The reactions of so many seconds, once every cell has begun; ArboledaError if a task fails."""
         wait_for(lambda: len(self._begun()) == len(self.cells), "a cell")
         self.crew.reactions.clear()
         time.sleep(seconds)

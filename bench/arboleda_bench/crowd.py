@@ -59,7 +59,7 @@ class Crowd:
             await asyncio.gather(*(self._page() for _ in range(PAGES)), asyncio.sleep(ROUND_S))
 
     async def _page(self) -> None:
-        """A page as a browser opens it: its HTML, its socket, and the first frame over that."""
+        """Open a page as a browser does: its HTML, its socket, and the first frame over that."""
         number = next(self._numbers) % 250
         with suppress(OSError, WebSocketException, asyncio.TimeoutError):
             html = await self._got("/", f"127.0.0.{number + 2}")
@@ -71,7 +71,7 @@ class Crowd:
             self.done["pages"] += 1
 
     async def _first_frame(self, client: str) -> None:
-        """Over the page's socket: Engine.IO says 0, a client 40, and what comes then is the plant's."""
+        """Read the page's socket up to the plant's first frame, after the greetings."""
         query = f"client_id={client}&document_id={TAB}&tab_id={TAB}&next_message_id=0&implicit_handshake=true"
         address = f"ws://127.0.0.1:{self._port}/_nicegui_ws/socket.io/?EIO=4&transport=websocket&{query}"
         async with connect(address, origin=f"http://127.0.0.1:{self._port}", compression=None) as socket:

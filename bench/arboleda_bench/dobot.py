@@ -50,7 +50,7 @@ def to_and_fro(cell):
 
 
 class Watched(VirtualDobot):
-    """It keeps how long it waited for each next move: from the end of one, and from the frame that told."""
+    """A virtual controller that notes each wait for the next move: from an end, and from its frame."""
 
     def __init__(self, *args: object, **named: object) -> None:
         super().__init__(*args, **named)  # type: ignore[arg-type]

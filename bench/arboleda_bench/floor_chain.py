@@ -89,7 +89,7 @@ class Echo(Walker[Ready]):
 
 
 def _effector(step: object) -> str | None:
-    """What a status says once the effector has switched; None for what is no effector command."""
+    """The effector's value in a status once it has switched; None for a step that is no effector command."""
     return str(step.on).lower() if isinstance(step, SetEffector) else None
 
 

@@ -53,7 +53,7 @@ def _spin(node: Node) -> None:
 
 
 def _executor() -> Executor | Any:
-    """The one that the orchestrator has."""
+    """An executor of the same kind as the orchestrator's."""
     try:
         from rclpy.experimental import EventsExecutor
 

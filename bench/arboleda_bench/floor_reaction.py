@@ -77,7 +77,7 @@ class BareNode(Walker[Ready]):
 
 
 def _goal(cell: StorageCell, step: Command) -> float | None:
-    """The first coordinate of where a move ends; None for what is no move."""
+    """The first coordinate of a move's end; None for a step that is no move."""
     return steps.end(cell, step)[0] if isinstance(step, FollowPath | MoveJoints) else None
 
 

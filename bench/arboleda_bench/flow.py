@@ -1,4 +1,4 @@
-"""Messages pushed in at one end and awaited at the other: how many per second, and how long each takes."""
+"""Flow of messages from one end to another: how many come through per second, and how long each takes."""
 
 from __future__ import annotations
 
@@ -22,9 +22,9 @@ Then = Callable[[str, Any], None]
 class Flow:
     """One direction of a bridge, from each of `sources` to the other end.
 
-    `send(source, number)` pushes one message in; what comes out is handed to `arrive`, and `number_of` finds
-    its number in it, modulo NUMBERS. `pump(seconds)` is called while nothing is to be sent, and for `wake_s`
-    before each measurement.
+    `send(source, number)` pushes one message in; messages that come out are handed to `arrive`, and
+    `number_of` finds their numbers, modulo NUMBERS. `pump(seconds)` is called while nothing is to be sent,
+    and for `wake_s` before each measurement.
     """
 
     def __init__(
@@ -48,11 +48,11 @@ class Flow:
         self._then: Then = _nothing
 
     def arrive(self, source: str, message: Any) -> None:
-        """A message has come out at the other end."""
+        """Take in a message that has come out at the other end."""
         self._then(source, message)
 
     def open(self, check: Callable[[], None]) -> None:
-        """Push until something of every source has come out; ArboledaError where that takes too long."""
+        """Push until a message of every source has come out; raises ArboledaError if that takes too long."""
         silent = set(self._sources)
         self._then = lambda source, _: silent.discard(source)
         wait_for(lambda: self._knock(silent), "the way through the bridge", check)
@@ -77,7 +77,7 @@ class Flow:
         return rate
 
     def latencies(self, per_second: float, seconds: float) -> list[float]:
-        """What each message took, s, where so many per second are pushed in, whatever comes out."""
+        """The seconds that each message took, with so many per second pushed in, whatever comes out."""
         pushed: dict[tuple[str, int], float] = {}
         took: list[float] = []
 

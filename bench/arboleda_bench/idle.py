@@ -1,4 +1,4 @@
-"""What a plant costs while nothing is to be done: with telemetry at 10 Hz, and with silent links.
+"""The cost of a plant while nothing is to be done: with telemetry at 10 Hz, and with silent links.
 
 Ours is the shipped node `orchestrator`, with two robots per cell at evidence `ids`. This process plays their
 bridge: it publishes on every topic of `mqtt_bridge`, ten times a second per robot, values that do not change.
@@ -37,7 +37,7 @@ def run(scene: Scene) -> Result:
 
 
 def _measured(scene: Scene, size: int) -> tuple[list[Figure], str]:
-    """The figures of so many cells, and how much was published meanwhile."""
+    """The figures of so many cells, and the number of messages published meanwhile."""
     scene.say(f"{size} idle cells")
     file = plants.write(scene.folder / f"plant_{size}.yaml", size)
     floor = scene.python("arboleda_bench.floor_idle", str(file))
@@ -70,7 +70,7 @@ def _silent(size: int, ours: float) -> Figure:
 
 
 def _loads(scene: Scene, *processes: Process) -> list[float]:
-    """Per cent of a core that each process takes over one window."""
+    """The load of each process over one window, in per cent of a core."""
     began, before = time.monotonic(), [each.cpu_s for each in processes]
     time.sleep(_window_s(scene))
     lasted = time.monotonic() - began

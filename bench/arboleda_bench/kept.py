@@ -1,4 +1,4 @@
-"""What it costs that tasks are kept: their acceptance, a restart, the page's history, and its pruning.
+"""The cost of keeping tasks: their acceptance, a restart, the page's history, and its pruning.
 
 Acceptance: ours is the plant in its thread with its store on disk, from a request to its answer; the floor is
 a thread that is asked in the same way, does one commit with synchronous=FULL of the same row to a table
@@ -6,8 +6,8 @@ without an index, and answers. The same without the threads, the commits alone, 
 
 Restart: `arboleda up` with its virtual boards, from its start as a process until every robot is heard; the
 floor is the same with an empty memory. First screen: the page's first request for its history of a plant
-with a million tasks, over HTTP; the floor is that of a plant with ten. Pruning: what a step that ends a task
-does to forget old ones; the floor is the bare commit.
+with a million tasks, over HTTP; the floor is that of a plant with ten. Pruning: the work of a step that ends
+a task to forget old ones; the floor is the bare commit.
 """
 
 from __future__ import annotations
@@ -100,7 +100,7 @@ class Deaf:
 
 
 def bare(file: Path) -> sqlite3.Connection:
-    """A database as the store's, with nothing in it but a table."""
+    """A database like the store's, with nothing in it but a table."""
     db = sqlite3.connect(file, isolation_level=None)
     db.execute("PRAGMA journal_mode = WAL")
     db.execute("PRAGMA synchronous = FULL")
@@ -238,7 +238,7 @@ def fill(file: Path, *, ended: int, queued: int) -> None:
 
 
 def _started(scene: Scene, state: Path) -> Process:
-    """A plant whose robots are all there."""
+    """A started plant, once all its robots are there."""
     log = state.with_name(f"{state.name}_{len(list(scene.folder.glob('*.log')))}.log")
     process = Process([sys.executable, "-c", UP, "up", "--no-ros", "--state", str(state)], log)
     try:

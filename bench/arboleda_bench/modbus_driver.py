@@ -31,7 +31,7 @@ NUMBER, ACCEPTED, DONE, SPEED = 3, 3, 4, 11
 
 
 class Echo:
-    """A PLC that has done everything as soon as it is asked."""
+    """A PLC that has done each order as soon as it gets it."""
 
     def __init__(self) -> None:
         self.inputs = [0] * 13
@@ -45,7 +45,7 @@ class Echo:
         return None
 
     def change(self) -> int:
-        """Another speed; which one."""
+        """Set another speed, and return it."""
         self.inputs[SPEED] = (self.inputs[SPEED] + 1) % 60000
         return self.inputs[SPEED]
 
@@ -77,7 +77,7 @@ def run(scene: Scene) -> Result:
 
 
 class Bare:
-    """What somebody writes who has pymodbus and nothing else: write, read, look, rest."""
+    """Bare client: the code that one writes with pymodbus alone: write, read, compare, pause."""
 
     def __init__(self, belt: Device, settings: Settings) -> None:
         from pymodbus.client import ModbusTcpClient
@@ -96,7 +96,7 @@ class Bare:
         return time.perf_counter() - began
 
     def until_speed(self, speed: int) -> None:
-        """At the end of a rest that it is anywhere in."""
+        """Wait until this speed is read, from another place of the pause between polls each time."""
         time.sleep(POLL_S * (self._number % 10) / 10)
         self._number += 1
         while self._read()["input", SPEED] != speed:

@@ -1,4 +1,4 @@
-"""What the robots of a cell saw: when they were commanded and when they came to rest; the figures of that."""
+"""Moments in which the robots of a cell were commanded and came to rest, and figures from these."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ class Reaction:
 
 @dataclass(frozen=True, kw_only=True)
 class Cycle:
-    """One task as its robots saw it: its last end, and how long its moves took together, s."""
+    """One task as its robots saw it: its last end, and the time that its moves took together, s."""
 
     ended_at: float
     moves_s: float
@@ -51,12 +51,12 @@ def reactions(moments: Iterable[Moment]) -> list[Reaction]:
 
 
 def milliseconds(side: Iterable[Reaction]) -> list[float]:
-    """How long each reaction took."""
+    """The duration of each reaction, ms."""
     return [1000 * each.seconds for each in side]
 
 
 def cycles(moments: Sequence[Moment]) -> list[Cycle]:
-    """The tasks that came to their end."""
+    """The tasks that have ended."""
     found, moves_s = [], 0.0
     for before, after in pairwise(moments):
         if not after.ended:
@@ -69,7 +69,7 @@ def cycles(moments: Sequence[Moment]) -> list[Cycle]:
 
 
 def kind(reaction: Reaction) -> str:
-    """What had ended, and what followed: `mobile to arm`."""
+    """The kinds of robots before and after: `mobile to arm`."""
     return f"{_who(reaction.before)} to {_who(reaction.after)}"
 
 

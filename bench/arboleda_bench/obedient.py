@@ -19,7 +19,7 @@ ENDED = frozenset({TaskState.DONE, TaskState.FAILED, TaskState.CANCELLED})
 
 
 class Yard:
-    """A plant with every robot online; `words` is what each of them said last."""
+    """A plant with every robot online; `words` is the last report of each of them."""
 
     def __init__(self, model: PlantModel) -> None:
         self.plant = Plant(model, epoch=EPOCH, now=0.0)
@@ -32,24 +32,24 @@ class Yard:
         return self.plant.step(self.now, events)
 
     def roll_call(self) -> None:
-        """Every robot says once more what it said last, so that none counts as silent."""
+        """Repeat the last report of every robot, so that none counts as silent."""
         self.now += MESSAGE_S
         self.step(*[words.again(self.now) for words in self.words.values()])
 
     def say(self, report: Report) -> Report:
-        """The report, kept as what its robot said last and stamped a little later."""
+        """The report, kept as the last one of its robot and stamped a little later."""
         self.now += MESSAGE_S
         said = self.words[report.robot] = replace(report, at=self.now)
         return said
 
     def accepts(self, command: Command) -> Report:
-        """What the robot says as it begins."""
+        """The robot's report as it begins a command."""
         moves = not isinstance(command, SetEffector)
         state = MotionState.MOVING if moves else MotionState.STOPPED
         return self.say(replace(self.words[command.robot], accepted=command.id, state=state))
 
     def finishes(self, command: Command) -> Report:
-        """What the robot says once it has done it."""
+        """The robot's report once it has done a command."""
         words = replace(self.words[command.robot], state=MotionState.STOPPED, done=command.id)
         if isinstance(command, MoveJoints):
             arm = self.plant.model.robots[command.robot]
@@ -62,11 +62,11 @@ class Yard:
         return self.say(words)
 
     def ask(self, text: str) -> list[Any]:
-        """Somebody asks for a task."""
+        """Ask for a task."""
         return self.step(TaskRequest(at=self.now, text=text))
 
     def sleep(self) -> list[Any]:
-        """Let time pass to the next thing that the plant waits for."""
+        """Let time pass to the next time that the plant waits for."""
         self.now = max(self.now, self.plant.next_deadline)
         return self.step()
 
@@ -77,7 +77,7 @@ def command_in(messages: Sequence[Any]) -> Command | None:
 
 
 def is_over(messages: Sequence[Any]) -> bool:
-    """Whether a task ended in this step."""
+    """True if a task ended in this step."""
     return any(isinstance(each, TaskChanged) and each.state in ENDED for each in messages)
 
 

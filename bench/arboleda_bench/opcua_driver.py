@@ -33,7 +33,7 @@ PUBLISH_S = 0.01
 
 
 class Echo:
-    """A PLC that has done everything as soon as it is asked."""
+    """A PLC that has done each order as soon as it gets it."""
 
     variables = BeltProgram.variables
     methods = BeltProgram.methods
@@ -49,13 +49,13 @@ class Echo:
         return None
 
     def beat(self, value: object) -> None:
-        """Nobody is missed."""
+        """Take a beat of a client, without watching for missing ones."""
 
     def is_mute(self) -> bool:
         return False
 
     def change(self) -> int:
-        """Another speed; which one."""
+        """Set another speed, and return it."""
         speed = (int(str(self.shown["mm_s"])) + 1) % 60000
         self.shown = self.shown | {"mm_s": speed}
         return speed
@@ -88,7 +88,7 @@ def run(scene: Scene) -> Result:
 
 
 class Bare:
-    """What somebody writes who has asyncua and nothing else: call, read, look; subscribe and hear."""
+    """Bare client: the code that one writes with asyncua alone: call, read, compare; subscribe and wait."""
 
     def __init__(self, belt: Device, settings: Settings) -> None:
         self._nodes = OpcUaDevice(belt, settings).nodes

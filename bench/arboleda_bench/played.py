@@ -20,7 +20,7 @@ EVERYTHING = (MoveJoints, FollowPath, SetEffector, Stop, Home)
 
 
 class PlayedRobot:
-    """One robot: what it was told, where it is, and its word on both."""
+    """One robot: its open command, its place, and its report of both."""
 
     def __init__(self, robot: Robot) -> None:
         self.robot = robot
@@ -34,11 +34,11 @@ class PlayedRobot:
         self._effector = False
 
     def begin(self, command: MoveJoints | FollowPath, now: float, lasts: float) -> None:
-        """Accept a move, and be on the way."""
+        """Accept a move, and set out."""
         self._move, self._accepted, self._began, self._lasts = command, command.id, now, lasts
 
     def end(self, move: MoveJoints | FollowPath) -> None:
-        """Be where the move leads, unless it was halted meanwhile."""
+        """Arrive at the end of a move, unless the robot was halted meanwhile."""
         if move is self._move:
             self._at, self._done, self._move = self._goal(move), move.id, None
 
@@ -72,7 +72,7 @@ class PlayedRobot:
         return (move.nodes[-1],)
 
     def _place(self, now: float) -> tuple[float, ...]:
-        """On a straight line to the goal; a mobile robot on the last node that it passed."""
+        """The place on a straight line to the goal; for a mobile robot the last node that it passed."""
         move = self._move
         if move is None:
             return self._at
@@ -116,7 +116,7 @@ class Crew:
         self.clockwork.stop()
 
     def send(self, message: Any) -> None:
-        """Hear what the plant says; what is not for robots is ignored."""
+        """Take a message of the plant; one that is not for robots is ignored."""
         if isinstance(message, Heartbeat):
             self.clockwork.at(0.0, partial(self._heed, message.epoch))
         elif isinstance(message, EVERYTHING):
@@ -124,7 +124,7 @@ class Crew:
             self.clockwork.at(0.0, partial(self._obey, message))
 
     def _note(self, command: Command) -> None:
-        """Take down a reaction; before the first drive of a task stands a dwell."""
+        """Note a reaction, except for the first drive of a task, before which there is a dwell."""
         heard = now()
         ended = self._ended.pop(self._cell_of[command.robot], None)
         if ended is not None and (not isinstance(command, FollowPath) or ended[1] is FollowPath):

@@ -1,4 +1,4 @@
-"""What the benchmarks of drivers of PLCs share: the belt of the example, and a driver as a plant uses it."""
+"""Common part of the benchmarks of PLC drivers: the belt of the example, and a driver as a plant uses it."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ PATIENCE_S = 5.0
 
 
 class Client(Protocol):
-    """Somebody who orders, and who hears of the speed of the belt."""
+    """A client that gives orders and hears of the belt's speed."""
 
     def order(self) -> float:
-        """How long an order took until it was known as done, s."""
+        """The seconds from an order until it was known to be done."""
 
     def until_speed(self, speed: int) -> None: ...
 
@@ -58,7 +58,7 @@ class Driven:
 
 
 def figures(scene: Scene, times: int, clients: Sequence[Client], change: Callable[[], int]) -> list[Figure]:
-    """Ours and the floor in turns: orders, and changes of the speed, which `change` makes and names."""
+    """The figures of orders and of changes of speed, made by `change`; ours and the floor take turns."""
     found = []
     for name, measure in (
         ("an order until it is done", lambda each: each.order()),

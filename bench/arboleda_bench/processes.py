@@ -1,4 +1,4 @@
-"""Other processes of a benchmark: what they cost, and that none is left behind."""
+"""Processes of a benchmark: their cost, and an end of all of them."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ PAGE = os.sysconf("SC_PAGE_SIZE")
 
 
 class Process:
-    """A program that runs beside the benchmark; what it says goes to `log`, except what `read` takes."""
+    """A program beside the benchmark; its output goes to `log`, except the lines that `read` takes."""
 
     def __init__(self, command: Sequence[str], log: Path, environ: Mapping[str, str] | None = None) -> None:
         self.name = log.stem
@@ -45,16 +45,16 @@ class Process:
 
     @property
     def cpu_s(self) -> float:
-        """Seconds of processor time that it has had so far, all its threads."""
+        """The processor time that it has had so far, with all its threads, s."""
         return time.clock_gettime((~self.pid << 3) | 2)  # as clock_getcpuclockid(3) makes it; to the ns
 
     @property
     def memory(self) -> int:
-        """Bytes of memory that are its own: resident, not shared with a file."""
+        """The memory of its own, in bytes: resident, not shared with a file."""
         return own_memory(self.pid)
 
     def read(self) -> str:
-        """The next line that it prints; ArboledaError where it has ended instead."""
+        """The next line that it prints; raises ArboledaError if it has ended instead."""
         line = _pipe(self._popen.stdout).readline()
         if not line:
             self._popen.wait(PATIENCE_S)
@@ -62,18 +62,18 @@ class Process:
         return line.rstrip("\n")
 
     def write(self, line: str) -> None:
-        """Hand it a line."""
+        """Hand a line to its input."""
         pipe = _pipe(self._popen.stdin)
         pipe.write(line + "\n")
         pipe.flush()
 
     def check(self) -> None:
-        """ArboledaError where it has ended."""
+        """Raise ArboledaError if it has ended."""
         if self._popen.poll() is not None:
             raise ArboledaError(f"{self.name} ended early: {self._last_words()}")
 
     def wait(self, patience_s: float) -> None:
-        """Wait until it has ended by itself; ArboledaError where it does not, or says that it failed."""
+        """Wait for its own end; raises ArboledaError if that does not come, or is a failure."""
         try:
             failed = self._popen.wait(patience_s) != 0
         except subprocess.TimeoutExpired:
@@ -96,7 +96,7 @@ class Process:
 
 
 def own_memory(pid: int | str = "self") -> int:
-    """Bytes of memory that a process has for itself: resident, not shared with a file."""
+    """The memory of a process's own, in bytes: resident, not shared with a file."""
     _, resident, shared, *_ = Path(f"/proc/{pid}/statm").read_text().split()
     return (int(resident) - int(shared)) * PAGE
 

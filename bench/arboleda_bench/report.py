@@ -1,4 +1,4 @@
-"""What was measured: a table for people, JSON for programs."""
+"""Report of benchmarks: a table for people, JSON for programs."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ COLUMNS = ("figure", "ours", "floor", "ratio", "aim", "")
 
 
 def table(result: Result) -> Table:
-    """The figures of one benchmark; what falls short of its aim is marked."""
+    """The table of one benchmark's figures; a figure that misses its aim is marked."""
     made = Table(box=None, pad_edge=False)
     for column in COLUMNS:
         made.add_column(column, justify="left" if column in ("figure", "aim", "") else "right")
@@ -29,7 +29,7 @@ def table(result: Result) -> Table:
 
 
 def as_json(results: Mapping[str, Result], *, quick: bool) -> dict[str, Any]:
-    """Every figure, and the machine it was measured on."""
+    """The figures as JSON, with the machine on which they were measured."""
     return {
         "arboleda": __version__,
         "date": datetime.date.today().isoformat(),
@@ -40,7 +40,7 @@ def as_json(results: Mapping[str, Result], *, quick: bool) -> dict[str, Any]:
 
 
 def machine() -> dict[str, Any]:
-    """What one must know of a machine to compare its figures."""
+    """The properties of this machine that one needs to compare its figures."""
     return {
         "processor": _processor(),
         "cores": os.cpu_count(),
@@ -62,7 +62,7 @@ def _cells(figure: Figure) -> tuple[str, ...]:
 
 
 def number(value: float) -> str:
-    """Three digits that mean something, without an exponent."""
+    """A number with three significant digits, without an exponent."""
     if value == int(value) or abs(value) >= 100:
         return f"{value:.0f}"
     return f"{value:.3g}" if abs(value) >= 0.001 else f"{value:.6f}"
@@ -85,7 +85,7 @@ def _plain(result: Result) -> dict[str, Any]:
 
 
 def _processor() -> str:
-    """The name that Linux knows the processor by."""
+    """The name of the processor as Linux has it."""
     try:
         lines = Path("/proc/cpuinfo").read_text().splitlines()
     except OSError:

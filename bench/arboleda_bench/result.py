@@ -1,4 +1,4 @@
-"""What a benchmark found: figures of ours, of the floor, and the aim."""
+"""Result of a benchmark: figures of ours, of the floor, and the aim."""
 
 from __future__ import annotations
 
@@ -31,12 +31,12 @@ class Figure:
 
     @property
     def ratio(self) -> float | None:
-        """Ours to the floor; None where there is no floor, or it is 0."""
+        """The ratio of ours to the floor; None if there is no floor, or it is 0."""
         return self.ours / self.floor if self.floor else None
 
     @property
     def reached(self) -> bool | None:
-        """Whether the aim is reached; None where there is none, or nothing to compare with."""
+        """True if the aim is reached; None if there is none, or nothing to compare with."""
         if self.aim is None:
             return None
         value = self.ratio if self.aim.of_ratio else self.ours
@@ -48,13 +48,13 @@ class Figure:
 
 @dataclass(frozen=True, kw_only=True)
 class Result:
-    """What one benchmark found; `notes` say in words what was run and what its figures do not show."""
+    """Figures of one benchmark; `notes` say in words what was run and what the figures do not show."""
 
     figures: Sequence[Figure]
     notes: Sequence[str] = ()
 
 
 def percentile(values: Sequence[float], percent: int) -> float:
-    """The least of the `values` that `percent` of them do not pass (nearest rank)."""
+    """The least of the `values` that at least `percent` of them do not exceed (nearest rank)."""
     ordered = sorted(values)
     return ordered[max(0, -(-len(ordered) * percent // 100) - 1)]

@@ -49,7 +49,7 @@ class Robots:
 
     @property
     def missing(self) -> list[str]:
-        """Topics of robots that nobody is at the other end of yet."""
+        """The topics of robots to which nobody else is connected yet."""
         return [topic for body in self._bodies for topic in body.missing]
 
     def start(self) -> None:
@@ -97,14 +97,14 @@ class Body:
         return deaf + [topic for topic in self._commanded if not self._node.count_publishers(topic)]
 
     def tell(self) -> None:
-        """Telemetry: where it is."""
+        """Publish the robot's place."""
         at = now()
         self._joints.publish(self._here)
         if at >= self._proven_from:
             self._prove(at)
 
     def _prove(self, at: float) -> None:
-        """A drive ends once more, as its node is told: who waits for that could not go on before."""
+        """Note a drive's end once more, now that its last node, which proves the end, is reported."""
         self._proven_from = math.inf
         last = self._moments[-1]
         if last.ended and last.command.robot == self._robot.name:
@@ -147,7 +147,7 @@ class Body:
         self._state.publish(UInt8(data=int(MotionState.STOPPED)))
 
     def _seen_at(self, place: Sequence[float] | int) -> JointState:
-        """What it reports from a place: joints of an arm, a node of the grid."""
+        """The joint states for a place: joints of an arm, or a node of the grid."""
         if isinstance(self._robot, Arm):
             said = Report(at=0.0, robot=self._robot.name, q=self._robot.quantised(tuple(place)))
         else:

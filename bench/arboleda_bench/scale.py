@@ -43,7 +43,7 @@ def run(scene: Scene) -> Result:
 
 
 def _joined(scene: Scene, size: int) -> dict[str, Any]:
-    """What `busy` measured of so many cells."""
+    """The measurements of `busy` with so many cells."""
     scene.say(f"{size} cells in one process")
     seconds = QUICK_S if scene.quick else ONE_S if size == 1 else MANY_S
     file = plants.write(scene.folder / f"plant_{size}.yaml", size)

@@ -1,4 +1,4 @@
-"""Where a benchmark runs: a folder, a ROS domain and processes of its own, all gone at its end."""
+"""Scene of a benchmark: a folder, a ROS domain and processes of its own, all gone at its end."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ class Scene:
         return process
 
     def mosquitto(self) -> str:
-        """A mosquitto of the scene's own; its HOST:PORT. ArboledaError where it is not installed."""
+        """A mosquitto of the scene's own, as HOST:PORT; raises ArboledaError if it is not installed."""
         program = shutil.which("mosquitto", path=SEARCH_PATH)
         if program is None:
             raise ArboledaError("this benchmark needs the MQTT broker mosquitto: apt install mosquitto")
@@ -79,7 +79,7 @@ class Scene:
 
 
 def free_port() -> int:
-    """A TCP port of this machine that nobody has."""
+    """A TCP port of this machine that is not in use."""
     with socket.socket() as probe:
         probe.bind(("127.0.0.1", 0))
         return int(probe.getsockname()[1])
@@ -88,7 +88,7 @@ def free_port() -> int:
 def wait_for(
     ready: Callable[[], object], what: str, check: Callable[[], None] = lambda: None, limit_s: float = START_S
 ) -> None:
-    """Wait until `ready`; ArboledaError naming `what` after `limit_s`, or whatever `check` raises."""
+    """Wait until `ready`; raises ArboledaError naming `what` after `limit_s`, or whatever `check` raises."""
     until = time.monotonic() + limit_s
     while not ready():
         check()

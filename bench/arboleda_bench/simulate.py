@@ -1,4 +1,4 @@
-"""How many robot cycles `arboleda simulate` gets through in a second of one core.
+"""The number of robot cycles that `arboleda simulate` gets through in a second of one core.
 
 A cycle is a task that was begun and ended, about 10 s of a real robot: 100 cycles per second are a thousand
 times real time. Seconds are those that this process had on its core, so a busy machine changes little.
@@ -80,7 +80,7 @@ def _figure(faults: str, ours: Sequence[Timed], floor: Sequence[Timed], aim: Aim
 
 
 def _by_plant(runs: Sequence[Timed]) -> list[str]:
-    """What a cycle is differs from plant to plant, and with it how many there are in a second."""
+    """A line for each plant: cycles differ from plant to plant, and with them their number per second."""
     lines = []
     for plant in dict.fromkeys(run.plant for run in runs):
         own = [run for run in runs if run.plant == plant]
@@ -94,7 +94,7 @@ def _by_plant(runs: Sequence[Timed]) -> list[str]:
 
 
 def _timed(run: Run, setting: Setting, seeds: Iterable[int]) -> list[Timed]:
-    """How long each seed kept this process on its core."""
+    """The runs of these seeds, each with the seconds that it kept this process on its core."""
     runs = []
     for seed in seeds:
         model, begin = setting.plant(seed), process_time()
@@ -122,7 +122,7 @@ def _few_collections() -> Iterator[None]:
 
 
 def _bare(setting: Setting, seed: int) -> tuple[int, float]:
-    """The floor; cycles done, and s of plant time."""
+    """Run the floor; return the number of cycles, and the s of plant time."""
     world = World(setting.plant(seed))
     began = world.now
     customers = Customers(world, seed)
@@ -133,7 +133,7 @@ def _bare(setting: Setting, seed: int) -> tuple[int, float]:
 
 
 def _judged(setting: Setting, seed: int) -> tuple[int, float]:
-    """As `arboleda simulate` does it: faults, truth, record, trace, every invariant."""
+    """Run as `arboleda simulate` does: with faults, truth, record, trace, and every invariant."""
     result = setting.run(seed)
     if result.broken:
         raise ArboledaError(f"seed {seed} breaks an invariant, so its cycles do not count: {result.broken}")
@@ -141,7 +141,7 @@ def _judged(setting: Setting, seed: int) -> tuple[int, float]:
 
 
 def _empty_loops() -> str:
-    """How fast this Python is here: what one divides by to compare machines."""
+    """The speed of this Python on this machine, by which figures of machines can be compared."""
     begin = process_time()
     for _ in range(SPINS):
         pass

@@ -25,7 +25,7 @@ OURS = 0  # the cell that Arboleda runs; all others belong to whatever it is com
 
 
 class Robots(Protocol):
-    """Robots of whatever kind; `missing` names what they have not found yet."""
+    """Robots of whatever kind; `missing` names what they still wait for."""
 
     @property
     def moments(self) -> Mapping[str, Sequence[Moment]]: ...
@@ -71,7 +71,7 @@ class Stage:
         self._link.close()
 
     def check(self) -> None:
-        """ArboledaError where one of the others has ended, or a task was not done."""
+        """Raise ArboledaError if one of the others has ended, or a task was not done."""
         for process in self._others:
             process.check()
         for sentence in self._failed:
@@ -88,11 +88,11 @@ class Stage:
             wait_for(lambda at=cell: self.played(at) >= wanted[at.name], what, self.check, cycles * CYCLE_S)
 
     def played(self, cell: StorageCell) -> int:
-        """How many tasks the cell has ended."""
+        """The number of tasks that the cell has ended."""
         return sum(moment.last for moment in self.moments(cell))
 
     def moments(self, cell: StorageCell) -> list[Moment]:
-        """What has happened in a cell so far."""
+        """The moments in a cell so far."""
         return list(self.robots.moments[cell.name])
 
     def _asking(self, number: int, cell: StorageCell) -> Publisher:

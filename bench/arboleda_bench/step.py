@@ -71,7 +71,7 @@ def _costs(model: PlantModel, calls: int) -> Iterator[tuple[str, Costs]]:
 
 
 def _cost(act: Callable[[], object], calls: int) -> float:
-    """The median of what a call takes, us."""
+    """The median processor time of one call, us."""
     return median(_cost_of_batch([act] * BATCH) for _ in range(calls // BATCH))
 
 
@@ -83,7 +83,7 @@ def _cost_of_batch(acts: Sequence[Callable[[], object]]) -> float:
 
 
 def _cost_of_reports(yard: Yard, move: Command, calls: int, by_rad: float) -> float:
-    """The median step with one report of an arm under way, which has come so much further each time."""
+    """The median time of a step with one report of an arm under way, a bit further on in each."""
     return median(_cost_of_batch(_steps(yard, move, by_rad)) for _ in range(calls // BATCH))
 
 
@@ -108,7 +108,7 @@ def _ends_of_moves(yard: Yard, calls: int) -> Costs:
 
 
 def _cycle(yard: Yard, finish: Finish) -> list[float]:
-    """One task from its beginning to its end; what each end of a move took that another command follows."""
+    """Run one task; return the cost of each end of a move that another command follows."""
     costs: list[float] = []
     out = begin_task(yard)
     while not is_over(out):
@@ -138,7 +138,7 @@ def _timed_tick(yard: Yard, report: Report) -> tuple[float, list[Any]]:
 
 
 def until_a_move(yard: Yard) -> MoveJoints:
-    """Bring a storage task to the arm's first move, and that under way."""
+    """Bring a storage task to the arm's first move, with that under way."""
     out = begin_task(yard)
     while not isinstance(command := command_in(out), MoveJoints):
         out = go_on(yard, command)
@@ -152,7 +152,7 @@ def begin_task(yard: Yard) -> list[Any]:
 
 
 def go_on(yard: Yard, command: Command | None) -> list[Any]:
-    """The robot does what was asked of it, or time passes."""
+    """Have the robot carry out the command, or let time pass."""
     if command is None:
         return yard.sleep()
     yard.step(yard.accepts(command))
@@ -160,7 +160,7 @@ def go_on(yard: Yard, command: Command | None) -> list[Any]:
 
 
 def leads_on(yard: Yard, command: Command) -> bool:
-    """Whether the end of a command is that of a move that another command follows at once."""
+    """True if a command is a move that another command follows at once."""
     home = yard.plant.model.cells[0].home
     return isinstance(command, FollowPath) or (isinstance(command, MoveJoints) and command.q != home.q)
 

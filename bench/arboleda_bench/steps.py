@@ -20,7 +20,7 @@ def task(cell: StorageCell) -> str:
 
 
 def storage(cell: StorageCell, epoch: int = 1) -> list[Command]:
-    """What the cell's robots are told in one storage task; the mobile robot stands where the last one ended.
+    """The commands of one storage task; the mobile robot stands where the last one ended.
 
     The pauses of the recipe are left out: one after the task's start and one after each effector command.
     """
@@ -39,13 +39,13 @@ def storage(cell: StorageCell, epoch: int = 1) -> list[Command]:
 
 
 def end(cell: StorageCell, step: FollowPath | MoveJoints) -> tuple[float, ...]:
-    """Where a move ends, as the robot's joint states say it: rad and m."""
+    """The end of a move in the robot's joint states: rad and m."""
     if isinstance(step, FollowPath):
         return cell.mobile.grid.position(step.nodes[-1])
     return cell.arm.quantised(step.q)
 
 
 def lengths(shortest_s: float, longest_s: float) -> Callable[[], float]:
-    """How long each further move takes: even over the interval, and never in step with anything periodic."""
+    """A function for the times of moves: spread evenly, never in step with anything periodic."""
     number = count()
     return lambda: shortest_s + (longest_s - shortest_s) * (next(number) * GOLDEN % 1.0)

@@ -49,7 +49,7 @@ def run(scene: Scene) -> Result:
 
 
 def _measured(scene: Scene, folder: Path, cells: int) -> tuple[list[Figure], str]:
-    """The figures of a plant of so many cells, and how much the crowd was given meanwhile."""
+    """The figures of a plant of so many cells, and the amount that the crowd was given meanwhile."""
     file, port = plants.write(scene.folder / f"plant_{cells}.yaml", cells), free_port()
     state = folder / f"state_{cells}"
     options = ("--no-ros", "--plant", str(file), "--state", str(state), "--port", str(port))
@@ -83,7 +83,7 @@ TAKEN = (http.client.OK, http.client.ACCEPTED)  # the latter for a stop that has
 
 
 def _stops(port: int, scene: Scene) -> list[float]:
-    """Milliseconds of each of the stops of one window."""
+    """The milliseconds of each of the stops of one window."""
     until = time.monotonic() + (QUICK_SECONDS if scene.quick else SECONDS)
     taken = []
     while time.monotonic() < until:

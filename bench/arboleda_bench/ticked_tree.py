@@ -1,7 +1,7 @@
 """The storage recipe as many write it: a py_trees tree that a timer ticks; its leaves look at the last state.
 
-Every leaf sends its command when it begins and then reads, tick by tick, what its robot said last. Nothing is
-kept, no deadline is watched: it is the least a ticked tree does.
+Every leaf sends its command when it begins and then reads, tick by tick, the last report of its robot.
+Nothing is kept, no deadline is watched: it is the least that a ticked tree does.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ NEAR = 1e-3  # rad or m
 
 
 class Heard:
-    """What a robot said last."""
+    """The last report of a robot."""
 
     def __init__(self, node: Node, robot: Robot) -> None:
         self.state = 0
@@ -45,7 +45,7 @@ class Heard:
 
 
 class Move(Behaviour):
-    """Send a goal, then RUNNING until the robot stands there."""
+    """Sends a goal, then is RUNNING until the robot stands there."""
 
     def __init__(
         self, name: str, voice: Publisher, message: object, heard: Heard, goal: tuple[float, ...]
@@ -65,7 +65,7 @@ class Move(Behaviour):
 
 
 class Send(Behaviour):
-    """Send a message that nothing answers."""
+    """Sends a message that nothing answers."""
 
     def __init__(self, name: str, voice: Publisher, message: object) -> None:
         super().__init__(name)
@@ -78,7 +78,7 @@ class Send(Behaviour):
 
 
 class Pause(Behaviour):
-    """RUNNING for so many seconds."""
+    """Is RUNNING for so many seconds."""
 
     def __init__(self, name: str, seconds: float) -> None:
         super().__init__(name)

@@ -1,4 +1,4 @@
-"""Where time goes, by part of the house; what libraries do is put down to who called them."""
+"""Time by part of the house; the time of libraries is put down to their callers."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ def _by_part(stats: Stats) -> dict[str, Counter[str]]:
 
 
 def _shares(function: Function, stats: Stats, above: tuple[Function, ...] = ()) -> dict[str, float]:
-    """Which parts the time of a function is to be put down to; 1 in all."""
+    """The shares of the parts to which a function's time is put down; 1 in all."""
     for path, name in PARTS.items():
         if path in function[0]:
             return {name: 1.0}

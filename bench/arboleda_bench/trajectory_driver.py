@@ -52,7 +52,7 @@ def run(scene: Scene) -> Result:
 
 
 def goal_of(arm: Arm, turn: int) -> tuple[float, ...]:
-    """One of several; never the one before."""
+    """One of several goals; never the same twice in a row."""
     return arm.quantised((math.radians(1 + turn % 50), 0.0, 0.0, 0.0, 0.0, 0.0))
 
 
@@ -91,7 +91,7 @@ class Driven:
 
 
 class Bare:
-    """What somebody writes who has rclpy and nothing else."""
+    """Bare client: the code that one writes with rclpy and nothing else."""
 
     def __init__(self) -> None:
         from control_msgs.action import FollowJointTrajectory

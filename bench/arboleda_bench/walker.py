@@ -1,4 +1,4 @@
-"""One cell's steps, one after the other, task after task: what the floors have in common."""
+"""Walker through one cell's steps, one after the other, task after task: the common part of the floors."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class Walker(Generic[Step]):
         raise NotImplementedError
 
     def task(self) -> None:
-        """One task more to do."""
+        """Add one task to be done."""
         self._tasks += 1
         if self._tasks == 1:
             self._begin()

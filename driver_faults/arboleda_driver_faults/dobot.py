@@ -1,4 +1,4 @@
-"""A plant with a Dobot under its faults: what the arm has to do, and what each fault may cause."""
+"""Campaign of a plant with a Dobot under its faults: the task, and the failures that each may cause."""
 
 from __future__ import annotations
 
@@ -52,14 +52,14 @@ CAUSES: dict[str, set[Reason]] = {
 
 
 def plant_of(shipped: PlantModel) -> PlantModel:
-    """The cell of the shipped plant whose arm is a Dobot, reached by a driver."""
+    """The shipped plant's cell whose arm is a Dobot behind a driver."""
     cell = next(each for each in shipped.cells if isinstance(each, StorageCell) and len(each.arm.joints) == 6)
     arm = replace(cell.arm, link=Link.DRIVER, evidence=Evidence.IDS)
     return replace(shipped, cells=(replace(cell, arm=arm),))
 
 
 class DobotTrial(Trial):
-    """Parts go from the pick to the place: where the arm is there, and with which output."""
+    """Test with parts that go from the pick to the place; it sees the arm's place and its output."""
 
     driver = "dobot"
     causes = CAUSES
@@ -99,21 +99,21 @@ class DobotTrial(Trial):
         return (sum(line.startswith("MovJ") for line in self._driver.told), self._driver.given)
 
     def bystanders(self, now: float) -> list[Report]:
-        """The mobile robot stands still and is heard."""
+        """The reports of the mobile robot, which stands still."""
         name, still = self._cell.mobile.name, MotionState.STOPPED
         return [
             Report(at=now, robot=name, epoch=EPOCH, plant=EPOCH, boot_id=1, state=still, node=0, homed=True)
         ]
 
     def by_hand(self) -> None:
-        """Alarms are cleared and the arm is enabled at its pendant."""
+        """Clear alarms and enable the arm at its pendant."""
         assert self._driver is not None
         for line in ("ClearError()", "PowerOn()", "EnableRobot()"):
             self._driver.tell(line)
 
 
 class MoveCounter(Loopback):
-    """Counts the moves that it was given."""
+    """Driver's machine that counts the moves given to it."""
 
     given = 0
 

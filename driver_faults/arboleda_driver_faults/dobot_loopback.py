@@ -1,4 +1,4 @@
-"""The driver's machine and a virtual Dobot, joined without sockets, under a clock that is moved by hand."""
+"""Driver and virtual Dobot, connected without sockets, under a clock that is moved by hand."""
 
 from __future__ import annotations
 
@@ -27,7 +27,10 @@ from arboleda.virtual.dobot.machine import Answer, ClientText, Disconnect, Frame
 
 
 class Loopback:
-    """What one says the other hears at once; `hear` gets what the plant would hear of the arm."""
+    """Driver and virtual Dobot, connected: each gets the other's messages at once.
+
+    `hear` takes the reports that the plant would get of the arm.
+    """
 
     def __init__(self, arm: Robot, dobot: VirtualDobot, hear: Callable[[Report], None], now: float) -> None:
         self.dobot = dobot
@@ -45,24 +48,24 @@ class Loopback:
         return max(self.now, min(self.dobot.next_deadline, self.driver.next_deadline))
 
     def ask(self, command: Command) -> str | None:
-        """Command the arm; why it could not leave, or None."""
+        """Command the arm; returns the reason why the command could not leave, or None."""
         out = self._step_driver(CommandRequest(command=command))
         self._settle()
         return next((each.why for each in out if isinstance(each, CommandNotSent)), None)
 
     def tell(self, line: str) -> None:
-        """Say what another client of the dashboard says."""
+        """Send a line as another client of the dashboard."""
         self.dobot.step(self.now, [ClientText(client=-1, text=line)])
 
     def pass_time(self, now: float) -> None:
-        """Have both do what is due by now."""
+        """Let both do everything due by now."""
         self.now = now
         self._step_dobot()
         self._step_driver()
         self._settle()
 
     def _settle(self) -> None:
-        """Until neither has anything for the other; each is given what came in its order."""
+        """Pass messages in order until neither has any left."""
         while self._to_dobot or self._to_driver:
             while self._to_dobot:
                 self._step_dobot(self._to_dobot.popleft())

@@ -1,4 +1,4 @@
-"""A part that an arm with a gripper carries from one slot to another, as in examples/ros2_control."""
+"""Campaign of an arm with a gripper that carries a part from slot to slot, as in examples/ros2_control."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def _grip(goal: Width) -> Grip:
 
 
 class CarryTrial(ActionTrial):
-    """Where the arm was, and whether a part was between its fingers there."""
+    """Test with a part that a gripper carries; it sees the slot of the arm, and a part in the fingers."""
 
     work = (("slot_1", True), ("slot_2", True), ("slot_2", False), ("home", False))
     parts = (

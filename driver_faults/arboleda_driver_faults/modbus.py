@@ -1,4 +1,4 @@
-"""The belt behind Modbus under its faults: the driver's machine at the PLC's registers."""
+"""Campaign of the belt behind Modbus under faults: the driver's machine at the PLC's registers."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ FRAME = bytes([0, 1, 0, 0, 0, 5, 1, 3, 2, 0, 7])  # any answer: what the line ma
 
 
 class ModbusTrial(BeltTrial):
-    """The example's belt, with the registers of its virtual PLC."""
+    """Test with the example's belt, and the registers of its virtual PLC."""
 
     driver = "modbus"
 
@@ -42,7 +42,7 @@ class ModbusTrial(BeltTrial):
 
 
 class Registers:
-    """Reads and writes of the driver's machine; what is answered goes over the line."""
+    """Reads and writes of the driver's machine; the answers pass over the faulty line."""
 
     def __init__(self, machine: ModbusDevice, memory: BeltMemory) -> None:
         self._machine, self._memory = machine, memory
@@ -84,6 +84,6 @@ class Registers:
             raise RequestRefused(f"to take {put.table} {put.address}", code)
 
     def _hear(self) -> None:
-        """The answer, as the line carries it."""
+        """The answer as it arrives over the line."""
         if self._memory.trace(True, FRAME) != FRAME:
             raise LineBroken("the PLC does not answer")

@@ -1,4 +1,4 @@
-"""A base that Nav2 drives over a grid, as in examples/nav2."""
+"""Campaign of a base that Nav2 drives over a grid, as in examples/nav2."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def _drive(route: Route) -> Drive:
 
 
 class RoundTrial(ActionTrial):
-    """On which node the base was."""
+    """Test with a base that drives round the grid; it sees the node of the base."""
 
     work = (6, 8, 0)
     parts = (Part(name="cart", machine=driver.to_pose, body=_base, read=_drive, causes=BASE_CAUSES),)
@@ -64,6 +64,6 @@ class RoundTrial(ActionTrial):
 
 
 class WaypointsTrial(RoundTrial):
-    """The same, where all nodes of a way are one goal."""
+    """The same test with all nodes of a way as one goal."""
 
     parts = (Part(name="cart", machine=driver.waypoints, body=_base, read=_drive, causes=BASE_CAUSES),)

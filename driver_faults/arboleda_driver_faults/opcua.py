@@ -1,4 +1,4 @@
-"""The belt behind OPC UA under its faults: the driver's machine at the PLC's variables and methods."""
+"""Campaign of the belt behind OPC UA under faults: the driver's machine at variables and methods."""
 
 from __future__ import annotations
 
@@ -26,14 +26,14 @@ CAUSES: Causes = {
 
 
 class OpcUaTrial(BeltTrial):
-    """The example's belt, with the variables of its virtual PLC."""
+    """Test with the example's belt, and the variables of its virtual PLC."""
 
     driver = "opcua"
 
     def __init__(self, example: PlantModel) -> None:
         super().__init__(example, FAULTS, CAUSES)
         self._program = BeltProgram(self.faults, lambda: self.now, belt=self.belt)
-        self._late: list[Call] = []  # what lies before a server that is mute: it is done once that is over
+        self._late: list[Call] = []  # calls to a mute server, which it carries out afterwards
 
     def wire(self) -> Variables:
         assert self.device.driver is not None and isinstance(self.device.driver.settings, Settings)
@@ -42,7 +42,7 @@ class OpcUaTrial(BeltTrial):
 
 
 class Variables:
-    """Reads and calls of the driver's machine; a server that is mute does late what it was told."""
+    """Reads and calls of the driver's machine; a mute server carries out its calls late."""
 
     def __init__(self, machine: OpcUaDevice, program: BeltProgram, late: list[Call]) -> None:
         self._machine, self._program, self._late = machine, program, late
@@ -81,7 +81,7 @@ class Variables:
         return self._program.call(call.method.removeprefix("ns=2;s="), [value for _, value in call.given])
 
     def _answer(self) -> None:
-        """What lies before the server comes first."""
+        """Answer the calls that wait at the server, before any new one; raises Broken while it is mute."""
         if self._program.is_mute():
             raise LineBroken("the server does not answer")
         while self._late:

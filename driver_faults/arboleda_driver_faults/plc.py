@@ -1,4 +1,4 @@
-"""A plant with a belt behind a PLC under faults: what is done with a part, and what each fault may cause."""
+"""Campaign of a belt behind a PLC under faults: a part's way, and the failures that each may cause."""
 
 from __future__ import annotations
 
@@ -28,16 +28,16 @@ CAUSES: Causes = {
     "drive_fault": {Reason.DEVICE_FAULT},
     "reboots": {Reason.REBOOTED},
     "runs_on": {Reason.STOP_UNCONFIRMED},
-    "frozen": {Reason.DEADLINE, *NO_LINK},  # too short for its link to be lost, it has not noticed an order
+    "frozen": {Reason.DEADLINE, *NO_LINK},  # too short to lose the link; the PLC has missed an order
     "nonsense": NO_LINK,
     "bad_part": {Reason.REJECTED},
 }
-"""Why a task may fail while a fault of the program is there, or soon after it."""
+"""The allowed reasons of a failure during, or soon after, each fault of the program."""
 
 
 @dataclass(kw_only=True)
 class CountedBelt(Belt):
-    """Counts the orders that it has taken."""
+    """Belt that counts the orders it has taken."""
 
     taken: int = 0
 
@@ -48,7 +48,7 @@ class CountedBelt(Belt):
 
 
 class BeltTrial(Trial):
-    """A part is taken in and carried to the exit: where it truly was, and how the gate stood."""
+    """Test with a part that is carried to the exit; it sees the part's true place and the gate."""
 
     work = ((ENTRY, OPEN), (EXIT, OPEN), (EXIT, CLOSED))
 
@@ -73,7 +73,7 @@ class BeltTrial(Trial):
 
     @abstractmethod
     def wire(self) -> Wire:
-        """A new machine of the driver, at the line to the PLC."""
+        """A new machine of the driver, connected to the PLC."""
 
     def seen(self) -> tuple[int, int]:
         return (self.belt.shown.part_at, self.belt.shown.gate)
@@ -82,16 +82,16 @@ class BeltTrial(Trial):
         return (self.belt.taken, self._given)
 
     def give(self, command: Command) -> None:
-        """Take note of what the driver was given."""
+        """Note a command given to the driver."""
         self._given += not isinstance(command, Stop)
 
     def by_hand(self) -> None:
-        """What stands still in a fault is set back at the panel."""
+        """Set the belt back at its panel, after a fault has stopped it."""
         self.belt.halt(self.now)
 
 
 class OrderCounter(Loopback):
-    """Tells its trial what it was given, and what time it is."""
+    """Connection that tells its trial the commands given, and the time."""
 
     def __init__(self, trial: BeltTrial, wire: Wire, hear: Hear, now: float) -> None:
         super().__init__(trial.device.name, wire, hear, now)

@@ -1,4 +1,4 @@
-"""A driver's machine and the virtual PLC, joined without sockets, under a clock that is moved by hand.
+"""Driver and virtual PLC, connected without sockets, under a clock that is moved by hand.
 
 What the drivers of PLCs do beside their machines is done here as they do it: reading again and again,
 counting up the heartbeat, ending the link where something breaks, and coming back.
@@ -20,27 +20,30 @@ BEATS = 2**16
 
 
 class LineBroken(Exception):
-    """Nothing can be heard on the line, and why."""
+    """Error: nothing arrives over the line, with the reason."""
 
 
 class Wire(Protocol):
-    """One protocol between a machine and the PLC; Broken or Unreadable where the link would be lost."""
+    """Protocol between driver's machine and PLC; raises Broken or Unreadable where the link would end."""
 
     def begin(self) -> None:
         """Connect."""
 
     def order(self, command: Command) -> str | None:
-        """Say a command; the word of the refusal, where the PLC refuses to take it."""
+        """Send a command; returns the word for a refusal by the PLC, else None."""
 
     def beat(self, number: int) -> None:
-        """Say that somebody is there."""
+        """Send a heartbeat."""
 
     def report(self, at: float) -> Report:
-        """Read all that is mapped."""
+        """Read all mapped values, as a report."""
 
 
 class Loopback:
-    """What one says the other hears at once; `hear` gets what the plant would hear of the device."""
+    """Driver and virtual PLC, connected: each gets the other's values at once.
+
+    `hear` takes the reports that the plant would get of the device.
+    """
 
     def __init__(self, robot: str, wire: Wire, hear: Hear, now: float) -> None:
         self._robot, self._wire, self._hear = robot, wire, hear
@@ -49,7 +52,7 @@ class Loopback:
         self._beats = 0
 
     def ask(self, command: Command) -> str | None:
-        """Command the device; why it could not leave, or None."""
+        """Command the device; returns the reason why the command could not leave, or None."""
         if not self._up:
             return "the PLC is not connected"
         try:
@@ -62,7 +65,7 @@ class Loopback:
         return None
 
     def pass_time(self, now: float) -> None:
-        """Have both do what is due by now."""
+        """Let both do everything due by now."""
         self._now = now
         if now >= self.next_deadline:
             self.next_deadline = now + POLL_S

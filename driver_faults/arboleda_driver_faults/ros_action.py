@@ -1,4 +1,4 @@
-"""A plant whose devices are behind actions, under the faults of their servers: what each fault may cause."""
+"""Campaign of a plant with devices behind actions, under the faults of their servers."""
 
 from __future__ import annotations
 
@@ -40,11 +40,11 @@ CAUSES: dict[str, set[Reason]] = {
     "no_number": NO_LINK,
     "slow": {Reason.DEADLINE},
 }
-"""Why a task may fail while a fault that every server has is there, or soon after it."""
+"""The allowed reasons of a failure during, or soon after, each fault that every server has."""
 
 
 class DeviceFaults(Collection[str]):
-    """Those of one device among the faults of all, which are called by device and name: `arm.lie`."""
+    """Faults of one device among those of all, which are called by device and name: `arm.lie`."""
 
     def __init__(self, all: Faults, device: str) -> None:
         self._all, self._before = all, f"{device}."
@@ -61,7 +61,7 @@ class DeviceFaults(Collection[str]):
 
 @dataclass(frozen=True, kw_only=True)
 class Part:
-    """A device: the machine of its driver, what its server moves, and what is read of a goal between them."""
+    """Device: the machine of its driver, the body of its server, and the reader of goals between them."""
 
     name: str
     machine: Callable[[Sequence[Robot], Any], Machine]
@@ -71,7 +71,7 @@ class Part:
 
 
 class ActionTrial(Trial):
-    """Each device has a server of its own; `parts` says which."""
+    """Test with a server for each device; `parts` names the devices."""
 
     driver = "actions"
     between_s = 12.0
@@ -112,7 +112,7 @@ class ActionTrial(Trial):
 
 
 class DeviceGroup:
-    """Several devices that are reached as one."""
+    """Several devices, connected as one."""
 
     def __init__(self, joined: Mapping[str, Loopback]) -> None:
         self._joined = joined
@@ -137,7 +137,7 @@ class DeviceGroup:
 
 
 def spot(spots: Mapping[str, object], position: Sequence[float]) -> str | None:
-    """Which of these something stands at."""
+    """The name of the spot near this position; None if there is none."""
     return next((name for name, at in spots.items() if near(position, at)), None)
 
 

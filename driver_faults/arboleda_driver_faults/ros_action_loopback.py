@@ -1,4 +1,4 @@
-"""A driver's machine and a virtual server, joined without ROS 2, under a clock that is moved by hand."""
+"""Driver and virtual action server, connected without ROS 2, under a clock that is moved by hand."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ LOOK_S = 0.1  # as often as the driver looks which servers there are
 
 
 class Loopback:
-    """What one says the other hears at once; `hear` gets what the plant would hear of the device.
+    """Driver and virtual action server, connected: each gets the other's messages at once.
 
     `read` makes of a goal of the driver what the server's body takes, as the message between them does.
     """
@@ -53,13 +53,13 @@ class Loopback:
         return max(self.now, min(self._look_at, self._server.next_deadline))
 
     def ask(self, command: Command) -> str | None:
-        """Command the device; why it could not leave, or None."""
+        """Command the device; returns the reason why the command could not leave, or None."""
         out = self._step_driver(CommandRequest(command=command))
         self._settle()
         return next((each.why for each in out if isinstance(each, CommandNotSent)), None)
 
     def pass_time(self, now: float) -> None:
-        """Have both do what is due by now."""
+        """Let both do everything due by now."""
         self.now = now
         if self._server.is_off and not self._was_off:
             self._starts += 1
@@ -96,7 +96,7 @@ class Loopback:
         return out
 
     def _cancel(self) -> None:
-        """As action servers in C++ do: only what is accepted can be cancelled, and no goal is no refusal."""
+        """Cancel as action servers in C++ do: accepted goals only; no goal counts as no refusal."""
         accepted = [id for id, is_accepted in self._open.items() if is_accepted]
         decided = self._step_server(*(CancelRequest(id=id) for id in accepted))
         refused = bool(decided) and not any(each.accepted for each in decided)
@@ -115,7 +115,7 @@ class Loopback:
         return decided
 
     def _tell(self, message: GoalAnswer | GoalResult) -> None:
-        """A client asks for the end of a goal once that is accepted, and hears of none before."""
+        """Pass a message; a client asks for the end of a goal only once that is accepted."""
         if isinstance(message, GoalResult) and self._open.get(message.id) is False:
             self._early[message.id] = message
             return

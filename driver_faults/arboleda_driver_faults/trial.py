@@ -44,7 +44,7 @@ from arboleda.virtual.faults import Faults
 
 START_S, EPOCH = 100.0, 7
 TASKS = 4
-LOOKS_S = 1.0  # how often somebody looks what the plant advises
+LOOKS_S = 1.0  # period of looks at the plant's advice
 PATIENCE_S = 240.0  # after the last fault, for the last task
 
 Hear = Callable[[Report], None]
@@ -52,20 +52,20 @@ Causes = Mapping[str, set[Reason]]
 
 
 class Loopback(Protocol):
-    """A driver and its virtual device: what one says the other hears at once."""
+    """Driver and virtual device, connected: each gets the other's messages at once."""
 
     @property
     def next_deadline(self) -> float: ...
 
     def ask(self, command: Command) -> str | None:
-        """Command the device; why it could not leave, or None."""
+        """Command the device; returns the reason why the command could not leave, or None."""
 
     def pass_time(self, now: float) -> None:
-        """Have both do what is due by now."""
+        """Let both do everything due by now."""
 
 
 class Trial(ABC):
-    """One device of a plant: how it is reached, what it is to do, and what it truly did.
+    """Test of a device behind a driver: the connection, the tasks, and the true state of the device.
 
     `causes` are the reasons for which a task may fail while a fault is there, or soon after it; `work` is
     what must have been seen, in this order, where a task is done.
@@ -76,7 +76,7 @@ class Trial(ABC):
     causes: Causes
     work: Sequence[Hashable]
     between_s = 8.0  # two tasks
-    after_s = 20.0  # so long a fault may be the cause of what fails: longer than any command of the task
+    after_s = 20.0  # a fault may cause failures for so long: longer than any command of the task
 
     def __init__(self, faults: Mapping[str, str]) -> None:
         self.faults = Faults(faults)
@@ -84,7 +84,7 @@ class Trial(ABC):
     @property
     @abstractmethod
     def robots(self) -> Sequence[Robot]:
-        """Those behind the driver."""
+        """The robots behind the driver."""
 
     @abstractmethod
     def task(self, number: int) -> str:
@@ -92,27 +92,27 @@ class Trial(ABC):
 
     @abstractmethod
     def join(self, hear: Hear, now: float) -> Loopback:
-        """A new driver, which says so to `hear` what it hears."""
+        """A new driver, connected to the device, whose reports go to `hear`."""
 
     @abstractmethod
     def seen(self) -> Hashable | None:
-        """Where the device truly is, with what; None where that is nowhere of interest."""
+        """The true place of the device and its load; None at a place that does not matter."""
 
     @abstractmethod
     def moves(self) -> tuple[int, int]:
-        """How many moves the device was told, and how many the driver was given."""
+        """The number of moves that the device was told, and of those that the driver was given."""
 
     def bystanders(self, now: float) -> list[Report]:
-        """What others of the cell say, who have no part in this."""
+        """The reports of other devices of the cell, which take no part in the test."""
         return []
 
     def by_hand(self) -> None:  # noqa: B027 - most devices need nobody
-        """What somebody at the device does, once no fault is there any more."""
+        """Do at the device what a person would do there once all faults are gone."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class FaultPeriod:
-    """A fault that is on for a while."""
+    """Fault that is on for a while."""
 
     name: str
     begins: float
@@ -121,7 +121,7 @@ class FaultPeriod:
 
 @dataclass(kw_only=True)
 class Result:
-    """What came of a seed; `breaches` is empty where all was well."""
+    """Result of one seed; `breaches` is empty if all went well."""
 
     seed: int
     faults: tuple[FaultPeriod, ...]
@@ -142,13 +142,13 @@ def drawn(seed: int, names: Sequence[str], between_s: float) -> tuple[FaultPerio
 
 
 def run(trial: Trial, seed: int, names: Sequence[str] = ()) -> Result:
-    """One seed, from the start to the end of its last task; `names`: the faults to draw of, all without."""
+    """Run one seed, from the start to the end of its last task; `names`: the faults to draw, default all."""
     faults = drawn(seed, names or tuple(trial.faults.known), trial.between_s)
     return World(trial, Result(seed=seed, faults=faults)).run()
 
 
 class World:
-    """The plant, its driver and the device; `result` grows while it runs."""
+    """World of one seed: plant, driver and device; `result` grows while it runs."""
 
     def __init__(self, trial: Trial, result: Result) -> None:
         self.trial, self.result, self.now = trial, result, START_S
@@ -182,7 +182,7 @@ class World:
         return self.result
 
     def _pass_time(self) -> None:
-        """Up to the next deadline, and all that follows from it."""
+        """Go to the next deadline, and handle everything that follows."""
         due = [
             self.plant.next_deadline,
             self._supervisor.next_deadline or math.inf,
@@ -235,7 +235,7 @@ class World:
         self._heard.append(SendResult(at=self.now, life=give.life, command=give.command, error=error))
 
     def _attend(self) -> None:
-        """Somebody does what is advised."""
+        """Do as a person what the plant advises."""
         if self.trial.faults:
             return
         for advice in self.plant.advice(self._cell.name):

@@ -1,4 +1,4 @@
-"""A plant with a vehicle of VDA 5050 under its faults: what it carries, and what each fault may cause."""
+"""Campaign of a vehicle of VDA 5050 under its faults: its loads, and the failures that each may cause."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ CAUSES: dict[str, set[Reason]] = {
 
 
 class AgvTrial(Trial):
-    """What stands at one shelf is carried to another: where the vehicle was, and with what on it."""
+    """Test with a vehicle that carries things between shelves; it sees the vehicle's place and load."""
 
     driver = "vda5050"
     causes = CAUSES
@@ -81,7 +81,7 @@ class AgvTrial(Trial):
 
 
 class ActionCounter(Loopback):
-    """Counts the work that it was given."""
+    """Machine that counts the work given to it."""
 
     given = 0
 

@@ -1,4 +1,4 @@
-"""The driver's machine and a virtual vehicle, joined without a broker, under a clock that is moved by hand.
+"""Driver and virtual vehicle, connected without a broker, under a clock that is moved by hand.
 
 Messages are bytes on the way, and are held against the standard's schemas on both sides.
 """
@@ -28,7 +28,10 @@ from arboleda.virtual.vda5050.words import BROKEN
 
 
 class Loopback:
-    """What one says the other hears at once; `hear` gets what the plant would hear of its devices."""
+    """Driver and virtual vehicle, connected: each gets the other's messages at once.
+
+    `hear` takes the reports that the plant would get of the devices.
+    """
 
     def __init__(
         self,
@@ -54,7 +57,7 @@ class Loopback:
         return max(self.now, min(self.agv.next_deadline, self.vehicle.next_deadline))
 
     def ask(self, command: Command) -> str | None:
-        """Command a device; why it could not leave, or None."""
+        """Command a device; returns the reason why the command could not leave, or None."""
         try:
             self.send(command)
         except NotSent as error:
@@ -62,12 +65,12 @@ class Loopback:
         return None
 
     def send(self, command: Command) -> None:
-        """The same; NotSent where it could not leave."""
+        """Command a device; raises NotSent if the command could not leave."""
         self._do(self.vehicle.command(self.now, command))
         self._settle()
 
     def pass_time(self, now: float) -> None:
-        """Have both do what is due by now."""
+        """Let both do everything due by now."""
         self.now = now
         self._step_agv()
         self._do(self.vehicle.step(now))

@@ -23,7 +23,7 @@ PYTHON = f"{sys.version_info.major}.{sys.version_info.minor}"
 
 
 def main() -> int:
-    """Count, and compare or pin; the exit status."""
+    """Count, and compare or pin; return the exit status."""
     options = _options()
     names = [name for name in SCENARIOS if options.only in name]
     file = file_for(PYTHON)
@@ -51,7 +51,7 @@ def main() -> int:
 def cost_of(scenario: Scenario) -> Calls:
     """The calls of all acts of a scenario.
 
-    The first one is played once before, uncounted: what is kept after its first use is there then.
+    The first act is played once before, uncounted, so that caches are filled.
     """
     for act in islice(scenario(), 1):
         act()

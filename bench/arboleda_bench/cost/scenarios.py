@@ -1,6 +1,6 @@
-"""Scenarios of the cost lock: what a plant does again and again, each from a beginning of its own.
+"""Scenarios of the cost lock: the work that a plant does again and again, each from a beginning of its own.
 
-A scenario yields what is counted, one act after the other; what it does between two of them is not counted.
+A scenario yields the acts to count, one after the other; its work between two of them is not counted.
 """
 
 from __future__ import annotations
@@ -104,7 +104,7 @@ def views(cells: int) -> Iterator[Act]:
 
 
 def recorded_steps() -> Iterator[Act]:
-    """What the flight record makes of the steps of a task."""
+    """Records of the flight recorder for the steps of a task."""
     yard = Yard(_model(1))
     out = begin_task(yard)
     while not is_over(out):
@@ -155,7 +155,7 @@ class Port:
 
 
 class Logged:
-    """An application to which everybody is an operator."""
+    """An application in which everybody is logged in as an operator."""
 
     def __init__(self, app: ASGIApp) -> None:
         self._app = app
@@ -165,7 +165,7 @@ class Logged:
 
 
 async def _ask_by_http(client: httpx.AsyncClient, plant: WholePlant, port: Port) -> None:
-    """The request reaches the plant out of a thread of its own: who waits for that counts nothing."""
+    """Send the request to the plant from a thread of its own; the calls of that thread do not count."""
     loop, asked = asyncio.get_running_loop(), asyncio.Event()
     plant.heard = lambda: loop.call_soon_threadsafe(asked.set)
     async with client:

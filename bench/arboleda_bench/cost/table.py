@@ -18,14 +18,14 @@ NAMED = 6  # functions that grew, in a finding
 
 @dataclass(frozen=True, kw_only=True)
 class Cost:
-    """What a scenario costs: all its calls, and those of the functions that are called most."""
+    """The cost of a scenario: all its calls, and those of the functions that are called most."""
 
     calls: int
     functions: Mapping[str, int]
 
     @classmethod
     def of(cls, calls: Calls) -> Cost:
-        """The cost that was counted; the rarest functions are left out."""
+        """The cost from counted calls; the rarest functions are left out."""
         most = sorted(calls.items(), key=lambda each: (-each[1], each[0]))
         least = LEAST_SHARE * calls.total()
         return cls(calls=calls.total(), functions={name: number for name, number in most if number >= least})
@@ -41,17 +41,17 @@ class Comparison:
 
     @property
     def growth(self) -> float:
-        """The share by which the calls have grown; less than nothing where they are fewer."""
+        """The share by which the calls have grown; below 0 if there are fewer."""
         return 0.0 if self.pinned is None else self.now.calls / self.pinned.calls - 1
 
     @property
     def is_dearer(self) -> bool:
-        """Whether it fails: more calls than are allowed, or no pinned cost at all."""
+        """True if the lock fails: there are more calls than allowed, or no pinned cost at all."""
         return self.pinned is None or self.now.calls > self.pinned.calls * (1 + ALLOWED)
 
     @property
     def is_cheaper(self) -> bool:
-        """Whether it should be pinned anew, so that it stays so."""
+        """True if the cost should be pinned anew, so that it stays low."""
         return self.pinned is not None and self.now.calls < self.pinned.calls * (1 - ALLOWED)
 
     def grown(self) -> list[str]:
@@ -70,12 +70,12 @@ class Comparison:
 
 
 def file_for(python: str) -> Path:
-    """The table of a version of Python, as "3.11": each makes other calls of the same code."""
+    """The table for a version of Python, such as "3.11": each makes other calls of the same code."""
     return FOLDER / f"python{python}.json"
 
 
 def read(file: Path) -> dict[str, Cost]:
-    """The pinned costs by scenario; nothing where there is no such file."""
+    """The pinned costs by scenario; empty if there is no such file."""
     if not file.exists():
         return {}
     rows: dict[str, Any] = json.loads(file.read_text(encoding="utf-8"))

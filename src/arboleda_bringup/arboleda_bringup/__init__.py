@@ -1,1 +1,1 @@
-"""What `ros2 launch arboleda_bringup plant.launch.py` starts."""
+"""The nodes of `ros2 launch arboleda_bringup plant.launch.py`."""

@@ -1,4 +1,4 @@
-"""What the arguments of a launch ask for, checked as a whole."""
+"""The arguments of a launch, checked as a whole."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class Choice:
 
     @property
     def broker_address(self) -> str:
-        """Where the bridge finds the broker, as HOST:PORT."""
+        """The address at which the bridge reaches the broker, as HOST:PORT."""
         return f"127.0.0.1:{MQTT_PORT}" if self.broker == EMBEDDED else self.broker
 
 

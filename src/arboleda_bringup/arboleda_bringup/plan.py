@@ -1,4 +1,4 @@
-"""From the arguments of a launch to what it starts: reads the plant file and the robots' descriptions."""
+"""Plan of a launch: made from its arguments, the plant file and the robots' descriptions."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from .table import table
 
 
 def plan(texts: Mapping[str, str], share: str) -> Plan:
-    """What these arguments ask for; ArboledaError where they or the plant file are wrong.
+    """The plan for these launch arguments; ArboledaError if they or the plant file are wrong.
 
     All nodes of the launch must be on the same network, so they get what limits them to this machine.
     """

@@ -11,7 +11,7 @@ from .row import Plan, Row
 
 
 def asked(texts: Mapping[str, str], share: Path) -> Plan:
-    """What these arguments ask for; RuntimeError with a sentence where they are refused.
+    """The plan for these launch arguments; RuntimeError with a sentence if they are refused.
 
     `ros2` runs on the Python of its installation, which need not have the libraries of the plant file; the
     nodes run on the `python3` of the shell, which has.

@@ -1,4 +1,4 @@
-"""What a launch starts, as plain data."""
+"""Rows of a launch as plain data, one for each node."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Which nodes a launch starts: one plain row for each, made from the plant."""
+"""Table of the nodes that a launch starts: one plain row for each, made from the plant."""
 
 from __future__ import annotations
 
@@ -28,12 +28,12 @@ def table(plant: PlantModel, choice: Choice, *, urdf: Callable[[str], str], shar
 
 
 def namespace(robot: Arm | Mobile) -> str:
-    """Where a robot's joint states and description are: under the twin of an arm, the name of a mobile."""
+    """The namespace of a robot's joint states and description: the twin of an arm, the name of a mobile."""
     return robot.twin if isinstance(robot, Arm) else robot.name
 
 
 def _shown(robot: Arm | Mobile, urdf: str) -> list[Row]:
-    """What draws a robot; its joints are published here only where nobody else does."""
+    """The nodes that draw a robot; one publishes its joints if nobody else does."""
     described = {"robot_description": urdf}
     rows = [_named("robot_state_publisher", robot, parameters=described), _placed(robot)]
     if robot.link is Link.NONE:

@@ -23,7 +23,7 @@ NAMES = {
 
 
 class Said(SimpleNamespace):
-    """What a launch file made: `kind` is the class's name, `words` its positional arguments."""
+    """A call that a launch file made: `kind` is the class's name, `words` its positional arguments."""
 
     def __init__(self, kind: str, *words: Any, **named: Any) -> None:
         super().__init__(kind=kind, words=words, **named)
@@ -38,7 +38,7 @@ def stand_in(name: str) -> ModuleType:
 
 @pytest.fixture
 def description(monkeypatch: pytest.MonkeyPatch) -> list[Said]:
-    """What plant.launch.py describes: its arguments, and the function that makes the rest.
+    """The entities that plant.launch.py describes: its arguments, and the function that makes the rest.
 
     Its `python3` is the one that runs the tests, with the same path.
     """

@@ -1,4 +1,4 @@
-"""Which nodes a launch starts, for plants and arguments of every kind."""
+"""The nodes that a launch starts, for plants and arguments of every kind."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""What the robots are made of: numbers in `robots/*.yaml`, drawn as URDF by `urdf/*.xacro`."""
+"""The robots' descriptions: numbers in `robots/*.yaml`, drawn as URDF by `urdf/*.xacro`."""

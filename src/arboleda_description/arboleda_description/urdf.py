@@ -12,7 +12,7 @@ ENDING = ".urdf.xacro"
 
 
 class Limits(NamedTuple):
-    """What a joint may do: position in rad or m, speed in rad/s or m/s."""
+    """The limits of a joint: position in rad or m, speed in rad/s or m/s."""
 
     lower: float
     upper: float

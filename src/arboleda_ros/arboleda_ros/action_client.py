@@ -1,4 +1,4 @@
-"""What drivers of actions share: an action client, subscriptions and a timer around their machine.
+"""Base of the drivers of actions: an action client, subscriptions and a timer around their machine.
 
 Plant files are read without rclpy and without the messages: where they are missing, the start says so.
 """
@@ -49,7 +49,7 @@ STATUSES = {4: Status.SUCCEEDED, 5: Status.CANCELED, 6: Status.ABORTED}
 
 
 class ActionClientDriver:
-    """One device behind one action. All of ROS 2 is done in one thread of its link."""
+    """Driver of one device behind one action. All of ROS 2 is done in one thread of its link."""
 
     package: ClassVar[str]  # of the action's messages
 
@@ -63,15 +63,15 @@ class ActionClientDriver:
 
     @property
     def type_name(self) -> str:
-        """The action's name in its package."""
+        """The name of the action in its package."""
         raise NotImplementedError
 
     def machine(self, devices: Sequence[Robot]) -> Machine:
-        """What it makes of answers and measurements."""
+        """The machine for these devices, which takes answers and measurements."""
         raise NotImplementedError
 
     def listen(self, node: Any) -> None:
-        """Subscribe to what shows where the device is, and give it to `see`."""
+        """Subscribe to the measurements of the device, and pass them to `see`."""
         raise NotImplementedError
 
     def goal(self, action: Any, goal: Any) -> Any:
@@ -79,7 +79,7 @@ class ActionClientDriver:
         raise NotImplementedError
 
     def end(self, result: Any) -> dict[str, Any]:
-        """What the action's result says, as fields of Ended."""
+        """The fields of Ended that the action's result gives."""
         raise NotImplementedError
 
     # What all of them do.
@@ -104,7 +104,7 @@ class ActionClientDriver:
             self._link.close()
 
     def see(self, seen: Measurement) -> None:
-        """Something was measured; in the thread of ROS 2."""
+        """Take a measurement, in the thread of ROS 2."""
         self._take(seen, seen)
 
     def _join(self, node: Any) -> None:
@@ -133,7 +133,7 @@ class ActionClientDriver:
         return messages
 
     def _take(self, said: Any, event: Event) -> None:
-        """What the server or the device said."""
+        """Pass an event from server or device to the machine; an unreadable value loses the link."""
         with taking(said, self._lose):
             self._step(event)
 
@@ -141,7 +141,7 @@ class ActionClientDriver:
         self._step(UnusableMessage(why=why))
 
     def _later(self, what: Callable[[], None]) -> None:
-        """Have it done in the thread of ROS 2: an action client is not made for several."""
+        """Call a function in the thread of ROS 2, as an action client is not thread-safe."""
         self._node.executor.create_task(what)
 
     # What leaves.
@@ -175,7 +175,7 @@ class ActionClientDriver:
         self._take(said, CancelAnswer(refused=said.return_code == REJECTED))
 
     def _look(self) -> None:
-        """Each server publishes the states of its goals, by an endpoint of its own."""
+        """Look for servers: each publishes the states of its goals by an endpoint of its own."""
         topic = self._node.resolve_topic_name(f"{self.settings.action}/_action/status")
         found = self._node.get_publishers_info_by_topic(topic)
         ready = bool(found) and self._client.server_is_ready()
@@ -184,13 +184,13 @@ class ActionClientDriver:
 
 
 def stamp_of(message: Any) -> tuple[int, int]:
-    """When a message with a header says that it was measured."""
+    """The time of measurement in a message's header, (s, ns)."""
     stamp = message.header.stamp
     return (stamp.sec, stamp.nanosec)
 
 
 def action_type(package: str, name: str) -> Any:
-    """An action of a package; DriverError, which says what to install, where it is not there."""
+    """The type of an action; raises DriverError with install advice if its package is missing."""
     try:
         return getattr(import_module(f"{package}.action"), name)
     except ImportError as error:

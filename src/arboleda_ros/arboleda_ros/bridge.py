@@ -1,4 +1,4 @@
-"""The bridge's side of ROS 2: commands in, what the boards report out."""
+"""ROS 2 side of the bridge: commands in, reports of the boards out."""
 
 from __future__ import annotations
 
@@ -28,11 +28,11 @@ from .port import Port
 from .robot_publisher import RobotPublisher
 from .senders import Senders
 
-NEWS_S = 10.0  # for so long `/diagnostics` warns of a command of somebody else
+NEWS_S = 10.0  # time for which `/diagnostics` warns of somebody else's command
 
 
 class BridgePort(Port):
-    """Node `mqtt_bridge`: `on_event` gets every command for a robot on MQTT, on the link's thread."""
+    """Node `mqtt_bridge`; `on_event` gets every command for a robot on MQTT, on the link's thread."""
 
     def __init__(
         self, node: Node, model: PlantModel, on_event: Callable[[FromPlant], None], clock: Callable[[], float]
@@ -65,7 +65,7 @@ class BridgePort(Port):
             self._publish_rejection(news)
 
     def mqtt_link(self, up: bool, broker: str) -> None:
-        """The bridge has reached or lost its broker; `/diagnostics` says so at once, then with the rest."""
+        """Note that the bridge reached or lost its broker; `/diagnostics` tells it at once."""
         name = self._diagnosed(f"{self._node.get_name()} on MQTT")
         level, words = (OK, "connected to") if up else (ERROR, "not connected to")
         sentence = f"{words} the MQTT broker at {broker}"
@@ -76,7 +76,7 @@ class BridgePort(Port):
         return [*([self._mqtt] if self._mqtt is not None else []), self._commands()]
 
     def _commands(self) -> DiagnosticStatus:
-        """How many commands were refused, and the last thing that was told of one."""
+        """The diagnostic status of commands: the number refused, and the last news of one."""
         fresh = self._clock() < self._last_at + NEWS_S
         values = {"rejected": str(self._rejected.total()), "last": self._last}
         name = self._diagnosed(f"{self._node.get_name()} commands")
@@ -112,14 +112,14 @@ class BridgePort(Port):
         if convert.is_copy(message):
             return
         with self._telling(robot, PLAIN[kind]):
-            # The plant gives its ids on `command`, before this bridge too: one that stands here is no proof.
+            # The plant sends ids on `command` only: one on a plain topic proves nothing.
             command = without_id(convert.command(kind, robot, message))
         sender = self._senders.of(f"{robot.name}/{PLAIN[kind]}")
         self._on_event(FromPlant(at=self._clock(), message=command, sender=sender))
 
     @contextmanager
     def _telling(self, robot: Robot, topic: str) -> Iterator[None]:
-        """A message that cannot be read is a refused command, too."""
+        """Context in which a command is read; an unreadable one is published as a refused command."""
         try:
             yield
         except PayloadError as error:

@@ -1,4 +1,4 @@
-"""Between the core's values and ROS 2 messages, both ways; bad messages raise PayloadError. SI units."""
+"""Conversion between the core's values and ROS 2 messages; raises PayloadError for bad ones. SI units."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from arboleda.wire.status import from_heard_labels, from_label, to_heard_label, 
 
 COPY = "copy"  # the label of what the topic `command` carries, too; there, of what is copied
 
-_AT_NODE = 0.125  # of the pitch: a mobile farther than this from every node is between nodes
+_AT_NODE = 0.125  # share of the pitch: a mobile farther from every node is between nodes
 
 
 def commands_of(robot: Robot) -> tuple[type[Command], ...]:
@@ -58,8 +58,11 @@ def command_message(command: Command, *, copy: bool = False) -> Float32MultiArra
 
 
 def labelled_message(robot: Robot, command: Command, *, copied: bool) -> Float32MultiArray | String:
-    """A command as the robot's topic for all of them carries it: with its id, what the plant had heard of the
-    robot, and whether its plain topic has a copy."""
+    """A command for the robot's topic of all commands.
+
+    It carries the id, the telemetry that the plant had heard of the robot, and whether its plain topic has a
+    copy.
+    """
     if isinstance(robot, Device):
         return String(data=order.write(command, copied=copied))
     heard = () if command.heard is None else (to_heard_label(command.heard),)
@@ -68,12 +71,12 @@ def labelled_message(robot: Robot, command: Command, *, copied: bool) -> Float32
 
 
 def is_copy(message: Float32MultiArray | UInt8) -> bool:
-    """Whether a message of a plain topic says that `command` carries the same; UInt8 cannot say so."""
+    """True if a message of a plain topic is marked as a copy of one on `command`; UInt8 has no mark."""
     return isinstance(message, Float32MultiArray) and any(dim.label == COPY for dim in message.layout.dim[1:])
 
 
 def labelled_command(robot: Robot, message: Float32MultiArray | String) -> tuple[Command, bool]:
-    """The command in a message of the robot's topic for all of them, and whether a UInt8 copy of it comes."""
+    """The command in a message of the robot's topic of all commands; True if a UInt8 copy of it comes."""
     if isinstance(robot, Device):
         return order.read(robot, message.data)
     labels = [dim.label for dim in message.layout.dim]
@@ -99,7 +102,7 @@ def labelled_command(robot: Robot, message: Float32MultiArray | String) -> tuple
 
 
 def command(kind: type[Command], robot: Robot, message: Float32MultiArray | UInt8) -> Command:
-    """The command in a message of `robot`'s plain topic; the id is "" where the message carries none."""
+    """The command in a message of `robot`'s plain topic; its id is "" if the message has none."""
     if isinstance(robot, Arm) and kind is MoveJoints:
         id, values = _unlabelled(message, robot.name)
         return MoveJoints(id=id, robot=robot.name, q=_joints(robot, values))
@@ -117,13 +120,13 @@ def command(kind: type[Command], robot: Robot, message: Float32MultiArray | UInt
 
 
 def state_report(at: float, robot: Robot, message: UInt8) -> Report:
-    """What a `motion_state` says."""
+    """The report that a `motion_state` makes."""
     state = MotionState(_one_of(message, tuple(MotionState)))
     return Report(at=at, robot=robot.name, state=state)
 
 
 def joints_report(at: float, robot: Robot, message: JointState) -> Report:
-    """What a `joint_states` says; a mobile between two nodes reports no node."""
+    """The report that a `joint_states` makes; a mobile between two nodes reports no node."""
     measured = _positions(joint_names(robot), message)
     if isinstance(robot, Mobile):
         return Report(at=at, robot=robot.name, node=_nearest(robot, *measured))
@@ -141,7 +144,7 @@ def _values(command: Command) -> Sequence[float]:
 
 
 def _labelled(id: str, values: Sequence[float], *more: str) -> Float32MultiArray:
-    """The further labels have size and stride 1, so that the layout describes the same values."""
+    """The values with labels; further labels have size and stride 1, so that the layout stays the same."""
     message = Float32MultiArray(data=[float(value) for value in values])
     size = len(message.data)
     first = MultiArrayDimension(label=to_label(id), size=size, stride=size)
@@ -150,7 +153,7 @@ def _labelled(id: str, values: Sequence[float], *more: str) -> Float32MultiArray
 
 
 def _unlabelled(message: Float32MultiArray, robot: str) -> tuple[str, tuple[float, ...]]:
-    """The command id and the numbers; a label of somebody else's making counts as none."""
+    """The command id and the numbers; a label of any other form counts as none."""
     values = tuple(message.data)
     for place, value in enumerate(values, start=1):
         if not math.isfinite(value):

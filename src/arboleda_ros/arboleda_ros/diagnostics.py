@@ -1,4 +1,4 @@
-"""A DiagnosticArray of many statuses of which few change: each is serialised once.
+"""DiagnosticArray of many statuses, few of which change: each is serialised once.
 
 To build and serialise one of 300 statuses takes 5 ms, every second and at each change.
 """
@@ -22,13 +22,13 @@ _PADDING = (b"", b"\0\0\0", b"\0\0", b"\0")
 
 
 class Diagnostics:
-    """Serialises arrays; remembers the statuses of the last one by name."""
+    """Serialiser of arrays, which remembers the statuses of the last one by name."""
 
     def __init__(self) -> None:
         self._known: dict[str, tuple[Diagnostic, bytes, bytes]] = {}
 
     def of(self, plain: Iterable[Diagnostic], stamp: Time) -> Generator[None, None, bytes]:
-        """The array as CDR, for Publisher.publish; each status is a part."""
+        """The array as CDR for Publisher.publish, in parts of one status each."""
         message = DiagnosticArray()
         message.header.stamp = stamp
         written = bytearray(serialize_message(message)[:-4])  # the number of statuses comes last, 0
@@ -44,7 +44,7 @@ class Diagnostics:
         return bytes(written)
 
     def _status(self, plain: Diagnostic) -> tuple[bytes, bytes]:
-        """The level, and all that follows its padding; what that begins with is aligned to 4."""
+        """The level, and all that follows its padding; the latter is aligned to 4."""
         known = self._known.get(plain[0])
         if known is None or known[0] != plain:
             data = serialize_message(statuses.diagnostic(*plain))

@@ -1,4 +1,4 @@
-"""The topics that a node must have to itself, and who else publishes there."""
+"""Topics that a node must have to itself, and the watch for others that publish there."""
 
 from __future__ import annotations
 
@@ -11,18 +11,18 @@ from arboleda.model.errors import StartError
 from arboleda.model.outside import plain
 
 _POLL_S = 0.02
-# Fast DDS answers a newcomer once, often before that can listen, and announces itself again after 3 s
+# Fast DDS answers a new node once, often too early, and announces itself again after 3 s
 DISCOVERY_S = 3.2
-_NAME_S = 3.0  # how much longer to wait for the name of a publisher that was found
-_SETTLED_S = 1.0  # how soon a node that has just been found tells its publishers on a busy machine
-_UNSETTLED_S = 10.0  # how much longer to wait at most where nodes come and go
+_NAME_S = 3.0  # further wait for the name of a publisher that was found
+_SETTLED_S = 1.0  # a new node tells its publishers within this time, on a busy machine, too
+_UNSETTLED_S = 10.0  # greatest further wait while nodes come and go
 UNNAMED = "a node without a name"  # discovery may show a publisher before it knows the node
-_LOOKED_AT = 5  # topics in one look: each takes as long as the whole graph is large
+_LOOKED_AT = 5  # topics in one look; the time for each grows with the whole graph
 _ALERT = 5  # looks at all topics once nodes have come or gone; what they publish is discovered a little later
 
 
 class ExclusiveTopics:
-    """`topics` are relative names; to be watched from their node's own making on."""
+    """Watch over `topics` (relative names), to be made as soon as the node is."""
 
     def __init__(self, node: Node) -> None:
         self.topics: list[str] = []
@@ -34,7 +34,7 @@ class ExclusiveTopics:
         self._alert = 0
 
     def others(self) -> list[tuple[str, str]]:
-        """(topic, node name) of every other publisher now."""
+        """The (topic, node name) of every other publisher now."""
         return [(self._absolute(topic), name) for topic in self.topics for name in self._others(topic)]
 
     def check(self, wait_s: float) -> None:

@@ -19,7 +19,7 @@ TYPES = {"single": "GripperCommand", "parallel": "ParallelGripperCommand"}
 
 @driver("gripper_command", settings=Settings)
 class GripperCommand(ActionClientDriver):
-    """One gripper behind a gripper controller."""
+    """Driver of one gripper behind a gripper controller."""
 
     package = "control_msgs"
 

@@ -11,7 +11,7 @@ from .action_client import stamp_of
 
 
 def listen_to_joints(node: Any, topic: str, see: Callable[[JointStateEvent], None]) -> None:
-    """Have every joint state of a topic seen."""
+    """Subscribe to a topic of joint states, and pass each one on."""
     from sensor_msgs.msg import JointState
 
     from .qos import SENSOR

@@ -17,7 +17,7 @@ from .joint_states import listen_to_joints
 
 @driver("follow_joint_trajectory", settings=Settings)
 class FollowJointTrajectory(ActionClientDriver):
-    """One arm behind a joint trajectory controller."""
+    """Driver of one arm behind a joint trajectory controller."""
 
     package = "control_msgs"
     type_name = "FollowJointTrajectory"

@@ -29,11 +29,11 @@ LOG = logging.getLogger("arboleda.ros")
 
 _SPIN_S = 1.0
 _FLUSH_S = 1.0
-_HOPS = 4  # a task that makes a task that makes a task, and one more where the executor takes the last first
+_HOPS = 4  # three tasks in a chain, and one more for an executor that takes the last one first
 
 
 def connect(*, args: Sequence[str] = (), lan: bool = False) -> Link:
-    """Join ROS 2; `args` may hold `--ros-args`, `lan` lets other machines in. StartError if it cannot."""
+    """Join ROS 2; `args` may hold `--ros-args`, `lan` admits other machines. Raises StartError on failure."""
     note = limit_discovery(os.environ, lan=lan)
     context = Context()
     try:
@@ -44,7 +44,7 @@ def connect(*, args: Sequence[str] = (), lan: bool = False) -> Link:
 
 
 def limit_discovery(environ: MutableMapping[str, str], *, lan: bool) -> str | None:
-    """Keep ROS 2 on this machine unless `lan` or the user's environment decides; the line that says so."""
+    """Keep ROS 2 on this machine unless `lan` or the environment decides; returns a line on that."""
     if lan or "ROS_AUTOMATIC_DISCOVERY_RANGE" in environ or "ROS_LOCALHOST_ONLY" in environ:
         return None
     humble = environ.get("ROS_DISTRO") == "humble"
@@ -54,7 +54,7 @@ def limit_discovery(environ: MutableMapping[str, str], *, lan: bool) -> str | No
 
 
 class Link:
-    """The ROS 2 side of the parts in this process. Make the ports, `start`, and `close` at the end."""
+    """Connection of this process to ROS 2. Make the ports, `start`, and `close` at the end."""
 
     def __init__(self, context: Context, *, notes: tuple[str, ...] = ()) -> None:
         self.notes = notes
@@ -68,7 +68,7 @@ class Link:
         atexit.register(self.close)  # a thread still in rclpy aborts the process at its exit
 
     def node(self, name: str) -> Node:
-        """The node of that name, made at the first call; before `start` only."""
+        """The node of that name, made at the first call; only before `start`."""
         if name not in self._nodes:
             self._nodes[name] = Node(name, context=self._context)
             self.log.join(self._nodes[name])
@@ -91,7 +91,7 @@ class Link:
         return port
 
     def standby(self) -> StandbyVoice:
-        """What says in `/diagnostics` that this process waits to lead a plant, until it is closed."""
+        """A voice in `/diagnostics` for a process that waits to lead a plant; close it at the end."""
         return StandbyVoice(self._context)
 
     def start(self) -> None:
@@ -124,7 +124,7 @@ class Link:
         self._context.try_shutdown()
 
     def _flush(self) -> None:
-        """Let the executor do what it was given, and what comes of that."""
+        """Let the executor finish the tasks given to it, and those that follow from them."""
         for _ in range(_HOPS if self._thread.is_alive() else 0):
             done = threading.Event()
             self._executor.create_task(done.set)

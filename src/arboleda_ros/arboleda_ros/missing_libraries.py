@@ -1,4 +1,4 @@
-"""What to install where a library is missing or too old; imports nothing that may be missing itself."""
+"""Install advice for a library that is missing or too old; imports nothing that may be missing itself."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ ON_PYPI = {
 
 
 def sentence(error: ImportError) -> str:
-    """One sentence on an import that failed: which library, why, and what to do."""
+    """One sentence on a failed import: the library, the reason, and the remedy."""
     library = (error.name or "").partition(".")[0]
     why = (str(error).splitlines() or ["no reason given"])[0]
     name = ON_PYPI.get(library, library)

@@ -18,7 +18,7 @@ from .action_client import ActionClientDriver, stamp_of
 
 
 class _Nav2(ActionClientDriver):
-    """What both have: where the base is."""
+    """Base of both drivers of Nav2: it measures the pose of the base."""
 
     package = "nav2_msgs"
 
@@ -44,7 +44,7 @@ class _Nav2(ActionClientDriver):
 
 @driver("navigate_to_pose", settings=ToPose)
 class NavigateToPose(_Nav2):
-    """One base; each node of a way is a goal of its own."""
+    """Driver of one base; each node of a way is a goal of its own."""
 
     type_name = "NavigateToPose"
 
@@ -61,7 +61,7 @@ class NavigateToPose(_Nav2):
 
 @driver("follow_waypoints", settings=Waypoints)
 class FollowWaypoints(_Nav2):
-    """One base; all nodes of a way are one goal."""
+    """Driver of one base; all nodes of a way are one goal."""
 
     type_name = "FollowWaypoints"
 
@@ -76,17 +76,17 @@ class FollowWaypoints(_Nav2):
 
 
 def error_of(result: Any) -> dict[str, Any]:
-    """Its number and its text, which not every release of Nav2 has."""
+    """The number and text of an error; not every release of Nav2 has the text."""
     return {"error": getattr(result, "error_code", 0), "text": getattr(result, "error_msg", "")}
 
 
 def index_of(missed: Any) -> int:
-    """A number, or a message that has one: releases of Nav2 differ."""
+    """The number in a value: releases of Nav2 send a number, or a message that has one."""
     return int(getattr(missed, "index", getattr(missed, "waypoint_index", missed)))
 
 
 def pose_of(pose: Any) -> Pose:
-    """What of a pose lies on the floor; an orientation that is none has no yaw."""
+    """The pose on the floor; the yaw of an invalid orientation is NaN."""
     turned = pose.orientation
     # Products, not powers: a power that is too large for a number raises.
     across = turned.w * turned.z + turned.x * turned.y
@@ -97,7 +97,7 @@ def pose_of(pose: Any) -> Pose:
 
 
 def stamped(pose: Pose, frame: str) -> Any:
-    """A pose as a message; without a time, which means now."""
+    """A pose as a message without a time, which means now."""
     from geometry_msgs.msg import PoseStamped
 
     message = PoseStamped()
@@ -107,6 +107,6 @@ def stamped(pose: Pose, frame: str) -> Any:
 
 
 def fill(message: Any, pose: Pose) -> None:
-    """Have a message say that pose."""
+    """Fill a message with a pose."""
     message.position.x, message.position.y = pose.x, pose.y
     message.orientation.z, message.orientation.w = math.sin(pose.yaw / 2), math.cos(pose.yaw / 2)

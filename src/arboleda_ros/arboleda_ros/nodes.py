@@ -1,4 +1,4 @@
-"""The executables of this package; what they need is imported only once one of them runs."""
+"""Executables of this package; their libraries are imported only when one of them runs."""
 
 from __future__ import annotations
 
@@ -10,17 +10,17 @@ NAMES = ("orchestrator", "mqtt_bridge", "virtual_devices")
 
 
 def orchestrator() -> int:
-    """The plant itself: tasks in, commands out."""
+    """Run the plant itself: tasks in, commands out."""
     return main("orchestrator")
 
 
 def mqtt_bridge() -> int:
-    """Between ROS 2 and the boards on MQTT."""
+    """Run the bridge between ROS 2 and the boards on MQTT."""
     return main("mqtt_bridge")
 
 
 def virtual_devices() -> int:
-    """The boards, simulated."""
+    """Run simulated boards."""
     return main("virtual_devices")
 
 

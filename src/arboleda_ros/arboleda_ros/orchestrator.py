@@ -1,4 +1,4 @@
-"""The plant's side of ROS 2: commands and notices out, reports, tasks and operators' requests in."""
+"""ROS 2 side of the plant: commands and notices out, reports, tasks and operators' requests in."""
 
 from __future__ import annotations
 
@@ -54,17 +54,17 @@ if TYPE_CHECKING:  # they are there only where the types of their messages are b
 
 LOG = logging.getLogger("arboleda.ros")
 UNHEARD = qos.TASK_STATUS.depth // 2
-CATCH_UP = Duration(seconds=0.02)  # who hears later than that loses the oldest
+CATCH_UP = Duration(seconds=0.02)  # a listener that is slower loses the oldest messages
 TYPES = "arboleda_interfaces"
 STREAM_TYPES = "py_trees_ros_interfaces"
 
 
 class NoBridge(ArboledaError):
-    """A command was not published; it will not be sent later."""
+    """Error: a command was not published, and will not be sent later."""
 
 
 class OrchestratorPort(Port):
-    """Node `orchestrator`: `on_event` gets every core event, on the link's thread."""
+    """Node `orchestrator`; `on_event` gets every core event, on the link's thread."""
 
     def __init__(
         self, node: Node, model: PlantModel, on_event: Callable[[Event], None], clock: Callable[[], float]
@@ -105,7 +105,7 @@ class OrchestratorPort(Port):
             self._hear(robot)
 
     def send(self, message: Command | Notice) -> None:
-        """Publish one output of the plant; NoBridge where a command for MQTT would reach nobody."""
+        """Publish one output of the plant; raises NoBridge if a command for MQTT would reach nobody."""
         if isinstance(message, Heartbeat):
             self._heartbeat.publish(UInt32(data=message.epoch))
         elif isinstance(message, SystemStart):
@@ -119,13 +119,13 @@ class OrchestratorPort(Port):
 
     @property
     def watched(self) -> bool:
-        """Whether another node listens to what is published without a change too."""
+        """True if another node listens to messages that are also published without a change."""
         is_streamed = self._streams is not None and self._streams.watched
         return self.diagnosed or is_streamed or self._view.get_subscription_count() > 0
 
     @property
     def diagnosed(self) -> bool:
-        """Whether another node listens to `/diagnostics`."""
+        """True if another node listens to `/diagnostics`."""
         return self._diagnostics.get_subscription_count() > 0
 
     def publish_view(self, snapshot: Mapping[str, Any]) -> Iterator[None]:
@@ -154,7 +154,7 @@ class OrchestratorPort(Port):
             self._offer.destroy()
 
     def _offered(self, cells: Iterable[str]) -> Offer | None:
-        """What is offered in our own types; None, with a line in the log, where they are not built."""
+        """The services and topics in our own types; None, with a line in the log, if those are not built."""
         try:
             from .typed.offer import Offer
         except ModuleNotFoundError as error:
@@ -167,7 +167,7 @@ class OrchestratorPort(Port):
         return Offer(self._node, self._speak, cells, self._asker)
 
     def _streamed(self, cells: Iterable[str]) -> SnapshotStreams | None:
-        """The streams of py_trees_ros; None, with a line in the log, where its types are not installed."""
+        """The streams of py_trees_ros; None, with a line in the log, if its types are not installed."""
         try:
             from .snapshot_streams import SnapshotStreams
         except ModuleNotFoundError as error:
@@ -186,14 +186,14 @@ class OrchestratorPort(Port):
             self._offer.changed(change)
 
     def _keep_room(self) -> None:
-        """Let listeners catch up before a burst of changes pushes those out that they have not heard yet."""
+        """Wait for slow listeners before a burst of changes overwrites those that they have not read."""
         self._unheard += 1
         if self._unheard > UNHEARD:
             self._task_status.wait_for_all_acked(CATCH_UP)
             self._unheard = 0
 
     def _command(self, command: Command) -> None:
-        """On `command` where a bridge of ours listens; on the plain topic for whoever else does."""
+        """Publish a command: on `command` if our bridge listens, on the plain topic for everybody else."""
         plain, labelled = self._commands[command.robot, kind_of(command)], self._labelled.get(command.robot)
         bridges = labelled.get_subscription_count() if labelled is not None else 0
         listeners = plain.get_subscription_count()
@@ -208,7 +208,7 @@ class OrchestratorPort(Port):
             plain.publish(convert.command_message(command, copy=True))
 
     def _plain(self, robot: Robot, kind: type[Command], speak: Callable[..., Publisher]) -> Publisher:
-        """The publisher of a plain topic; that of a device's orders is the one for all its commands."""
+        """The publisher of a plain topic; that of a device's orders serves for all its commands."""
         _, of_all = convert.ordered(robot)
         topic = f"{robot.name}/{PLAIN[kind]}"
         if topic == of_all and robot.name in self._labelled:
@@ -223,7 +223,7 @@ class OrchestratorPort(Port):
         plain.publish(message)
 
     def _hear(self, robot: Robot) -> None:
-        """Subscribe to what a robot's link and evidence let it say, and to what others say to it."""
+        """Subscribe to the topics that a robot's link and evidence provide, and to others' commands to it."""
         for kind in convert.commands_of(robot) if robot.link is Link.ROS else ():
             overhear = partial(self._on_command, robot, kind)
             self._listen(convert.message_type(kind), f"{robot.name}/{PLAIN[kind]}", overhear, qos.BEST_EFFORT)
@@ -252,7 +252,7 @@ class OrchestratorPort(Port):
         return lambda message: self._on_event(read(self._clock(), robot, message))
 
     def _on_command(self, robot: Robot, kind: type[Command], message: Any) -> None:
-        """A command on a topic of a robot that hears everybody: the plant's own, or somebody else's."""
+        """Take a command on a topic of a robot that hears everybody: the plant's own, or somebody else's."""
         if self._own[robot.name, kind].is_own(message):
             return
         command = convert.command(kind, robot, message)

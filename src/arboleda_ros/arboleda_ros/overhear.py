@@ -9,7 +9,7 @@ from typing import Any
 from std_msgs.msg import Float32MultiArray, String, UInt8
 
 Said = tuple[tuple[float | str, ...], tuple[str, ...]]
-KEPT = 20  # own messages that may be under way to our own ear; one that got lost must not be waited for
+KEPT = 20  # own messages that may still be heard; a lost one must not be expected for ever
 
 
 class OwnTopic:
@@ -23,12 +23,12 @@ class OwnTopic:
         self._lock = threading.Lock()  # the plant speaks on its own thread, and hears on that of the link
 
     def say(self, message: Float32MultiArray | UInt8 | String) -> None:
-        """To be called before the message is published."""
+        """Note a message; call it before the message is published."""
         with self._lock:
             self._said.append(_content(message))
 
     def is_own(self, message: Any) -> bool:
-        """Whether a heard message is one that was said; each is answered for once."""
+        """True if a heard message is one of this process's own; each of these is recognised once."""
         with self._lock:
             try:
                 self._said.remove(_content(message))

@@ -1,4 +1,4 @@
-"""Questions to the plant whose answer a ROS 2 service waits for."""
+"""Requests to the plant for whose answer a ROS 2 service waits."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ Answer = OperatorAnswer | TaskChanged
 
 
 class NoAnswer(ArboledaError):
-    """The plant did not answer in time; what was asked may still be done."""
+    """Error: the plant did not answer in time; the request may still be carried out."""
 
 
 class Asker:
@@ -36,7 +36,7 @@ class Asker:
         self._waiting: dict[str, Future[Any]] = {}
 
     def operate(self, verb: Verb, scope: str = "", **more: bool) -> tuple[bool, str]:
-        """Have an operator's verb done; whether it was, or is under way, and what there is to say of it."""
+        """Carry out an operator's verb; returns whether it was done or is under way, and a sentence."""
         try:
             answer = self._ask(
                 lambda token: OperatorRequest(at=self._clock(), verb=verb, scope=scope, request=token, **more)
@@ -53,24 +53,24 @@ class Asker:
         return answer.outcome is not Outcome.FAILED, str(answer.why or "")
 
     def submit(self, text: str) -> TaskChanged:
-        """Ask for a task; what became of it first, refused too, or NoAnswer."""
+        """Submit a task; returns its first state, a refusal included. Raises NoAnswer."""
         return self._ask(lambda token: TaskRequest(at=self._clock(), text=text, request=token))
 
     def submit_later(self, text: str, token: str) -> None:
-        """Ask for a task; the TaskChanged that answers carries the token."""
+        """Submit a task without waiting; the TaskChanged that answers carries the token."""
         self._post(TaskRequest(at=self._clock(), text=text, request=token))
 
     def cancellation_refusal(self, task: str) -> str | None:
-        """Have a task cancelled for its client; why it was not, None where it was."""
+        """Cancel a task for its client; returns the reason for a refusal, None if it was cancelled."""
         done, said = self.operate(Verb.CANCEL, task, client=True)
         return None if done else said
 
     def cancel_later(self, task: str) -> None:
-        """Ask for a task to be cancelled for its client; its changes tell what came of it."""
+        """Cancel a task for its client without waiting; its changes tell the outcome."""
         self._post(OperatorRequest(at=self._clock(), verb=Verb.CANCEL, scope=task, client=True))
 
     def answered(self, answer: Answer) -> None:
-        """Take in an answer of the plant, to whomever it is."""
+        """Take an answer of the plant, and pass it to whoever waits for it."""
         waiting = self._waiting.pop(answer.request or "", None)
         if waiting is not None:
             waiting.set_result(answer)

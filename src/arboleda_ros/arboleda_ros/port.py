@@ -1,4 +1,4 @@
-"""What the ROS 2 ports share: guarded handlers, one sentence per bad message, and their health."""
+"""Base of the ROS 2 ports: guarded handlers, one sentence per bad message, and their health."""
 
 from __future__ import annotations
 
@@ -23,13 +23,13 @@ from . import qos, statuses
 from .exclusive_topics import DISCOVERY_S, ExclusiveTopics
 from .speakers import Speakers
 
-NAMED = "arboleda: "  # how the names of all our statuses begin
+NAMED = "arboleda: "  # prefix of the names of all our statuses
 _DIAGNOSTICS_S = 1.0
 
 
 @dataclass(frozen=True, kw_only=True)
 class PortHealth:
-    """What `/diagnostics` says about a port: sentences to warn of, errors, and counts since the start."""
+    """Health of a port for `/diagnostics`: sentences to warn of, errors, and counts since the start."""
 
     warnings: tuple[str, ...]
     errors: tuple[str, ...]
@@ -38,7 +38,7 @@ class PortHealth:
 
 
 class Port:
-    """One node's topics. Names are relative; no message and no handler ends the executor."""
+    """Topics of one node. Names are relative; no message and no handler ends the executor."""
 
     def __init__(self, node: Node, clock: Callable[[], float]) -> None:
         self._node = node
@@ -59,10 +59,10 @@ class Port:
         self._alone.check(wait_s)
 
     def close(self) -> None:
-        """End what others still wait for; the executor runs on until they are told."""
+        """End everything that others still wait for; the executor runs on until they know."""
 
     def destroy(self) -> None:
-        """Give back what does not end with the node; nothing is delivered any more."""
+        """Release everything that does not end with the node; nothing is delivered any more."""
 
     def health(self) -> PortHealth:
         """The health now; a node that joined topics of this port's own is logged, each time it comes."""
@@ -76,7 +76,7 @@ class Port:
         )
 
     def _diagnosed(self, what: str) -> str:
-        """The name of a status: plants of all namespaces share `/diagnostics`, so it says whose it is."""
+        """The name of a status with its namespace, as plants of all namespaces share `/diagnostics`."""
         namespace = self._node.get_namespace().strip("/")
         return f"{NAMED}{namespace}/{what}" if namespace else f"{NAMED}{what}"
 
@@ -86,7 +86,7 @@ class Port:
         self._diagnostics.publish(message)
 
     def _links(self) -> list[DiagnosticStatus]:
-        """What `/diagnostics` says of further links of this node."""
+        """The diagnostic statuses of further links of this node."""
         return []
 
     def _tell_health(self) -> None:
@@ -108,8 +108,10 @@ class Port:
         raw: bool = False,
         speakers: Speakers | None = None,
     ) -> None:
-        """Have `handle` called with each message, `raw` ones as bytes, and with `speakers` only with those
-        that count."""
+        """Subscribe `handle` to a topic; `raw` messages come as bytes.
+
+        With `speakers` it is called only for messages that count.
+        """
         handle, on_match = self._spoken(topic, handle, speakers)
         events = qos.subscription_events(
             lambda policy: self._incompatible(topic, "publisher", policy), on_match
@@ -119,7 +121,8 @@ class Port:
     def _spoken(
         self, topic: str, handle: Callable[[Any], None], speakers: Speakers | None
     ) -> tuple[Callable[[Any], None], Callable[[Any], None] | None]:
-        """What is called with each message of a topic, and with each publisher that comes or goes."""
+        """The callbacks for a topic's messages, and for publishers that come or go (None without
+        speakers)."""
         guarded = self._guarded(topic, handle)
         if speakers is None:
             return guarded, None
@@ -134,7 +137,7 @@ class Port:
         raw: bool = False,
         speakers: Speakers | None = None,
     ) -> None:
-        """Like `_listen`, reliably for as long as every publisher offers that, else best effort."""
+        """Subscribe like `_listen`; reliably while every publisher offers that, else best effort."""
         guarded, on_match = self._spoken(topic, handle, speakers)
 
         def make(profile: QoSProfile, on_policy: Callable[[str], None]) -> Subscription:
@@ -160,7 +163,7 @@ class Port:
         reliable = [make(qos.COMMAND, adapt)]
 
     def _speak(self, kind: type, topic: str, profile: QoSProfile, *, alone: bool = False) -> Publisher:
-        """A publisher; `alone` where a second publisher of the topic is a fault."""
+        """A publisher; `alone`: a second publisher of the topic is a fault."""
         if alone:
             self._alone.topics.append(topic)
         events = qos.publisher_events(lambda policy: self._incompatible(topic, "subscription", policy))

@@ -1,4 +1,4 @@
-"""How the topics of Arboleda are delivered."""
+"""Quality of service of the topics of Arboleda."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def _reliable(depth: int, durability: DurabilityPolicy) -> QoSProfile:
 
 
 COMMAND = _reliable(10, DurabilityPolicy.VOLATILE)
-# whoever sends faster than the plant reads must lose no task, so that it keeps all that wait
+# no task may be lost to a slow reader, so all that wait are kept
 TASK_REQUEST = QoSProfile(
     history=HistoryPolicy.KEEP_ALL,
     reliability=ReliabilityPolicy.RELIABLE,
@@ -42,19 +42,22 @@ SENSOR = QoSProfile(depth=10, reliability=ReliabilityPolicy.BEST_EFFORT, durabil
 RELIABILITY = qos_policy_name_from_kind(QoSPolicyKind.RELIABILITY)
 
 
-# whether a subscription hears of publishers that come and go; that of Humble does not
+# True if a subscription is told of publishers that come and go; not so in Humble
 TELLS_MATCHES = hasattr(SubscriptionEventCallbacks(), "matched")
 
 
 def publisher_events(on_policy: Callable[[str], None]) -> PublisherEventCallbacks:
-    """Calls `on_policy` with the policy an incompatible subscription broke."""
+    """Callbacks of a publisher: `on_policy` gets the policy that a subscription is incompatible with."""
     return PublisherEventCallbacks(incompatible_qos=_naming(on_policy))
 
 
 def subscription_events(
     on_policy: Callable[[str], None], on_match: Callable[[Any], None] | None = None
 ) -> SubscriptionEventCallbacks:
-    """Calls `on_policy` with the policy an incompatible publisher broke; `on_match` as they come and go."""
+    """Callbacks of a subscription: `on_policy` gets a publisher's incompatible policy.
+
+    `on_match` is called when publishers come and go.
+    """
     events = SubscriptionEventCallbacks(incompatible_qos=_naming(on_policy))
     if on_match is not None and TELLS_MATCHES:
         events.matched = on_match

@@ -1,4 +1,4 @@
-"""What one robot reports, on its topics.
+"""Publisher of one robot's reports on its topics.
 
 Publishing copies a message, and to make one takes longer than to fill it: so each is made once, and changed
 from report to report by the one thread that publishes.
@@ -50,7 +50,7 @@ class RobotPublisher:
 
 
 class StatusMessage:
-    """A robot's `status`."""
+    """Message `status` of a robot, which is used again and again."""
 
     def __init__(self, robot: Robot) -> None:
         self._robot = robot
@@ -79,14 +79,14 @@ class StatusMessage:
 
 
 class JointsMessage:
-    """A robot's `joint_states`: only measured values."""
+    """Message `joint_states` of a robot, with measured values only."""
 
     def __init__(self, robot: Robot) -> None:
         self._robot = robot
         self._message = JointState(name=list(joint_names(robot)))
 
     def of(self, report: Report, clock: Clock) -> JointState | None:
-        """The message for one report, which the next call changes; None where nothing was measured."""
+        """The message for a report, None if nothing was measured; the next call changes it."""
         measured = measured_joints(self._robot, report)
         if measured is None:
             return None

@@ -47,25 +47,25 @@ class RosLog:
         self._children = os.environ.get("ROS_DISTRO") != "humble"
 
     def join(self, node: Node) -> None:
-        """Let a node say lines; the first one says those that belong to none."""
+        """Let a node write lines; the first one also writes those that belong to no node."""
         with self._lock:
             self._nodes[node.get_name()] = node
 
     def close(self) -> None:
-        """Say nothing any more, and let go of the nodes."""
+        """Write nothing more, and release the nodes."""
         with self._lock:
             self._nodes.clear()
             self._loggers.clear()
 
     def __call__(self, line: logging.LogRecord) -> None:
-        """Say a line where its logger's level lets it pass."""
+        """Write a line if its logger's level lets it pass."""
         with self._lock:
             logger = self._logger(line.name)
             if logger is not None:
                 _SAY[_level(line)](logger, line.getMessage())
 
     def heading(self, line: logging.LogRecord) -> str | None:
-        """What a line begins with on a console of ROS 2; None where its logger's level keeps it back."""
+        """The prefix of a line on a console of ROS 2; None if its logger's level suppresses the line."""
         level = _level(line)
         with self._lock:
             logger = self._logger(line.name)
@@ -76,7 +76,7 @@ class RosLog:
             return _heading(level, line.created, logger.name)
 
     def _logger(self, name: str) -> Logger | None:
-        """The logger for what Python's logger of that name says; None where no node is there."""
+        """The logger for the name of a Python logger; None if there is no node yet."""
         if not self._nodes:
             return None
         part = name.removeprefix(f"{OURS}.")
@@ -90,7 +90,7 @@ class RosLog:
 
 
 def _level(line: logging.LogRecord) -> int:
-    """Python's level at or below that of a line; DEBUG below all."""
+    """Python's level at or below that of a line; DEBUG if lower than all."""
     return max((level for level in _SAY if level <= line.levelno), default=logging.DEBUG)
 
 

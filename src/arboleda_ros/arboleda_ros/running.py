@@ -1,4 +1,4 @@
-"""One ROS 2 node: builds its part of the plant and runs it until SIGINT or SIGTERM."""
+"""Runner of one ROS 2 node: builds its part of the plant and runs it until SIGINT or SIGTERM."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ _KINDS = {float: "a number", str: "a text", bool: "true or false"}
 
 
 def run(name: str) -> int:
-    """Run the node `name` until a signal interrupts it; 1 where it cannot start."""
+    """Run the node `name` until a signal interrupts it; returns 1 if it cannot start."""
     raise_at_signals()
     try:
         return _run(name)
@@ -66,7 +66,7 @@ def run(name: str) -> int:
 
 
 def offered(name: str) -> dict[str, tuple[Value, str]]:
-    """The parameters of the node `name`: each with its default and what it is."""
+    """The parameters of the node `name`, each with its default and description."""
     return {**_PARAMETERS, **({**_DASHBOARD, **_STORE} if name == "orchestrator" else {})}
 
 
@@ -96,14 +96,14 @@ def _run_app(app: App) -> None:
 
 
 def _to_console(log: RosLog, line: logging.LogRecord) -> None:
-    """A line as ROS 2 writes it."""
+    """A line in the form of ROS 2's console output."""
     heading = log.heading(line)
     if heading is not None:
         _complain(heading + line.getMessage())
 
 
 def _complain(sentence: str) -> None:
-    """A line on standard error, past Python's buffer: a thread that waits there must not hold up the exit."""
+    """Write to standard error, past Python's buffer: a thread blocked there must not hold up the exit."""
     os.write(STDERR, f"{sentence}\n".encode())
 
 
@@ -139,7 +139,7 @@ def _app(link: Link, name: str) -> App:
 
 
 def _embedded(name: str) -> str:
-    """The part that is the plant's own broker; only boards that are simulated may bring it."""
+    """The plant's own broker as a part; it may run only with simulated boards."""
     if name != "virtual_devices":
         raise StartError(
             "the parameter broker is 'embedded', which only virtual_devices can be; "
@@ -149,7 +149,7 @@ def _embedded(name: str) -> str:
 
 
 def _has_web() -> bool:
-    """Whether the libraries of the page are there; a line in the log where they are not."""
+    """True if the libraries of the page are installed; logs a warning if not."""
     try:
         for name in ("arboleda.dashboard.page", "arboleda.runtime.parts.web"):
             import_module(name)
@@ -160,7 +160,7 @@ def _has_web() -> bool:
 
 
 def _parameters(node: Node, name: str) -> dict[str, Any]:
-    """The node's parameters, read-only once it runs; StartError for a value of a wrong type."""
+    """The node's parameters, read-only once it runs; raises StartError for a value of a wrong type."""
     known = offered(name)
     for key, (default, description) in known.items():
         about = ParameterDescriptor(description=description, read_only=True, dynamic_typing=True)

@@ -1,4 +1,4 @@
-"""Who may have published a message: rclpy does not say whose it is, only who publishes on its topic."""
+"""Possible senders of a message: rclpy does not tell the sender, only who publishes on the topic."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _LONGEST = 80  # characters of a name
 
 
 class Senders:
-    """The publishers of a topic, the plant itself left out."""
+    """Publishers of a topic, without the plant itself."""
 
     def __init__(self, node: Node, clock: Callable[[], float]) -> None:
         self._node = node
@@ -24,7 +24,7 @@ class Senders:
         self._known: dict[str, tuple[float, str]] = {}
 
     def of(self, topic: str) -> str:
-        """`/teleop`, `/teleop or /panel`; "" where discovery names nobody (any more)."""
+        """The senders as text, `/teleop` or `/teleop or /panel`; "" if discovery names nobody."""
         now = self._clock()
         at, names = self._known.get(topic, (0.0, ""))
         if not names or now >= at + _FRESH_S:

@@ -1,4 +1,4 @@
-"""Snapshot streams of py_trees_ros: what `py-trees-tree-watcher` and its like ask a cell for.
+"""Snapshot streams of py_trees_ros, which `py-trees-tree-watcher` and similar tools request.
 
 Only this module imports py_trees_ros_interfaces, which few have.
 """
@@ -24,15 +24,17 @@ from arboleda.viewers import py_trees_tree
 from . import qos
 
 MOST = 20  # streams at a time
-DESERTED_S = 60.0  # so long a stream stays that nobody listens to
+DESERTED_S = 60.0  # life of a stream without listeners
 NEARLY = 0.98  # of a period: snapshots come when they come
 NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,63}", re.ASCII)
 Cell = Mapping[str, Any]
 
 
 class SnapshotStreams:
-    """Streams of all cells, on the executor's thread; `show`, which the plant's thread calls, leaves its news
-    there."""
+    """Streams of all cells, on the executor's thread.
+
+    The plant's thread calls `show`, which leaves its news for the other thread.
+    """
 
     def __init__(self, node: Node, cells: Iterable[str], clock: Callable[[], float]) -> None:
         self._node = node
@@ -49,7 +51,7 @@ class SnapshotStreams:
 
     @property
     def watched(self) -> bool:
-        """Whether there is a stream."""
+        """True if there is a stream."""
         return bool(self._streams)
 
     def show(self, snapshot: Mapping[str, Any]) -> None:
@@ -73,8 +75,10 @@ class SnapshotStreams:
     def _open(
         self, cell: str, request: OpenSnapshotStream.Request, response: OpenSnapshotStream.Response
     ) -> OpenSnapshotStream.Response:
-        """Under a topic of its own; a wish for a name counts as far as it is one word. "" where there are too
-        many streams."""
+        """Open a stream on a topic of its own, and return the topic; "" if there are too many streams.
+
+        A requested name is used if it is one word.
+        """
         if len(self._streams) >= MOST:
             return response
         wish = request.topic_name.rpartition("/")[2]
@@ -112,7 +116,7 @@ class SnapshotStreams:
 
 
 class _Stream:
-    """One topic on which a cell's tree is shown."""
+    """Topic on which a cell's tree is shown."""
 
     def __init__(self, cell: str, publisher: Publisher, node: Node, now: float) -> None:
         self.cell = cell
@@ -131,7 +135,7 @@ class _Stream:
         return now - self._listened_at > DESERTED_S
 
     def show(self, cell: Cell, rows: Iterable[py_trees_tree.Row], now: float) -> None:
-        """Publish the tree where it has changed, or its period is over."""
+        """Publish the tree if it has changed, or if its period is over."""
         tree = py_trees_tree.behaviours(self.cell, list(rows))
         changed = tree != self._shown
         if not changed and not now - self._shown_at >= NEARLY * self.parameters.snapshot_period:

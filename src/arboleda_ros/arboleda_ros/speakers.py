@@ -1,4 +1,4 @@
-"""Who publishes what a robot reports: the middleware's word for the rule of `wire.speaker`."""
+"""Publishers of each robot's reports, from the middleware, for the rule of `wire.speaker`."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ from . import qos
 from .exclusive_topics import UNNAMED, full_name
 
 LOG = logging.getLogger("arboleda.ros.speakers")
-_FRESH_S = 0.2  # in which nobody is looked for again for each message
+_FRESH_S = 0.2  # within this time publishers are not looked up again for each message
 
 
 class Speakers:
-    """The publishers of one robot's topics. While nobody is believed, the robot counts as without link."""
+    """Publishers of one robot's topics. While nobody is believed, the robot counts as without link."""
 
     def __init__(
         self, node: Node, robot: str, clock: Callable[[], float], on_event: Callable[[Event], None]
@@ -37,7 +37,7 @@ class Speakers:
         self._known: dict[str, tuple[int, int, set[tuple[int, ...]]]] = {}
 
     def guarded(self, topic: str, handle: Callable[[Any], None]) -> Callable[[Any], None]:
-        """`handle` for what counts, called behind what the middleware has told of publishers meanwhile."""
+        """A handler that calls `handle` only for messages that count, after all news of publishers."""
 
         def believe(message: Any) -> None:
             if not self._speaker.believed(self._clock()) or not qos.TELLS_MATCHES:
@@ -55,7 +55,7 @@ class Speakers:
         return hear
 
     def matched(self, topic: str, event: Any) -> None:
-        """A publisher has come or gone; one that is gone again may have left something in the queue."""
+        """Note that a publisher came or went; one that has gone may have left messages in the queue."""
         came, matched, before = self._known.get(topic, (0, 0, set()))
         there = self._look(topic)
         self._known[topic] = (event.total_count, event.current_count, there)
@@ -68,7 +68,7 @@ class Speakers:
             self._look(topic)
 
     def _look(self, topic: str) -> set[tuple[int, ...]]:
-        """Who publishes now, as the middleware numbers them."""
+        """The ids of the present publishers of a topic, as the middleware numbers them."""
         now = self._looked[topic] = self._clock()
         found = self._node.get_publishers_info_by_topic(topic)
         names = [full_name(info) for info in found]

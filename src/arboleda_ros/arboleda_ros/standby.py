@@ -1,4 +1,4 @@
-"""A process that waits to lead a plant, as `/diagnostics` has it."""
+"""Report in `/diagnostics` of a process that waits to lead a plant."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from .port import NAMED
 
 
 class StandbyVoice:
-    """The node `standby`: it is there while the process waits, and says so; it needs no executor."""
+    """Node `standby`, there while the process waits; it needs no executor."""
 
     def __init__(self, context: Context) -> None:
         self._node = Node("standby", context=context)
@@ -24,12 +24,12 @@ class StandbyVoice:
         self._name = f"{NAMED}{namespace}/{name}" if namespace else f"{NAMED}{name}"
 
     def say(self, level: int, sentence: str, values: Mapping[str, str]) -> None:
-        """What it waits for."""
+        """Publish the state of the waiting process."""
         status = statuses.diagnostic(self._name, "standby", level, sentence, values)
         message = DiagnosticArray(status=[status])
         message.header.stamp = self._node.get_clock().now().to_msg()
         self._publisher.publish(message)
 
     def close(self) -> None:
-        """It waits no more."""
+        """End the node: the process no longer waits."""
         self._node.destroy_node()

@@ -1,4 +1,4 @@
-"""DiagnosticStatus: plain data made into one, and what the `status` of a robot reports."""
+"""DiagnosticStatus: made of plain data, and read from the `status` of a robot."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _TAIL = NUMBER_DIGITS + 1  # bytes of a serialized status that ends with its num
 def diagnostic(
     name: str, hardware_id: str, level: int, message: str, values: Mapping[str, str]
 ) -> DiagnosticStatus:
-    """Plain data as ROS 2 carries it; levels 0 OK, 1 WARN, 2 ERROR, 3 STALE."""
+    """The message made of plain data; levels 0 OK, 1 WARN, 2 ERROR, 3 STALE."""
     pairs = [KeyValue(key=key, value=value) for key, value in values.items()]
     return DiagnosticStatus(
         level=bytes([level]), name=name, hardware_id=hardware_id, message=message, values=pairs
@@ -27,7 +27,7 @@ def diagnostic(
 
 
 def report_of(at: float, robot: Robot, message: DiagnosticStatus) -> Report:
-    """The report in a message that came in at `at`; PayloadError for one that the bridge does not send."""
+    """The report in a message received `at`; raises PayloadError for one that no bridge sends."""
     values = {pair.key: pair.value for pair in message.values}
     if len(values) < len(message.values):
         raise PayloadError(f"a key comes twice in {', '.join(pair.key for pair in message.values)}")
@@ -42,31 +42,30 @@ def report_of(at: float, robot: Robot, message: DiagnosticStatus) -> Report:
 
 
 class StatusListener:
-    """Hears a robot's `status` as bytes: what only repeats the last one under the next number, as at rest, is
-    not read again."""
+    """Reader of a robot's `status` as bytes, which skips parsing those that only repeat the last one."""
 
     def __init__(self, robot: Robot, clock: Callable[[], float], on_report: Callable[[Report], None]) -> None:
         self._robot = robot
         self._clock = clock
         self._on_report = on_report
         self._last: Report | None = None
-        self._words = b""  # of the last status, without the number that it ends with
-        self._tail = 0  # how many bytes that number takes; 0 where it has none
+        self._words = b""  # the last status, without the number at its end
+        self._tail = 0  # length of that number in bytes; 0 if it has none
 
     def __call__(self, data: bytes) -> None:
-        """Tell of the report in one message; PayloadError for one that the bridge does not send."""
+        """Pass on the report in a message; raises PayloadError for one that no bridge sends."""
         at = self._clock()
         self._on_report(self._again(at, data) or self._read(at, data))
 
     def _again(self, at: float, data: bytes) -> Report | None:
-        """The last report once more, where a message says the same."""
+        """The last report once more, if a message has the same meaning; else None."""
         end = len(data) - self._tail
         if self._last is None or data[:end] != self._words:
             return None
         number = data[end:-1]
         if not self._tail:
             return self._last.again(at)
-        allowed = number.isdigit() and int(number) <= UINT32  # what is not, is read and refused
+        allowed = number.isdigit() and int(number) <= UINT32  # any other is parsed and refused
         return self._last.again(at, number=int(number)) if allowed else None
 
     def _read(self, at: float, data: bytes) -> Report:

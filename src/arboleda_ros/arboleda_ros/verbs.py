@@ -1,4 +1,4 @@
-"""The operator's verbs as services, `plant/<verb>`: std_srvs/Trigger, for the whole plant."""
+"""Operator's verbs as services, `plant/<verb>`: std_srvs/Trigger, for the whole plant."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from .plant_queries import Asker
 
 
 class VerbServices:
-    """A service per verb."""
+    """Services of the verbs, one each."""
 
     def __init__(self, node: Node, asker: Asker) -> None:
         self._asker = asker

@@ -65,7 +65,7 @@ class Client:
         return self.answer(client.call_async(kind.Request(**fields)))
 
     def hear(self, kind: type, topic: str, *, latched: bool = True) -> list[Any]:
-        """What comes on a topic; where it is `latched`, from the last messages before on."""
+        """The list that messages of a topic are appended to; if `latched`, it begins with earlier ones."""
         from rclpy.qos import DurabilityPolicy, QoSProfile
 
         heard: list[Any] = []

@@ -31,7 +31,7 @@ def plant(start: Callable[[], Any]) -> Any:
 
 
 def refusal(text: str) -> str:
-    """What the plant's own parser says of a text."""
+    """The sentence with which the plant's own parser refuses a text."""
     with pytest.raises(TextError) as refused:
         parse(text, load(None))
     return str(refused.value)

@@ -1,4 +1,4 @@
-"""How goals end when things go another way; what the plant says is typed by hand."""
+"""Ends of goals when things go another way; the plant's part is typed by hand."""
 
 from __future__ import annotations
 

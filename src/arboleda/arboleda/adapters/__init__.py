@@ -1,1 +1,1 @@
-"""One I/O library per file; each carries messages and decides nothing."""
+"""I/O, one library per file; each file carries messages and decides nothing."""

@@ -22,8 +22,8 @@ from cryptography.x509.oid import ExtendedKeyUsageOID, NameOID
 
 from arboleda.model.errors import StartError
 
-LASTS = timedelta(days=3650)  # an authority; long, for every board has to be told of the next one
-BEFORE = timedelta(hours=1)  # clocks of boards and machines may be late by that
+LASTS = timedelta(days=3650)  # life of an authority; long, as every board has to be given the next one
+BEFORE = timedelta(hours=1)  # clocks of boards and machines may be late by so much
 SIGNS = ("key_cert_sign", "crl_sign")
 USES = (
     *("digital_signature", "content_commitment", "key_encipherment", "data_encipherment", "key_agreement"),
@@ -33,7 +33,7 @@ USES = (
 
 @dataclass(frozen=True, kw_only=True)
 class Pair:
-    """A certificate and its key, as the files have them."""
+    """Certificate and its key, as PEM."""
 
     certificate: bytes
     key: bytes
@@ -41,14 +41,17 @@ class Pair:
 
 @dataclass(frozen=True, kw_only=True)
 class Facts:
-    """What a certificate says."""
+    """End and names of one certificate."""
 
     until: datetime
-    names: tuple[str, ...]  # of a host, and addresses
+    names: tuple[str, ...]  # names of a host, and its addresses
 
 
 class Authority:
-    """Signs certificates; `pair` is what it is kept as. StartError where the two files are of no use."""
+    """Certificate authority, which signs certificates; `pair` are its own two files.
+
+    Raises StartError if the files cannot be used.
+    """
 
     def __init__(self, pair: Pair) -> None:
         self.pair = pair
@@ -65,20 +68,20 @@ class Authority:
 
     @property
     def until(self) -> datetime:
-        """When it ends, and with it all that it signed."""
+        """The time at which this authority's certificate expires, and with it all that it signed."""
         return self._certificate.not_valid_after_utc
 
     def host(self, user: str, names: Sequence[str], now: datetime, days: int) -> Pair:
-        """For a server with these names and addresses; it may also log in somewhere as `user`."""
+        """A certificate for a server with these names and addresses; it may also log in as `user`."""
         uses = [ExtendedKeyUsageOID.SERVER_AUTH, ExtendedKeyUsageOID.CLIENT_AUTH]
         return self._sign(user, uses, now, days, x509.SubjectAlternativeName([_name(each) for each in names]))
 
     def client(self, user: str, now: datetime, days: int) -> Pair:
-        """For a client that logs in as `user`."""
+        """A certificate for a client that logs in as `user`."""
         return self._sign(user, [ExtendedKeyUsageOID.CLIENT_AUTH], now, days)
 
     def signed(self, certificate: bytes) -> Facts | None:
-        """What a certificate of this authority says; None for one of another."""
+        """The end and names of a certificate that this authority signed; None for any other certificate."""
         read = _certificate(certificate)
         try:
             read.verify_directly_issued_by(self._certificate)
@@ -120,7 +123,7 @@ class Authority:
 
 
 def new(name: str, now: datetime) -> Authority:
-    """An authority called `name`, which signs and does nothing else."""
+    """A new authority called `name`, whose certificate may sign others and do nothing else."""
     key = ec.generate_private_key(ec.SECP256R1())
     builder = (
         _builder(name, key, now, now + LASTS)

@@ -26,7 +26,7 @@ from .mqtt_broker.router import Router
 from .mqtt_broker.sessions import Sessions
 from .rate_limit import RateLimit
 
-if TYPE_CHECKING:  # it takes a while to load, and only who speaks TLS needs it
+if TYPE_CHECKING:  # slow to load, and needed for TLS only
     import ssl
 
     from .server_tls import ServerTls
@@ -36,7 +36,7 @@ log = logging.getLogger(__name__)
 PLANT = "arboleda"
 CHECK_S = 5.0
 RECEIVE_BUFFER_BYTES = 64 * 1024  # in the kernel, of each connection
-STRANGERS = {  # what they say to come in: CONNECT of MQTT 3.1.1, a clean session, keep-alive 5 s
+STRANGERS = {  # logins to try: CONNECT of MQTT 3.1.1, a clean session, keep-alive 5 s
     "nobody in particular": b"\x10\x0d\x00\x04MQTT\x04\x02\x00\x05\x00\x01x",
     "a user without password": b"\x10\x17\x00\x04MQTT\x04\x82\x00\x05\x00\x01x\x00\x08arboleda",
     "a wrong password": b"\x10\x1a\x00\x04MQTT\x04\xc2\x00\x05\x00\x01x\x00\x08arboleda\x00\x01x",
@@ -89,7 +89,7 @@ class EmbeddedBroker:
         try:
             if not access.guests:
                 refuse_strangers(listener, self._believing)
-        except BaseException:  # whatever it is, an open door is not left open
+        except BaseException:  # after any error the open broker is closed
             self.stop()
             raise
         return Address(host=host, port=port, tls=self._believing)
@@ -105,7 +105,7 @@ class EmbeddedBroker:
 
     @property
     def _believing(self) -> ssl.SSLContext | None:
-        """How the plant's own clients believe this broker."""
+        """The TLS settings by which the plant's own clients trust this broker; None without TLS."""
         from .server_tls import pinned
 
         return pinned(self._tls.pem) if self._tls is not None else None
@@ -144,7 +144,7 @@ class EmbeddedBroker:
             raise StartError(f"The broker cannot listen on {where}: {error.strerror or error}.") from error
 
     def _protocols(self, sessions: Sessions, router: Router) -> Callable[[], asyncio.BaseProtocol]:
-        """What makes the protocol of each connection."""
+        """The factory that makes the protocol object of each connection."""
         if self._tls is None:
             return lambda: Client(sessions, router)
         from .tls_layer import TlsLayer
@@ -167,8 +167,10 @@ class EmbeddedBroker:
 
 
 def refuse_strangers(listener: socket.socket, tls: ssl.SSLContext | None = None) -> None:
-    """Knock as a client would, without a user, without a password and with a wrong one; StartError where that
-    opens, or nobody answers."""
+    """Check that the broker refuses a login without a user, without a password, and with a wrong one.
+
+    Raises StartError if one of them is let in, or if nobody answers.
+    """
     host, port = listener.getsockname()[:2]
     with ExitStack() as opened:
         talks = {}
@@ -187,12 +189,12 @@ def refuse_strangers(listener: socket.socket, tls: ssl.SSLContext | None = None)
 
 
 def note_failure(_loop: asyncio.AbstractEventLoop, context: dict[str, Any]) -> None:
-    """A bug that one client found ends that client, not the broker."""
+    """Log a failure that one client's data caused; it ends that client, not the broker."""
     log.error("the broker: %s", context.get("message"), exc_info=context.get("exception"))
 
 
 def is_loopback(host: str) -> bool:
-    """Whether only this machine can reach a server on `host`."""
+    """True if a server on `host` can be reached from this machine only."""
     try:
         return ipaddress.ip_address(host).is_loopback
     except ValueError:

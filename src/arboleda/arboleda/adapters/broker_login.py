@@ -1,4 +1,4 @@
-"""Where a broker listens, and who logs in there; loaded without any library of MQTT."""
+"""Address of the MQTT broker and the login for it; loaded without any library of MQTT."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from arboleda.model.errors import StartError
 
 if TYPE_CHECKING:
-    import ssl  # it takes a while to load, and only who speaks over TLS needs it
+    import ssl  # slow to load, and needed for TLS only
 
 MQTT_PORT = 1883
 SECURE = "mqtts://"
@@ -20,7 +20,7 @@ USER, PASSWORD = "ARBOLEDA_MQTT_USER", "ARBOLEDA_MQTT_PASSWORD"  # anybody can r
 
 @dataclass(frozen=True, kw_only=True)
 class Address:
-    """Where a broker listens; with `tls` whoever speaks to it encrypts, and believes it as that says."""
+    """Host and port of a broker; `tls` has the settings of clients that encrypt, None without TLS."""
 
     host: str
     port: int
@@ -33,20 +33,20 @@ class Address:
 
 @dataclass(frozen=True, kw_only=True)
 class Credentials:
-    """What a client logs in with."""
+    """User name and password of an MQTT client."""
 
     user: str
     password: str = field(repr=False)
 
 
 def login() -> Credentials | None:
-    """Who this process is for a broker that asks, from the environment; None where it names no user."""
+    """The credentials from the environment for logging in to a broker; None if no user is set."""
     user = os.environ.get(USER)
     return Credentials(user=user, password=os.environ.get(PASSWORD, "")) if user else None
 
 
 def address(text: str) -> Address:
-    """HOST:PORT or HOST, with mqtts:// before it for TLS; StartError for anything else."""
+    """Parses HOST:PORT or HOST, with mqtts:// before it for TLS; raises StartError for anything else."""
     secure, plain = text.startswith(SECURE), text.removeprefix(SECURE).removeprefix("mqtt://")
     host, colon, port = plain.rpartition(":")
     if not colon:
@@ -60,8 +60,10 @@ def address(text: str) -> Address:
 
 
 def _tls() -> ssl.SSLContext:
-    """Whom this process believes, and what it shows of itself where a broker asks; StartError names the file
-    that is of no use."""
+    """The TLS settings of this process's MQTT clients: the authority they trust, and their own certificate.
+
+    Raises StartError, which names the file that is of no use.
+    """
     import ssl
 
     authority, certificate, key = (os.environ.get(name) or None for name in (CA, CERTIFICATE, KEY))

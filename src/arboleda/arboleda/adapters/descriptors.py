@@ -1,4 +1,4 @@
-"""How many files this process may have open, and how many of them each port may use for its connections.
+"""Limit of open files of this process, and the share of it that each server may use for its connections.
 
 A connection costs a file descriptor, and all parts of a process share one limit of them (RLIMIT_NOFILE). What
 the broker's clients use up is missing when somebody wants to stop the plant over HTTP, so each server gets a
@@ -29,15 +29,14 @@ QUEUE = 128  # connections that wait in the kernel, which cost no descriptor
 
 @dataclass(frozen=True, kw_only=True)
 class Shares:
-    """How many connections each server may have: `http` of all kinds, `mqtt` with those of the plant's own
-    boards and bridge among them."""
+    """Limits of connections: `http` of all kinds, `mqtt` including the plant's own boards and bridge."""
 
     http: int
     mqtt: int
 
 
 def raise_limit() -> None:
-    """Have the system let this process open more files, where it allows that without being root."""
+    """Raise this process's limit of open files as far as that is possible without being root."""
     soft, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
     wanted = RAISED_TO if hard == resource.RLIM_INFINITY else min(hard, RAISED_TO)
     if soft != resource.RLIM_INFINITY and soft < wanted:
@@ -45,13 +44,13 @@ def raise_limit() -> None:
 
 
 def shares(boards: int) -> Shares:
-    """The shares in a plant of so many boards, under the limit of now; StartError where it is too low."""
+    """The shares for a plant of so many boards, under the present limit; StartError if it is too low."""
     soft, _ = resource.getrlimit(resource.RLIMIT_NOFILE)
     return divided(RAISED_TO if soft == resource.RLIM_INFINITY else soft, boards)
 
 
 def divided(limit: int, boards: int) -> Shares:
-    """The shares where `limit` files may be open; StartError where a plant of so many boards needs more."""
+    """The shares under a limit of `limit` files; raises StartError if so many boards need more."""
     members = boards + 1  # the bridge is a client of the broker, too
     own = OWN + PER_BOARD * members + ON_THE_WAY
     least = PER_HTTP * LEAST_HTTP + LEAST_MQTT

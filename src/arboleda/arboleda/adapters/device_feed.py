@@ -1,4 +1,4 @@
-"""The way of a device's messages into its driver: whatever it says, no thread of the driver ends by that."""
+"""Guard around the messages of a device: whatever they hold, no thread of the driver ends by them."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ MOST = 120  # characters of a message that a sentence names
 
 @contextmanager
 def taking(said: object, lose: Callable[[str], object]) -> Iterator[None]:
-    """Around what is made of a message; where that breaks, `lose` hears a sentence with the message."""
+    """Context in which a message is handled; after an exception it calls `lose` with a sentence."""
     try:
         yield
-    except Exception as error:  # whatever it was, it is the device's trouble, and is told
+    except Exception as error:  # any error is blamed on the device, and reported
         LOG.debug("%s could not be taken", quoted(said, MOST), exc_info=error)
         lose(
             plain(f"it has said what cannot be taken, {quoted(said, MOST)} ({type(error).__name__}: {error})")

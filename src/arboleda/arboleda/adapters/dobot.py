@@ -36,7 +36,7 @@ LONGEST_WAIT_S = 0.5
 
 @driver("dobot", settings=Settings)
 class Dobot:
-    """One arm of Dobot's CR series. Commands leave in `send`; a thread hears both ports, and connects."""
+    """Driver of one arm of Dobot's CR series. Commands leave in `send`; a thread connects and reads."""
 
     def __init__(self, settings: Settings) -> None:
         self._settings = settings
@@ -77,7 +77,7 @@ class Dobot:
                     events = [self._connect()]
 
     def _lose(self, why: str) -> None:
-        """Nothing of this connection counts any more."""
+        """Forget all that came over this connection."""
         with self._lock:
             self._hang_up()
         self._step([Closed(why=why)])
@@ -99,7 +99,7 @@ class Dobot:
                 self._dashboard.sendall(message.text.encode("ascii"))
 
     def _heard(self) -> list[Event]:
-        """What arrives until the machine has to be stepped."""
+        """Waits until the machine's next deadline; returns the bytes and closed connections until then."""
         with self._lock:
             wait_s = self._machine.next_deadline - self._clock()
         events: list[Event] = []
@@ -115,7 +115,7 @@ class Dobot:
         return events
 
     def _connect(self) -> Event:
-        """Both connections, or why there is none."""
+        """Connect both ports, or report the reason why that is impossible."""
         opened: list[socket.socket] = []
         try:
             for port, event in (

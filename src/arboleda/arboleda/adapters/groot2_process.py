@@ -24,7 +24,7 @@ from arboleda.viewers.groot2 import WatchedTree
 
 DEFAULT_PORT = 1667
 LAST_PORT = 65534  # the one after it is the publisher's
-MEMORY_BYTES = 1 << 30  # of addresses; who fills them ends this process, and not the machine
+MEMORY_BYTES = 1 << 30  # limit of memory: filling it ends this process, not the machine
 REQUEST_BYTES = 1 << 16
 WAITING = 100  # requests and replies of a client
 NICE = 10  # the plant goes first
@@ -32,7 +32,7 @@ CHUNK_BYTES = 1 << 16
 
 
 class NoPort(Exception):
-    """Nobody can be answered; the text says why."""
+    """Error: no port can be opened; the text tells the reason."""
 
 
 class Desk:
@@ -101,11 +101,11 @@ class Desk:
                     self._saw(json.loads(line))
 
     def _answer(self, server: Any) -> None:
-        """As a REP socket would, which waits for ever where a client breaks off in its request."""
+        """Answer a request by hand on a ROUTER socket: a REP socket waits for ever for a broken one."""
         with suppress(zmq.ZMQError):  # whoever asked is gone
             parts = server.recv_multipart(zmq.NOBLOCK)
             if b"" in parts:
-                begin = parts.index(b"") + 1  # before it stands what brings the reply to the client
+                begin = parts.index(b"") + 1  # the parts before it route the reply to the client
                 reply = self._desks[server].answer(parts[begin:], time.time_ns() // 1000)
                 server.send_multipart([*parts[:begin], *reply], zmq.NOBLOCK)
 
@@ -115,7 +115,7 @@ class Desk:
 
 
 def _from(port: int) -> Iterator[int]:
-    """Where pairs of ports begin."""
+    """The first port of each pair that can be tried, upwards from `port`."""
     return iter(range(port, LAST_PORT + 1, 2))
 
 
@@ -124,7 +124,7 @@ def _pack(data: Any) -> bytes:
 
 
 def main(host: str, cells: Sequence[str], port: int | None) -> None:
-    """Say which port each cell has, or why there is none; then answer."""
+    """Print the port of each cell, or the reason why there is none; then answer."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C ends the plant, which ends this
     resource.setrlimit(resource.RLIMIT_AS, (MEMORY_BYTES, MEMORY_BYTES))
     os.nice(NICE)
@@ -135,7 +135,7 @@ def main(host: str, cells: Sequence[str], port: int | None) -> None:
         return
     _say({"ports": desk.ports})
     desk.serve(sys.stdin.fileno())
-    os._exit(0)  # what clients have not fetched is not waited for
+    os._exit(0)  # unsent replies are dropped
 
 
 def _say(what: dict[str, Any]) -> None:

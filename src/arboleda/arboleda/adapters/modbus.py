@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from pymodbus.client.base import ModbusBaseSyncClient
 
 MISSING = "pymodbus and pyserial are not installed, which it needs: pip install 'arboleda[modbus]'"
-BEAT_S = 0.2  # how often it is said that nothing has changed
+BEAT_S = 0.2  # period of reports without a change
 AGAIN_S = 0.5
 JOIN_S = 2.0
 BEATS = 2**16
@@ -38,7 +38,7 @@ WORDS = {
 
 
 class RequestRefused(DriverError):
-    """A PLC has answered a request with an exception code."""
+    """Error: a PLC has answered a request with an exception code."""
 
     def __init__(self, what: str, code: int) -> None:
         self.word = WORDS.get(code, f"code_{code}")
@@ -46,7 +46,7 @@ class RequestRefused(DriverError):
 
 
 class Line:
-    """One connection, which the devices on it use by turns."""
+    """Connection that the devices on it use in turns."""
 
     def __init__(self, settings: Settings) -> None:
         self._settings = settings
@@ -55,19 +55,18 @@ class Line:
 
     @contextmanager
     def turn(self) -> Iterator[None]:
-        """Nobody else speaks on the line; what breaks ends the connection, so that no late answer is taken
-        for another."""
+        """Context with the line to oneself; an error ends the connection, and so drops a late answer."""
         try:
             with self._lock:
                 yield
         except (RequestRefused, UnreadableValue):
             raise
-        except Exception:  # whatever it was: an answer may still be on its way
+        except Exception:  # after any error: an answer may still be on its way
             self.close()
             raise
 
     def open(self) -> None:
-        """Connect, unless it is; ConnectionError where nobody is there."""
+        """Connect, unless connected; raises ConnectionError if nobody answers."""
         if self._client is None:
             self._client = _client(self._settings)
         if not self._client.connect():
@@ -129,7 +128,7 @@ WRITES = {("coil", True): 5, ("holding", True): 6, ("coil", False): 15, ("holdin
 
 
 class Lines:
-    """The lines that are in use: two devices of one PLC, or of one serial line, share theirs."""
+    """Lines in use: devices of the same PLC, or on the same serial line, share one."""
 
     def __init__(self) -> None:
         self._lock = threading.Lock()
@@ -143,7 +142,7 @@ class Lines:
             return line
 
     def give_back(self, settings: Settings) -> None:
-        """The last one who used it closes it."""
+        """Give a line back; the last user closes it."""
         with self._lock:
             line, users = self._lines.pop(_address(settings))
             if users > 1:
@@ -157,7 +156,7 @@ LINES = Lines()
 
 @driver("modbus", settings=Settings)
 class Modbus:
-    """One device: a thread polls it, commands leave in `send`."""
+    """Driver of one device: a thread polls it, commands leave in `send`."""
 
     def __init__(self, settings: Settings) -> None:
         self._settings = settings
@@ -200,7 +199,7 @@ class Modbus:
             self._line = None
 
     def _refuse(self, command: Command, error: RequestRefused) -> None:
-        """Said as of now: as of the command it would be older than a poll that came between."""
+        """Report a refusal with the present time: with the command's it would be older than a poll."""
         if command.id:
             self._hear(Report(at=self._clock(), robot=self._name, rejected=command.id, refusal=error.word))
 
@@ -215,7 +214,7 @@ class Modbus:
             self._ending.wait(AGAIN_S)
 
     def _serve(self, line: Line) -> None:
-        """Say what the PLC shows, until it is over or something breaks."""
+        """Report the values of the PLC until the end, or until something breaks."""
         with line.turn():
             self._device.begin(self._read(line, self._device.first_blocks))
             self._up = True
@@ -236,7 +235,7 @@ class Modbus:
         return raw
 
     def _beat(self, line: Line) -> None:
-        """Tell the PLC that somebody is there; it has to stop by itself when this ends."""
+        """Write the heartbeat to the PLC, which has to stop by itself once it ends."""
         place = self._settings.heartbeat
         if place is not None:
             self._beats = (self._beats + 1) % BEATS
@@ -246,7 +245,7 @@ class Modbus:
             )
 
     def _say(self, report: Report) -> None:
-        """Hand over what is new, and from time to time that nothing is."""
+        """Hand over a report if it is news, and otherwise from time to time."""
         if self._said is not None:
             at, before = self._said
             if report.again(before.at) == before and report.at - at < BEAT_S:
@@ -274,7 +273,7 @@ def _client(settings: Settings) -> ModbusBaseSyncClient:
 
 
 def _check(answer: Any, what: str, code: int) -> None:
-    """Refused for an exception code; ConnectionError for an answer to another request than `code`.
+    """Raises Refused for an exception code, ConnectionError for an answer to another request than `code`.
 
     pymodbus takes such an answer as well.
     """
@@ -287,14 +286,14 @@ def _check(answer: Any, what: str, code: int) -> None:
 
 
 def need_library() -> None:
-    """DriverError, which says what to install, where pymodbus is missing; else it is told to be quiet."""
+    """Raises DriverError with install advice if pymodbus is missing; otherwise silences its log."""
     try:
         import pymodbus
         import serial
     except ImportError as error:
         raise DriverError(MISSING) from error
     assert pymodbus.__name__ and serial.__name__
-    logging.getLogger("pymodbus.logging").setLevel(logging.CRITICAL)  # what it says is said by the plant
+    logging.getLogger("pymodbus.logging").setLevel(logging.CRITICAL)  # the plant reports the same
 
 
 def _why(settings: Settings, error: Exception) -> str:

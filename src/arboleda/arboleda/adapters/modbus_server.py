@@ -1,4 +1,4 @@
-"""A Modbus server whose coils and registers are somebody else's: pymodbus speaks, `Memory` answers."""
+"""Modbus server for somebody else's coils and registers: pymodbus speaks, `Memory` answers."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ Trace = Callable[[bool, bytes], bytes]
 
 
 class Memory(Protocol):
-    """What a PLC holds; both are called in the server's thread, and may return an exception code instead."""
+    """Coils and registers of a PLC; called in the server's thread, may return an exception code."""
 
     def read(self, table: str, address: int, count: int) -> list[int] | int: ...
     def write(self, table: str, address: int, values: list[int]) -> int | None: ...
@@ -50,18 +50,18 @@ class ModbusServer:
         self._thread = threading.Thread(target=self._run, name="modbus server", daemon=True)
 
     def start(self) -> int:
-        """Listen; the port. OSError where that cannot be."""
+        """Listen, and return the port; raises OSError if that is impossible."""
         self._thread.start()
         return self._started.result(STARTED_S)
 
     def stop(self) -> None:
-        """End every connection, and listen no more."""
+        """End every connection and stop listening."""
         if self._thread.is_alive():
             self._loop.call_soon_threadsafe(lambda: asyncio.ensure_future(self._server.shutdown()))
         self._thread.join()
 
     def hang_up(self) -> None:
-        """End every connection that there is; new ones are welcome."""
+        """End every connection; new ones are accepted."""
         self._loop.call_soon_threadsafe(self._close_connections)
 
     def _run(self) -> None:

@@ -34,10 +34,10 @@ FLUSH_S = 1.0
 WAKE_S = 1.0  # paho looks at its keep-alive when its loop wakes
 FIRST_RETRY_S, LAST_RETRY_S = 0.2, 5.0
 QUEUE_LIMIT = 100
-LARGEST_PACKET = 4096  # bytes; all that plant and boards say is shorter
+LARGEST_PACKET = 4096  # bytes; all messages of plant and boards are shorter
 AT_ONCE = 40  # topics of one SUBSCRIBE: the plant's own broker takes packets of 4 kB
 EXPIRY_S = 1
-WAITS_S = 1.5  # what has waited here for longer, as in a process that was stopped, was right once
+WAITS_S = 1.5  # an older message is out of date, as in a process that was stopped
 CHECK = "check its certificate"
 MISTRUST = {  # by X509_V_ERR of OpenSSL
     9: "set the clock of this machine",
@@ -52,7 +52,7 @@ PAHO_VERSION = {MqttVersion.V3_1_1: MQTTProtocolVersion.MQTTv311, MqttVersion.V5
 
 
 class NotConnected(ArboledaError):
-    """A publication was refused because the broker is not there; it will not be sent later."""
+    """Error: a publication was refused because the broker is not connected; it will not be sent later."""
 
 
 class PromptClient(Client):
@@ -100,16 +100,16 @@ class MqttClient:
         self._version = PAHO_VERSION[version]
         self._announce = announce
         self._told: str | None = None  # the trouble that the log already names
-        self._answered = False  # whether the broker of this connection has said anything
-        self._refused: str | None = None  # what the broker of this connection said no to
+        self._answered = False  # True once the broker of this connection has answered
+        self._refused: str | None = None  # the request that the broker of this connection refused
         self._early: list[Delivery] = []
         self._asked: dict[int | None, tuple[str, ...]] = {}  # by packet id, until the broker has answered
         self._lock = threading.Lock()
         self._paho: Client | None = None  # only while up
         self._last: MQTTMessageInfo | None = None
-        self._waits: deque[tuple[float, MQTTMessageInfo]] = deque()  # with since when each waits
-        self._late = False  # whether this connection ends because something waited for too long
-        self._turned_at = 0.0  # when the client's thread was last seen at work
+        self._waits: deque[tuple[float, MQTTMessageInfo]] = deque()  # each since when it waits
+        self._late = False  # True if this connection ends because a message waited too long
+        self._turned_at = 0.0  # time at which the client's thread was last at work
         self._closing = threading.Event()
         self._thread = threading.Thread(target=self._run, name=f"mqtt {client_id}", daemon=True)
 
@@ -126,7 +126,7 @@ class MqttClient:
         self._sent(publication, since)
 
     def deliver(self, publication: Publication, within_s: float) -> None:
-        """Send now, and return once the broker has it; NotConnected where it does not say so in time."""
+        """Send now, and return once the broker acknowledges; raises NotConnected if that takes too long."""
         sent = self._sent(publication)
         with suppress(ValueError, RuntimeError):  # the connection is over
             sent.wait_for_publish(within_s)
@@ -161,7 +161,7 @@ class MqttClient:
             self._waits.popleft()
 
     def _is_late(self) -> bool:
-        """Whether something has waited for too long; asked before each write.
+        """True if a message has waited too long to be sent; also notes the time. Called before each write.
 
         A queue that is long, or a broker that is slow, is no reason while this thread is at work.
         """
@@ -185,7 +185,7 @@ class MqttClient:
             self._thread.join()
 
     def _expiry(self, publication: Publication) -> Properties | None:
-        """MQTT 5 only: a command that waits in a broker dies there."""
+        """The expiry of a command, after which a broker drops it; MQTT 5 only, else None."""
         if self._version != MQTTProtocolVersion.MQTTv5 or publication.retain or publication.qos == 0:
             return None
         properties = Properties(PacketTypes.PUBLISH)
@@ -229,12 +229,12 @@ class MqttClient:
         return "connection lost" if self._answered else self._silence()
 
     def _silence(self) -> str:
-        """What may be wrong where a broker ends a connection without a word."""
+        """A sentence on the likely cause where a broker ends a connection without an answer."""
         wants = f"a certificate of this client: ${CERTIFICATE}" if self._address.tls else f"TLS: {SECURE}"
         return f"it ended the connection without an answer; it may want {wants}"
 
     def _refusal_of_tls(self, error: Exception) -> str:
-        """What to do where the two do not come to trust each other; "" for any other error."""
+        """The cause of a TLS error and its remedy in one sentence; "" for any other error."""
         if isinstance(error, ssl.SSLCertVerificationError):
             why = error.verify_message.rstrip(".")
             return f"its certificate is not believed: {why}; {MISTRUST.get(error.verify_code, CHECK)}"
@@ -243,7 +243,7 @@ class MqttClient:
         return ""
 
     def _largest_packet(self) -> Properties | None:
-        """MQTT 5 only: a broker keeps larger packets to itself, which paho would take whole into memory."""
+        """The limit of packets for the broker, as paho takes any size into memory; MQTT 5 only, else None."""
         if self._version != MQTTProtocolVersion.MQTTv5:
             return None
         properties = Properties(PacketTypes.CONNECT)
@@ -281,7 +281,7 @@ class MqttClient:
 
     @staticmethod
     def _leave_writing_to_the_loop(_paho: Client, _userdata: Any, _sock: Any) -> None:
-        """Without this callback paho writes to the socket in whichever thread publishes."""
+        """Does nothing; without this callback paho writes to the socket in the thread that publishes."""
 
     def _connected(
         self, paho: Client, _userdata: Any, _flags: Any, reason: ReasonCode, _properties: Any
@@ -344,7 +344,7 @@ class MqttClient:
             self._tell("gone", f"The MQTT broker at {self._address} is not there ({trouble}); trying again.")
 
     def _tell(self, trouble: str | None, sentence: str) -> None:
-        """One line when something changes, not one per attempt."""
+        """Log a change of the connection in one line, not one for each attempt."""
         if self._announce and trouble != self._told:
             log.warning(sentence)
         self._told = trouble

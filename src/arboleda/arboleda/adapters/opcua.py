@@ -27,10 +27,10 @@ if TYPE_CHECKING:
     from asyncua.ua import DataValue
 
 MISSING = "asyncua is not installed, which it needs: pip install 'arboleda[opcua]'"
-BEAT_S = 0.2  # how often all is read, and said, changed or not
+BEAT_S = 0.2  # period of reads and reports without a change
 AGAIN_S = 0.5
 CONNECT_S = 4.0  # for a session with its certificates
-SESSION_MS = 30_000  # how long a server keeps a session of which it hears nothing: it has few of them
+SESSION_MS = 30_000  # a server drops a silent session after this time: it has few of them
 GOODBYE_S = 0.5
 END_S = 1.0
 ORDER_S = 1.0  # for the loop to take a command, which it does between two others
@@ -65,7 +65,7 @@ TYPES = {
 
 @driver("opcua", settings=Settings)
 class OpcUa:
-    """One device, in a session of its own: what changes wakes it, and it reads all that is mapped at once."""
+    """Driver of one device, in a session of its own: a change wakes it, and it reads all values at once."""
 
     def __init__(self, settings: Settings) -> None:
         self._settings = settings
@@ -134,7 +134,7 @@ class OpcUa:
             await asyncio.sleep(AGAIN_S)
 
     async def _serve(self) -> None:
-        """Say what the server shows, until something breaks."""
+        """Report the values of the server until something breaks."""
         client = await _connected(self._settings, self._login)
         try:
             nodes = [client.get_node(node) for node in self._device.nodes]
@@ -157,7 +157,7 @@ class OpcUa:
             await _goodbye(client)
 
     async def _rest(self) -> None:
-        """Until something changes, or it is time to say that nothing does."""
+        """Wait for a change, or until a report is due without one."""
         beat = self._loop.call_later(BEAT_S, self._changed.set)
         await self._changed.wait()
         beat.cancel()
@@ -169,7 +169,7 @@ class OpcUa:
         return values(self._device.nodes, await asyncio.wait_for(asked, self._settings.timeout_s))
 
     def _take(self, command: Command, taken: Future[None]) -> None:
-        """Begin the call of a command, unless whoever sends it has given up."""
+        """Begin the call of a command, unless its sender has given up."""
         if not taken.set_running_or_notify_cancel():
             return
         try:
@@ -214,7 +214,7 @@ class OpcUa:
         self._changed.set()
 
     async def _beat(self, client: Client) -> None:
-        """Tell the server that somebody is there; it has to stop by itself when this ends."""
+        """Write the heartbeat to the server, which has to stop by itself once it ends."""
         from asyncua import ua
 
         if self._settings.heartbeat is not None:
@@ -224,7 +224,7 @@ class OpcUa:
             await asyncio.wait_for(written, self._settings.timeout_s)
 
     def _say(self, report: Report) -> None:
-        """Hand over what is new, and from time to time that nothing is."""
+        """Hand over a report if it is news, and otherwise from time to time."""
         before = self._said
         if before is not None and report.again(before.at) == before and report.at - before.at < BEAT_S:
             return
@@ -233,7 +233,7 @@ class OpcUa:
 
 
 class Changes:
-    """Hears from a subscription that something has changed; what it is, is read."""
+    """Handler of a subscription: it only notes that something has changed; the values are read then."""
 
     def __init__(self, changed: asyncio.Event) -> None:
         self._changed = changed
@@ -243,7 +243,7 @@ class Changes:
 
 
 def values(nodes: Sequence[str], answers: Sequence[DataValue]) -> Read:
-    """What a server has answered, by node; Unreadable where a value is not good."""
+    """The values that a server answered, by node; raises Unreadable if one of them is not good."""
     if len(answers) != len(nodes):
         raise UnreadableValue(f"the server has answered with {len(answers)} values, not {len(nodes)}")
     read: dict[str, object] = {}
@@ -277,14 +277,14 @@ async def _connected(settings: Settings, found: Login) -> Client:
 
 
 async def _goodbye(client: Client) -> None:
-    """Say goodbye where somebody listens; nobody has to answer."""
+    """Disconnect politely, without waiting for an answer."""
     with suppress(Exception):
         await asyncio.wait_for(client.disconnect(), GOODBYE_S)
     client.disconnect_socket()
 
 
 async def _ended(tasks: Iterable[asyncio.Task[Any]]) -> None:
-    """Cancel tasks and wait until they have ended, but not for one that will not."""
+    """Cancel tasks and wait for their end, but not for one that refuses to."""
     waited_for = set(tasks)
     for task in waited_for:
         task.cancel()
@@ -293,16 +293,16 @@ async def _ended(tasks: Iterable[asyncio.Task[Any]]) -> None:
 
 
 def _quiet(loop: asyncio.AbstractEventLoop, context: dict[str, Any]) -> None:
-    """What becomes of asyncua's own tasks is no news: where it matters, a read says so."""
+    """Ignores errors of asyncua's own tasks: where one matters, the next read fails and says so."""
 
 
 def need_library() -> None:
-    """DriverError, which says what to install, where asyncua is missing; else it is told to be quiet."""
+    """Raises DriverError with install advice if asyncua is missing; otherwise silences its log."""
     try:
         import asyncua
     except ImportError as error:
         raise DriverError(MISSING) from error
-    logging.getLogger(asyncua.__name__).setLevel(logging.CRITICAL)  # what it says is said by the plant
+    logging.getLogger(asyncua.__name__).setLevel(logging.CRITICAL)  # the plant reports the same
 
 
 def _why(settings: Settings, error: Exception) -> str:

@@ -1,4 +1,4 @@
-"""Who this process is to a server of OPC UA: from the environment, never from a plant file."""
+"""Login of this process at an OPC UA server: from the environment, never from a plant file."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ FILES = ("CERT", "KEY", "SERVER_CERT")
 
 @dataclass(frozen=True, kw_only=True)
 class Login:
-    """A user, and the files of the certificates; `server` is the only certificate that is believed."""
+    """User name and certificate files; `server` is the only server certificate that is trusted."""
 
     user: str | None = None
     password: str = field(default="", repr=False)
@@ -25,7 +25,7 @@ class Login:
 
 
 def login(settings: Settings) -> Login:
-    """What the environment has for this server; DriverError, which names what is missing."""
+    """The login for this server from the environment; raises DriverError, which names what is missing."""
     user = os.environ.get(f"{settings.secrets}_USER") or None
     password = os.environ.get(f"{settings.secrets}_PASSWORD", "")
     if settings.security == "none":
@@ -54,7 +54,7 @@ def _file(settings: Settings, name: str) -> str:
 
 
 def _application(certificate: str) -> str:
-    """The URI that a certificate is for: servers compare it with what the client says."""
+    """The application URI of a certificate: servers compare it with the one that the client gives."""
     from cryptography import x509
 
     data = Path(certificate).read_bytes()

@@ -1,4 +1,4 @@
-"""A server of OPC UA whose variables and methods are somebody else's: asyncua speaks, `Program` answers."""
+"""OPC UA server for somebody else's variables and methods: asyncua speaks, `Program` answers."""
 
 from __future__ import annotations
 
@@ -24,36 +24,36 @@ STOPPED_S = 10.0
 
 @dataclass(frozen=True, kw_only=True)
 class Bad:
-    """A value that is none, with the name of its status code."""
+    """Value of a variable that has none, with the name of its status code."""
 
     status: str
 
 
 class Program(Protocol):
-    """What runs in a PLC. All are called in the server's thread.
+    """Program of a simulated PLC. All methods are called in the server's thread.
 
     A variable is `ns=2;s=NAME` there, a method as well, of the object `ns=2;s=Device`.
     """
 
     @property
     def variables(self) -> Mapping[str, str]:
-        """The type of each variable, `uint16`, in the order in which they are set."""
+        """The type of each variable, such as `uint16`, in the order in which they are set."""
 
     @property
     def methods(self) -> Mapping[str, Sequence[str]]:
-        """The types of what each method is given."""
+        """The argument types of each method."""
 
     def show(self) -> Mapping[str, object]:
-        """What each variable is now: a value, None, or `Bad`."""
+        """The present value of each variable: a value, None, or `Bad`."""
 
     def call(self, method: str, given: Sequence[object]) -> str | None:
-        """Do what a method does; the name of a bad status code where it refuses."""
+        """Carry out a method; returns the name of a bad status code if it refuses."""
 
     def beat(self, value: object) -> None:
-        """What a client has written to the variable `beat` last."""
+        """Take the value that a client has just written to the variable `beat`."""
 
     def is_mute(self) -> bool:
-        """Whether nothing is answered now."""
+        """True while no request is answered."""
 
 
 class OpcUaServer:
@@ -75,12 +75,12 @@ class OpcUaServer:
         )
 
     def start(self) -> int:
-        """Listen; the port. OSError where that cannot be."""
+        """Listen, and return the port; raises OSError if that is impossible."""
         self._thread.start()
         return self._started.result(STARTED_S)
 
     def stop(self) -> None:
-        """End every session, and listen no more."""
+        """End every session and stop listening."""
         self._ending.set()
         self._thread.join(STOPPED_S)
 
@@ -101,7 +101,7 @@ class OpcUaServer:
 
     async def _tick(self, server: Server) -> None:
         while self._program.is_mute() and not self._ending.is_set():
-            time.sleep(TICK_S)  # the whole loop is held up: connections stay, and nobody is answered
+            time.sleep(TICK_S)  # blocks the whole loop: connections stay open, without answers
         beat = await server.get_node("ns=2;s=beat").read_value()
         self._program.beat(beat)
         await self._show(server)
@@ -136,7 +136,7 @@ class OpcUaServer:
         return called
 
     async def _show(self, server: Server) -> None:
-        """Set what has changed, in the order of the program's variables."""
+        """Set the variables that have changed, in the program's order."""
         shown = self._program.show()
         for name, type in self._program.variables.items():
             if name not in self._shown or self._shown[name] != shown[name]:
@@ -145,7 +145,7 @@ class OpcUaServer:
 
 
 async def _set(server: Server, name: str, data: Any, type: str) -> None:
-    """Set a variable; asyncua does not write a value of another type, but it does show one."""
+    """Set a variable, also to another type: asyncua writes no such value, but does show one."""
     from asyncua import ua
 
     fits = data.StatusCode.is_bad() or data.Value.VariantType == getattr(ua.VariantType, TYPES[type])
@@ -174,7 +174,7 @@ def _first(type: str) -> tuple[object, Any]:
 
 
 def _data(value: object, type: str) -> Any:
-    """A value as a variable of that type has it; a value of another type goes as what it is."""
+    """A value in the type of its variable; a value of another type as it is."""
     from asyncua import ua
 
     if isinstance(value, Bad):

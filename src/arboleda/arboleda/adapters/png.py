@@ -1,4 +1,4 @@
-"""A picture as a PNG, drawn with Pillow, which brings its own font."""
+"""Rendering of a picture as a PNG by Pillow, which brings its own font."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def png(picture: Picture) -> bytes:
 
 
 class _Pen:
-    """Draws shapes, so many dots per px."""
+    """Pen that draws shapes at SCALE dots per px."""
 
     def __init__(self, draw: ImageDraw.ImageDraw, scale: int) -> None:
         self._draw = draw
@@ -61,6 +61,6 @@ class _Pen:
 
 
 def plain(text: str) -> str:
-    """The text in ASCII, as Pillow's font has no more: accents go, what is left over becomes `?`."""
+    """The text in ASCII, which is all that Pillow's font has: without accents, `?` for other letters."""
     bare = "".join(each for each in unicodedata.normalize("NFKD", text) if not unicodedata.combining(each))
     return bare.encode("ascii", "replace").decode()

@@ -1,21 +1,21 @@
-"""What is said again and again is logged now and then."""
+"""Filter for log lines that would repeat too often."""
 
 from __future__ import annotations
 
 from collections.abc import Hashable
 
 EVERY_S = 5.0
-REMEMBERED = 200  # words; a stranger must not fill the memory
+REMEMBERED = 200  # limit of remembered words, so that a stranger cannot fill the memory
 
 
 class RateLimit:
-    """Lets the same words through once in EVERY_S."""
+    """Filter that lets the same words through once in EVERY_S."""
 
     def __init__(self) -> None:
         self._said: dict[Hashable, float] = {}
 
     def is_due(self, words: Hashable, now: float) -> bool:
-        """Whether they were not let through within EVERY_S before `now`, in s."""
+        """True if these words may be logged at `now` (s): they were not let through in the EVERY_S before."""
         if now - self._said.get(words, -EVERY_S) < EVERY_S:
             return False
         if len(self._said) >= REMEMBERED:

@@ -18,8 +18,10 @@ NO_CHECK_TIME = ssl.VerifyFlags(0x200000)  # X509_V_FLAG_NO_CHECK_TIME of OpenSS
 
 @dataclass(frozen=True, kw_only=True)
 class ServerTls:
-    """What a server shows, as PEM, and until when it holds, in unix seconds; `asks` where clients are to show
-    a certificate, too."""
+    """Certificate of a server, as PEM, with the TLS context that serves it.
+
+    `until` is its end in Unix seconds; with `asks` clients are asked for a certificate, too.
+    """
 
     certificate: Path
     context: ssl.SSLContext = field(repr=False, compare=False)
@@ -28,7 +30,7 @@ class ServerTls:
     asks: bool = False
 
     def note(self, now: float) -> str | None:
-        """What a person should know of a certificate that has ended or soon will."""
+        """A sentence on a certificate that has expired or soon will; else None. `now`: Unix s."""
         if self.until - now > SOON_S:
             return None
         day = datetime.fromtimestamp(self.until, timezone.utc).strftime("%Y-%m-%d")
@@ -37,8 +39,11 @@ class ServerTls:
 
 
 def server_tls(certificate: Path, key: Path | None = None, *, authority: Path | None = None) -> ServerTls:
-    """What a server is to show; with `authority` it asks clients for a certificate of that. StartError names
-    the file that is of no use."""
+    """The certificate and TLS context for a server; raises StartError, which names the file that is of no
+    use.
+
+    With `authority` clients are asked for a certificate that this authority signed.
+    """
     context = ssl.create_default_context(ssl.Purpose.CLIENT_AUTH)
     context.options |= ssl.OP_NO_RENEGOTIATION  # a client could have the server compute for nothing
     of_no_use = f"{certificate} and its key {key or 'in it'} are of no use"
@@ -49,7 +54,7 @@ def server_tls(certificate: Path, key: Path | None = None, *, authority: Path | 
     if authority is not None:
         with _explained(f"{authority} holds no certificates of an authority"):
             context.load_verify_locations(authority)
-        # Optional: who shows none is told no over MQTT, in words that its log has.
+        # Optional, so that a client without one is refused over MQTT, with words in the log.
         context.verify_mode = ssl.CERT_OPTIONAL
     return ServerTls(
         certificate=certificate, context=context, pem=pem, until=until, asks=authority is not None
@@ -57,8 +62,10 @@ def server_tls(certificate: Path, key: Path | None = None, *, authority: Path | 
 
 
 def pinned(pem: str) -> ssl.SSLContext:
-    """For a client on the same machine: it believes that one certificate and no other, whatever the server is
-    called, whoever signed it and however old it is."""
+    """TLS settings for a client on the same machine, which trusts this one certificate and no other.
+
+    It does so whatever the server's name, whoever signed it, and however old it is.
+    """
     context = ssl.SSLContext(ssl.PROTOCOL_TLS_CLIENT)
     context.check_hostname = False
     context.verify_flags |= ssl.VERIFY_X509_PARTIAL_CHAIN | NO_CHECK_TIME
@@ -67,19 +74,19 @@ def pinned(pem: str) -> ssl.SSLContext:
 
 
 def _shown(context: ssl.SSLContext) -> str:
-    """The certificate that a server with this context shows."""
+    """The certificate that a server with this context shows, as PEM."""
     curious = ssl.SSLContext(ssl.PROTOCOL_TLS_CLIENT)
     curious.check_hostname, curious.verify_mode = False, ssl.CERT_NONE
     return ssl.DER_cert_to_PEM_cert(_met(context, curious).getpeercert(True) or b"")
 
 
 def _read(context: ssl.SSLContext, pem: str) -> dict[str, object]:
-    """What the certificate says."""
+    """The fields of the certificate, as Python's ssl reads them."""
     return dict(_met(context, pinned(pem)).getpeercert() or {})
 
 
 def _met(server: ssl.SSLContext, client: ssl.SSLContext) -> ssl.SSLObject:
-    """The client's end after a handshake in memory."""
+    """The client's end of a TLS handshake made in memory."""
     up, down = ssl.MemoryBIO(), ssl.MemoryBIO()
     ours, theirs = server.wrap_bio(up, down, server_side=True), client.wrap_bio(down, up)
     for _ in range(ROUNDS):
@@ -92,7 +99,7 @@ def _met(server: ssl.SSLContext, client: ssl.SSLContext) -> ssl.SSLObject:
 
 
 def _none() -> str:
-    """Else OpenSSL would ask the terminal."""
+    """Raises ValueError for an encrypted key; without it OpenSSL would ask for a password in the terminal."""
     raise ValueError("the key is encrypted; write it without password, readable for its owner only")
 
 

@@ -18,10 +18,10 @@ from arboleda.model.outside import plain
 from .rate_limit import RateLimit
 
 LOG = logging.getLogger(__name__)
-HANDSHAKE = 0x16  # how TLS begins
-READ_BYTES = 16 * 1024  # at once: what waits for a pause to end is no more than that, and a record
+HANDSHAKE = 0x16  # the first byte of a TLS connection
+READ_BYTES = 16 * 1024  # read at once: so much and one TLS record may wait for the end of a pause
 DISTRUST = "does not believe this certificate"
-REFUSALS = {  # by the reason of OpenSSL: what a client that ends the handshake says, and what to do
+REFUSALS = {  # by OpenSSL's reason: the cause of a failed handshake, and the advice
     "TLSV1_ALERT_UNKNOWN_CA": f"{DISTRUST}: give it the file of the authority",
     "SSLV3_ALERT_CERTIFICATE_EXPIRED": f"{DISTRUST}: it has expired; renew it, or set the clock there",
     "SSLV3_ALERT_BAD_CERTIFICATE": f"{DISTRUST}: it may lack the name by which this machine is called",
@@ -33,9 +33,9 @@ REFUSALS = {  # by the reason of OpenSSL: what a client that ends the handshake 
 
 
 class TlsLayer(asyncio.BufferedProtocol):
-    """A connection of `server`, which is what the log calls it, with TLS for `inner`.
+    """TLS between a connection of `server`, its name in the log, and the protocol `inner`.
 
-    `inner` is told of the connection before the handshake, and may end it. Who speaks no TLS gets
+    `inner` is told of the connection before the handshake, and may end it. A client that speaks no TLS gets
     `plain_answer`.
     """
 
@@ -92,7 +92,7 @@ class TlsLayer(asyncio.BufferedProtocol):
     # --- called by what `inner` has for a transport ---
 
     def certificate(self) -> dict[str, Any]:
-        """What the client has shown of itself; empty where it was not asked or had none."""
+        """The client's certificate; empty if it was not asked for one, or showed none."""
         return self._tls.getpeercert() or {} if self._agreed else {}
 
     def pause(self) -> None:
@@ -115,13 +115,13 @@ class TlsLayer(asyncio.BufferedProtocol):
 
     def close(self) -> None:
         if self._agreed and not self._raw.is_closing():
-            with suppress(ssl.SSLError):  # the other end has not said that it closes, and need not
+            with suppress(ssl.SSLError):  # without a close_notify, which nobody has to send
                 self._tls.unwrap()
             self._flush()
         self._raw.close()
 
     def go_on(self) -> None:
-        """Hand over what has come, up to where `inner` wants a pause."""
+        """Hand over the data received, until `inner` pauses."""
         try:
             if not self._agreed:
                 self._tls.do_handshake()
@@ -131,13 +131,13 @@ class TlsLayer(asyncio.BufferedProtocol):
         except ssl.SSLWantReadError:
             self._flush()
         except ssl.SSLError as error:
-            self._flush()  # what is wrong, for the other end
+            self._flush()  # send the other end the TLS alert
             self._give_up("" if self._agreed else _why(error))
         else:
             self._flush()
 
     def _hand_over(self) -> int:
-        """How many bytes there were; 0 where the other end has closed."""
+        """Hand decrypted bytes to the inner protocol; returns their number, 0 once the other end closed."""
         if isinstance(self.inner, asyncio.BufferedProtocol):
             buffer = self.inner.get_buffer(READ_BYTES)
             count = self._tls.read(len(buffer), buffer)  # type: ignore[arg-type]
@@ -165,7 +165,7 @@ class TlsLayer(asyncio.BufferedProtocol):
 
 
 class TlsTransport(asyncio.Transport):
-    """What a protocol with TLS under it has for a transport."""
+    """Transport for a protocol that runs over TLS."""
 
     def __init__(self, layer: TlsLayer, raw: asyncio.Transport) -> None:
         self._layer = layer

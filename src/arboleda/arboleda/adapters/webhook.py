@@ -1,4 +1,4 @@
-"""HTTP POSTs of JSON to an address that somebody named; the address itself is a secret."""
+"""HTTP POSTs of JSON to an address chosen by the user; the address itself is a secret."""
 
 from __future__ import annotations
 
@@ -11,20 +11,20 @@ from arboleda.model.errors import ArboledaError, StartError
 
 URL, TOKEN = "ARBOLEDA_ALARM_WEBHOOK", "ARBOLEDA_ALARM_TOKEN"  # anybody can read a command line
 TIMEOUT_S = 5.0
-NOT_THIS_ONE = frozenset({400, 413, 422})  # what was posted is refused, and would be again
+NOT_THIS_ONE = frozenset({400, 413, 422})  # statuses that refuse this message for good
 
 
 class NotDelivered(ArboledaError):
-    """It did not arrive, as far as anybody knows; it may the next time."""
+    """Error: the message did not arrive, as far as is known; it may the next time."""
 
 
 class DeliveryRefused(ArboledaError):
-    """The receiver does not want this one, and will not the next time."""
+    """Error: the receiver rejects this message, and would the next time."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Hook:
-    """Where to post, and the bearer token that is shown there; `str()` has nothing secret."""
+    """Address to post to, and the bearer token for it; `str()` shows no secret."""
 
     url: str = field(repr=False)
     token: str | None = field(default=None, repr=False)
@@ -35,7 +35,7 @@ class Hook:
 
 
 def hook() -> Hook | None:
-    """The one of the environment, None where it names none; StartError for what is no address."""
+    """The hook from the environment, None if it has none; raises StartError for an invalid address."""
     url, token = os.environ.get(URL), os.environ.get(TOKEN) or None
     if not url:
         if token:
@@ -54,10 +54,10 @@ def hook() -> Hook | None:
 
 
 class Webhook:
-    """Posts to one hook, for one thread at a time; what it needs is loaded before a plant runs."""
+    """Client of one hook, for one thread at a time; its libraries are loaded before a plant runs."""
 
     def __init__(self, hook: Hook, *, timeout_s: float = TIMEOUT_S) -> None:
-        import httpx  # it takes a while to load, and only who posts needs it
+        import httpx  # slow to load, and needed only for posting
 
         headers = {"Authorization": f"Bearer {hook.token}"} if hook.token else {}
         self._hook = hook
@@ -68,11 +68,11 @@ class Webhook:
         return str(self._hook)
 
     def post(self, what: dict[str, Any]) -> None:
-        """Return once it is taken (2xx); else Refused, or NotTaken, which says why."""
+        """Return once the message is accepted (2xx); raises Refused or NotTaken, with the reason."""
         import httpx
 
         try:
-            # No more than the head of the answer is read, whatever its receiver would like to say.
+            # Only the head of the answer is read: its body may be of any length.
             with self._http.stream("POST", self._hook.url, json=what) as answer:
                 status = answer.status_code
         except httpx.TimeoutException as error:
@@ -89,5 +89,5 @@ class Webhook:
             raise NotDelivered(f"it answers {status}")
 
     def close(self) -> None:
-        """Idempotent."""
+        """Close the connection; idempotent."""
         self._http.close()

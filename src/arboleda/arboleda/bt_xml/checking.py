@@ -1,4 +1,4 @@
-"""What is wrong with the nodes of a forest: kinds, children, ports, scripts, names."""
+"""Checks of the nodes of a forest: kinds, children, ports, scripts, names."""
 
 from __future__ import annotations
 
@@ -25,8 +25,7 @@ PARALLELS = ("Parallel", "ParallelAll")
 
 @dataclass(frozen=True, kw_only=True)
 class Checked:
-    """What is worth knowing of a forest: how many nodes it has, and the leaves of which nobody here knows
-    what they do, with the first place of each."""
+    """Result of a check: the number of nodes, and leaves of unknown kinds with the first place of each."""
 
     nodes: int
     unknown: Mapping[str, Place]
@@ -39,8 +38,10 @@ def check(
     *,
     leaves_are_checked_later: bool = False,
 ) -> Checked:
-    """Keeps all that is wrong. `known`: the kinds of nodes of one's own that there are, and no others; None:
-    there may be any, and what the files declare counts, unless they are checked later, in a cell.
+    """Check a forest and keep all findings. `known`: the only kinds of a user's own nodes that there are.
+
+    None: there may be any kinds; those that the files declare count, unless they are checked later, in a
+    cell.
     """
     checker = _Checker(forest, findings, {} if leaves_are_checked_later else known, leaves_are_checked_later)
     for tree in forest.trees.values():
@@ -72,7 +73,7 @@ class _Checker:
     around: set[str] = field(default_factory=set)  # kinds with children that nobody knows
 
     def kind(self, node: Node) -> Kind | None:
-        """What is known of the kind of a node; of a subtree what its model says."""
+        """The known kind of a node, for a subtree from its model; None if unknown."""
         if node.is_subtree:
             return self._model_of(node)
         declared = self.forest.models if self.known is None else self.known
@@ -83,7 +84,7 @@ class _Checker:
         return known
 
     def knows(self, node: Node) -> bool:
-        """Whether the kind of a node is more than what a file says of a node of its own."""
+        """True if the kind of a node is known by more than the file's own word."""
         return self.known is not None or nodes.built_in(node.kind) is not None
 
     def _model_of(self, node: Node) -> Kind | None:
@@ -131,7 +132,7 @@ class _Checker:
                 self.findings.warning(place, sentence)
 
     def _check_unknown(self, node: Node) -> None:
-        """A node in the compact form that no file declares: a leaf may be one of a plant or a program."""
+        """Check a compact-form node that no file declares; a leaf may be one of a plant or a program."""
         near = get_close_matches(node.kind, (*(self.known or ()), *OF_LIBRARY), n=1, cutoff=0.8)
         hint = f"; did you mean {near[0]}?" if near else ""
         if node.kind in self.forest.trees:
@@ -148,7 +149,7 @@ class _Checker:
             self.unknown.setdefault(node.kind, node.place)
 
     def _warn_of_unknown(self, node: Node, hint: str) -> None:
-        """Once of each kind: a node with children can be read and drawn by anybody."""
+        """Warn once of each unknown kind with children: such a node can be read and drawn by anybody."""
         if node.kind in self.around:
             return
         self.around.add(node.kind)
@@ -185,7 +186,7 @@ class _Checker:
                     self.findings.warning(node.place, sentence)
 
     def _check_thresholds(self, node: Node) -> None:
-        """BehaviorTree.CPP refuses those that the children cannot reach when the node is ticked."""
+        """Check thresholds; BehaviorTree.CPP refuses those that the children cannot reach."""
         many = len(node.children)
         for name in THRESHOLDS:
             text = node.port(name) or ""
@@ -249,7 +250,7 @@ class _Checker:
 
 
 def _what(port: Port) -> str:
-    """What a port takes, as a sentence goes on."""
+    """The type of a port, as the rest of a sentence."""
     if port.type == "script":
         return ", a script"
     known = values.TYPES.get(port.type)
@@ -257,7 +258,7 @@ def _what(port: Port) -> str:
 
 
 def _check_loops(forest: Forest, findings: Findings) -> None:
-    """Trees that contain themselves."""
+    """Find trees that contain themselves."""
     uses = {name: dict(_subtrees(forest, name)) for name in forest.trees}
     for _ in range(MOST_LOOPS):
         try:

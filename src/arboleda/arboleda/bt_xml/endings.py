@@ -1,4 +1,4 @@
-"""How nodes can end, as far as that shows without running them: so, which children nobody ever reaches."""
+"""Possible results of nodes, as far as they show without running; and children that are never reached."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ CONDITIONS = {"_failureIf": FAILED, "_successIf": DONE, "_skipIf": SKIPPED, "_wh
 
 
 def unreached(root: Node) -> list[Node]:
-    """The nodes that can never be reached; of what is below such a node nothing is said."""
+    """The nodes that can never be reached; nodes below such a node are left out."""
     found: list[Node] = []
     _ends(root, found)
     return found
 
 
 def _ends(node: Node, unreached: list[Node]) -> Ends:
-    """How a node can end, with the conditions that stand at it."""
+    """The possible results of a node with its conditions; unreached children are added to `unreached`."""
     known = ENDS.get(node.kind)
     if known is not None:
         own = known
@@ -37,7 +37,7 @@ def _ends(node: Node, unreached: list[Node]) -> Ends:
 
 
 def _in_order(stops: str) -> Callable[[Node, list[Node]], Ends]:
-    """One child after the other, until one ends as `stops` says."""
+    """The ends of children that run one after the other, until one ends as `stops` says."""
     goes_on = DONE if stops == FAILED else FAILED
 
     def ends(node: Node, unreached: list[Node]) -> Ends:
@@ -80,7 +80,7 @@ def _turned(rows: Mapping[str, Iterable[str]]) -> Callable[[Node, list[Node]], E
 
 
 def _for_ever(port: str, kept: str) -> Callable[[Node, list[Node]], Ends]:
-    """Again and again: -1 times without end, so that only one way out is left."""
+    """The ends of a node that repeats; with -1 times without end, only one of them is left."""
 
     def ends(node: Node, unreached: list[Node]) -> Ends:
         below = _alone(node, unreached)

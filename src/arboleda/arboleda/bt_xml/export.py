@@ -27,8 +27,10 @@ TAKEN = frozenset([*BUILT_IN, *(each.value for each in Category)])
 
 @dataclass(frozen=True, kw_only=True)
 class LiveNode:
-    """A node with a number, as it stands in a tree that is watched. `paths`: the rows that say how it stands,
-    several for a node that only splits up a row of them; `tree`: the path of the tree that it is in.
+    """Numbered node of a tree that is watched.
+
+    `paths`: the rows that tell its status, several for a node that only splits up a row of them; `tree`: the
+    path of the tree that it is in.
     """
 
     kind: str
@@ -38,7 +40,7 @@ class LiveNode:
 
 @dataclass(frozen=True, kw_only=True)
 class LiveTree:
-    """A tree for who watches it: each node has its number in it, `_uid`, which counts `nodes` from 1."""
+    """Tree for a viewer that watches it; the attribute `_uid` of each node numbers `nodes` from 1."""
 
     text: str
     main: str
@@ -46,7 +48,7 @@ class LiveTree:
 
 
 def export(rows: Sequence[Mapping[str, Any]]) -> str:
-    """The tree of these rows (path, name, kind, parameters), which are those of `views/tree_view.py`."""
+    """The XML of a tree of these rows (path, name, kind, parameters), as `views/tree_view.py` makes them."""
     writer = _Writer()
     main = writer.tree(_tree_of(rows))
     found = [kind for kind in writer.kinds.values() if kind.name not in BUILT_IN]
@@ -54,7 +56,7 @@ def export(rows: Sequence[Mapping[str, Any]]) -> str:
 
 
 def live(rows: Sequence[Mapping[str, Any]]) -> LiveTree:
-    """The same tree with the numbers and paths that BehaviorTree.CPP gives to who watches one."""
+    """The same tree, with the numbers and paths that BehaviorTree.CPP gives to viewers that watch one."""
     writer = _LiveWriter()
     main = writer.tree(_tree_of(rows))
     writer.trees[0] = replace(writer.trees[0], attributes={"ID": main, "_fullpath": ""})
@@ -73,7 +75,7 @@ def _tree_of(rows: Sequence[Mapping[str, Any]]) -> _Node:
 
 @dataclass
 class _Node:
-    """A row with those below it; `size` counts what of it stands in its own tree."""
+    """Row with the nodes below it; `size` counts those in its own tree."""
 
     row: Mapping[str, Any]
     children: list[_Node] = field(default_factory=list)
@@ -86,7 +88,7 @@ class _Node:
 
     @property
     def paths(self) -> tuple[str, ...]:
-        """The rows that say how it stands."""
+        """The rows that tell its status."""
         if not self.is_part:
             return (str(self.row["path"]),)
         return tuple(path for child in self.children for path in child.paths)
@@ -99,7 +101,7 @@ class _Writer:
     _names: set[str] = field(default_factory=set)
 
     def tree(self, node: _Node) -> str:
-        """Write a node as a tree of its own, after those that it needs; the name of that tree."""
+        """Write a node as a tree of its own, after the trees that it needs; returns the name of that tree."""
         _divide(node)
         name = self._free_name(node.title)
         position = len(self.trees)
@@ -125,7 +127,7 @@ class _Writer:
         return self._subtree(node) if node.is_apart else self._tag(node)
 
     def _kind(self, row: Mapping[str, Any], *, around: int) -> Kind:
-        """What a node is to a viewer; the ports of a kind are those of all its nodes."""
+        """The kind of a node for a viewer; its ports are those of all nodes of this name."""
         category = Category.CONDITION if row["kind"] in CONDITIONS else Category.ACTION
         if around:
             category = Category.DECORATOR if around == 1 else Category.CONTROL
@@ -152,7 +154,7 @@ class _Writer:
 
 @dataclass
 class _LiveWriter(_Writer):
-    """Numbers what it writes, each node before those below it."""
+    """Writer that numbers the nodes, each before those below it."""
 
     nodes: list[LiveNode] = field(default_factory=list)
     _tree: str = ""  # the path of the one that is being written
@@ -180,7 +182,7 @@ class _LiveWriter(_Writer):
 
 
 def _divide(root: _Node) -> None:
-    """Take parts of a tree away, the largest that fit first, until it is small enough."""
+    """Split parts off a tree, the largest that fit first, until it is small enough."""
     while len(own := list(_own(root))) > LARGEST:
         open_ones = [node for node in own if node is root or not node.is_apart]
         sizes = [(len(list(_own(node))), node) for node in open_ones if node.children and node is not root]
@@ -192,7 +194,7 @@ def _divide(root: _Node) -> None:
 
 
 def _group(node: _Node) -> None:
-    """Put neighbouring children together, each group below a node of the same kind."""
+    """Group neighbouring children, each group below a node of the same kind."""
     many = LARGEST - 1
     groups = [node.children[start : start + many] for start in range(0, len(node.children), many)]
     node.children = [
@@ -212,7 +214,7 @@ def _own(root: _Node) -> Iterator[_Node]:
 
 
 def _name(text: str) -> str:
-    """A name that editors take: each word with a capital."""
+    """A name that editors accept: each word with a capital."""
     kept = "".join(each if each.isalnum() and each.isascii() else " " for each in text)
     found = "".join(word[:1].upper() + word[1:] for word in kept.split()) or "Node"
     return f"A{found}" if found[0].isdigit() or names.of_node(found) or found in TAKEN else found

@@ -1,15 +1,15 @@
-"""What is wrong with files of trees, each with its place; all of it at once."""
+"""Findings in files of trees: all of them at once, each with its place."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-MOST = 200  # mistakes that are told; a file with more is another kind of file
+MOST = 200  # mistakes that are shown; a file with more is no file of trees
 
 
 @dataclass(frozen=True, order=True)
 class Mark:
-    """A place in a file; lines and columns count from 1, columns in characters."""
+    """Place in a file; lines and columns count from 1, columns in characters."""
 
     line: int
     column: int
@@ -17,7 +17,7 @@ class Mark:
 
 @dataclass(frozen=True, order=True)
 class Place:
-    """A place in one of several files; `file` is what people know it by."""
+    """Place in one of several files; `file` is its name for people."""
 
     file: str
     mark: Mark
@@ -27,7 +27,7 @@ class Place:
 
 
 class XmlFault(Exception):
-    """The bytes cannot be read further."""
+    """Error: the bytes cannot be read further."""
 
     def __init__(self, mark: Mark, sentence: str) -> None:
         super().__init__(sentence)
@@ -37,7 +37,7 @@ class XmlFault(Exception):
 
 @dataclass
 class Findings:
-    """Mistakes keep a tree from being used; warnings do not. Each is kept once."""
+    """Mistakes, which keep a tree from being used, and warnings, which do not. Each is kept once."""
 
     _mistakes: dict[tuple[Place, str], None] = field(default_factory=dict)
     _warnings: dict[tuple[Place, str], None] = field(default_factory=dict)
@@ -50,7 +50,7 @@ class Findings:
 
     @property
     def mistakes(self) -> tuple[str, ...]:
-        """As lines, in the order of the files; of too many only the first, and how many more there are."""
+        """The mistakes as lines, in the order of the files; of too many the first, and how many more."""
         lines = [f"{place}: {sentence}" for place, sentence in sorted(self._mistakes)]
         rest = len(lines) - MOST
         return tuple(lines) if rest <= 0 else (*lines[:MOST], f"and {rest} mistakes more")

@@ -1,4 +1,4 @@
-"""What files of trees say: trees of nodes, and models of kinds of nodes."""
+"""Contents of files of trees: trees of nodes, and models of kinds of nodes."""
 
 from __future__ import annotations
 
@@ -13,8 +13,10 @@ from .values import PRIVATE
 
 @dataclass(frozen=True, kw_only=True)
 class Node:
-    """A node of a tree. `kind`: in the spelling of version 4. `tag`: the word of the explicit form, where it
-    is written so. `own`: attributes that are no ports, those of editors among them, which are kept.
+    """Node of a tree.
+
+    `kind`: in the spelling of version 4. `tag`: the word of the explicit form, None for the compact one.
+    `own`: attributes that are no ports, such as those of editors, which are kept.
     """
 
     kind: str
@@ -26,7 +28,7 @@ class Node:
     place: Place
 
     def port(self, name: str) -> str | None:
-        """What is written for a port; None where nothing is."""
+        """The text written for a port; None if there is none."""
         found = self.ports.get(name)
         return None if found is None else found.value
 
@@ -44,13 +46,13 @@ class Node:
 
     @property
     def shares_names(self) -> bool:
-        """Whether a subtree finds variables of the same name outside, without being given them."""
+        """True if a subtree sees all variables of the tree around it by their names."""
         words = ("_autoremap", "__autoremap", "__shared_blackboard")
         values = (self.own[word].value for word in words if word in self.own)
         return any(value.lower() in ("true", "1") for value in values)
 
     def shares(self, variable: str) -> bool:
-        """Whether a subtree has that variable of the tree around it because it shares names."""
+        """True if a subtree sees this variable of the tree around it only because it shares names."""
         return (
             self.is_subtree
             and self.shares_names
@@ -61,7 +63,7 @@ class Node:
 
 @dataclass(frozen=True, kw_only=True)
 class Tree:
-    """A tree by its name; `own`: attributes of editors, which are kept."""
+    """Tree by its name; `own`: attributes of editors, which are kept."""
 
     name: str
     root: Node
@@ -71,9 +73,9 @@ class Tree:
 
 @dataclass(frozen=True, kw_only=True)
 class Forest:
-    """All trees of a file and of those that it includes. `main`: the one to execute, where that is clear.
+    """Trees of a file and of those that it includes.
 
-    `is_whole`: every file that it includes was read.
+    `main`: the tree to execute, if that is clear. `is_whole`: every included file was read.
     """
 
     trees: Mapping[str, Tree]
@@ -82,6 +84,6 @@ class Forest:
     is_whole: bool = True
 
     def inside(self, tree: str) -> list[str]:
-        """The trees that one contains, as often as it does."""
+        """The trees that a tree contains, each as often as it occurs."""
         names = (node.own["ID"].value for node in self.trees[tree].root.iterate() if node.is_subtree)
         return [name for name in names if name in self.trees]

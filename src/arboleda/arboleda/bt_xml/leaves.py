@@ -1,4 +1,4 @@
-"""What the devices of a cell are to a tree: an action for each verb, a condition on what they report.
+"""Nodes for the devices of a cell: an action for each verb, conditions on the facts that they report.
 
 A node is called by the role of its device and what that does: `mill_run`, `loader_visit`, `mill_says`.
 """
@@ -24,7 +24,7 @@ TELLS = "tells"
 
 
 def of_cell(cell: Cell, own: Iterable[WrittenNode] = ()) -> dict[str, Kind]:
-    """The kinds of nodes of a cell by name, with those in Python; ConfigError where two have the same."""
+    """The kinds of nodes of a cell by name, with those in Python; ConfigError if two have the same name."""
     found: dict[str, Kind] = {}
     for role, device in cell.roles.items():
         for kind in _of_device(cell, role, device):
@@ -41,7 +41,7 @@ def of_cell(cell: Cell, own: Iterable[WrittenNode] = ()) -> dict[str, Kind]:
 
 
 def of_cells(cells: Sequence[Cell], own: Iterable[WrittenNode] = ()) -> dict[str, Kind]:
-    """Those of several cells together; ConfigError where a name is another kind of node in another cell."""
+    """The kinds of several cells together; ConfigError if a name means different kinds in two cells."""
     found: dict[str, Kind] = {}
     written = tuple(own)
     for cell in cells:
@@ -132,7 +132,7 @@ def _given(row: tuple[str, type]) -> Port:
 
 
 def _said(type: type) -> str:
-    """In words, what a value of Python is."""
+    """A value of Python in words."""
     known = values.TYPES.get(TYPES[type])
     return "text" if known is None else known[0]
 

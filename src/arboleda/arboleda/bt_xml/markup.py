@@ -28,7 +28,7 @@ HIDDEN = ((b"<!--", b"-->", "a comment"), (b"<?", b"?>", "a declaration"), (b"<!
 
 @dataclass(frozen=True)
 class Attribute:
-    """A value as it is meant, and where its name begins."""
+    """Attribute: its decoded value, and the place of its name."""
 
     value: str
     mark: Mark
@@ -36,7 +36,7 @@ class Attribute:
 
 @dataclass(frozen=True)
 class Element:
-    """What a tag says, and what is between it and its end; text is left out."""
+    """Element of XML with its attributes and children; text between the tags is left out."""
 
     name: str
     attributes: dict[str, Attribute]
@@ -44,7 +44,7 @@ class Element:
     children: list[Element] = field(default_factory=list)
 
     def value(self, name: str) -> str | None:
-        """The value of an attribute; None where it is not there."""
+        """The value of an attribute; None if there is none."""
         found = self.attributes.get(name)
         return None if found is None else found.value
 
@@ -55,14 +55,14 @@ class Element:
 
 @dataclass(frozen=True)
 class Markup:
-    """A file that was read; `raw` are the places where it is XML only by leave, with the letter there."""
+    """File that was read; `raw` are the places of letters that XML forbids and BehaviorTree.CPP takes."""
 
     root: Element
     raw: Sequence[tuple[Mark, str]]
 
 
 def parse(content: bytes) -> Markup:
-    """The outermost element; XmlFault where the bytes are no XML that is taken here."""
+    """The outermost element; raises XmlFault for bytes that are not accepted as XML."""
     content = content.removeprefix(b"\xef\xbb\xbf")
     lines = _Lines(content)
     try:
@@ -84,7 +84,7 @@ def _said(error: expat.ExpatError, content: bytes) -> str:
 
 
 class _Lines:
-    """Where each line begins, to tell a place by its byte.
+    """Line index of a file, which turns the number of a byte into line and column.
 
     Places are mostly asked for in their order, so columns are counted on from the last one: all of a file
     may stand on one line.
@@ -106,7 +106,7 @@ class _Lines:
 
 
 def _tamed(content: bytes, lines: _Lines) -> tuple[bytearray, dict[int, int], list[tuple[Mark, str]]]:
-    """A copy for expat, where each tag ends, and what was written over in attributes."""
+    """A copy for expat, the end of each tag, and the letters replaced in attributes."""
     tamed, ends = bytearray(content), dict[int, int]()
     raw: list[tuple[Mark, str]] = []
     end = 0

@@ -1,4 +1,4 @@
-"""Which names the editor Groot2, and BehaviorTree.CPP from 4.8 on, refuse."""
+"""Names that the editor Groot2, and BehaviorTree.CPP from 4.8 on, refuse."""
 
 from __future__ import annotations
 
@@ -10,21 +10,21 @@ RESERVED = ("name", "ID", "_autoremap", *SCRIPTS)
 
 
 def of_node(name: str) -> str | None:
-    """Why a kind of node or a tree cannot be called so."""
+    """The reason why a kind of node or a tree cannot have this name; None if it can."""
     if name in ("Root", "root"):
         return "this name is reserved"
     return _letters(name)
 
 
 def of_port(name: str) -> str | None:
-    """Why a port cannot be called so."""
+    """The reason why a port cannot have this name; None if it can."""
     if name[:1].isdigit():
         return "it begins with a digit"
     return "this name is reserved" if name in RESERVED else _letters(name)
 
 
 def of_one_node(name: str) -> str | None:
-    """Why the node's own name, its attribute `name`, cannot be that."""
+    """The reason why the attribute `name` of a node cannot be this; None if it can."""
     wrong = next((each for each in name if _is_control(each) and each not in "\t\n\r"), None)
     return None if wrong is None else f"it has the control character {ord(wrong)}"
 

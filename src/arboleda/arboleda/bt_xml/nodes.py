@@ -14,7 +14,7 @@ MANY = 1000  # children that a node has at most
 
 
 class Category(str, Enum):
-    """What a node is to an editor; the explicit form has these words as tags."""
+    """Category of a node in an editor; its words are the tags of the explicit form."""
 
     ACTION = "Action"
     CONDITION = "Condition"
@@ -24,7 +24,7 @@ class Category(str, Enum):
 
 
 class PortDirection(str, Enum):
-    """Which way a port's value goes; the words are those of a TreeNodesModel."""
+    """Direction of a port's value; its words are those of a TreeNodesModel."""
 
     IN = "input_port"
     OUT = "output_port"
@@ -33,8 +33,9 @@ class PortDirection(str, Enum):
 
 @dataclass(frozen=True, kw_only=True)
 class Port:
-    """A value that a node is given or gives; `is_needed`: without one nothing can be done. `words`: all that
-    it can be, `limits`: within which a number lies, where that is known.
+    """Value that a node takes or gives; `is_needed`: the node cannot work without it.
+
+    `words`: all its possible values, `limits`: those of a number, if known.
     """
 
     name: str
@@ -49,7 +50,7 @@ class Port:
 
 @dataclass(frozen=True, kw_only=True)
 class Kind:
-    """A kind of node. `ports` None: nobody knows them."""
+    """Kind of node; `ports` None: unknown."""
 
     name: str
     category: Category
@@ -64,12 +65,13 @@ def by_name(ports: Iterable[Port]) -> dict[str, Port]:
 
 
 def children(category: Category) -> tuple[int, int]:
-    """How many children nodes of a category have at least and at most."""
+    """The least and the greatest number of children of a category."""
     return {Category.CONTROL: (1, MANY), Category.DECORATOR: (1, 1)}.get(category, (0, 0))
 
 
 def _port(text: str) -> Port:
-    """`name:type`, with `=value` where it has a default, `>` or `<>` before it where it gives a value."""
+    """The port written as `name:type`, with `=value` for a default, and before it `>` (output) or `<>`
+    (both)."""
     way = (
         PortDirection.BOTH
         if text.startswith("<>")
@@ -191,9 +193,9 @@ OTHER_SPELLINGS: Mapping[str, str] = {
     "SubTreePlus": "SubTree",
     "Subtree": "SubTree",
 }
-"""What version 3 called them."""
+"""Their names in version 3."""
 
 
 def built_in(name: str) -> Kind | None:
-    """The kind of that name, in any spelling."""
+    """The built-in kind of that name, in any spelling; None if there is none."""
     return BUILT_IN.get(OTHER_SPELLINGS.get(name, name))

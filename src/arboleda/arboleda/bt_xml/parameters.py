@@ -1,4 +1,4 @@
-"""What the parameters of a tree can be in a cell: what every node takes that is given them."""
+"""Values that the parameters of a tree can have in a cell: those that every node accepts that gets them."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ KindsOf = Callable[[Cell], Mapping[str, Kind]]
 
 @dataclass(frozen=True)
 class _Allowed:
-    """`words` are all that there is, or examples within the limits of a number."""
+    """Values of a parameter; `words` are all of them, or examples within the limits of a number."""
 
     words: Sequence[str]
     limits: Limits | None = None
@@ -32,7 +32,7 @@ class _Allowed:
 
 @dataclass(frozen=True)
 class _ParameterUse:
-    """A port that is given a parameter."""
+    """Port that is given a parameter."""
 
     node: Node
     port: Port
@@ -47,7 +47,7 @@ def of_tree(forest: Forest, main: str) -> list[Port]:
 
 
 def parameter(forest: Forest, main: str, port: Port, kinds: KindsOf) -> Parameter:
-    """The parameter of a recipe that a port of its main tree is; `kinds`: the leaves that a cell has."""
+    """The recipe's parameter for a port of its main tree; `kinds`: the leaves that a cell has."""
 
     def allowed(cell: Cell) -> _Allowed:
         return _allowed(port, [use.port for use in _uses(forest, kinds(cell), main, port.name, 0)])
@@ -69,7 +69,7 @@ def parameter(forest: Forest, main: str, port: Port, kinds: KindsOf) -> Paramete
 
 
 def check(forest: Forest, main: str, kinds: Mapping[str, Kind], findings: Findings) -> None:
-    """Keeps where a parameter of a type is given to what takes another one."""
+    """Keep a finding for each parameter that is given to a port of another type."""
     for port in of_tree(forest, main):
         for use in _uses(forest, kinds, main, port.name, 0):
             if not values.fits(port.type, use.port.type):
@@ -79,14 +79,14 @@ def check(forest: Forest, main: str, kinds: Mapping[str, Kind], findings: Findin
 
 
 def _as(type: str, word: str) -> object:
-    """The value that a word of a type is."""
+    """The value of that type that a word means."""
     if type == "bool":
         return word == "true"
     return values.number(word) if type == "double" else int(values.number(word)) if type in WHOLE else word
 
 
 def _allowed(port: Port, uses: Sequence[Port]) -> _Allowed:
-    """What a parameter can be that these ports are given."""
+    """The values of a parameter that all of these ports accept."""
     is_one_type = all(values.fits(port.type, each.type) for each in uses)
     all_of_it = [port, *uses] if is_one_type else uses  # else the tree is refused where they are given
     listed = [each.words or BOOLS for each in all_of_it if each.words or each.type == "bool"]
@@ -112,7 +112,7 @@ def _takes(port: Port, word: str) -> bool:
 
 
 def _limits(ports: Sequence[Port]) -> Limits:
-    """Those within which each of the ports takes a number."""
+    """The limits within which all of the ports take a number."""
     lowest = [0.0 for each in ports if each.type in ("unsigned", "msec")]
     ends = [each.limits for each in ports if each.limits is not None]
     lower = max([-LARGEST, *lowest, *(each[0] for each in ends)])
@@ -125,7 +125,7 @@ def _limits(ports: Sequence[Port]) -> Limits:
 def _uses(
     forest: Forest, kinds: Mapping[str, Kind], tree: str, name: str, level: int
 ) -> Iterator[_ParameterUse]:
-    """Each port that is given a variable, in a tree and in those within."""
+    """Each port that is given a variable, in a tree and in its subtrees."""
     if level > MOST_LEVELS or tree not in forest.trees:
         return
     for node in forest.trees[tree].root.iterate():
@@ -140,7 +140,7 @@ def _uses(
 
 
 def _given(node: Node, variable: str) -> Iterator[str]:
-    """The names under which a node has a variable."""
+    """The ports of a node that are given a variable."""
     for name, attribute in node.ports.items():
         said = values.read(name, attribute.value)
         if isinstance(said, Variable) and said.name == variable:

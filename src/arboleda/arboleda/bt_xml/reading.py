@@ -21,21 +21,23 @@ ROOT, TREE, MODELS, INCLUDE = "root", "BehaviorTree", "TreeNodesModel", "include
 TAGS = {each.value: each for each in Category}
 FORMATS = ("3", "4")
 Fetch = Callable[[str, str, str], tuple[str, bytes]]
-"""The file of an `include`, by the name of the file that has it, the path it names and the ROS package in
-which that lies, "" for none: its own name and its content; NotHere or ConfigError where it cannot be read."""
+"""Reads the file of an `include`: its name and its content; raises NotHere or ConfigError.
+
+The arguments are the name of the including file, the path, and the ROS package of the path ("" for none).
+"""
 
 
 class MissingInclude(ConfigError):
-    """A file of another machine, or of a package that is not installed: what is in it is not missed."""
+    """Error: a file belongs to another machine, or to a package that is not installed; it is not missed."""
 
 
 def nothing_beside(file: str, path: str, package: str) -> tuple[str, bytes]:
-    """For text that lies in no folder."""
+    """Raises ConfigError: text without a folder cannot include a file."""
     raise ConfigError((f"{path}: there are no files beside this one",))
 
 
 def read(file: str, content: bytes, findings: Findings, fetch: Fetch = nothing_beside) -> Forest:
-    """The trees of a file and of all that it includes; what is wrong is in the findings."""
+    """The trees of a file and of all that it includes; faults are kept in the findings."""
     reader = _Reader(findings, fetch)
     reader.read(file, content)
     main = reader.main
@@ -128,7 +130,7 @@ class _Reader:
 
 @dataclass(frozen=True)
 class _Page:
-    """One file; `is_old`: it does not say that it has the format of version 4."""
+    """File being read; `is_old`: it does not declare the format of version 4."""
 
     file: str
     findings: Findings
@@ -144,7 +146,7 @@ class _Page:
         self.findings.warning(self.place(mark), sentence)
 
     def look_at(self, markup: Markup) -> None:
-        """What is wrong with the file as a whole."""
+        """Note the faults of the file as a whole: its root, format, and unknown tags."""
         root, format = markup.root, markup.root.attributes.get("BTCPP_format")
         for mark, letter in markup.raw:
             entity = {"&": "&amp;", "<": "&lt;"}[letter]
@@ -164,7 +166,7 @@ class _Page:
             self.warning(root.mark, "there is no tree in this file")
 
     def node(self, element: Element) -> Node | None:
-        """A node with all below it; None, with the mistake kept, for one without a name."""
+        """A node with all nodes below it; None, with a finding, for one without a name."""
         tag, kind = TAGS.get(element.name), element.name
         if tag is not None:
             kind = element.value("ID") or ""

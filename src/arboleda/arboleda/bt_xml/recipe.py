@@ -1,4 +1,4 @@
-"""A recipe that is a tree of a file: the ports of the tree are its parameters."""
+"""Recipe that is a tree of a file; the ports of the tree are its parameters."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ from .running.root import Main
 
 @dataclass(frozen=True, kw_only=True)
 class TreeRecipe(Recipe):
-    """A recipe of a file; `file` is what people know that by. `own`: the nodes in Python that it may have."""
+    """Recipe of a file; `file` is its name for people. `own`: the nodes in Python that it may use."""
 
     file: str
     own: Mapping[str, WrittenNode] = field(compare=False)
@@ -77,7 +77,7 @@ def _built(name: str, forest: Forest, main: str, order: Order, devices: Devices)
 
 
 def _variable(value: object) -> float | int | str:
-    """A value as a variable has it: true and false are 1 and 0."""
+    """A value as a variable holds it: true and false are 1 and 0."""
     if isinstance(value, bool):
         return int(value)
     return value if isinstance(value, int | float | str) else str(value)

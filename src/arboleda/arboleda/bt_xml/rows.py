@@ -11,7 +11,7 @@ CONTROLS = {"Sequence": "sequence", "Fallback": "selector", "Parallel": "paralle
 
 
 def rows(forest: Forest, tree: str) -> list[dict[str, Any]]:
-    """A row for each node, in depth-first order; a subtree that is part of itself is not drawn again."""
+    """A row for each node, in depth-first order; a subtree within itself is not drawn again."""
     found: list[dict[str, Any]] = []
     waiting: list[tuple[Node, str, tuple[str, ...]]] = [(forest.trees[tree].root, "", (tree,))]
     while waiting and len(found) < MOST:
@@ -27,7 +27,7 @@ def rows(forest: Forest, tree: str) -> list[dict[str, Any]]:
 
 
 def title(node: Node) -> str:
-    """What a person calls a node: its own name, or its kind with what it is given."""
+    """The title of a node for people: its own name, or its kind with its values."""
     kind = node.own["ID"].value if node.is_subtree else node.kind
     if node.name and node.name != kind:
         return f"{node.name} ({kind})"
@@ -45,5 +45,5 @@ def _below(forest: Forest, node: Node, around: tuple[str, ...]) -> tuple[tuple[N
 
 
 def _sign(kind: str) -> str:
-    """The word of `drawing` for a kind: its name says what it is, ReactiveSequence or AsyncFallback."""
+    """The word of `drawing` for a kind, found in its name: ReactiveSequence, AsyncFallback."""
     return next((sign for word, sign in CONTROLS.items() if word in kind), "step")

@@ -1,4 +1,4 @@
-"""What can be read and cannot be run as a recipe: each with its place, and what to take instead."""
+"""Checks that a tree can be run as a recipe; each finding has its place, and names what to use instead."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ INSTEAD: Mapping[str, str] = {
 
 
 def part_of(forest: Forest, main: str) -> Forest:
-    """The trees that the main tree is made of."""
+    """The trees that the main tree consists of."""
     found, waiting = {main: forest.trees[main]}, [main]
     while waiting:
         for name in forest.inside(waiting.pop()):
@@ -41,7 +41,7 @@ def part_of(forest: Forest, main: str) -> Forest:
 
 
 def check(forest: Forest, findings: Findings) -> None:
-    """Keeps what of the trees cannot be run in any cell; they do not contain themselves."""
+    """Keep a finding for each part of the trees that can be run in no cell. No tree may contain itself."""
     for tree in forest.trees.values():
         for node in tree.root.iterate():
             _check_node(forest, node, findings)
@@ -61,8 +61,9 @@ def check(forest: Forest, findings: Findings) -> None:
 
 
 def check_in_cell(forest: Forest, cell: str, kinds: Mapping[str, Kind]) -> None:
-    """NoDeviceError where a cell, with leaves of these kinds, has no device for a node; TreeMistakes with all
-    that is wrong otherwise.
+    """Raises NoDeviceError if a cell with leaves of these kinds has no device for a node.
+
+    Raises TreeMistakes with all other faults.
     """
     for tree in forest.trees.values():
         for node in tree.root.iterate():
@@ -121,7 +122,7 @@ def _check_node(forest: Forest, node: Node, findings: Findings) -> None:
 
 
 def _size(forest: Forest, main: str) -> tuple[int, int]:
-    """How many nodes a tree has with its subtrees, and on how many levels."""
+    """The number of nodes of a tree with its subtrees, and of its levels."""
 
     @cache
     def of_tree(name: str) -> tuple[int, int]:

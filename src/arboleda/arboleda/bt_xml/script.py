@@ -41,7 +41,7 @@ STRENGTHS = {
 
 
 class ScriptFault(Exception):
-    """The script cannot be read: at which of its characters, counted from 1, and why."""
+    """Error: a script cannot be read; the number of the character, from 1, and the reason."""
 
     def __init__(self, at: int, sentence: str) -> None:
         super().__init__(f"{sentence}, at character {at} of the script")
@@ -49,14 +49,14 @@ class ScriptFault(Exception):
 
 @dataclass(frozen=True)
 class Value:
-    """A number or a text; true and false are 1 and 0."""
+    """Number or text; true and false are 1 and 0."""
 
     value: Literal
 
 
 @dataclass(frozen=True)
 class Name:
-    """A variable, `@x` one of the outermost tree; or a word of an enumeration."""
+    """Variable, `@x` for one of the outermost tree; or a word of an enumeration."""
 
     name: str
 
@@ -76,7 +76,7 @@ class Infix:
 
 @dataclass(frozen=True)
 class Comparison:
-    """`a < b <= c`: each neighbouring pair compares so."""
+    """Comparison `a < b <= c`: each neighbouring pair is compared."""
 
     operands: tuple[Expression, ...]
     signs: tuple[str, ...]
@@ -91,7 +91,7 @@ class Choice:
 
 @dataclass(frozen=True)
 class Assignment:
-    """`:=` also makes a variable; the others change one that is there."""
+    """Assignment; `:=` also makes a variable, the others change an existing one."""
 
     name: str
     sign: str
@@ -102,7 +102,7 @@ Expression = Value | Name | Prefix | Infix | Comparison | Choice | Assignment
 
 
 def parse(text: str) -> tuple[Expression, ...]:
-    """The statements of a script; ScriptFault where it has none, or is none."""
+    """The statements of a script; raises ScriptFault if it has none, or cannot be read."""
     if len(text) > LONGEST:
         raise ScriptFault(LONGEST, f"a script has at most {LONGEST} characters")
     parser = _Parser(list(_tokens(text)), len(text))
@@ -117,7 +117,7 @@ def parse(text: str) -> tuple[Expression, ...]:
 
 
 def reads(statements: Sequence[Expression]) -> set[str]:
-    """The names that a script reads; those that an earlier statement has made are its own."""
+    """The names that a script reads, without those that an earlier statement has made."""
     made: set[str] = set()
     found: set[str] = set()
     for statement in statements:
@@ -129,7 +129,7 @@ def reads(statements: Sequence[Expression]) -> set[str]:
 
 
 def writes(statements: Sequence[Expression]) -> set[str]:
-    """The names that a script may give a value."""
+    """The names that a script may set."""
     parts = (each for statement in statements for each in _parts(statement))
     return {each.name for each in parts if isinstance(each, Assignment)}
 
@@ -143,7 +143,7 @@ def _names(expression: Expression) -> Iterator[Name]:
 
 
 def _parts(expression: Expression) -> Iterator[Expression]:
-    """An expression with all that is in it."""
+    """An expression with all its parts."""
     waiting = [expression]
     while waiting:
         each = waiting.pop()
@@ -184,7 +184,7 @@ def _tokens(text: str) -> Iterator[_Token]:
 
 
 class _Parser:
-    """Operator precedence: an expression goes on while the next sign is at least as strong as asked."""
+    """Parser by operator precedence: an expression goes on while the next operator binds as strongly."""
 
     def __init__(self, tokens: list[_Token], length: int) -> None:
         self._tokens = tokens
@@ -201,7 +201,7 @@ class _Parser:
         return self._end if self.is_at_end else self._tokens[self._next]
 
     def take(self, sign: str) -> bool:
-        """Whether the next token is that sign, which is gone then."""
+        """Skip the next token if it is this sign; True if it was."""
         found = self._token.kind == "sign" and self._token.text == sign
         self._next += found
         return found

@@ -1,4 +1,4 @@
-"""What stands in an attribute: a value as such, or the name of a variable whose value is meant."""
+"""Values of attributes: a constant, or the name of a variable whose value is meant."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ PRIVATE = "_"  # begins the name of one that no other tree shares
 
 @dataclass(frozen=True)
 class Variable:
-    """`{goal}`, or `{@goal}` of the outermost tree."""
+    """Reference to a variable: `{goal}`, or `{@goal}` of the outermost tree."""
 
     name: str
 
@@ -24,7 +24,7 @@ Said = str | Variable
 
 
 def read(attribute: str, text: str) -> Said:
-    """What an attribute says; `{=}` is the variable that is called like the attribute.
+    """The constant or variable that an attribute holds; `{=}` is the variable with the attribute's own name.
 
     Text with a variable in it, `to {goal}`, is text: BehaviorTree.CPP puts no value in there.
     """
@@ -36,7 +36,7 @@ def read(attribute: str, text: str) -> Said:
 
 
 def objection(type: str, text: str) -> str | None:
-    """Why a text is no value of a type; None where it is one, or nobody here knows the type."""
+    """The reason why a text is no value of a type; None if it is one, or the type is unknown here."""
     known = TYPES.get(type)
     if known is None or known[1](text.strip()):
         return None
@@ -44,19 +44,19 @@ def objection(type: str, text: str) -> str | None:
 
 
 def fits(given: str, taken: str) -> bool:
-    """Whether every value of a type is one of another; of types that nobody here knows it is."""
+    """True if every value of type `given` is one of type `taken`, or if either type is unknown here."""
     if given not in TYPES or taken not in TYPES or given == taken:
         return True
     return given in WHOLE and taken in NUMBERS
 
 
 def number(text: str) -> float:
-    """The number that a text of a type of numbers spells."""
+    """The number that a text means for a type of numbers."""
     return float(int(text, 16)) if "x" in text.lower() else float(text)
 
 
 def plain_type(type: str | None) -> str:
-    """A type as this table calls it, however a model spells it; "" for any other."""
+    """The name of a type in this table, however a model spells it; "" for any other."""
     found = SPELLINGS.get((type or "").strip(), (type or "").strip())
     return found if found in TYPES else ""
 

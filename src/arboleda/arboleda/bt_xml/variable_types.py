@@ -1,4 +1,4 @@
-"""Variables that ports of two types are given, which BehaviorTree.CPP refuses when it makes a tree."""
+"""Variables that are given to ports of two types, which BehaviorTree.CPP refuses when it makes a tree."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ MOST_PASSED = 100_000  # variables of trees that trees around them are held agai
 
 @dataclass(frozen=True, kw_only=True)
 class VariableUse:
-    """A port that is given a variable; `type` is "" where nobody here knows it, or it takes any."""
+    """Port that is given a variable; `type` is "" if it is unknown here, or takes any."""
 
     node: Node
     port: str
@@ -35,7 +35,7 @@ class VariableUse:
 
 @dataclass(frozen=True, kw_only=True)
 class Clash:
-    """A variable with the use that gives it its type, and one of another type."""
+    """Variable with the use that decides its type, and a use of another type."""
 
     variable: str
     first: VariableUse
@@ -49,7 +49,7 @@ class Clash:
 
 @dataclass
 class _Uses:
-    """The first use of a variable, which decides what it is, and the first of each type."""
+    """First use of a variable, which decides its type, and the first of each type."""
 
     first: VariableUse
     typed: dict[str, VariableUse] = field(default_factory=dict)
@@ -63,12 +63,12 @@ class _Uses:
             self.typed.setdefault(use.type, use)
 
     def clashes(self, use: VariableUse) -> bool:
-        """BehaviorTree.CPP takes anything where a text, or a port of any type, came first."""
+        """True if a use is of another type than the first; anything may follow a text, or any type."""
         return bool(self.first.type and use.type) and self.first.type not in (TEXT, use.type)
 
 
 def clashes(forest: Forest, kind: KindOf) -> list[Clash]:
-    """Those of all trees; a tree is also given to what each tree around it gives to the same variable."""
+    """The clashes in all trees; a tree also gets what trees around it give to the same variable."""
     found: list[Clash] = []
     known: dict[str, Mapping[str, _Uses]] = {}
     passed = 0
@@ -85,7 +85,7 @@ def clashes(forest: Forest, kind: KindOf) -> list[Clash]:
 
 
 def _inner_first(forest: Forest) -> list[str]:
-    """The trees, each after those that it contains; of a ring, told elsewhere, one comes too early."""
+    """The trees, each after those that it contains; in a ring, reported elsewhere, one comes too early."""
     found: dict[str, None] = {}
     begun: set[str] = set()
     waiting = list(forest.trees)
@@ -103,7 +103,7 @@ def _inner_first(forest: Forest) -> list[str]:
 def _in_order(
     tree: Tree, forest: Forest, kind: KindOf, known: Mapping[str, Mapping[str, _Uses]]
 ) -> Iterator[tuple[str, VariableUse]]:
-    """Each use of a variable of a tree in the order in which BehaviorTree.CPP makes the nodes."""
+    """The uses of a tree's variables in the order in which BehaviorTree.CPP makes the nodes."""
     for node in tree.root.iterate():
         if not node.is_subtree:
             yield from sorted(_of_node(node, kind(node)), key=lambda row: row[1].type != TEXT)
@@ -124,7 +124,7 @@ def _of_node(node: Node, kind: Kind | None) -> Iterator[tuple[str, VariableUse]]
 
 
 def _outside(node: Node, inner: str, forest: Forest) -> str | None:
-    """The name that a variable of a subtree has in the tree around it; None where that has no such one."""
+    """The name of a subtree's variable in the tree around it; None if it has none there."""
     if inner.startswith(OUTER) or node.shares(inner):
         return inner
     written = node.port(inner)

@@ -1,4 +1,4 @@
-"""Variables that are read and that nothing writes: each tree has its own, and gets some from outside."""
+"""Variables that are read but never written: each tree has its own, and gets some from outside."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ KindOf = Callable[[Node], "Kind | None"]
 
 @dataclass
 class _TreeVariables:
-    """The variables of one tree; `passed`: which of them it hands to subtrees, under which names there."""
+    """Variables of one tree; `passed`: those that it hands to subtrees, with their names there."""
 
     read: dict[str, Place] = field(default_factory=dict)
     written: set[str] = field(default_factory=set)
@@ -26,7 +26,7 @@ class _TreeVariables:
 
 
 def unwritten(forest: Forest, kind: KindOf) -> Iterator[tuple[Place, str]]:
-    """Each variable that is read and never written, where it is read first."""
+    """Each variable that is read and never written, with the place of its first reading."""
     uses = {name: _use(tree, kind) for name, tree in forest.trees.items()}
     given = _given(forest, uses)
     outer = {name[1:] for use in uses.values() for name in use.written if name.startswith(OUTER)}
@@ -45,7 +45,7 @@ def unwritten(forest: Forest, kind: KindOf) -> Iterator[tuple[Place, str]]:
 
 
 def _given(forest: Forest, uses: Mapping[str, _TreeVariables]) -> dict[str, set[str]]:
-    """What each tree gets from those around it, and what its own model says that it gets."""
+    """The variables that each tree gets from trees around it, or by its own model."""
     given: dict[str, set[str]] = defaultdict(set)
     for tree in forest.trees.values():
         for node in tree.root.iterate():
@@ -62,7 +62,7 @@ def _given(forest: Forest, uses: Mapping[str, _TreeVariables]) -> dict[str, set[
 
 
 def _written_below(use: _TreeVariables, forest: Forest, uses: Mapping[str, _TreeVariables]) -> set[str]:
-    """Those that a subtree may give a value: it writes them, or hands them further in."""
+    """The variables that a subtree may set: it writes them, or hands them further in."""
     found = set()
     for own, tree, there in use.passed:
         below = uses.get(tree)
@@ -104,7 +104,7 @@ def _add_ports(use: _TreeVariables, node: Node, kind: Kind | None) -> None:
             use.passed.append((said.name, node.own["ID"].value, name))
             use.read.setdefault(said.name, place)
         elif isinstance(said, Variable) and (port is None or port.way is not PortDirection.IN):
-            use.written.add(said.name)  # of a leaf that nobody knows, too: it may
+            use.written.add(said.name)  # an unknown leaf may do so, too
         elif isinstance(said, Variable):
             use.read.setdefault(said.name, place)
         elif port is not None and port.way is PortDirection.OUT:

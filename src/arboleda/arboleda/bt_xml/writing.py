@@ -19,7 +19,7 @@ SPELLED = {
 
 @dataclass(frozen=True)
 class Tag:
-    """An element to be written; `text` is what stands in it instead of children."""
+    """Element to be written; `text` is its content in the place of children."""
 
     name: str
     attributes: Mapping[str, str] = field(default_factory=dict)
@@ -28,13 +28,13 @@ class Tag:
 
 
 def document(children: Sequence[Tag], **attributes: str) -> str:
-    """A whole file."""
+    """The text of a whole file."""
     root = Tag("root", {"BTCPP_format": "4", **attributes}, children)
     return "\n".join(['<?xml version="1.0" encoding="UTF-8"?>', *_lines(root, 0), ""])
 
 
 def models(kinds: Iterable[Kind]) -> Tag:
-    """What an editor has to know of kinds of nodes."""
+    """The TreeNodesModel of these kinds, as an editor needs it."""
     return Tag("TreeNodesModel", children=[_model(each) for each in kinds])
 
 
@@ -65,5 +65,5 @@ def _lines(tag: Tag, depth: int) -> list[str]:
 
 
 def _value(text: str) -> str:
-    """A value as it stands in an attribute: readers turn line ends into blanks unless they are references."""
+    """A value as an attribute: line ends are written as references, as readers turn others into blanks."""
     return escape(text).replace("&#x27;", "'").replace("\n", "&#10;").replace("\t", "&#9;")

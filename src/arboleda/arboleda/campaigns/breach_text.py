@@ -1,4 +1,4 @@
-"""How an invariant came to be broken: what must hold, what was seen, the faults, the last seconds."""
+"""Story of a broken invariant: its rule, the observation, the faults, the last seconds."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ LONG_NUMBER = re.compile(r"-?\d+\.\d{5,}(?:e-?\d+)?")
 
 
 def breach(console: Console, result: Result, plant: str) -> None:
-    """Which invariant was broken, when, and what was seen."""
+    """Print the broken invariant, its time, its rule and the observation."""
     if result.broken is None:
         return
     name = result.broken.invariant
@@ -32,7 +32,7 @@ def breach(console: Console, result: Result, plant: str) -> None:
 
 
 def faults(console: Console, result: Result, injected: int) -> None:
-    """The faults that are enough to break it."""
+    """Print the faults that are enough to break the invariant."""
     needed = len(result.faults)
     if not needed:
         _say(console, f"  faults     none of {injected:,} is needed")
@@ -46,7 +46,7 @@ def faults(console: Console, result: Result, injected: int) -> None:
 
 
 def plant(console: Console, drawn: Plant) -> None:
-    """As much as is needed of a plant file that nobody has on disk."""
+    """Print the part of a drawn plant file, which nobody has on disk, that is needed."""
     if drawn.file is None:
         return
     _say(console, "  plant      as much of its file as is enough:")
@@ -57,7 +57,7 @@ def plant(console: Console, drawn: Plant) -> None:
 
 
 def timeline(console: Console, result: Result) -> None:
-    """The last things that happened before the breach."""
+    """Print the last events before the breach."""
     lines = result.lines[-LINES:]
     if not lines:
         return

@@ -1,4 +1,4 @@
-"""Many seeds, one after the other in this process; `workers.py` is the same in several."""
+"""Campaign of many seeds, one after the other in this process; `workers.py` has one for several processes."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ from .setting import Setting, Tick
 
 
 class Campaign:
-    """Runs `seeds` in turn, to the first broken one with `until_failure`.
+    """Campaign: runs `seeds` in turn, to the first broken one with `until_failure`.
 
-    `minutes` is how many were simulated so far; `tick` is called now and then while they pass.
+    `minutes` is the number simulated so far; `tick` is called now and then meanwhile.
     """
 
     def __init__(
@@ -38,7 +38,7 @@ class Campaign:
         return self._minutes
 
     def results(self) -> Iterator[Result]:
-        """What the seeds did, in the order in which they end; after a failure, what had begun still ends."""
+        """Results of seeds in the order of their ends; after a failure, seeds that had begun still end."""
         for result in self._run():
             if result.broken and self._until_failure:
                 self.seeds = iter(())

@@ -1,4 +1,4 @@
-"""What `arboleda simulate` does where it is not told otherwise."""
+"""Defaults of `arboleda simulate`."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What `--faults FILE` holds: what goes wrong and what people do, or a broken seed of `--json`."""
+"""Contents of `--faults FILE`: faults and acts of people, or a broken seed of `--json`."""
 
 from __future__ import annotations
 
@@ -37,7 +37,8 @@ class FaultsFile:
 
 
 def read(path: Path, seed: int | None) -> FaultsFile:
-    """The file; of a summary the broken seed of that number, None for its first one. Else ConfigError."""
+    """The contents of the file; of a summary the broken seed of that number, None for its first one.
+    ConfigError if it is neither."""
     data = _data(path)
     if not isinstance(data, dict):
         return FaultsFile(climate=data)
@@ -71,7 +72,7 @@ def _plant(path: Path, data: dict[str, Any]) -> str | None:
 
 
 def line_of(path: Path, place: Sequence[str | int]) -> str:
-    """Where in the file this is, for the beginning of a sentence; empty where that cannot be said."""
+    """The line of the file that has this place, to begin a sentence with; empty if that is unknown."""
     try:
         node, mark = parse(user_file.read_bytes(path, LARGEST))[0], None
     except (ConfigError, YamlFault):
@@ -97,8 +98,8 @@ def _data(path: Path) -> Any:
 
 
 def _values(data: Any) -> int:
-    """How many values there are, at most MOST_VALUES + 1: ten anchors in ten lines, each of which repeats the
-    one before nine times, are hundreds of millions."""
+    """The number of values, at most MOST_VALUES + 1: ten anchors in ten lines, each of which repeats the one
+    before nine times, are hundreds of millions."""
     count, left = 0, [data]
     while left and count <= MOST_VALUES:
         value = left.pop()

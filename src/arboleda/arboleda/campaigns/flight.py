@@ -1,4 +1,4 @@
-"""One seed as flight records: of each start of its plant one, in files beside each other."""
+"""Flight records of one seed: one for each start of its plant, in files beside each other."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ ALL = Limits(megabytes=1e6, days=1e6)
 
 @dataclass
 class Flight:
-    """What is recorded: `make_plant` for the world; once it is over, `said` has a line for each file."""
+    """The recording of a seed: `make_plant` for the world; at the end `said` has a line for each file."""
 
     make_plant: MakePlant
     said: list[str] = field(default_factory=list)
@@ -35,7 +35,7 @@ class Flight:
 
 @contextmanager
 def recorded(file: Path, plant: Plant) -> Iterator[Flight]:
-    """Have the first start of a plant in `file`, later ones in files beside it; ArboledaError."""
+    """Record the first start of a plant in `file`, later ones in files beside it; ArboledaError."""
     with TemporaryDirectory(prefix=".arboleda-", dir=file.parent) as made:
         recorder = SimulatedRecorder(Path(made), plant.files, ALL, NOON_NS - round(START_S * SECOND))
         flight = Flight(recorder.plant)

@@ -11,14 +11,14 @@ TIME = 10  # columns of the time in a line of the trace
 
 
 class OutputLost(BaseException):
-    """Nobody takes the lines any more, `error` says why; an Exception would be laid to the plant."""
+    """Nobody takes the lines any more, `error` is the reason; an Exception would be blamed on the plant."""
 
     def __init__(self, error: Exception) -> None:
         self.error = error
 
 
 class LineWriter:
-    """Called with each line: prints it with `printed`, and writes it to `file`; Unheard where that fails."""
+    """Teller: prints each line with `printed`, and writes it to `file`; Unheard if that fails."""
 
     def __init__(self, *, printed: bool, file: RawIOBase | None) -> None:
         self._printed = printed

@@ -1,4 +1,4 @@
-"""Which plant a seed is simulated on; `random_plants.py` has those that seeds draw."""
+"""Plants that seeds are simulated on; `random_plants.py` has those that seeds draw."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ from typing import Any, Protocol
 from arboleda.model.plant_model import Link, PlantModel
 from arboleda.recorder.preamble import NO_FILES, PlantFiles
 
-ELSEWHERE = (Link.ROS, Link.NONE, Link.DRIVER)  # who has no board on MQTT, and gets a virtual one
+ELSEWHERE = (Link.ROS, Link.NONE, Link.DRIVER)  # robots without a board on MQTT, which get a virtual one
 
 
 @dataclass(frozen=True, kw_only=True)
 class Plant:
     """One plant: `declared` as its file says it, `file` its content where no file of the user has it.
 
-    `files` are those that it was read from, for a record of it.
+    `files` are the ones that it was read from, for its record.
     """
 
     declared: PlantModel
@@ -30,7 +30,7 @@ class Plant:
 
     @cached_property
     def model(self) -> PlantModel:
-        """As it is simulated: every robot on MQTT, where the simulator has boards for them."""
+        """The plant as it is simulated: every robot on MQTT, if the simulator has a board for it."""
         return self.declared.on_boards(*ELSEWHERE)
 
 
@@ -42,7 +42,7 @@ class Plants(Protocol):
 
 @dataclass(frozen=True, kw_only=True)
 class PlantRotation:
-    """Some plants, seed n on number n modulo their count."""
+    """InTurn: some plants, seed n on number n modulo their count."""
 
     plants: tuple[Plant, ...]
 
@@ -51,7 +51,7 @@ class PlantRotation:
 
 
 def notes(plants: Iterable[Plant]) -> list[str]:
-    """What a person should know about how these plants are simulated."""
+    """The notes for a person on how these plants are simulated."""
     robots = [robot for plant in plants for robot in plant.declared.robots.values()]
     names = {link: ", ".join(robot.name for robot in robots if robot.link is link) for link in Link}
     instead = "simulated as if each had a virtual board on MQTT"

@@ -1,4 +1,4 @@
-"""Plants that seeds draw, through the same check as a user's file."""
+"""Plants that seeds draw, checked in the same way as a user's file."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from arboleda.simulator import plants
 
 from .plants import Plant
 
-ATTEMPTS = 200  # drawn files of one seed; `check` takes about every second one
+ATTEMPTS = 200  # files drawn for one seed; `check` accepts about every second one
 RECENT = 16  # drawn plants that are kept
 
 
@@ -36,7 +36,7 @@ def loaded(file: dict[str, Any]) -> Plant:
 
 
 def as_yaml(file: dict[str, Any]) -> str:
-    """The content of a plant file as a person would write it, more or less."""
+    """The content of a plant file, roughly as a person would write it."""
     return yaml.safe_dump(file, sort_keys=False, default_flow_style=None, width=110)
 
 

@@ -1,4 +1,4 @@
-"""What a campaign came to, for a person: tables, how much was simulated, and a verdict."""
+"""Report on a campaign for a person: tables, the amount simulated, and a verdict."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ ONE_COLUMN = 8  # kinds of faults; more are drawn in two
 
 
 def tables(tally: Tally) -> Table:
-    """Faults by kind and outcomes of tasks, side by side."""
+    """The tables of faults by kind and outcomes of tasks, side by side."""
     faults = sorted(tally.faults.items())
     half = len(faults) if len(faults) <= ONE_COLUMN else (len(faults) + 1) // 2
     outcomes = sorted(tally.outcomes.items(), key=lambda item: (-item[1], item[0]))
@@ -38,19 +38,19 @@ def _counts(heading: str, counts: Iterable[tuple[str, int]]) -> Table:
 
 
 def amount(tally: Tally) -> str:
-    """How much was simulated."""
+    """The amount simulated: seeds, cycles, faults and the plant's time."""
     done = [seeds(tally.rows), counted(tally.cycles, "cycle"), counted(tally.faults.total(), "fault")]
     return f"{', '.join(done)}, {tally.seconds:,.0f} s of plant time"
 
 
 def speed(tally: Tally, elapsed_s: float) -> str:
-    """How fast."""
+    """The duration of the campaign and its speed."""
     rate = f"{tally.cycles / elapsed_s:,.0f} cycles/s, {tally.seconds / elapsed_s:,.0f} times real time"
     return f"in {elapsed_s:.1f} s ({rate})"
 
 
 def verdict(tally: Tally) -> Text:
-    """Whether everything held."""
+    """The verdict: held or broken."""
     if not tally.rows:
         return Text("no seed came to its end", style="yellow")
     if tally.broken:

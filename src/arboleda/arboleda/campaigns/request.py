@@ -1,4 +1,4 @@
-"""What a person asks of `arboleda simulate`, checked as a whole before anything runs."""
+"""Request of a person to `arboleda simulate`, checked as a whole before anything runs."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ OF_DRAWN = "drawn plants: whatever link a robot declares, it is simulated with a
 
 @dataclass(frozen=True, kw_only=True)
 class Request:
-    """The options; None stands for one that was not given."""
+    """Request: the options; None stands for one that was not given."""
 
     plant: Path | None = None
     drawn_plants: bool = False
@@ -43,7 +43,7 @@ class Request:
 
     @property
     def two_hosts(self) -> bool:
-        """Whether a second host waits to lead: as asked, or as in the file of a broken seed."""
+        """True if a second host waits to lead: as asked, or as in the file of a broken seed."""
         return self.standby or (self.told is not None and self.told.standby)
 
     @property
@@ -55,14 +55,14 @@ class Request:
 
     @property
     def count(self) -> int | None:
-        """How many seeds; None: until something breaks."""
+        """The number of seeds; None: until something breaks."""
         if self.told is not None and self.told.seed is not None:
             return 1
         return self.seeds or (None if self.until_failure else 1 if self.has_people else SEEDS)
 
     @property
     def has_people(self) -> bool:
-        """Whether a file says what people do: then seeds differ by little."""
+        """True if a file says what people do: then seeds differ by little."""
         return self.told is not None and isinstance(self.told.climate, dict) and "people" in self.told.climate
 
     @property
@@ -72,7 +72,7 @@ class Request:
 
     @cached_property
     def told(self) -> FaultsFile | None:
-        """What `faults` names where it is a file."""
+        """The contents of the file that `faults` names; None if it is a level."""
         if self.faults in LEVELS:
             return None
         if not os.path.exists(self.faults):  # unlike Path.exists, False for what can be no file's name
@@ -82,7 +82,7 @@ class Request:
 
     @cached_property
     def plants(self) -> Plants:
-        """What the seeds run on; a broken seed of a file runs on the plant that is in there."""
+        """The plants that the seeds run on; a broken seed of a file runs on the plant that is in there."""
         if self.told is not None and self.told.plant_file is not None:
             return PlantRotation(plants=(loaded(self.told.plant_file),))
         return RandomPlants() if self.drawn_plants else PlantRotation(plants=self._by_files)
@@ -100,7 +100,7 @@ class Request:
 
     @cached_property
     def setting(self) -> Setting:
-        """What is to be simulated; ConfigError where the plant or the faults cannot be used."""
+        """The setting of the simulation; ConfigError if the plant or the faults cannot be used."""
         setting = Setting(
             plants=self.plants,
             cycles=self.cycles,
@@ -122,7 +122,7 @@ class Request:
 
     @property
     def _checked(self) -> Iterable[int]:
-        """Seeds that stand for all: faults that a file tells must be possible in each plant."""
+        """The seeds that stand for all: faults of a file must be possible in each plant."""
         if self.told is None:
             return range(self.first, self.first + 1)
         if isinstance(self.plants, PlantRotation):
@@ -131,7 +131,7 @@ class Request:
 
     @property
     def notes(self) -> list[str]:
-        """What a person should know about what is simulated."""
+        """The notes for a person on what is simulated."""
         if isinstance(self.plants, PlantRotation):
             return notes(self.plants.plants)
         return [OF_DRAWN]
@@ -155,7 +155,7 @@ class Request:
 
 
 def shared() -> PlantModel:
-    """The second packaged plant: what the shipped one does not use."""
+    """The second packaged plant, with the features that the shipped one does not use."""
     return _shared()[0]
 
 

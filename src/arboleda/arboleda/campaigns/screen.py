@@ -1,4 +1,4 @@
-"""How far something long is: a bar in a terminal, else a plain line every few seconds."""
+"""Progress of something long: a bar in a terminal, else a plain line every few seconds."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def console() -> Console:
 
 @contextmanager
 def progress(console: Console, doing: str, total: int | None) -> Iterator[Show]:
-    """Gives what shows the progress towards `total`; None: nobody knows how far it is."""
+    """The function that shows the progress towards `total`; None: the end is unknown."""
     with _bar(console, doing, total) if console.is_terminal else _lines(console, doing) as show:
         yield show
 

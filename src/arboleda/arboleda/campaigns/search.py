@@ -1,4 +1,4 @@
-"""The fewest faults, and the least of a drawn plant, that still break an invariant."""
+"""Search for the fewest faults, and the least of a drawn plant, that still break an invariant."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ ATTEMPTS = 250  # runs on smaller plants, at most
 
 @dataclass(frozen=True, kw_only=True)
 class ShrunkBreach:
-    """A breach with what it takes: the run of it, with the lines of its last seconds, and the plant."""
+    """A breach reduced to its needs: its run, with the lines of its last seconds, and the plant."""
 
     result: Result
     plant: Plant
@@ -57,7 +57,7 @@ class _Search:
         self.best = shrink(self.best, self._on_this_plant, self._progress)
 
     def smaller_plant(self) -> bool:
-        """Leave out part after part of a drawn plant, again while that helps; whether anything could be."""
+        """Leave out part after part of a drawn plant, again while that helps; True if any could go."""
         file, found, at = self.plant.file, False, 0
         while file is not None and self._runs < ATTEMPTS:
             rest = list(smaller(file))[at:]

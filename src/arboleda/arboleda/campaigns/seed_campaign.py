@@ -1,4 +1,4 @@
-"""Many seeds: run them, shrink the first breach, say what came of it."""
+"""Many seeds: runs them, shrinks the first breach, prints the result."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ HELD, BROKEN, INTERRUPTED = 0, 1, 130  # exit statuses
 
 
 class SeedCampaign:
-    """A campaign in a terminal; `file` gets what came of it."""
+    """Many: a campaign in a terminal; `file` gets its result."""
 
     def __init__(self, request: Request, console: Console, file: Path | None) -> None:
         self._request = request
@@ -38,7 +38,7 @@ class SeedCampaign:
         self._tick: Tick = lambda: None
 
     def run(self, jobs: int) -> int:
-        """All of it; the exit status. Ctrl-C ends it with what was done so far."""
+        """Run all seeds and return the exit status. Ctrl-C ends the campaign with the seeds done so far."""
         status = INTERRUPTED
         try:
             self._simulate(jobs)

@@ -1,4 +1,4 @@
-"""What a simulation of many seeds is about, and how one of them is run; workers get it from the parent."""
+"""Setting of a simulation of many seeds, and the run of one of them; workers get it from the parent."""
 
 from __future__ import annotations
 
@@ -28,8 +28,8 @@ copyreg.pickle(BrokenInvariant, lambda broken: (BrokenInvariant, (broken.invaria
 class Setting:
     """`plants` says on which one a seed runs; faults are drawn at `level`, or are as `told`.
 
-    A run goes on until `cycles` tasks have ended, or for `seconds` where they are given. With `any_of` about
-    half of the tasks are for several cells. `standby`: on two hosts.
+    A run goes on until `cycles` tasks have ended, or for `seconds` if given. With `any_of` about half of the
+    tasks are for several cells. `standby`: the plant runs on two hosts.
     """
 
     plants: Plants
@@ -51,7 +51,7 @@ class Setting:
         return Climate.draw(self.plant(seed), seed, self.level, standby=self.standby)
 
     def script(self, plant: PlantModel) -> Script | None:
-        """What people do where that is told; BadFaults where it cannot be."""
+        """The acts of people if the file has some; BadFaults if they are impossible."""
         return script_from(plant, self.told)
 
     def run(
@@ -105,6 +105,6 @@ class Setting:
 
 
 def rules() -> dict[str, str]:
-    """What must hold: a sentence by the name of each invariant."""
+    """The sentence of each invariant, by its name."""
     sentences = {each.name: " ".join(each.sentence.split()) for each in every()}
     return {NO_EXCEPTION: "No exception escapes a step."} | sentences

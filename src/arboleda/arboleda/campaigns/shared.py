@@ -25,7 +25,7 @@ LOOK_S = 1.0  # between two looks for a seed that a worker has given back
 
 
 def campaign_of(request: Request) -> str:
-    """The name of a campaign: what is simulated, so that workers of other options have another one."""
+    """The name of a campaign, made of its options, so that workers with other options have another one."""
     told = "" if request.faults in LEVELS else Path(request.faults).read_text(encoding="utf-8")
     plants = request.plants.plants if isinstance(request.plants, PlantRotation) else ()
     contents = [{name: text.hex() for name, text in each.files.contents.items()} for each in plants]
@@ -35,7 +35,7 @@ def campaign_of(request: Request) -> str:
 
 
 def work(request: Request, console: Console, store: str, file: Path | None) -> int:
-    """Do seeds until all of the campaign are done, by whomever; the exit status."""
+    """Run seeds until all of the campaign are done, by any worker; the exit status."""
     if request.count is None:
         raise StartError("workers share a number of seeds: say how many with --seeds")
     began, mine, name = time.monotonic(), 0, campaign_of(request)

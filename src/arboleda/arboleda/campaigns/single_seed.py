@@ -1,4 +1,4 @@
-"""One seed, told line by line as it happens: printed, recorded or both; the same every time."""
+"""One seed, line by line as it happens: printed, recorded or both; the same every time."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from .tally import Tally
 
 
 def run(request: Request, console: Console, *, trace: bool, record: Path | None, file: Path | None) -> int:
-    """Runs the first seed; the exit status."""
+    """Run the first seed and return the exit status."""
     if trace:
         breach_text.plant(console, request.plants.of(request.first))
     flown: list[str] = []
@@ -45,7 +45,7 @@ def run(request: Request, console: Console, *, trace: bool, record: Path | None,
 
 
 def _flown(request: Request, *, trace: bool, record: Path, said: list[str]) -> Result:
-    """Runs it with a flight record; `said` gets a line for each file."""
+    """Run the seed with a flight record; `said` gets a line for each file."""
     tell = LineWriter(printed=True, file=None) if trace else None
     with flight.recorded(record, request.plants.of(request.first)) as flown:
         result = request.setting.run(request.first, tell=tell, make_plant=flown.make_plant)

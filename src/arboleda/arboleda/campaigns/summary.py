@@ -17,7 +17,7 @@ from .tally import Tally
 
 
 def write(path: Path, request: Request, tally: Tally, shrunk: ShrunkBreach | None, *, complete: bool) -> None:
-    """Writes it; `shrunk` is the run of one of the broken seeds with what is needed of faults and plant."""
+    """Write the summary; `shrunk` is the run of one of the broken seeds with the needed faults and plant."""
     data = summary(request, tally, shrunk, complete=complete)
     try:
         path.write_text(json.dumps(data, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")

@@ -1,4 +1,4 @@
-"""What the seeds that ended came to, for the screen and for a file."""
+"""Tally of the seeds that have ended, for the screen and for a file."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from .setting import Setting
 
 @dataclass(kw_only=True)
 class Tally:
-    """Sums, a row per seed, and of seeds that broke an invariant all there is to know."""
+    """Tally: sums, a row per seed, and all details of seeds that broke an invariant."""
 
     setting: Setting
     rows: dict[int, dict[str, Any]] = field(default_factory=dict)

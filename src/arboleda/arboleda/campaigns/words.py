@@ -1,4 +1,4 @@
-"""How numbers and faults are written for a person."""
+"""Numbers and faults, written for a person."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def short(number: int) -> str:
 
 
 def told(fault: Fault) -> str:
-    """What goes wrong, where and for how long; without its time."""
+    """The fault with its target and its duration; without its time."""
     much = f"{fault.amount:g}" if fault.amount else ""
     lasting = f"for {fault.seconds:.3f} s" if fault.seconds else ""
     return "  ".join(part for part in (fault.kind, fault.target, fault.word, much, lasting) if part)

@@ -26,23 +26,22 @@ YOUNG = 50_000  # objects before a collection
 
 
 def processors() -> int:
-    """How many this process may use."""
+    """The number of processors that this process may use."""
     available = getattr(os, "sched_getaffinity", None)
     return len(available(0)) if available else os.cpu_count() or 1
 
 
 def collect_rarely() -> None:
-    """Have Python look for garbage in this process now and then only: what a simulation makes dies without
-    that, and looking costs 4 %.
-    """
+    """Have Python collect garbage in this process rarely: the objects of a simulation are freed without that,
+    and collecting costs 4 %."""
     gc.freeze()
     gc.set_threshold(YOUNG)
 
 
 class Workers(Campaign):
-    """Inside a `with` block there are `jobs` of them; whatever ends the block ends them.
+    """Workers: `jobs` processes inside a `with` block, which end with it in any case.
 
-    Enter it before any thread is started: where the system can, workers are forked.
+    Enter it before any thread is started, as it forks the workers if the system can.
     """
 
     def __init__(self, *arguments: Any, jobs: int, **options: Any) -> None:
@@ -68,7 +67,7 @@ class Workers(Campaign):
 
     @property
     def minutes(self) -> int:
-        return self._passed_by.get_obj().value  # without the lock, which a killed worker may have kept
+        return self._passed_by.get_obj().value  # without the lock, which a killed worker may hold
 
     def _run(self) -> Iterator[Result]:
         while self._under_way:
@@ -93,7 +92,7 @@ class Workers(Campaign):
 
 
 class _Worker:
-    """What a worker process has, and does."""
+    """The data and the work of a worker process."""
 
     setting: Setting
     minutes: Any  # of all workers

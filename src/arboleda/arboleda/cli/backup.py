@@ -58,7 +58,7 @@ def restore(
 
 
 def _refuse_database(plant: Path | None, where: Path) -> None:
-    """StartError where the memory is in no file."""
+    """Raise StartError if the plant's memory is in no file."""
     running = find_running(where)
     store = running.store if running else store_of(plant)
     if store:

@@ -79,7 +79,7 @@ def certs(
 ) -> None:
     """Make a small authority for a lab, and certificates for the plant on this machine and for each board.
 
-    What is there already stays as it is; a board that came into the plant file since gets its own.
+    Certificates that exist already stay as they are; a board that is new in the plant file gets its own.
 
     Exit status: 0 all of them are there, 1 they could not be made, and nothing is changed; 2 bad input.
     """
@@ -112,7 +112,7 @@ def certs(
 
 @dataclass(kw_only=True)
 class _Lab:
-    """What is there of a lab's certificates, and what is to be written."""
+    """The certificates of a lab: those that it has, and those that are to be written."""
 
     folder: Path
     authority: Authority
@@ -130,7 +130,7 @@ class _Lab:
         self._say(path, made, self.authority.until, "who believes it believes the others")
 
     def host(self, path: Path, user: str, named: Sequence[str], own: Sequence[str]) -> None:
-        """The certificate of a server with the names that somebody gave it, and those that it has itself."""
+        """Make the certificate of a server, with the names given by a person and those that it has itself."""
         names = list(dict.fromkeys([*named, *(each for each in own if _is_name(each))]))
         there = self._there(path, user)
         if there is None:
@@ -146,7 +146,7 @@ class _Lab:
         self._say(path, False, until, " ".join(has) + more, user)
 
     def board(self, user: str) -> None:
-        """The certificate by which a board logs in."""
+        """Make the certificate with which a board logs in."""
         path = self.folder / BOARDS / user
         there = self._there(path, user)
         if there is None:
@@ -155,14 +155,14 @@ class _Lab:
             self._say(path, False, there[0], user, user)
 
     def text(self, path: Path, content: bytes) -> None:
-        """Another file; StartError where one of that name says something else."""
+        """Add another file; StartError if one of that name has another content."""
         if not os.path.lexists(path):
             self._fresh.append((path, content, 0o644))
         elif read_bytes(path, LARGEST) != content:
             raise StartError(f"{path} is there and says something else; move it away to have it written anew")
 
     def write(self) -> None:
-        """All that is new; StartError, and nothing changed, where the machine does not take it."""
+        """Write all new files; StartError, and nothing changed, if the machine refuses."""
         done: list[tuple[Path, Path]] = []
         try:
             self._makedirs()
@@ -184,7 +184,7 @@ class _Lab:
             each.mkdir(mode=0o700, parents=True, exist_ok=True)
 
     def _there(self, path: Path, user: str) -> tuple[datetime, tuple[str, ...]] | None:
-        """Until when the certificate of those files holds, and its names; None where it is to be made."""
+        """The end and the names of the certificate in those files; None if it has to be made."""
         if user in self.renewed or not _is_there(path):
             return None
         with _about(f"{path}.crt"):
@@ -214,7 +214,7 @@ class _Lab:
 
 
 def _found(folder: Path, now: datetime) -> Authority:
-    """The authority of that folder, a new one where it has none."""
+    """The authority of that folder; a new one if it has none."""
     from arboleda.adapters import authority
 
     path = folder / CA
@@ -229,7 +229,7 @@ def _found(folder: Path, now: datetime) -> Authority:
 
 
 def _is_there(path: Path) -> bool:
-    """Whether both files of a certificate are; StartError where one is missing."""
+    """True if both files of a certificate exist; StartError if only one of them does."""
     there = [ending for ending in (".crt", ".key") if os.path.lexists(f"{path}{ending}")]
     if len(there) == 1:
         other = ".key" if there == [".crt"] else ".crt"
@@ -240,7 +240,7 @@ def _is_there(path: Path) -> bool:
 
 
 def _boards(model: PlantModel) -> list[str]:
-    """The MQTT names of the robots that are reached so, drivers of one's own left out."""
+    """The MQTT names of the robots reached over MQTT; those behind drivers of one's own are left out."""
     return [robot.mqtt for robot in model.robots.values() if robot.link is Link.MQTT]
 
 
@@ -264,7 +264,7 @@ def _is_name(text: str) -> bool:
 
 @contextmanager
 def _about(file: str) -> Iterator[None]:
-    """Put before what is wrong which file it is about."""
+    """Put the name of the file before the sentence of an error about it."""
     try:
         yield
     except StartError as error:
@@ -283,7 +283,7 @@ def _library() -> Iterator[None]:
 
 
 def _next(folder: Path, boards: Sequence[str]) -> list[str]:
-    """What is to be done with the files."""
+    """The instructions for using the files."""
     lines = [
         f"{folder}/{CA}.key signs: who has it is believed by all of them. Keep it off the network.",
         f"{folder}/{CA}.crt goes to everybody who is to believe this plant: boards, browsers, "
@@ -296,7 +296,7 @@ def _next(folder: Path, boards: Sequence[str]) -> list[str]:
 
 
 def _of_broker(folder: Path, at: Path) -> list[str]:
-    """What is to be done with the files of mosquitto."""
+    """The instructions for using the files of mosquitto."""
     return [
         f"{folder}/{MOSQUITTO}/ goes to {at} of the broker's machine, owned by the user that mosquitto has "
         f"there: mosquitto -c {at}/{mosquitto_files.CONFIGURATION}",

@@ -1,5 +1,5 @@
-"""Talks to a plant for the commands that need one: to the process on its state directory, or where that does
-not lead it, to who does."""
+"""Client of a plant for the commands that need one: asks the process on its state directory or, if that one
+does not lead the plant, the one that does."""
 
 from __future__ import annotations
 
@@ -22,8 +22,8 @@ from .line import TIMEOUT_S, Answer, FarLine, Line, PlantSilent
 from .remote_plant import NoLeader, RemotePlant
 
 LONGEST = 500  # characters of a line
-NEXT_S = 30.0  # by then a plant that lost its leader has the next one
-NOBODY_S = 5.0  # who stood by needs less to begin; while it does, nobody leads and nobody waits
+NEXT_S = 30.0  # for a plant that lost its leader to get the next one
+NOBODY_S = 5.0  # a standby needs less to begin leading; until then nobody leads or waits
 LOOK_S = 0.2
 FOLLOWED_S = 120.0  # a homing may take a minute
 URGENT_S = 1.5  # a stop is answered within some ms
@@ -35,26 +35,26 @@ LOST_TASK = (
 
 
 class PlantGone(ArboledaError):
-    """The plant was there, and is no more."""
+    """The plant has ended while it was followed."""
 
     def __init__(self) -> None:
         super().__init__("the plant has ended")
 
 
 class PlantClient:
-    """One-sentence ArboledaErrors: no plant, no answer, or what the plant said.
+    """PlantClient: asks a plant; ArboledaError, in one sentence: no plant, no answer, or the plant's refusal.
 
-    Whom it asks on another host it says once, on standard error.
+    If it asks another host, it prints that once, on standard error.
     """
 
     def __init__(self, state: Path, elsewhere: RemotePlant | None = None) -> None:
         self._state = state
         self._elsewhere = elsewhere or RemotePlant(state, lambda: ("", ""), dict)
-        self._listening: Line | None = None  # whoever tells changes is asked, too
+        self._listening: Line | None = None  # the line that sends changes also gets requests
         self._said = ""
 
     def submit(self, text: str) -> dict[str, Any]:
-        """The queued task; TextError where the text is refused, QueueFull where the plant takes none now."""
+        """The queued task; TextError if the text is refused, QueueFull if the plant takes no task now."""
         try:
             # An id makes it one task, however often it is sent; without one it is never sent again.
             return self._ask("POST", "/api/tasks", {"text": text}, repeatable="#" in text)
@@ -72,14 +72,14 @@ class PlantClient:
         return self._ask("GET", f"/api/tasks/{task}")
 
     def operate(self, verb: Verb, scope: str = "", *, by_hand: bool = False) -> dict[str, Any]:
-        """Have the plant (no scope) or one cell, robot, zone or task do it; Refused where it does not."""
+        """Have the plant (no scope), a cell, robot, zone or task carry out a verb; Refused if it does not."""
         where = f"cells/{quote(scope, safe='')}" if scope else "plant"
         body = {"by_hand": True} if by_hand else None
         stops = verb is Verb.STOP
         return self._ask("POST", f"/api/{where}/{verb.value}", body, repeatable=stops, urgent=stops)
 
     def outcome(self, act: int) -> dict[str, Any]:
-        """What has become of an act, once it has ended; after FOLLOWED_S as it is then."""
+        """The row of an act once it has ended; after FOLLOWED_S as it is then."""
         until = time.monotonic() + FOLLOWED_S
         while True:
             row: dict[str, Any] = self._ask("GET", f"/api/acts/{act}")
@@ -88,10 +88,10 @@ class PlantClient:
             time.sleep(LOOK_S)
 
     def changes(self) -> Iterator[tuple[str, dict[str, Any]]]:
-        """What `GET /api/events` says, as it happens: the kind of each event and its row, `snapshot` first.
+        """The events of `GET /api/events` as they happen: the kind and the row of each, `snapshot` first.
 
-        A reader that was too slow is told a new snapshot, and so is that of a plant with a database whose
-        next leader is there within NEXT_S; Gone where the plant has ended.
+        A reader that was too slow gets a new snapshot; so does that of a plant with a database, once the next
+        leader is there within NEXT_S. Gone if the plant has ended.
         """
         epoch, cut_at = None, None
         while True:
@@ -116,14 +116,13 @@ class PlantClient:
             time.sleep(LOOK_S)
 
     def _patience_s(self, before: Running | None, trouble: ArboledaError | None) -> float:
-        """For how long after a cut somebody may tell on."""
+        """The time after a cut in which the same plant may go on, s."""
         if not self._elsewhere.is_known:
             return NEXT_S if trouble is None and find_running(self._state) == before else 0.0
         return NOBODY_S if isinstance(trouble, NoLeader) and not trouble.awaited else NEXT_S
 
     def follow(self, task: dict[str, Any]) -> Iterator[dict[str, Any]]:
-        """The task each time that its state changes, until it has ended; ArboledaError where the plant ends
-        before."""
+        """The task at each change of its state, until it has ended; ArboledaError if the plant ends first."""
         if TaskState(task["state"]) in ENDED:
             return
         try:
@@ -144,7 +143,7 @@ class PlantClient:
             yield from found or (self._kept(id) if kind == "snapshot" else ())
 
     def _kept(self, id: str) -> list[dict[str, Any]]:
-        """The task as the history has it: a leader need not know what ended under the one before."""
+        """The task from the history: a leader may not know tasks that ended under the one before."""
         rows = self._ask("GET", f"/api/history?{urlencode({'words': id})}")
         return [row for row in rows if row["id"] == id]
 
@@ -176,7 +175,7 @@ class PlantClient:
         return line.taken(answer)
 
     def _leading(self) -> Line:
-        """To whoever leads the plant now."""
+        """The line to the process that leads the plant now."""
         line = self._near()
         if line is None:
             return self._far()
@@ -184,7 +183,7 @@ class PlantClient:
         return self._beyond(answer) if answer.stands_by else line
 
     def _near(self) -> Line | None:
-        """To the process on the state directory, None where none can be asked."""
+        """The line to the process on the state directory, None if none can be asked."""
         running = find_running(self._state)
         if running is None or running.port is None:
             return None
@@ -193,7 +192,7 @@ class PlantClient:
         )
 
     def _beyond(self, answer: Answer) -> FarLine:
-        """To the process that leads the plant, as one that stands by says it."""
+        """The line to the process that leads the plant, as a process that stands by names it."""
         sentence = answer.sentence if answer.status >= 300 else STANDS_BY.format(it=answer.sentence)
         led = of_standby(answer.said)
         if not led.url:
@@ -204,7 +203,7 @@ class PlantClient:
             raise ArboledaError(f"{sentence}. {error}") from error
 
     def _far(self) -> FarLine:
-        """To the process that leads the plant, as its database says it; else what is the matter here."""
+        """The line to the leader that the plant's database names; else an error about the process here."""
         running = find_running(self._state)
         if running is None:
             here = f"No plant is running on {self._state}"
@@ -221,11 +220,11 @@ class PlantClient:
         raise ArboledaError(f"{here}; {_others()}." if running is None else f"{here}.")
 
     def _instead(self, line: Line, silent: PlantSilent, *, repeatable: bool) -> Line | None:
-        """To another process that leads the plant, where one on this host was silent; None where none does,
-        Silent where it must not be asked as well."""
+        """The line to another process that leads the plant, after one on this host was silent. None if there
+        is none; Silent if that one must not be asked as well."""
         led, running = None, find_running(self._state)
         if not isinstance(line, FarLine):
-            with suppress(ArboledaError):  # what matters is that the one here was silent
+            with suppress(ArboledaError):  # then the silence of the one here is reported
                 led = self._elsewhere.led()
         if led is None or (led.here and running is not None and led.process == running.pid):
             return None
@@ -235,7 +234,7 @@ class PlantClient:
         return self._elsewhere.line(led)
 
     def _say(self, line: Line, done: str) -> None:
-        """Whom it asks, where that is not the process here."""
+        """Tell the person which host is asked, if that is not this process's own."""
         if not isinstance(line, FarLine) and done == "asked":
             return
         said = f"plant {line.place.plant} is led on {line.host}: {done} there"
@@ -245,7 +244,7 @@ class PlantClient:
 
 
 def _others() -> str:
-    """What to do where no plant runs on a state directory: those that run are named."""
+    """Advice for a state directory on which no plant runs: names those that do run."""
     found = running_plants()
     if not found:
         return "start one with `arboleda up`, or name its directory where it was started with --state"

@@ -1,4 +1,4 @@
-"""The command `arboleda conformance`: its options, what it says, how it ends."""
+"""The command `arboleda conformance`: its options, its output, its exit status."""
 
 from __future__ import annotations
 
@@ -130,7 +130,7 @@ def _verdict(robot: Robot, judge: Judge) -> Text:
 
 
 def _level(robot: Robot, level: Evidence) -> tuple[str, str]:
-    """What a level means for it, and its name in the plant file."""
+    """The meaning of a level for a robot, and the level's name in the plant file."""
     if robot.has_joints:
         return MEANING[level], level.value
     return DEVICE_MEANING[level], "facts" if level is Evidence.JOINTS else level.value

@@ -1,4 +1,4 @@
-"""Trees as files: which formats there are, and what makes each of them."""
+"""Trees as files: the formats, and the library behind each of them."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ Rows = Sequence[dict[str, Any]]
 
 
 class Format(str, Enum):
-    """How a tree can be drawn."""
+    """The formats in which a tree can be drawn."""
 
     ASCII = "ascii"
     SVG = "svg"

@@ -17,7 +17,7 @@ ENDED = frozenset({TaskState.DONE, TaskState.FAILED, TaskState.CANCELLED, TaskSt
 
 @dataclass(frozen=True, kw_only=True)
 class Absence:
-    """A cell that begins no task because devices of it are offline, since a moment of the clock."""
+    """A cell that begins no task because devices of it are offline, since `since` on the clock."""
 
     since: float
     why: tuple[Sentence, ...]  # for each device
@@ -26,8 +26,8 @@ class Absence:
 class Errand:
     """Ask `submit` for every text; `finished` is called once, in the plant's thread, at the end of all.
 
-    What waits for a device that was offline for `patience_s` counts as over, with all others; None: it is
-    waited for.
+    A task that waits for a device that was offline for `patience_s` counts as over, like all others; None: it
+    is waited for.
     """
 
     def __init__(
@@ -55,7 +55,7 @@ class Errand:
 
     @property
     def ok(self) -> bool:
-        """Whether every task is done."""
+        """True if every task is done."""
         done = [change.state is TaskState.DONE for change in self.results.values()]
         return self._asked == len(self.texts) and all(done)
 
@@ -64,7 +64,7 @@ class Errand:
             submit(text).add_done_callback(lambda answer: self._answered(answer.result()))
 
     def changed(self, change: TaskChanged) -> None:
-        """Listen to every change of the plant; those of other tasks do not matter."""
+        """Take any change of a task; those of other tasks do not matter."""
         with self._lock:
             if change.task not in self.results:
                 return
@@ -72,8 +72,7 @@ class Errand:
         self._finish_if_over()
 
     def seen(self, snapshot: dict[str, Any]) -> None:
-        """Look at every snapshot of the plant: which cells start no task before an operator acts, or before
-        a device is there."""
+        """Note which cells of a snapshot start no task before an operator acts or a device is back."""
         blocked = [cell["name"] for cell in snapshot["cells"] if cell["paused"] and not cell["task"]]
         absent = _absent(snapshot)
         with self._lock:
@@ -117,7 +116,7 @@ class Errand:
         )
 
     def _say_what_is_missing(self) -> None:
-        """Put what is so now in the place of what was said of tasks when they began to wait."""
+        """Replace the sentences of tasks that wait by those that are true now."""
         gone = {cell: each for cell, each in self._absent.items() if self._is_given_up(cell)}
         for task, change in self.results.items():
             found = [each for cell, each in gone.items() if change.cell in (cell, None)]
@@ -130,7 +129,7 @@ class Errand:
         return [change for change in self.results.values() if change.state not in ENDED]
 
     def _is_stuck(self, cell: str | None) -> bool:
-        """Whether a cell starts no task; of None, whether none does."""
+        """True if a cell starts no task; for None, if no cell does."""
         if cell is None:
             return bool(self._cells) and all(map(self._is_stuck, self._cells))
         return cell in self._blocked or self._is_given_up(cell)
@@ -143,7 +142,7 @@ class Errand:
 
 
 def _absent(snapshot: dict[str, Any]) -> dict[str, tuple[Sentence, ...]]:
-    """The cells that begin no task because devices are offline, with what is said of each of these."""
+    """The cells that begin no task because devices are offline, with a sentence about each of these."""
     offline = {
         robot["name"]: robot["obstacle"]
         for robot in snapshot["robots"]

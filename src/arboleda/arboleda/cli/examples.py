@@ -53,13 +53,13 @@ def found() -> dict[str, Traversable]:
 
 
 def about(example: Traversable) -> str:
-    """What its plant file says of itself in the comment at its beginning."""
+    """The comment at the beginning of an example's plant file."""
     lines = example.joinpath(PLANT).read_text("utf-8").splitlines()
     return " ".join(line.lstrip("# ") for line in takewhile(lambda line: line.startswith("#"), lines))
 
 
 def texts(folder: Traversable, under: str = "") -> dict[str, str]:
-    """What its files hold, by their paths in it."""
+    """The contents of an example's files, by their paths in it."""
     held: dict[str, str] = {}
     for each in sorted(folder.iterdir(), key=_name):
         if each.is_file():

@@ -1,4 +1,4 @@
-"""What `arboleda replay` does with `--fork-at`, `--set` or `--recipe`: says what came out otherwise."""
+"""The forks of `arboleda replay` (`--fork-at`, `--set`, `--recipe`): runs one and prints the differences."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ NOTICED_S = 0.5
 
 @dataclass(frozen=True, kw_only=True)
 class Options:
-    """What somebody asked for; None and () stand for what was not given."""
+    """The options of a fork as a person gave them; None and () stand for those not given."""
 
     at_ns: int | None = None
     task: str | None = None
@@ -73,7 +73,7 @@ def _changed(beginning: Beginning, options: Options) -> PlantModel:
 
 
 def _with_recipe(files: PlantFiles, other: Path) -> PlantFiles:
-    """The plant's files with this one in the place of the one that has its name, or of the only one."""
+    """The plant's files with this recipe file in place of the one of the same name, or of the only one."""
     own = [name for name in files.contents if name.endswith(".py")]
     same = [name for name in own if PurePosixPath(name).name == other.name] or own
     if len(same) != 1:
@@ -93,7 +93,7 @@ def _began_ns(record: Record, task: str) -> int:
 
 
 def lines(found: ForkResult, options: Options) -> Iterator[str]:
-    """What came of a fork, for people; `differs` says whether anything was otherwise."""
+    """The result of a fork, as lines for people; `differs` says whether anything was otherwise."""
     at = _clock(found)
     yield f"{found.steps} steps are executed as they were; from {at(found.at)} on its devices are virtual"
     if found.early:
@@ -112,7 +112,7 @@ def lines(found: ForkResult, options: Options) -> Iterator[str]:
 
 
 def compared(found: ForkResult, task: str | None) -> list[Pair]:
-    """Both runs beside each other; of a task and the robots of its cell, where one is named."""
+    """Both runs beside each other; only those of a task and the robots of its cell if one is named."""
     pairs = beside(found.recorded, found.fork, found.until)
     if task is None or found.world is None:
         return pairs
@@ -123,12 +123,12 @@ def compared(found: ForkResult, task: str | None) -> list[Pair]:
 
 
 def _clock(found: ForkResult) -> Callable[[float], str]:
-    """Times of the plant's clock as the clock on the wall had them."""
+    """The function that formats times of the plant's clock as times of day."""
     return lambda at: moment(found.unix_ns + round((at - found.at) * 1e9), "milliseconds")
 
 
 def _times(pairs: list[Pair]) -> Iterator[str]:
-    """By how much the same things came earlier or later, where somebody would notice."""
+    """The shifts in time of happenings that both runs have, if they are noticeable."""
     apart = [pair.fork.at - pair.recorded.at for pair in pairs if pair.recorded and pair.fork]
     most_s = max(apart, key=abs, default=0.0)
     if abs(most_s) >= NOTICED_S:
@@ -145,7 +145,7 @@ def _table(pairs: list[Pair], at: Callable[[float], str]) -> Iterator[str]:
 
 
 def _ends(pairs: list[Pair], at: Callable[[float], str]) -> Iterator[str]:
-    """What became of each task, in either run."""
+    """The end of each task in either run."""
     ends: dict[str, list[str]] = {}
     for pair in pairs:
         for side, each in enumerate((pair.recorded, pair.fork)):

@@ -1,4 +1,4 @@
-"""HTTP with one process of a plant: that of a state directory here, or who leads it on another host."""
+"""HTTP with one process of a plant: that of a state directory here, or the leader on another host."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from arboleda.web.limits import BEAT_S
 from arboleda.web.plant_api import COMMAND_LINE
 from arboleda.web.request_head import PLANT
 
-if TYPE_CHECKING:  # it takes a while to load, and only who asks a plant needs it
+if TYPE_CHECKING:  # slow to load, and only needed to ask a plant
     import httpx
 
 TIMEOUT_S = 10.0
@@ -28,7 +28,7 @@ class VerbRefused(ArboledaError):
 
 
 class PlantSilent(ArboledaError):
-    """No answer of a plant; `may_have_heard` where what was asked may have been done all the same."""
+    """No answer of a plant; `may_have_heard` if it may have done what was asked all the same."""
 
     def __init__(self, sentence: str, *, may_have_heard: bool) -> None:
         super().__init__(sentence)
@@ -40,7 +40,7 @@ ERRORS = {403: ArboledaError, 404: ArboledaError, 409: VerbRefused, 422: TextErr
 
 @dataclass(frozen=True, kw_only=True)
 class Answer:
-    """Status and content; `is_for_now` where it may be another one a little later."""
+    """Answer: status and content of a response; `is_for_now` if it may be another one a little later."""
 
     status: int
     said: Any
@@ -48,7 +48,7 @@ class Answer:
 
     @property
     def stands_by(self) -> bool:
-        """Whether a process answers that only waits to lead the plant."""
+        """True if the process that answers only waits to lead the plant."""
         return isinstance(self.said, dict) and self.said.get("standby") is True
 
     @property
@@ -57,7 +57,7 @@ class Answer:
 
 
 class Line:
-    """To a process of this host; `name` is what sentences call it."""
+    """Line to a process of this host; `name` is its name in sentences."""
 
     connect_s = TIMEOUT_S
     host = "this host"
@@ -69,7 +69,7 @@ class Line:
     def ask(
         self, method: str, path: str, body: dict[str, Any] | None = None, *, within_s: float = TIMEOUT_S
     ) -> Answer:
-        """What it answers, refusals too; Silent."""
+        """The answer of the plant, refusals too; Silent if there is none."""
         import httpx
 
         try:
@@ -79,7 +79,7 @@ class Line:
             raise self._silent(error) from error
 
     def taken(self, answer: Answer) -> Any:
-        """The content of an answer; else what the plant said, as the error that it is."""
+        """The content of an answer; a refusal raises the error that it stands for."""
         if answer.status < 300:
             return answer.said
         if answer.status == UNAVAILABLE and answer.is_for_now and not answer.stands_by:
@@ -87,7 +87,7 @@ class Line:
         raise self._refusal(answer)
 
     def events(self) -> Iterator[tuple[str, dict[str, Any]]]:
-        """What `GET /api/events` says, up to where it is cut; Silent, or ArboledaError with what was said."""
+        """The events of `GET /api/events` up to its end; Silent, or ArboledaError with its refusal."""
         import httpx
 
         kind = ""
@@ -112,7 +112,7 @@ class Line:
         return ERRORS.get(answer.status, ArboledaError)(answer.sentence)
 
     def _how(self, error: Exception) -> str:
-        """How it gave no answer, as its name goes on."""
+        """The kind of silence, as the end of a sentence that begins with the plant's name."""
         return " did not answer."
 
     def _silent(self, error: Exception) -> PlantSilent:
@@ -145,7 +145,7 @@ class Line:
 
 
 class FarLine(Line):
-    """To who leads a plant on another host; `token_advice` is what to do where our token is refused."""
+    """Line to the leader of a plant on another host; `token_advice` is the remedy for a refused token."""
 
     connect_s = FAR_CONNECT_S
 
@@ -186,7 +186,7 @@ class FarLine(Line):
 
 
 def _answer(answer: httpx.Response) -> Answer:
-    """ValueError where it is none of a plant."""
+    """The answer in a response; ValueError if no plant gave it."""
     said = answer.json()
     if not answer.is_success and not (isinstance(said, dict) and isinstance(said.get("sentence"), str)):
         raise ValueError(f"status {answer.status_code}")
@@ -194,7 +194,7 @@ def _answer(answer: httpx.Response) -> Answer:
 
 
 def _doubt(error: BaseException | None) -> str | None:
-    """Why a certificate is not believed, where that is what an error comes from."""
+    """The reason for which a certificate is not believed, if an error comes from that."""
     import ssl
 
     while error is not None:

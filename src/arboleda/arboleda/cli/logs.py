@@ -1,4 +1,4 @@
-"""`arboleda logs`: what became of tasks and cells and what operators did, out of the flight records."""
+"""`arboleda logs`: the history of tasks and cells and the acts of operators, from the flight records."""
 
 from __future__ import annotations
 
@@ -22,7 +22,10 @@ from .plant_options import PlantFile, StateFolder, folder
 from .record import last_of
 
 LOOK_S = 0.5
-STEPS, EVENTS = "/arboleda/steps", "/arboleda/events"  # their channels: to import them takes a while
+STEPS, EVENTS = (
+    "/arboleda/steps",
+    "/arboleda/events",
+)  # topics of records, written here as their module is slow to import
 STARTED = "started"
 LONGEST = 500  # characters of a line
 WHAT = "Show what became of tasks and cells and what operators did, of all starts that are recorded."
@@ -72,7 +75,7 @@ def _print(unix_ns: int, line: str) -> None:
 
 
 def _starts(last: Path) -> list[Path]:
-    """A file of each start before the last one, oldest first; what cannot be read is said and left out."""
+    """A file of each start before the last one, oldest first; an unreadable one is reported and left out."""
     from arboleda.recorder import files, reader
 
     first_of = {part.epoch: part.path for part in reversed(files.parts_in(last.parent))}
@@ -91,7 +94,7 @@ def _starts(last: Path) -> list[Path]:
 
 
 def _refuse_unknown(cell: str, paths: list[Path]) -> None:
-    """ConfigError for a cell that no plant file of these records has."""
+    """Raise ConfigError for a cell that no plant file of these records has."""
     from arboleda.recorder import reader
 
     known: dict[str, None] = {}
@@ -109,7 +112,7 @@ def _all(record: Any) -> Iterator[Told]:
 
 
 def _followed(path: Path, state: Path) -> Iterator[Told]:
-    """All of a record, and what comes to it while its plant runs."""
+    """The messages of a record, and those that are added while its plant runs."""
     from arboleda.recorder import files, reader
 
     part = files.part_at(path)
@@ -130,7 +133,7 @@ def _followed(path: Path, state: Path) -> Iterator[Told]:
 
 
 def _lines(topic: str, told: dict[str, Any]) -> Iterator[tuple[str | None, str]]:
-    """Of which cell it is, None for all of them, and what there is to say."""
+    """The lines of a message, each with its cell, None for all of them."""
     if topic == EVENTS and told["kind"] == "cell" and told["what"] in NEWS:
         why = sentence_of(told["sentence"])
         yield told["cell"], f"{told['what']:<9} {told['subject']}" + (f"  {why}" if why else "")

@@ -83,7 +83,7 @@ cli = typer.Typer(
 
 
 class Boards(str, Enum):
-    """Who answers on MQTT."""
+    """The devices that answer on MQTT."""
 
     VIRTUAL = "virtual"
     LINUX = "linux"
@@ -381,7 +381,7 @@ def status(
 
 
 def _watch(reached: PlantClient, *, as_json: bool) -> None:
-    """Show what changes until the plant ends."""
+    """Print the changes of the plant until it ends."""
     with suppress(PlantGone):
         if as_json:
             for kind, row in reached.changes():
@@ -484,7 +484,7 @@ def common(
 
 
 def _model(plant: Path | None, tasks: list[str]) -> tuple[PlantModel, Recording | None]:
-    """The plant and what is recorded of it, with every task text checked before anything starts."""
+    """The plant and the limits of its record, with every task text checked before anything starts."""
     model, recording = loader.load_recorded(plant)
     problems = []
     for task in tasks:
@@ -498,7 +498,7 @@ def _model(plant: Path | None, tasks: list[str]) -> tuple[PlantModel, Recording 
 
 
 def _refuse_beside(tasks: list[str], plant: Path | None, state: Path | None) -> None:
-    """StartError where a plant runs already on that state directory: what to type to have it do the tasks."""
+    """Raise StartError if a plant runs on that state directory, with the commands to give it the tasks."""
     where = folder(plant, state)
     if find_running(where) is None:
         return
@@ -519,8 +519,7 @@ def _refuse_beside(tasks: list[str], plant: Path | None, state: Path | None) -> 
 
 
 class _Certificates:
-    """The certificates that the servers of this plant show, as the options say; StartError where one is of no
-    use."""
+    """The certificates that the servers of this plant show, by the options; StartError if one is unusable."""
 
     def __init__(
         self, certificate: Path | None, key: Path | None, *, broker_tls: bool, broker_ca: Path | None
@@ -556,9 +555,7 @@ def _options(
     web: WebOptions,
     recording: Recording | None,
 ) -> Options:
-    from arboleda.runtime.build import (
-        Options,
-    )  # what a plant runs on takes a while to load, and only who runs one needs it
+    from arboleda.runtime.build import Options  # slow to load, and only needed to run a plant
 
     if broker and host:
         raise typer.BadParameter(
@@ -634,7 +631,7 @@ def _run(
 
 
 def _ros(model: PlantModel, wanted: bool | None, *, lan: bool) -> tuple[Any, tuple[str, ...]]:
-    """The link to ROS 2, and what is said where it is left out because it is missing here."""
+    """The link to ROS 2, and the note that it is left out if it is not installed here."""
     from . import session
 
     if wanted is False:
@@ -648,14 +645,14 @@ def _ros(model: PlantModel, wanted: bool | None, *, lan: bool) -> tuple[Any, tup
 
 
 def _virtual(model: PlantModel) -> tuple[str, ...]:
-    """What is said of devices whose drivers are not used."""
+    """The note on devices whose drivers are not used."""
     names = ", ".join(robot.name for robot in model.driven)
     how = "simulated; with --boards real their drivers reach them"
     return (f"{names}: {how}",) if names else ()
 
 
 def main() -> None:
-    """The entry point: whatever goes wrong is one sentence on standard error."""
+    """The entry point: prints any trouble as one sentence on standard error."""
     try:
         cli(prog_name="arboleda")
     except (ConfigError, NoRecord, TextError, QueueFull, VerbRefused) as error:

@@ -1,4 +1,4 @@
-"""What a mosquitto for a plant and its boards is told: TLS, logins by certificate, who may do what."""
+"""Configuration of a mosquitto for a plant and its boards: TLS, logins by certificate, access rights."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from arboleda.adapters.mqtt_broker.limits import PACKET_BYTES
 from arboleda.wire.topics import topic
 
 CONFIGURATION, ACL = "mosquitto.conf", "acl"
-USER = "%u"  # what mosquitto puts the user's name in the place of
+USER = "%u"  # mosquitto replaces it by the user's name
 
 
 def texts(at: Path, plant: str) -> dict[str, str]:

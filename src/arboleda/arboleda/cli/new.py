@@ -55,9 +55,10 @@ def write(folder: Path) -> list[Path]:
 
 
 def write_files(folder: Path, texts: Mapping[str, str]) -> list[Path]:
-    """The files of a folder, by their paths in it; ConfigError, and nothing written, where one is there.
+    """Write the files of a folder, by their paths in it; ConfigError, and nothing written, if one exists
+    already.
 
-    StartError where the machine does not take them.
+    StartError if the machine refuses.
     """
     targets = {folder / called: text for called, text in texts.items()}
     there = next((each for each in targets if each.exists()), None)

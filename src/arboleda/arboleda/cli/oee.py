@@ -36,8 +36,8 @@ def oee(
 ) -> None:
     """OEE of the cells, availability x performance x quality, whether the plant runs or not.
 
-    What counts as what is in docs/how-to/oee.md. Figures are of cells that had a task, of what the history
-    keeps.
+    docs/how-to/oee.md says how each figure is counted. Only cells that had a task are shown, from what the
+    history keeps.
 
     Exit status: 0 printed, 1 the plant's memory cannot be read, 2 bad input.
     """
@@ -70,5 +70,5 @@ def _table(rows: Sequence[Oee]) -> Table:
 
 
 def percent(share: float | None) -> str:
-    """`87 %`; a dash where nobody can say."""
+    """`87 %`; a dash if it is unknown."""
     return "-" if share is None else f"{100 * share:.0f} %"

@@ -1,4 +1,4 @@
-"""What `--help` lists: the commands by what people want, each with its whole first sentence."""
+"""Overview of `--help`: the commands by purpose, each with its whole first sentence."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ class WholeSentences(TyperGroup):
     """A group that lists each command with its whole first sentence."""
 
     def format_commands(self, ctx: Context, formatter: HelpFormatter) -> None:
-        """Write what can be typed, by sections."""
+        """Write the commands in sections."""
         for title, names in self.sections(ctx).items():
             with formatter.section(title):
                 formatter.write_dl([(name, self._what(ctx, name)) for name in names])

@@ -1,4 +1,4 @@
-"""Which plant a command talks to: its file, its state directory, and the client of both."""
+"""Location of the plant that a command talks to: its file, its state directory, and the client of both."""
 
 from __future__ import annotations
 
@@ -68,8 +68,7 @@ TokensFile = Annotated[
 def client(
     plant: Path | None, state: Path | None, store: str = "", tokens: Path | None = None
 ) -> PlantClient:
-    """The client of the plant that runs on `state`, or where that plant file keeps its state; on whatever
-    host it is led."""
+    """The client of the plant that runs on `state`, or on that plant file's state directory; on any host."""
     where = located(plant, state)
     elsewhere = RemotePlant(
         where,
@@ -95,14 +94,14 @@ def located(plant: Path | None, state: Path | None) -> Path:
 
 
 def history(plant: Path | None, state: Path | None, store: str) -> History:
-    """What became of the tasks of that plant, where it keeps them."""
+    """The history of that plant's tasks, read from the store that keeps them."""
     where = located(plant, state)
     kept_in, name = _kept_in(plant, where, store)
     return history_of(kept_in, where, name if kept_in else name_of(plant))
 
 
 def database(plant: Path | None, state: Path | None, store: str) -> Leadership:
-    """Who leads that plant; StartError where its memory is no database."""
+    """The leadership of that plant; StartError if its memory is no database."""
     return leadership_of(*_kept_in(plant, located(plant, state), store))
 
 
@@ -121,15 +120,15 @@ def _kept_in(plant: Path | None, where: Path, store: str) -> tuple[str, str]:
 
 
 def store_of(plant: Path | None) -> str:
-    """The database that the plant file names, "" where it names none."""
+    """The database that the plant file names, "" if it names none."""
     return loader.load(plant, recipes=False).store
 
 
 def folder(plant: Path | None, state: Path | None) -> Path:
-    """`state`, or where that plant file keeps its state."""
+    """`state`, or the state directory of that plant file."""
     return state or default_state(loader.load(plant, recipes=False).name)
 
 
 def name_of(plant: Path | None) -> str:
-    """The name of the plant of that file; "" where none is named."""
+    """The name of the plant of that file; "" if none is named."""
     return "" if plant is None else loader.load(plant, recipes=False).name

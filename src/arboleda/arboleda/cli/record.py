@@ -1,4 +1,4 @@
-"""`arboleda record`: which records a plant has, what is in one, and copies of them."""
+"""`arboleda record`: lists a plant's records, shows the contents of one, and copies them."""
 
 from __future__ import annotations
 
@@ -36,8 +36,7 @@ cli = typer.Typer(
 
 
 def last_of(file: Path | None, plant: Path | None, state: Path | None) -> Path:
-    """The file that is meant: the one named, else one of the plant's last record; ConfigError where it has
-    none."""
+    """The file that is named, else one of the plant's last record; ConfigError if it has none."""
     from arboleda.recorder import files  # what reads records takes a while to load
 
     if file is not None:
@@ -81,7 +80,7 @@ def _row(parts: list[Any]) -> str:
 
 @dataclass
 class Summary:
-    """What is in a record, counted."""
+    """The contents of a record, counted."""
 
     steps: int = 0
     until_ns: int = 0
@@ -96,7 +95,7 @@ class Summary:
 
 
 def changes(step: dict[str, Any]) -> Iterator[dict[str, Any]]:
-    """The changes of tasks that a step has told; one that was refused is none."""
+    """The changes of tasks in a step; refused requests are none."""
     for row in step["messages"]:
         if row["type"] == "TaskChanged" and row["task"]:
             yield row

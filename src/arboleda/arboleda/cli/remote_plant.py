@@ -27,9 +27,9 @@ class NoLeader(ArboledaError):
 
 
 class RemotePlant:
-    """Of the plant of the state directory `state`. `kept_in()` is the database of its memory, "" for a file,
-    and its name; `known()` are tokens by address or by plant. Both are asked only where they are needed: what
-    is wrong with them keeps nobody from the plant that runs here."""
+    """Elsewhere: finds the process that leads the plant of the state directory `state`. `kept_in()` is the
+    database of its memory, "" for a file, and its name; `known()` are tokens by address or by plant. Both are
+    called only when needed, so that an error in them keeps nobody from the plant that runs here."""
 
     def __init__(
         self, state: Path, kept_in: Callable[[], tuple[str, str]], known: Callable[[], Mapping[str, str]]
@@ -40,7 +40,7 @@ class RemotePlant:
 
     @property
     def is_known(self) -> bool:
-        """Whether there is a database that knows who leads."""
+        """True if there is a database that knows the leader."""
         return bool(self._memory[0])
 
     @cached_property
@@ -48,8 +48,8 @@ class RemotePlant:
         return self._kept_in()
 
     def led(self) -> LeaderInfo | None:
-        """Who leads it, as its database says; None where its memory is a file. Nobody; ArboledaError where
-        the database does not say."""
+        """The leader of the plant as its database says it; None if its memory is a file. Raises Nobody if
+        nobody leads, ArboledaError if the database does not answer."""
         store, plant = self._memory
         if not store:
             return None
@@ -63,7 +63,7 @@ class RemotePlant:
         return of_leader(plant, leader)
 
     def line(self, led: LeaderInfo) -> FarLine:
-        """To who leads it; ArboledaError where no address of his leads there from here."""
+        """The line to the leader; ArboledaError if none of its addresses can be reached from here."""
         named = f"Plant {led.plant} is led on {led.host}"
         if led.is_far:
             raise ArboledaError(
@@ -81,8 +81,8 @@ class RemotePlant:
         return FarLine(place, named, led.host, advice)
 
     def _place(self, led: LeaderInfo) -> Place:
-        """With a token of the file of tokens, of a plant of this machine that has the address, or of this
-        state directory: hosts that lead a plant in turns may have the same ones."""
+        """The leader's address with a token: from the file of tokens, from a plant of this machine with that
+        address, or from this state directory, as hosts that lead a plant in turns may have the same ones."""
         (place,) = with_tokens(lambda: [Place(url=led.way, plant=led.plant)], self._known())()
         if place.token:
             return place

@@ -49,7 +49,7 @@ EXIT = (
 
 @dataclass(frozen=True)
 class Chosen:
-    """What of a record somebody wants to see, and how fast."""
+    """The part of a record that somebody wants to see, and its speed."""
 
     until_ns: int | None = None
     task: str | None = None
@@ -139,7 +139,7 @@ def _refuse_part(record: Record) -> None:
 
 
 def _compare(record: Record, plant: Path | None, chosen: Chosen) -> None:
-    """Say whether every step is what it was."""
+    """Compare every step with the recorded one, and print the result."""
     last = _run(record, model_of(record.first.beginning, plant), chosen)
     if last is None:
         raise NoRecord(f"{_nothing(record, chosen)}, so that nothing was compared.")
@@ -154,7 +154,7 @@ def _nothing(record: Record, chosen: Chosen) -> str:
 
 
 def _extent(record: Record, number: int) -> str:
-    """How many of its steps were read, where it is damaged."""
+    """The number of its steps that were read, and the damage that ended the reading."""
     from arboleda.recorder.reader import steps_there
 
     there = steps_there(record.paths)
@@ -163,7 +163,7 @@ def _extent(record: Record, number: int) -> str:
 
 
 def _fork(record: Record, options: Options) -> None:
-    """Say what came of a fork."""
+    """Fork the record and print the result."""
     from arboleda.playback.fork.run import forked
 
     from . import fork
@@ -180,7 +180,7 @@ def _fork(record: Record, options: Options) -> None:
 
 
 def _show(record: Record, until: str | None, task: str | None, port: int | None) -> None:
-    """The page, where a task ended or at a time; else at the last failure."""
+    """Show the page at the end of a task or at a time; else at the last failure."""
     from arboleda.playback import replay_page  # its libraries take a second
 
     at_s = None if until is None else _time("--until", until, record.first.began_ns) / 1e9
@@ -190,7 +190,7 @@ def _show(record: Record, until: str | None, task: str | None, port: int | None)
 
 
 def _finish(record: Record, last: ReplayedStep) -> None:
-    """Say what came of it."""
+    """Print the result."""
     if last.difference is not None:
         for line in _difference(last):
             _say(line)
@@ -209,7 +209,7 @@ def _notes(beginning: Beginning, plant: Path | None) -> Iterator[str]:
 
 
 def _time(option: str, text: str, began_ns: int) -> int:
-    """Nanoseconds of Unix time; ConfigError for what is no time."""
+    """A time in ns of Unix time; ConfigError for text that is no time."""
     day = datetime.fromtimestamp(began_ns / 1e9).date().isoformat()
     for candidate in (text, f"{day}T{text}"):
         try:
@@ -220,7 +220,7 @@ def _time(option: str, text: str, began_ns: int) -> int:
 
 
 def _run(record: Record, model: PlantModel, chosen: Chosen) -> ReplayedStep | None:
-    """Make the steps again and tell what becomes of tasks; the last of them."""
+    """Execute the steps again, print the changes of tasks, and return the last step."""
     from arboleda.recorder.replay import plant_of, replayed
 
     last: ReplayedStep | None = None
@@ -247,7 +247,7 @@ def _until(record: Record, end_ns: int | None) -> Iterator[RecordedStep]:
 
 
 class Pace:
-    """Waits, so that a replay is `speed` times as fast as it was; not at all where that is None."""
+    """Pace: waits, so that a replay is `speed` times as fast as its record; for None not at all."""
 
     def __init__(self, speed: float | None) -> None:
         self._speed = speed

@@ -1,4 +1,4 @@
-"""`arboleda report`: why a task failed, as one file."""
+"""`arboleda report`: the cause of a task's failure, as one file."""
 
 from __future__ import annotations
 

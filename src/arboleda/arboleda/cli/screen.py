@@ -1,4 +1,4 @@
-"""What the terminal shows: a live table where it is one, else a line per change."""
+"""The terminal's view of a plant: a live table on a terminal, else a line per change."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ from arboleda.views import view
 
 REFRESH_HZ = 5
 LONGEST = 1000  # characters of one text
-OUTPUT_BYTES = 10_000_000  # of the file that standard output was sent to; whoever wants more empties it
+OUTPUT_BYTES = 10_000_000  # of the file that standard output goes to; it goes on once the file is emptied
 EFFECTOR = "effector"
 SWITCHED = {True: "on", False: "off"}  # as an effector is, where other facts are so or not
 MOST_ANSWERS = 3  # of a task that runs
@@ -55,7 +55,7 @@ STYLES = {
 
 
 class Screen:
-    """Shows `snapshot()` while the `with` block runs, and what is logged."""
+    """Screen: shows `snapshot()` while the `with` block runs, and the lines of the log."""
 
     def __init__(self, console: Console, snapshot: Callable[[], dict[str, Any]], log_file: Path) -> None:
         self.console = console
@@ -80,7 +80,7 @@ class Screen:
             self._live.stop()
 
     def say(self, line: Text, at: float) -> None:
-        """Print a line of the log, of `at` in s since 1970; the time is said where no person looks on."""
+        """Print a line of the log, of `at` in s since 1970; with its time if no person looks on."""
         if self._is_full():
             return
         if not self.console.is_terminal:
@@ -88,7 +88,7 @@ class Screen:
         self.console.print(line)
 
     def _is_full(self) -> bool:
-        """Whether the output is a file that nobody cuts; a service may run for years. Said once."""
+        """True if the output is a file that has grown too large, as years of a service make it. Said once."""
         before, self._full = self._full, _size(self.console) >= OUTPUT_BYTES
         if self._full and not before:
             grown = f"this file has {OUTPUT_BYTES // 1_000_000} MB and gets no more lines"
@@ -96,7 +96,7 @@ class Screen:
         return self._full
 
     def stepped(self, snapshot: dict[str, Any], at: float) -> None:
-        """Without a terminal the table's place is taken by a line per step, and by what people are asked."""
+        """Without a terminal, print a line per step, and the questions to people, in place of the table."""
         if self.console.is_terminal:
             return
         for cell in snapshot["cells"]:
@@ -124,9 +124,8 @@ def logged(line: logging.LogRecord) -> Text:
 
 
 def table(snapshot: dict[str, Any]) -> Group:
-    """A row per cell: state, task, step, robots, time; then other devices, zones, what people are asked, what
-    was answered to the tasks that run, and what is in the way.
-    """
+    """The table with a row per cell: state, task, step, robots, time; below it other devices, zones,
+    questions to people, answers to the tasks that run, and obstacles."""
     robots = {robot["name"]: robot for robot in snapshot["robots"]}
     columns = _columns(snapshot["cells"])
     headings = ["cell", "state", "task", "step", *columns, "time"]
@@ -150,7 +149,7 @@ def _table(headings: list[str], **settings: Any) -> Table:
 
 
 def _columns(cells: list[dict[str, Any]]) -> list[str]:
-    """A heading for each role, where every cell has the same few roles for robots that go somewhere."""
+    """The heading of each role, if every cell has the same few roles for robots that go somewhere."""
     told = {tuple(_heading(device) for device in cell["devices"]) for cell in cells}
     moving = all(device["position"] for cell in cells for device in cell["devices"])
     return list(*told) if len(told) == 1 and moving and len(*told) <= ROLES else []
@@ -161,7 +160,7 @@ def _heading(device: dict[str, Any]) -> str:
 
 
 def _devices(cells: list[dict[str, Any]], robots: dict[str, dict[str, Any]]) -> Table:
-    """How each device stands, what it says and what it was told last."""
+    """The table of the devices: state, facts and last command of each."""
     drawn = _table(["cell", "device", "kind", "state", "says", "last command"])
     for _, device in view.devices_once(cells):
         name = device["name"]
@@ -190,20 +189,20 @@ def _told(robot: dict[str, Any]) -> str:
 
 
 def says(robot: dict[str, Any]) -> str:
-    """Where it is, and each of its facts by name."""
+    """The position of a robot, and each of its facts by name."""
     facts = [f"{name} {fact(name, value)}" for name, value in robot["facts"].items()]
     return ", ".join([*place(robot), *facts])
 
 
 def place(robot: dict[str, Any]) -> list[str]:
-    """Where it says that it is; nothing of what says no place."""
+    """The reported position of a robot; empty if it reports none."""
     if robot["q"] is not None:
         return [joints(robot)]
     return [] if robot["node"] is None else [f"node {robot['node']}"]
 
 
 def fact(name: str, value: Value | None) -> str:
-    """A fact for a person; `?` where it was not said yet."""
+    """A fact for a person; `?` if it was not reported yet."""
     if value is None:
         return "?"
     return SWITCHED[value] if name == EFFECTOR and isinstance(value, bool) else answered(value)
@@ -214,12 +213,12 @@ def answered(value: Value) -> str:
 
 
 def _words(text: str | Sentence, style: str = "") -> Text:
-    """Text of a snapshot, which may be that of another program: no markup, and nothing a terminal obeys."""
+    """A text of a snapshot, perhaps of another program: without markup and codes that a terminal obeys."""
     return Text(plain(str(text), LONGEST), style=style)
 
 
 def _size(console: Console) -> int:
-    """Bytes of the regular file that the console writes to; 0 where it is none."""
+    """The size of the regular file that the console writes to, bytes; 0 if it is none."""
     try:
         status = os.fstat(console.file.fileno())
     except (OSError, ValueError):  # closed, or no file at all
@@ -228,7 +227,7 @@ def _size(console: Console) -> int:
 
 
 def _zones(zones: list[dict[str, Any]]) -> Table:
-    """Who is in each shared zone, and who waits for it."""
+    """The table of the shared zones: the robot in each, and those that wait for it."""
     drawn = Table(box=SIMPLE_HEAD, padding=(0, 1, 0, 0))
     for heading in ("zone", "state", "robot", "waiting"):
         drawn.add_column(heading)
@@ -240,7 +239,7 @@ def _zones(zones: list[dict[str, Any]]) -> Table:
 
 
 def _row(cell: dict[str, Any], robots: dict[str, dict[str, Any]], *, told: bool) -> list[Text]:
-    """`told`: with what each of its robots says."""
+    """The row of a cell; with `told`, the positions of its robots, too."""
     task = cell["task"]
     standing = view.standing(cell)
     style = {"idle": "", "execute": "cyan", "paused": "yellow", "blocked": "yellow"}.get(standing, "red")
@@ -255,14 +254,14 @@ def _row(cell: dict[str, Any], robots: dict[str, dict[str, Any]], *, told: bool)
 
 
 def _of(robot: dict[str, Any], holds: str | None) -> Text:
-    """Where a robot is and how its effector stands, dim where it is no longer heard."""
+    """The position of a robot and the state of its effector, dim if it is no longer heard."""
     said = place(robot) or ["?"]
     said += [fact(holds, robot["facts"][holds])] if holds else []
     return Text(", ".join(said), style="" if robot["online"] else "dim")
 
 
 def _question(robot: dict[str, Any]) -> list[str]:
-    """What a person is asked, then the command of each answer; nothing of whom nobody asks."""
+    """The question to a person, then the command of each answer; empty if there is none."""
     asked = robot["question"]
     if asked is None:
         return []
@@ -271,18 +270,18 @@ def _question(robot: dict[str, Any]) -> list[str]:
 
 
 def _answers(cell: dict[str, Any]) -> list[str]:
-    """What was answered last to the task of a cell."""
+    """The last answers to the task of a cell."""
     answers = (cell["task"] or {}).get("answers", [])[-MOST_ANSWERS:]
     return [f"{cell['name']} heard: {heard(answers)}"] if answers else []
 
 
 def heard(answers: Iterable[Mapping[str, Any]]) -> str:
-    """Who answered what to which question, in one line."""
+    """The answers in one line: for each the one who gave it, the question and the answer."""
     return "; ".join(f"{each['by']}, {each['asked']}: {answered(each['answer'])}" for each in answers)
 
 
 def _command(person: str, question: str, answer: str) -> str:
-    """What to type for this question and no later one; behind `--` an answer that begins like an option."""
+    """The command to type for this question and no later one; `--` protects an answer like an option."""
     dashes = ["--"] if answer.startswith("-") else []
     return shlex.join(["arboleda", "answer", "--question", question, *dashes, person, answer])
 
@@ -295,16 +294,15 @@ def _in_the_way(snapshot: dict[str, Any]) -> list[str]:
 
 
 def _why(cell: dict[str, Any]) -> str | None:
-    """What keeps a cell from working, and what to do; a latch is told of all robots together."""
+    """The obstacle of a cell and its remedy; a latch is reported for all robots together."""
     if cell["state"] == CellState.STOPPED and cell["advice"]:
         return f"{cell['name']} is {cell['state']}; {cell['advice'][0]['said']}"
     return cell["held_by"] or cell["not_ready"]
 
 
 def _obstacles(snapshot: dict[str, Any]) -> list[str]:
-    """What keeps a robot without a task from working; a latch alone is told of all robots in one line, and
-    what its idle cell says already not again.
-    """
+    """The obstacles of robots without a task. A latch alone is reported in one line for all robots, and an
+    obstacle that its idle cell reports is left out."""
     told = {cell["blocked_by"] for cell in snapshot["cells"]}
     idle = {each["name"] for cell in snapshot["cells"] if not cell["task"] for each in cell["devices"]}
     robots = [each for each in snapshot["robots"] if each["name"] in idle and each["obstacle"]]
@@ -321,7 +319,7 @@ def joints(robot: dict[str, Any]) -> str:
 
 
 def parting(snapshot: dict[str, Any]) -> list[str]:
-    """How each robot that was ever heard was left, and which tasks go on at the next start."""
+    """The last state of each robot that was ever heard, and the tasks that go on at the next start."""
     holds = {each["name"]: each["holds"] for cell in snapshot["cells"] for each in cell["devices"]}
     people = {each["name"] for _, each in view.devices_once(snapshot["cells"]) if each["asked"]}
     robots = [robot for robot in snapshot["robots"] if robot["name"] not in people]
@@ -341,7 +339,7 @@ def _left(robot: dict[str, Any], holds: str | None) -> str:
 
 
 def summary(results: dict[str, TaskChanged], seconds: dict[str, float]) -> Table:
-    """How the asked tasks ended, in the order they were asked for; keys are task ids."""
+    """The table of outcomes of the tasks, in the order they were asked for; keys are task ids."""
     drawn = Table(title="summary", title_justify="left")
     for heading in ("task", "outcome", "time", "reason"):
         drawn.add_column(heading)

@@ -104,7 +104,7 @@ def remove(plant: PlantFile = None, system: System = False) -> None:
 
 
 class Manager:
-    """systemd, that of the machine or that of a user; StartErrors say what it does not do."""
+    """Manager: systemd, that of the machine or that of a user; StartError if it refuses."""
 
     def __init__(self, system: bool) -> None:
         if shutil.which("systemctl") is None:
@@ -119,7 +119,7 @@ class Manager:
         return self._units / f"arboleda-{plant}.service"
 
     def install(self, plant: str, text: str) -> None:
-        """Write and start a unit, anew where it is there; where that fails all is as it was."""
+        """Write and start a unit, or replace it if there is one; if that fails, all is as it was."""
         path = self.path(plant)
         before = path.read_text() if path.exists() else None
         try:
@@ -146,7 +146,7 @@ class Manager:
             )
 
     def run(self, *words: str, quiet: bool = False) -> subprocess.CompletedProcess[str]:
-        """systemctl with these words; what it prints is printed, or kept where `quiet`."""
+        """Run systemctl with these words; its output is printed, or kept if `quiet`."""
         whose = [] if self._system else ["--user"]
         try:
             return subprocess.run(
@@ -182,7 +182,7 @@ class Manager:
 
 
 def _check_options(context: typer.Context, words: Sequence[str]) -> None:
-    """Bad options of `up` are found now, not by systemd at night."""
+    """Refuse bad options of `up` now, not when systemd starts it at night."""
     group = context.find_root().command
     up = group.get_command(context, "up")  # type: ignore[attr-defined]
     named = [each for each in ("--plant", "--state") if any(word.split("=")[0] == each for word in words)]
@@ -193,7 +193,7 @@ def _check_options(context: typer.Context, words: Sequence[str]) -> None:
 
 
 def _make(folder: Path, owner: str | None) -> None:
-    """A folder and those above it that are missing, as its owner would have made them."""
+    """Make a folder and the missing ones above it, as its owner would have made them."""
     missing = [each for each in (folder, *folder.parents) if not each.exists()]
     try:
         for each in reversed(missing):
@@ -205,7 +205,7 @@ def _make(folder: Path, owner: str | None) -> None:
 
 
 def _program() -> Path:
-    """The command itself, by an absolute path."""
+    """The absolute path of the command itself."""
     beside = Path(sys.executable).with_name("arboleda")
     found = beside if beside.exists() else shutil.which("arboleda")
     if found is None:
@@ -214,7 +214,7 @@ def _program() -> Path:
 
 
 def _state_of(plant: str, user: str | None) -> Path:
-    """Where a plant of this user keeps its state."""
+    """The state directory of a plant of this user."""
     if user is None:
         return default_state(plant)
     try:

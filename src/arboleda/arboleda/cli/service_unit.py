@@ -32,10 +32,10 @@ CapabilityBoundingSet="""
 
 
 def unit(*, plant: str, command: Sequence[str], state: Path, user: str | None) -> str:
-    """The unit of a plant that `command` starts; for the whole system and its `user`, else of who asks.
+    """The unit of a plant that `command` starts: for the whole system and its `user`, else for the caller.
 
-    The file `environment` in the state directory, where it is there, may hold what no command line should
-    show, as the broker's password.
+    The file `environment` in the state directory, if it exists, may hold secrets that no command line should
+    show, such as the broker's password.
     """
     whole = user is not None
     lines = [

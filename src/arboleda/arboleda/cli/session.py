@@ -36,7 +36,7 @@ class RosMissing(StartError):
 
 
 def ros_link(*, lan: bool) -> Any:
-    """The ROS 2 link behind the entry point `arboleda.links: ros`; RosMissing where there is none."""
+    """The ROS 2 link of the entry point `arboleda.links: ros`; RosMissing if there is none."""
     found = next(iter(entry_points(group="arboleda.links", name="ros")), None)
     if found is None:
         raise RosMissing(NO_ROS)
@@ -48,8 +48,8 @@ def ros_link(*, lan: bool) -> Any:
 
 
 class Session:
-    """A plant in a terminal. Whatever is printed is printed by the thread that calls `run`: no trouble with
-    the terminal can reach the plant."""
+    """Session: a plant in a terminal. Only the thread that calls `run` prints, so that no trouble with the
+    terminal can reach the plant."""
 
     def __init__(
         self,
@@ -74,7 +74,7 @@ class Session:
         self._stopping = False
 
     def run(self) -> int:
-        """Run the plant, without `stay` until the tasks ended; 0, or 1 where one was not done."""
+        """Run the plant, without `stay` until the tasks have ended; 0, or 1 if one was not done."""
         self._app.listen(self._errand.changed)
         self._app.watch(lambda snapshot: self._later(self._screen.stepped, snapshot, time.time()))
         self._app.watch(self._errand.seen)
@@ -94,7 +94,7 @@ class Session:
 
     @contextmanager
     def _logging(self) -> Iterator[LogQueue]:
-        """What matters to the terminal; details, tracebacks among them, to a file for whoever has to look."""
+        """Log to the terminal what matters there, and to a file the details, tracebacks among them."""
         tell = partial(self._later, self._console.print)
         details = LogFile(self._app.log_file, tell)
         try:
@@ -138,7 +138,7 @@ class Session:
         self._console.print(Text(hint))
 
     def _stop(self) -> None:
-        """Halt everything and say how each robot was left."""
+        """Halt everything and print the state in which each robot was left."""
         self._stopping = True
         self._console.print(Text("stopping: whatever moves is halted ...", style="dim"))
         self._app.stop()

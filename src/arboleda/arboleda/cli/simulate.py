@@ -1,4 +1,4 @@
-"""The command `arboleda simulate`: its options, and how it ends."""
+"""The command `arboleda simulate`: its options and its exit status."""
 
 from __future__ import annotations
 

@@ -117,7 +117,7 @@ def _tls(certificate: Path | None, key: Path | None) -> ServerTls | None:
 
 
 def _find(addresses: list[str], store: str, file: Path | None) -> Find:
-    """Where the plants are, as the options say it; StartError."""
+    """The function that finds the plants that the options name; StartError."""
     from arboleda.runtime import endpoints
 
     known = {} if file is None else endpoints.tokens_of(file)

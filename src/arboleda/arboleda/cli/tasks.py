@@ -1,4 +1,4 @@
-"""`arboleda tasks`: what became of every task, also of those of earlier starts."""
+"""`arboleda tasks`: every task and its outcome, also of earlier starts."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ AGO = re.compile(r"(\d{1,6})\s*([smhdw])")
 SECONDS = {"s": 1.0, "m": 60.0, "h": 3600.0, "d": 86_400.0, "w": 604_800.0}
 LOOK_S = 0.5  # a file tells nobody that it has changed
 HEADINGS = ("accepted", "by", "id", "task", "state", "tries", "took", "why")
-ANSWERS = "answers"  # where a task of the list has any
+ANSWERS = "answers"  # a column, if a task of the list has any
 
 
 class KeptState(str, Enum):
@@ -76,9 +76,9 @@ def tasks(
     state: StateFolder = None,
     store: StoreAddress = "",
 ) -> None:
-    """What became of the tasks, also of earlier starts, whether the plant runs or not.
+    """List tasks and their outcomes, also of earlier starts, whether the plant runs or not.
 
-    Ended tasks are kept for `history_days` of the plant file, 90 where it says nothing.
+    Ended tasks are kept for `history_days` of the plant file, 90 by default.
 
     Exit status: 0 printed, 1 the plant's memory cannot be read, 2 bad input, 130 Ctrl-C.
     """
@@ -103,7 +103,7 @@ def tasks(
 
 
 def _changes(history: History, query: TaskQuery) -> Iterator[Sequence[TaskRow]]:
-    """What there is, and then again and again what is new or has changed."""
+    """The tasks, and then again and again those that are new or have changed."""
     known: dict[str, TaskRow] = {}
     while True:
         rows = list(reversed(history.select(query)))

@@ -61,7 +61,7 @@ def tree(
 
 
 def _of_file(path: Path) -> list[dict[str, Any]]:
-    """The tree that a file of trees names as its main one, or has alone."""
+    """The tree that a file of trees names as its main one, or its only one."""
     forest = tree_file.load(path).forest
     if forest.main is None:
         there = ", ".join(forest.trees) or "none"

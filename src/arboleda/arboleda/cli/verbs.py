@@ -47,7 +47,7 @@ def add_to(cli: typer.Typer) -> None:
 
 
 def about(words: VerbWords) -> str:
-    """What `--help` says of a verb."""
+    """The `--help` of a verb."""
     does = words.does.replace("**", "")
     return f"{does[:1].upper()}{does[1:]}.\n\nRefused: {words.refused}.\n\n{STATUS}"
 
@@ -153,7 +153,7 @@ def _ask(verb: Verb, scope: str | None, reached: PlantClient, *, by_hand: bool =
 
 
 def _tell(answer: dict[str, Any], did: str) -> None:
-    """What has become of an act, and the status that says so."""
+    """Print the outcome of an act, and exit with its status."""
     outcome = Outcome(answer.get("outcome") or Outcome.DONE.value)
     why = f": {plain(answer['why'], LONGEST)}" if answer.get("why") else ""
     print(f"{WORDS.get(outcome, outcome.value)}: {did}{why}")

@@ -1,4 +1,4 @@
-"""The commands `arboleda virtual KIND`: every virtual controller that there is, a row each."""
+"""The commands `arboleda virtual KIND`: every virtual controller, a row each."""
 
 from __future__ import annotations
 

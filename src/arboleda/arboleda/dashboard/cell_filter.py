@@ -1,4 +1,4 @@
-"""A choice of one cell, or all, for a list."""
+"""Filter of a list: a button for each cell, and one for all."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from .wording import Words
 
 
 def cell_filter(name: str, layout: Layout, words: Words) -> None:
-    """Buttons that leave only the rows of one cell in the list `name`."""
+    """Draw the buttons that leave only the rows of one cell in the list `name`."""
     with tag("div", classes="filter", role="group", aria_label=words("page.filter")):
         for value, text in [("", words("page.all")), *((c["name"], c["name"]) for c in layout["cells"])]:
             pressed = "true" if value == "" else "false"

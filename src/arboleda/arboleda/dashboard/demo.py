@@ -1,4 +1,4 @@
-"""What a visitor of a demonstration reads first, and what ends it."""
+"""Welcome to the visitors of a demonstration: three lines, and the button that ends it."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ LINES = ("cells", "trouble", "more")
 
 
 def build(words: Words) -> None:
-    """Three lines until somebody has seen them; the button stays while the demonstration goes on."""
+    """Draw the welcome: its lines stay until they were read, the button until the demonstration ends."""
     with tag("aside", id="demo", aria_label=words("demo.title")):
         live("span", "demo", hidden="true")
         tag("p", words("demo.title"), classes="demo-title")

@@ -1,4 +1,4 @@
-"""What one browser may ask for: every request comes in here, is checked here, and is answered in words."""
+"""The desk of one browser: takes each of its requests, checks it and answers in words."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ Answer = TypeVar("Answer")
 
 
 class Desk(OpenPage):
-    """The only way from the events of a page to the plant."""
+    """Desk: the only way from the events of a page to the plant."""
 
     def __init__(self, client: Client, plant: PageApi, feed: Feed, words: Words) -> None:
         super().__init__(client, words, feed.seen)
@@ -43,7 +43,7 @@ class Desk(OpenPage):
         self._feed = feed
 
     async def asked(self, act: str, of: str, more: object) -> None:
-        """An act of the page; `more` is True where a robot was homed by hand."""
+        """Do what the page asks for; `more` is True if a robot was homed by hand."""
         if act == DOWNLOAD:
             self._download()
         elif act not in {SUBMIT, demo.END} and act not in VERBS:
@@ -62,7 +62,7 @@ class Desk(OpenPage):
         return self._words("demo.end") if act == demo.END else self._words.of("verb", act)
 
     async def _submit(self, text: str) -> None:
-        # The history may be asked for its id, and a stop must not wait behind that.
+        # The plant may look its id up in the history, and a stop must not wait for that.
         task = await self._answered(await run_in_threadpool(self._plant.submit, text, PAGE))
         if task is not None and task["state"] == "refused":
             self.say(self._words.say(task["sentence"]), good=False)
@@ -76,7 +76,9 @@ class Desk(OpenPage):
         if answer.refusal is not None:
             self.say(self._words.say(answer.refusal), good=False)
             return
-        if answer.outcome is Outcome.SENT and answer.why is not None:  # a stop that is not kept
+        if (
+            answer.outcome is Outcome.SENT and answer.why is not None
+        ):  # a stop that left but could not be kept
             self.say(self._words.say(answer.why), good=False)
             return
         name = f"{verb.value}_by_hand" if by_hand and verb in BY_HAND else verb.value
@@ -87,7 +89,7 @@ class Desk(OpenPage):
             await self._follow(answer.act, act)
 
     async def _follow(self, number: int, act: dict[str, str]) -> None:
-        """Say what has become of an act, once that is known."""
+        """Tell the page the outcome of an act, once it is known."""
         until = time.monotonic() + FOLLOWED_S
         while self.connected and time.monotonic() < until:
             await asyncio.sleep(LOOK_S)
@@ -103,7 +105,7 @@ class Desk(OpenPage):
         self.say(self._words(f"panel.{outcome.value}", **act, **said), good=GOOD.get(outcome, True))
 
     async def _answered(self, future: Future[Answer]) -> Answer | None:
-        """What the plant answers; None once the page was told why there is no answer."""
+        """The plant's answer; None if there is none, after the page was told the reason."""
         waiting: Awaitable[Answer] = asyncio.shield(asyncio.wrap_future(future))
         try:
             return await asyncio.wait_for(waiting, ANSWER_S)
@@ -114,7 +116,7 @@ class Desk(OpenPage):
         return None
 
     def _is_stopped(self, scope: str) -> bool:
-        """Whether a stop has arrived by the other way, over HTTP."""
+        """True if a stop for this scope has already arrived another way, over HTTP."""
         snapshot = self._plant.snapshot()
         names = {
             device["name"]

@@ -1,4 +1,4 @@
-"""From the plant's thread to every open page: what changed, FRAMES_HZ times a second, once per language."""
+"""Feed of open pages from the plant's thread: the changes, FRAMES_HZ times a second, once per language."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from .page_api import PageApi
 from .page_state import PageState
 
 FRAMES_HZ = 10.0
-BEAT_S = 1.0  # after so long without news the plant is asked, and pages are told that it answers
+BEAT_S = 1.0  # without news for so long, the plant is asked, and pages learn that it answers
 WAITING = 200  # snapshots between two frames; past that the oldest are dropped
 
 log = logging.getLogger(__name__)
@@ -42,12 +42,12 @@ class Feed:
         return list(self._story.chronicle.events) if self._story else []
 
     def task_face(self, id: str, language: str, kept: TaskRow | None) -> Face:
-        """What a page shows of one task, besides its row; `kept` is what the history has of it."""
+        """The page of one task, without its row; `kept` is its row in the history."""
         self._take_in()
         return self._story.task_face(id, language, kept) if self._story else {}
 
     def add(self, viewer: Viewer) -> None:
-        """A page was opened, or is back: it will be told everything."""
+        """Add the viewer of a page that was opened or is back: it will get everything."""
         self._frames.add(viewer)
         self._wake()
 
@@ -55,7 +55,7 @@ class Feed:
         self._frames.remove(viewer)
 
     def seen(self, viewer: Viewer, number: int) -> None:
-        """A page says which frame it has shown."""
+        """Note the frame that a page says it has shown."""
         self._frames.seen(viewer, number)
 
     def start(self) -> None:
@@ -64,7 +64,7 @@ class Feed:
         self.begin()
 
     def begin(self) -> None:
-        """Have the plant tell what is new; `turn` takes it in."""
+        """Listen to the plant; `turn` takes in its news."""
         self._story = PageState(self._plant.layout(), self._plant.past_acts())
         self._unwatch = self._plant.watch(self._tell)
         self._tell(self._plant.snapshot())
@@ -91,7 +91,7 @@ class Feed:
             self._unwatch = None
 
     def turn(self, *, beat: bool = False) -> None:
-        """Take in what was told, and send each viewer what it has not been told; with `beat` also nothing."""
+        """Take in the plant's news, send each viewer what it lacks; with `beat` also an empty frame."""
         story = self._story
         if story is None:
             return

@@ -28,16 +28,16 @@ class Viewer(Protocol):
 
 
 class ViewerProgress:
-    """How far one viewer is, in the frames that it was sent."""
+    """The progress of one viewer through the frames that it was sent."""
 
     def __init__(self) -> None:
-        self.whole = True  # it has to be told everything
+        self.whole = True  # the next frame has everything
         self.sent = 0
         self.seen = 0
 
 
 class Frames:
-    """Who looks, and what was shown last in each language."""
+    """Frames: keeps the viewers and the last frame in each language, and sends each viewer the difference."""
 
     def __init__(self) -> None:
         self._viewers: dict[Viewer, ViewerProgress] = {}
@@ -45,24 +45,24 @@ class Frames:
 
     @property
     def languages(self) -> set[str]:
-        """Those in which somebody looks."""
+        """The languages in which somebody looks."""
         return {viewer.language for viewer in self._viewers}
 
     def add(self, viewer: Viewer) -> None:
-        """A page was opened, or is back: it will be told everything."""
+        """Add the viewer of a page that was opened or is back: it will get everything."""
         self._viewers[viewer] = ViewerProgress()
 
     def remove(self, viewer: Viewer) -> None:
         self._viewers.pop(viewer, None)
 
     def seen(self, viewer: Viewer, number: int) -> None:
-        """A page says which frame it has shown."""
+        """Note the frame that a page says it has shown."""
         known = self._viewers.get(viewer)
         if known is not None and 0 <= number <= known.sent:
             known.seen = max(known.seen, number)
 
     def send(self, language: str, face: Face, *, beat: bool) -> None:
-        """Send what is new to each viewer of that language; with `beat` also nothing."""
+        """Send each viewer of a language the changes since its last frame; with `beat` even none."""
         self._shown = {each: self._shown.get(each, {}) for each in self.languages}
         patch = changed(self._shown[language], face)
         self._shown[language] = face
@@ -79,7 +79,7 @@ class Frames:
             seen.whole = False
 
     def _ready(self, viewer: Viewer, seen: ViewerProgress) -> bool:
-        """Whether a viewer takes a frame; one that is away or behind is told everything later."""
+        """True if a viewer can take a frame; one that is away or behind gets everything later."""
         if viewer.connected and seen.sent - seen.seen <= BEHIND:
             return True
         seen.whole = True
@@ -87,7 +87,7 @@ class Frames:
 
 
 class Background:
-    """What a page has running in the server's loop, from `start` to `stop`."""
+    """Background: the coroutines of a page that run in the server's loop from `start` to `stop`."""
 
     def __init__(self, *works: Callable[[], Coroutine[Any, Any, None]]) -> None:
         self._works = works

@@ -8,7 +8,7 @@ from .wording import LANGUAGES, Words
 
 
 def build(layout: Layout, words: Words, parts: list[str], role: str | None) -> None:
-    """`role` is that of somebody who logged in, None where nobody has to."""
+    """Draw the header; `role` is that of a person who logged in, None if nobody has to."""
     with tag("header", classes="top"):
         _stop(words, words("stop.button"), words("does.stop"))
         with tag("div", classes="brand"):
@@ -24,7 +24,7 @@ def build(layout: Layout, words: Words, parts: list[str], role: str | None) -> N
 
 
 def of_record(layout: Layout, words: Words, parts: list[str], role: str | None, *, beside: bool) -> None:
-    """The same of a record: nothing can be stopped in it. `beside` a plant that runs it leads back there."""
+    """Draw the header of a record, which has no stop; `beside` a running plant it links back to that."""
     with tag("header", classes="top"):
         with tag("div", classes="brand"):
             tag("h1", layout["plant"])
@@ -39,7 +39,7 @@ def of_record(layout: Layout, words: Words, parts: list[str], role: str | None, 
 
 
 def of_site(words: Words, parts: list[str], role: str | None) -> None:
-    """That of the page on many plants."""
+    """Draw the header of the page on many plants."""
     with tag("header", classes="top"):
         _stop(words, words("site.stop_all"), words("site.stop_all_does"))
         with tag("div", classes="brand"):
@@ -52,7 +52,7 @@ def of_site(words: Words, parts: list[str], role: str | None) -> None:
 
 
 def _stop(words: Words, label: str, does: str) -> None:
-    """The first thing that the keyboard reaches."""
+    """Draw the stop button, the first element that the keyboard reaches."""
     with tag("div", classes="stop"):
         tag("button", label, id="stop", type="button", title=does)
         live("p", "stop", classes="stop-state", role="status", aria_live="assertive")

@@ -22,6 +22,6 @@ def build(layout: Layout, words: Words) -> None:
 
 
 def of_record(layout: Layout, words: Words) -> None:
-    """The same, and the zones, which are elsewhere only beside what an operator can do."""
+    """Draw the links of a record with its zones, which otherwise stand beside the operator's verbs."""
     build(layout, words)
     panel.zones(words)

@@ -1,4 +1,4 @@
-"""A page that is open in one browser: what it is shown, what it asks, and what it is answered."""
+"""A page that is open in one browser: its frames, its requests and the answers to them."""
 
 from __future__ import annotations
 
@@ -12,12 +12,13 @@ from arboleda.web.auth import Role
 
 from .wording import Words
 
-LONGEST = 300  # characters of what a browser may name
+LONGEST = 300  # characters of a name that a browser sends
 SEEN = "seen"
 
 
 class OpenPage:
-    """A viewer of frames; `seen` is told which of them it has shown. Whoever asks is checked in `asked`."""
+    """OpenPage: a viewer of frames; `seen` gets the number of each frame that was shown. Subclasses check
+    roles in `asked`."""
 
     def __init__(self, client: Client, words: Words, seen: Callable[[OpenPage, int], None]) -> None:
         self.language = words.language
@@ -39,7 +40,7 @@ class OpenPage:
         self._client.run_javascript(f"arboleda.live({number}, {patch})")
 
     async def hear(self, event: GenericEventArguments) -> None:
-        """One event of the page: [act, of, more]; anything else is ignored."""
+        """Take one event of the page: [act, of, more]; anything else is ignored."""
         told = event.args if isinstance(event.args, list) else [event.args]
         act, of, more = [*told, None, None, None][:3]
         if act == SEEN and isinstance(of, int):
@@ -48,9 +49,9 @@ class OpenPage:
             await self.asked(act, of, more)
 
     async def asked(self, act: str, of: str, more: object) -> None:
-        """Somebody asks for something."""
+        """Take a request of the page."""
         raise NotImplementedError
 
     def say(self, sentence: str, *, good: bool | None) -> None:
-        """Show an answer; `good` is None where nobody can say yet."""
+        """Show an answer; `good` is None while the outcome is unknown."""
         self._client.run_javascript(f"arboleda.answer({json.dumps(sentence)}, {json.dumps(good)})")

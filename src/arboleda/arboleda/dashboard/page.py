@@ -75,7 +75,7 @@ def mount(server: FastAPI, plant: PageApi) -> None:
 
 
 def _serve_tasks(server: FastAPI, plant: PageApi, feed: Feed) -> None:
-    """What is sent on demand only: the tree of a task that has ended, and the tasks of earlier starts."""
+    """Serve what is sent on demand only: the tree of a task that has ended, and the tasks of past starts."""
 
     async def one_task(request: Request, id: str) -> JSONResponse:
         found = await run_in_threadpool(plant.history, TaskQuery(id=id, limit=1)) if id else []
@@ -99,7 +99,7 @@ def _serve_tasks(server: FastAPI, plant: PageApi, feed: Feed) -> None:
 
 
 def open_page(client: Client, desk: Desk, feed: Feed) -> None:
-    """Let the page of one browser live."""
+    """Connect the page of one browser with the plant as long as it is open."""
     ui.on("arboleda", desk.hear)
     client.on_connect(lambda: feed.add(desk))
     client.on_delete(lambda: feed.remove(desk))

@@ -1,4 +1,4 @@
-"""What the page may know of the plant and ask of it; nothing else."""
+"""The part of the plant that the page may read and ask; nothing else."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 from arboleda.web.plant_api import PlantApi
 
-if TYPE_CHECKING:  # a page of a plant without a record does without the libraries that read one
+if TYPE_CHECKING:  # without a record, the libraries that read one are not needed
     from .past.past import Past
     from .past.side import Start
 
@@ -36,8 +36,8 @@ class PageApi(PlantApi, Protocol):
         """The starts of which there are records, the last first; it waits for the disk, too."""
 
     def report(self, task: str) -> str | None:
-        """Why a task failed, as one HTML file; None: it is being written now, ask again. It waits for the
-        disk; an ArboledaError says why there is none."""
+        """The report on a failed task, as one HTML file; None: it is being written now, ask again. It waits
+        for the disk; an ArboledaError says why there is none."""
 
     def links(self) -> Links:
         """`broker` {address, connected} or None, `ros` {notes} or None, `refused` {robot: {count, last}},
@@ -48,4 +48,4 @@ class PageApi(PlantApi, Protocol):
         """Have the demonstration give no more tasks, of a plant whose layout has `demo`."""
 
     def past_acts(self) -> list[dict[str, Any]]:
-        """What operators did before this start, oldest first: {at (unix s), scope, sentence}."""
+        """The acts of operators before this start, oldest first: {at (unix s), scope, sentence}."""

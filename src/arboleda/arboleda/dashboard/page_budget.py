@@ -8,14 +8,14 @@ MOST = 40  # a browser opens its page within a second or two
 
 
 class PageBudget:
-    """Forgets the oldest page where too many wait. NiceGUI keeps each for a minute, however many come."""
+    """Unopened: forgets the oldest page if too many wait. NiceGUI would keep each for a minute."""
 
     def __init__(self, most: int = MOST) -> None:
         self._most = most
         self._waiting: dict[str, Client] = {}
 
     def add(self, client: Client) -> None:
-        """A page that was just built; its browser says when it has opened it."""
+        """Add a page that was just built; its browser reports that it has opened it."""
         self._waiting[client.id] = client
         client.on_connect(lambda: self._forget(client.id))
         client.on_delete(lambda: self._forget(client.id))

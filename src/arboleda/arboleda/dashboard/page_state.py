@@ -1,4 +1,4 @@
-"""What the page keeps from one snapshot to the next, and the faces it makes of it."""
+"""The page's memory from one snapshot to the next, and the faces that it makes of it."""
 
 from __future__ import annotations
 
@@ -23,14 +23,14 @@ class PageState:
         self.layout = layout
         self.chronicle = Chronicle(past_acts)
         self.trees: dict[str, TreeMemory] = {cell["name"]: TreeMemory() for cell in layout["cells"]}
-        self.ended: dict[str, EndedTree] = {}  # by task; of those that the snapshot still shows
+        self.ended: dict[str, EndedTree] = {}  # by task, while the snapshot shows it
         self._failed: set[str] = set()  # cells that have failed, also where that event is forgotten
         self._told = 0  # the number of the last event that was looked at
         self._offset_s: float | None = None  # unix s less the plant's clock, so that shown times stay put
         self._snapshot: Row | None = None
 
     def see(self, snapshot: Row, unix_s: float) -> None:
-        """Take in one snapshot, told at unix s."""
+        """Take in one snapshot, made at `unix_s`."""
         if self._offset_s is None:
             self._offset_s = unix_s - snapshot["at"]
         at = snapshot["at"] + self._offset_s
@@ -50,14 +50,14 @@ class PageState:
         self._failed |= {event["cell"] for event in newest if is_failure(event)}
 
     def face(self, language: str, links: Row) -> Face:
-        """What a page in this language shows now; empty before the first snapshot."""
+        """The contents of a page in this language; empty before the first snapshot."""
         moment = self._moment(language, links)
         return {} if moment is None else whole_page.face(moment)
 
     def task_face(self, id: str, language: str, kept: TaskRow | None = None) -> Face:
-        """What a page in this language shows of one task, known or not; empty before the first snapshot.
+        """The page of one task in this language, known or not; empty before the first snapshot.
 
-        `kept` is what the history has of it.
+        `kept` is its row in the history.
         """
         moment = self._moment(language, {})
         return {} if moment is None else task.face(moment, id, self.ended.get(id), kept)

@@ -16,7 +16,7 @@ from .wording import Words
 
 @dataclass(frozen=True, kw_only=True)
 class Offer:
-    """To whom a verb is offered, and how often a person is asked before it is done."""
+    """The scopes that a verb is offered to, and the number of times that a person must confirm it."""
 
     scopes: str
     asks: int = 0
@@ -59,7 +59,7 @@ def build(layout: Layout, words: Words) -> None:
 
 
 def zones(words: Words, *more: str) -> None:
-    """Who has which shared zone or device."""
+    """Draw the table of shared zones and devices, with the robot that holds each of them."""
     with tag("div", classes="box"):
         tag("h2", words("zones.title"))
         columns = [words(f"column.{name}") for name in ("zone", "state", "robot", "waiting", *more)]
@@ -83,7 +83,8 @@ def _scopes(layout: Layout, words: Words) -> None:
 
 
 def _kinds(kind: str, devices: list[dict[str, Any]]) -> list[str]:
-    """What a scope is, for verbs that are not for all: one of these may hold a part, or goes somewhere."""
+    """The kinds of a scope, for verbs that not every device has: `HOLDER` if one of these devices may hold a
+    part, `MOVER` if one goes somewhere."""
     holder = [HOLDER] if any(device["holds"] for device in devices) else []
     return [kind, *holder, *([MOVER] if any(device["position"] for device in devices) else [])]
 
@@ -108,7 +109,7 @@ def _verb(name: str, verb: Verb, offer: Offer, words: Words) -> None:
 
 
 def _suggestions(layout: Layout) -> None:
-    """What the plant would do next, read by the script to mark buttons."""
+    """Add hidden elements with the plant's next steps and refusals, from which the script marks buttons."""
     for name in ["plant", *(cell["name"] for cell in layout["cells"])]:
         live("span", f"suggested.{name}", hidden="true", data_suggested=name)
     robots = [device["name"] for _, device in devices_once(layout["cells"])]

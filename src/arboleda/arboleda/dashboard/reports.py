@@ -25,7 +25,7 @@ POLICY = (
 
 
 def serve(server: FastAPI, plant: PageApi) -> None:
-    """Have `/report?task=ID` answered: with the report, or with a page that waits until it is written."""
+    """Answer `/report?task=ID` with the report, or with a page that waits until it is written."""
 
     async def report(request: Request, task: str = "") -> Response:
         said = words(language_of(request))

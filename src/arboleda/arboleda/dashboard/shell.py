@@ -1,4 +1,4 @@
-"""What every page of ours consists of: its head, a header, its parts, and where those are served."""
+"""The shell of every page: its head, a header, its parts, and the address of its files."""
 
 from __future__ import annotations
 
@@ -57,14 +57,14 @@ def serve(server: FastAPI, layout: Layout, build: Callable[[Request, Client], No
 
 
 def language_of(request: Request) -> str:
-    """That of the address, else the one chosen before, else the first of the browser's that we have."""
+    """The language of the address, else the one chosen before, else the browser's first that is known."""
     spoken = [each.strip()[:2].lower() for each in request.headers.get("accept-language", "").split(",")]
     asked = [request.query_params.get("lang"), request.cookies.get(LANGUAGE_COOKIE), *spoken]
     return next((each for each in asked if each in LANGUAGES), LANGUAGES[0])
 
 
 def role_shown(request: Request) -> str | None:
-    """The role somebody logged in with; None where nobody needs to log in."""
+    """The role of the person who logged in; None if nobody needs to log in."""
     door = request.scope.get("arboleda.door")
     return None if door is None or door.open else request.scope["arboleda.role"].value
 
@@ -84,7 +84,7 @@ def body(
     header: Callable[[list[str]], None],
     footer: Callable[[], None] = lambda: None,
 ) -> str:
-    """A page as HTML, the same for each browser; `header` is given the names of the parts."""
+    """The HTML of a page, the same for each browser; `header` is called with the names of the parts."""
     shown = parts_of(parts, layout)
 
     def build() -> None:
@@ -101,12 +101,12 @@ def body(
 
 
 def parts_of(parts: Parts, layout: Layout) -> Parts:
-    """Those that this plant has something to show in: there is no twin where no robot is drawn."""
+    """The parts of the page that have something to show for this plant: no twin if no robot is drawn."""
     return {name: build for name, build in parts.items() if name != "twin" or layout["places"]["robots"]}
 
 
 def head(said: Words, *scripts: str) -> str:
-    """What the page's head needs: our style, our scripts, and the few words that these say themselves."""
+    """The page's head: its styles, its scripts, and the few words that these use themselves."""
     spoken = {key[3:]: text for key, text in said.flat.items() if key.startswith("js.")}
     data = json.dumps({"language": said.language, "words": spoken}).replace("<", "\\u003c")
     styles = "".join(
@@ -118,6 +118,6 @@ def head(said: Words, *scripts: str) -> str:
 
 @cache
 def assets() -> str:
-    """Where our files are served: another place when one of them has changed, as browsers keep them."""
+    """The address of the page's files: another one whenever one has changed, as browsers keep them."""
     files = sorted(resources.files(__package__).joinpath("assets").iterdir(), key=lambda file: file.name)
     return f"/arboleda/{hashlib.sha256(b''.join(file.read_bytes() for file in files)).hexdigest()[:12]}"

@@ -44,8 +44,8 @@ _open: ContextVar[list[Tag]] = ContextVar("open tags")
 
 
 def markup(build: Callable[[], object]) -> str:
-    """All that `build` makes of tags, as HTML. Elements of NiceGUI would take a hundred times as long, in
-    which nobody else gets an answer."""
+    """The HTML of all that `build` makes of tags. Elements of NiceGUI would take a hundred times as long, and
+    nobody else would get an answer meanwhile."""
     root = Tag("div", "", {})
     before = _open.set([root])
     try:
@@ -79,7 +79,7 @@ def link(
 
 
 def way(label: str | None, there: dict[str, str | None], *, classes: str = "", **attributes: Any) -> Tag:
-    """A link to where `assets/place.js` finds by these keys; what is not among them stays."""
+    """A link to the place of the page with these keys, as `assets/place.js` reads them; others stay."""
     named = {key: value for key, value in there.items() if value is not None}
     href = f"/?{urlencode(named)}"
     return tag("a", label, classes=classes, href=href, data_go=json.dumps(there), **attributes)
@@ -91,7 +91,7 @@ def report(key: str) -> Tag:
 
 
 def act_button(label: str, act: str, of: str, does: str, *, classes: str = "", **attributes: Any) -> Tag:
-    """A button that asks the plant for something; `does` says what it will do."""
+    """A button that asks the plant for something; `does` describes its effect."""
     return tag(
         "button",
         label,
@@ -107,7 +107,7 @@ def act_button(label: str, act: str, of: str, does: str, *, classes: str = "", *
 def rows(name: str, columns: list[str], *, empty: str = "", classes: str = "") -> None:
     """A table, or a list where no column has a name; its rows come with the frames, as `rows/<name>`.
 
-    `empty` stands where there is none.
+    `empty` is the text for a list without rows.
     """
     here = {"classes": "rows", "data_rows": name, "data_columns": "|".join(columns)}
     with tag("div", classes=f"table {classes}"):

@@ -34,7 +34,7 @@ def build(layout: Layout, words: Words) -> None:
 
 
 def _any_of(cells: list[Row]) -> list[Row]:
-    """All cells as one choice, with the recipes that each of them offers with the same parameters."""
+    """The choice of all cells as one, with the recipes that each of them offers with the same parameters."""
     alike = [recipe for recipe in cells[0]["recipes"] if all(_offers(cell, recipe) for cell in cells)]
     if len(cells) < 2 or not alike:
         return []
@@ -57,7 +57,7 @@ def _recipes(cells: list[Row]) -> dict[str, list[str]]:
 
 
 def _fields(cell: Row, recipe: Row, words: Words) -> None:
-    """What is asked for one recipe of one cell; the script shows those of what was chosen."""
+    """Draw the fields of one recipe of one cell; the script shows those of the chosen one."""
     head = [cell["name"], *([] if recipe["default"] else [recipe["name"]])]
     names = [each["name"] for each in recipe["parameters"]]
     drawn = any(_is_path(cell, each) or _is_station(cell, each) for each in recipe["parameters"])
@@ -81,12 +81,12 @@ def _fields(cell: Row, recipe: Row, words: Words) -> None:
 
 
 def _is_path(cell: Row, parameter: Row) -> bool:
-    """Whether it names one of the cell's ways over its grid, which can be shown."""
+    """True if a parameter names one of the cell's paths over its grid, which can be shown."""
     return bool(parameter["choices"]) and parameter["choices"] == list(cell.get("paths", ()))
 
 
 def _is_station(cell: Row, parameter: Row) -> bool:
-    """Whether it numbers the stations of the cell's rack."""
+    """True if a parameter numbers the stations of the cell's rack."""
     return bool(parameter["choices"]) and parameter["choices"] == [str(n) for n in range(cell["stations"])]
 
 
@@ -112,12 +112,12 @@ def _control(cell: Row, parameter: Row, words: Words) -> None:
 
 
 def _label(parameter: Row, words: Words) -> str:
-    """As our words have it, else as the recipe says it."""
+    """The label of a parameter in the page's words, else in the recipe's."""
     return words.flat.get(f"field.{parameter['name']}") or words.say(parameter["called"]).replace("_", " ")
 
 
 def _number(parameter: Row, label: str, words: Words) -> None:
-    """A field with its limits; the plant has the last word on them."""
+    """Draw a number field with its limits; the plant has the last word on them."""
     whole = parameter["type"] == "integer"
     limits = {key: parameter[of] for key, of in (("min", "lower"), ("max", "upper")) if of in parameter}
     asked = label
@@ -129,7 +129,7 @@ def _number(parameter: Row, label: str, words: Words) -> None:
 
 
 def _named(parameter: Row, label: str) -> Any:
-    """A label around one control."""
+    """Draw a label around one control."""
     made = tag("label", classes="field", data_parameter=parameter["name"])
     with made:
         tag("span", label)
@@ -137,7 +137,7 @@ def _named(parameter: Row, label: str) -> Any:
 
 
 def _field(name: str, label: str, *, classes: str) -> Any:
-    """A group of buttons, of which one is the parameter's value."""
+    """Draw a group of buttons, of which one is the parameter's value."""
     made = tag("fieldset", classes=classes, data_parameter=name)
     with made:
         tag("legend", label)
@@ -173,7 +173,7 @@ def _rack(cell: Row, words: Words) -> None:
 
 
 def _grid(cell: Row, words: Words) -> None:
-    """A button per node; a click on a start, then on an end, chooses the path between them."""
+    """Draw a button per node; a click on a start, then on an end, chooses the path between them."""
     rows, columns = cell["grid"]["rows"], cell["grid"]["columns"]
     ends = {nodes[0]: "start" for nodes in cell["paths"].values()}
     ends |= {nodes[-1]: "end" for nodes in cell["paths"].values()}

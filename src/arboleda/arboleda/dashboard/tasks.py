@@ -25,7 +25,7 @@ def build(layout: Layout, words: Words) -> None:
 
 
 def of_record(layout: Layout, words: Words) -> None:
-    """Queue and history as they were."""
+    """Draw queue and history of a record."""
     with tag("div", classes="lists"):
         _one(layout, words)
         _list(layout, words, COLUMNS[:-1])
@@ -41,7 +41,7 @@ def _list(layout: Layout, words: Words, names: tuple[str, ...]) -> None:
 
 
 def _oee(words: Words) -> None:
-    """How well the cells work; the script fills it when it is looked at."""
+    """Draw the table of the cells' OEE; the script fills it once it is looked at."""
     with tag("div", classes="box"):
         with tag("div", classes="box-head"):
             tag("h2", words("oee.title"))
@@ -57,7 +57,7 @@ def _oee(words: Words) -> None:
 
 
 def _history(words: Words) -> None:
-    """The tasks of all starts; the script fills it when it is looked at."""
+    """Draw the table of the tasks of all starts; the script fills it once it is looked at."""
     with tag("div", classes="box"):
         with tag("div", classes="box-head"):
             tag("h2", words("history.title"))
@@ -74,7 +74,7 @@ def _history(words: Words) -> None:
 
 
 def _one(layout: Layout, words: Words) -> None:
-    """The task that the address names; the script shows it."""
+    """Draw the page of the task that the address names; the script fills it."""
     with tag("article", id="task", classes="box", hidden="true"):
         with tag("div", classes="box-head"):
             live("h2", "task.title")

@@ -1,4 +1,4 @@
-"""The time line: what happened, the newest first, for one cell or all, and as a file."""
+"""The time line: the events, the newest first, for one cell or all, and as a file."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ def build(layout: Layout, words: Words) -> None:
 
 
 def of_record(layout: Layout, words: Words) -> None:
-    """Up to the moment that is shown."""
+    """Draw the time line of a record, up to the moment that is shown."""
     with tag("div", classes="box"):
         with tag("div", classes="box-head"):
             _head(layout, words)

@@ -1,4 +1,4 @@
-"""The ways to draw a tree, as the page's script takes them."""
+"""Drawings of a tree, in each of the ways that the page's script knows."""
 
 from __future__ import annotations
 
@@ -17,12 +17,13 @@ SIGNS = {"selector": "? ", "sequence": "→ ", "parallel": "⇉ "}  # as behavio
 
 
 def drawing(nodes: tuple[Named, ...], words: Words) -> Drawing:
-    """By way {w, h, at: {path: [x, y, w]}, lines: {path: d}}; `need`, how wide each gets in any language."""
+    """The drawings of a tree by way: {w, h, at: {path: [x, y, w]}, lines: {path: d}}; `need` is the width of
+    each in any language."""
     return {**_drawing(_labelled(nodes, words)), "need": _need(nodes)}
 
 
 def label(name: Sentence, kind: str, words: Words) -> str:
-    """What stands on a node."""
+    """The text on a node: the sign of its kind and its name."""
     return SIGNS.get(kind, "") + words.say(name)
 
 
@@ -51,5 +52,5 @@ def _plain(layout: Layout) -> Drawing:
 
 
 def _d(line: Line) -> str:
-    """A line as the `d` of an SVG path."""
+    """The `d` of an SVG path for a line."""
     return "M" + "L".join(f"{x:g} {y:g}" for x, y in line)

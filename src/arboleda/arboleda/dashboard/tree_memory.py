@@ -1,4 +1,4 @@
-"""What a cell's tree did, from snapshot to snapshot: py_trees forgets statuses, people want to see them."""
+"""Memory of a cell's tree from snapshot to snapshot: py_trees forgets statuses that people want to see."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ class Change:
 
 @dataclass(frozen=True, kw_only=True)
 class EndedTree:
-    """The tree of a task that has ended, and what each node came to."""
+    """The tree of a task that has ended, and the final status of each node."""
 
     task: str
     rows: list[Row]
@@ -39,7 +39,7 @@ class EndedTree:
 
 
 class TreeMemory:
-    """The last tree of one cell: its rows, what each node came to, and the last changes of its steps."""
+    """TreeMemory: the last tree of one cell with its rows, the status of each node, and its last changes."""
 
     def __init__(self) -> None:
         self.rows: list[Row] = []
@@ -53,7 +53,7 @@ class TreeMemory:
         self._count = 0
 
     def see(self, cell: Row, tasks: list[Row], unix_s: float) -> EndedTree | None:
-        """Take in a cell of a snapshot, and what became of its tasks; the tree that ended with one."""
+        """Take in a cell of a snapshot and the changes of its tasks; returns the tree that ended with one."""
         ended = None
         if not self.over and (not cell["tree"] or _task_of(cell) != self.task):
             ended = self._finish(cell, tasks, unix_s)
@@ -62,7 +62,7 @@ class TreeMemory:
         return ended
 
     def copy(self) -> TreeMemory:
-        """Another one that has seen the same."""
+        """A copy that goes on by itself."""
         made = copy(self)
         made.statuses, made.changes = dict(self.statuses), self.changes.copy()
         return made
@@ -87,7 +87,7 @@ class TreeMemory:
             self._become(path, names[path], status, unix_s)
 
     def _finish(self, cell: Row, tasks: list[Row], unix_s: float) -> EndedTree | None:
-        """The tree is gone: what ran in it came to the end of its task."""
+        """Give the nodes that still ran their final status, as their tree has gone."""
         task = next((task for task in tasks if task["id"] == self.task), {})
         recovered = cell["state"] in ("idle", "execute")
         work, self._work = self._work, None
@@ -103,7 +103,7 @@ class TreeMemory:
         return EndedTree(task=self.task, rows=self.rows, statuses=dict(self.statuses))
 
     def _show(self, rows: list[Row], statuses: dict[str, str]) -> None:
-        """Another tree, as far as it has come."""
+        """Begin another tree, as far as it has come."""
         inner = {parent(row["path"]) for row in rows}
         self.rows, self.statuses = rows, statuses
         self._steps, self._leaves = set(steps(rows)), {row["path"] for row in rows} - inner
@@ -149,7 +149,7 @@ def _task_of(cell: Row) -> str | None:
 
 
 def _within(rows: list[Row], recovery: dict[str, str]) -> dict[str, str]:
-    """What a recovery of its own came to, as that of the recipe whose rows these are."""
+    """The statuses of a recovery with a tree of its own, by the paths within the recipe's rows."""
     place = next((row["path"] for row in rows if row["phase"] == RECOVERY), None)
     moved = {place if path == "root" else f"{place}.{path}": status for path, status in recovery.items()}
     return {row["path"]: moved[row["path"]] for row in rows if row["path"] in moved}
@@ -161,8 +161,7 @@ def phases(rows: list[Row]) -> list[Row]:
 
 
 def steps(rows: list[Row]) -> list[str]:
-    """What people follow: the steps of the phases, else those of the root; neither what they are made of, nor
-    what frames them."""
+    """The steps that people follow: those of the phases, else of the root; without their parts and frames."""
     above = {row["path"] for row in phases(rows)} or {"root"}
     found = []
     for row in rows:
@@ -173,7 +172,7 @@ def steps(rows: list[Row]) -> list[str]:
 
 
 def judged(rows: list[Row], before: dict[str, str]) -> dict[str, str]:
-    """What each node has come to; one that py_trees reset keeps what it came to before."""
+    """The status of each node now; one that py_trees has reset keeps its earlier status."""
     after: dict[str, str] = {}
     for row in reversed(rows):  # children before their parents
         path, was = row["path"], before.get(row["path"], IDLE)
@@ -197,7 +196,7 @@ def _conclude(sequence: str, paths: list[str], after: dict[str, str]) -> None:
 
 
 def _fill(rows: list[Row], after: dict[str, str]) -> None:
-    """What a sequence that was done is made of was done too, also where no snapshot saw it run."""
+    """Count every part of a sequence or parallel that succeeded as done, even if no snapshot saw it run."""
     kinds = {row["path"]: row["kind"] for row in rows}
     for path in kinds:
         above = parent(path)
@@ -213,7 +212,7 @@ def _reset(row: Row, was: str) -> str:
 
 
 def last_status(row: Row, rows: list[Row], state: str | None, *, recovered: bool) -> str:
-    """What a node that ran came to when its tree ended with the task in `state`."""
+    """The final status of a node that still ran when its tree ended with the task in `state`."""
     if state == "done":
         return SUCCESS
     phases = {each["path"]: each["phase"] for each in rows}

@@ -1,4 +1,4 @@
-"""The cells: a card for each, its tree beside it, and what its tree did last."""
+"""The cells: a card for each, its tree beside it, and the last changes of its tree."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def _size(cells: int) -> str:
 
 
 def beside(layout: Layout, words: Words) -> None:
-    """The tree of the chosen cell, for where something else of the cell is looked at."""
+    """Draw the tree of the chosen cell beside another view of that cell."""
     for cell in layout["cells"]:
         name = cell["name"]
         with tag("article", classes="box beside", data_cell=name):
@@ -51,7 +51,7 @@ def beside(layout: Layout, words: Words) -> None:
 
 
 def _card(layout: dict[str, Any], devices: list[dict[str, Any]], words: Words) -> None:
-    """`devices` are those shown here: what cells share is shown with the first of them."""
+    """Draw the card of a cell; `devices` are those shown on it: a shared one is shown with its first cell."""
     cell = layout["name"]
     with tag(
         "button", type="button", classes="card", data_choose=cell, title=words("cells.choose", cell=cell)
@@ -80,7 +80,7 @@ def _card(layout: dict[str, Any], devices: list[dict[str, Any]], words: Words) -
 
 
 def _asked(person: str) -> None:
-    """What a person is asked, announced once; its time goes on outside of what is announced."""
+    """Draw the question to a person, announced once; the time that is left is not announced."""
     with tag("div", classes="asked"):
         with tag("div", role="status", aria_live="polite"):
             live("p", f"asked_who.{person}", classes="asked-who")
@@ -90,12 +90,12 @@ def _asked(person: str) -> None:
 
 
 def heard(name: str, words: Words) -> None:
-    """What was answered to a task: by whom, what they were asked, and the answer."""
+    """Draw the table of answers to a task: the one who answered, the question and the answer."""
     rows(name, [words(f"column.{each}") for each in ("by", "question", "answer")], classes="heard")
 
 
 def tree_box(layout: dict[str, Any], words: Words) -> None:
-    """Where a cell's tree is drawn; what an idle one offers stands above it."""
+    """Draw the box of a cell's tree; the offers of an idle cell stand above it."""
     cell = layout["name"]
     with tag("div", classes="tree-box"):
         with tag("div", classes="tree-tools"):
@@ -116,14 +116,14 @@ def _offer(cell: str, classes: str) -> None:
 
 
 def zooms(words: Words) -> None:
-    """The tools of the tree that stands in the same box."""
+    """Draw the tools of the tree in the same box."""
     for name, sign in {"smaller": "−", "larger": "+", "fit": "⤢"}.items():  # noqa: RUF001 - a minus sign
         label = words(f"cells.{name}")
         tag("button", sign, type="button", classes="tool", data_zoom=name, title=label, aria_label=label)
 
 
 def detail(words: Words) -> None:
-    """What a click on a node shows; the script fills it."""
+    """Draw the box of details that a click on a node opens; the script fills it."""
     with tag("aside", id="node", hidden="true", aria_live="polite", aria_label=words("node.title")):
         tag("button", "×", type="button", id="node-close", classes="tool", aria_label=words("node.close"))  # noqa: RUF001
         tag("h2", id="node-name")

@@ -11,11 +11,11 @@ import yaml
 from arboleda.model.sentence import Phrase, Sentence
 
 LANGUAGES = ("en", "es")
-SENTENCES = "sentences"  # of the plant, by key, in every language but English: its phrases have that
+SENTENCES = "sentences"  # the plant's sentences by key; English ones are in its phrases
 
 
 class Words:
-    """`words("tasks.send")`; `of` for words that the plant chooses, `say` for its sentences."""
+    """Words: `words("tasks.send")` for the page's texts, `of` for the plant's words, `say` its sentences."""
 
     def __init__(self, language: str, tree: dict[str, Any]) -> None:
         self.language = language
@@ -24,20 +24,20 @@ class Words:
         self.flat = flat({key: value for key, value in tree.items() if key != SENTENCES})
 
     def __call__(self, key: str, **values: Any) -> str:
-        """The words of a key, with values put in; KeyError where there is no such key."""
+        """The text of a key, with values put in; KeyError if there is no such key."""
         return self.flat[key].format(**values) if values else self.flat[key]
 
     def of(self, group: str, word: str) -> str:
-        """What the plant's `word` is called; the word itself where nobody said."""
+        """The page's word for the plant's `word`; the word itself if the language has none."""
         return self.flat.get(f"{group}.{word}", word)
 
     def cell(self, state: str) -> str:
-        """The word for a state of a cell, behind plain ones where only PackML knows it."""
+        """The word for a state of a cell; a plain one, with PackML's in parentheses, if the page has one."""
         word, plain = self.of("cell_state", state), self.flat.get(f"cell_plain.{state}")
         return word if plain is None else f"{plain} ({word})"
 
     def say(self, said: Sentence | str) -> str:
-        """A sentence of the plant in this language; what is none, as of a user's own step, as it is."""
+        """A sentence of the plant in this language; any other text, as of a user's own step, unchanged."""
         if isinstance(said, str):
             return said
         text = self._said.get(said)
@@ -48,12 +48,12 @@ class Words:
         return text
 
     def _template(self, phrase: Phrase) -> str:
-        """As whoever made the phrase has it, else as our catalogue has it, else in English."""
+        """The template of a phrase: of its maker, else from the page's catalogue, else in English."""
         return phrase.others.get(self.language) or self._sentences.get(phrase.key) or phrase.english
 
 
 def flat(tree: dict[str, Any], prefix: str = "") -> dict[str, str]:
-    """Nested keys with dots between them."""
+    """Nested keys as one level, with dots between them."""
     found: dict[str, str] = {}
     for key, value in tree.items():
         name = f"{prefix}{key}"
@@ -62,13 +62,13 @@ def flat(tree: dict[str, Any], prefix: str = "") -> dict[str, str]:
 
 
 def tree_of(language: str) -> dict[str, Any]:
-    """What the file of a language says."""
+    """The contents of a language's file."""
     file = resources.files(__package__).joinpath("words", f"{language}.yaml")
     return yaml.safe_load(file.read_text(encoding="utf-8"))
 
 
 @cache
 def words(language: str) -> Words:
-    """The words of a language, English where it is not one of LANGUAGES."""
+    """The words of a language; English if it is not one of LANGUAGES."""
     known = language if language in LANGUAGES else LANGUAGES[0]
     return Words(known, tree_of(known))

@@ -1,4 +1,4 @@
-"""Where the nodes of a tree are drawn: from left to right, as outlines side by side, or as one outline."""
+"""Layouts of a tree: places of its nodes from left to right, as outlines side by side, or as one outline."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class Layout:
 
 
 def wide(nodes: Sequence[Node]) -> Layout:
-    """A tree, given depth-first, with a column per level; a node stands in the line of its first child."""
+    """The layout with a column per level; a node stands in the line of its first child."""
     widths: dict[int, float] = {}
     for path, name in nodes:
         widths[depth(path)] = max(widths.get(depth(path), 0), _width(name))
@@ -42,7 +42,7 @@ def wide(nodes: Sequence[Node]) -> Layout:
 
 
 def columns(nodes: Sequence[Node]) -> Layout:
-    """The root on top, below it an outline for each of its branches, side by side."""
+    """The layout with the root on top and below it an outline for each of its branches, side by side."""
     places = {path: (float(MARGIN), float(MARGIN), _width(name)) for path, name in nodes if path == "root"}
     left = float(MARGIN)
     for branch in [path for path, _ in nodes if parent(path) == "root"]:
@@ -55,7 +55,7 @@ def columns(nodes: Sequence[Node]) -> Layout:
 
 
 def outline(nodes: Sequence[Node]) -> Layout:
-    """A line per node, each level further to the right."""
+    """The layout with a line per node, each level further to the right."""
     places = {
         path: (float(MARGIN + depth(path) * INDENT), float(MARGIN + line * TIGHT_ROW), _width(name))
         for line, (path, name) in enumerate(nodes)
@@ -64,14 +64,14 @@ def outline(nodes: Sequence[Node]) -> Layout:
 
 
 def parent(path: str) -> str | None:
-    """The path of a node's parent; None of the root."""
+    """The path of a node's parent; None for the root."""
     if path == "root":
         return None
     return path.rpartition(".")[0] or "root"
 
 
 def depth(path: str) -> int:
-    """How many nodes are above a node."""
+    """The number of nodes above a node."""
     return 0 if path == "root" else path.count(".") + 1
 
 
@@ -85,14 +85,14 @@ def _layout(places: dict[str, Place], line: Callable[[Place, Place], Line]) -> L
 
 
 def _elbow(above: Place, place: Place) -> Line:
-    """From the right side of a node to the left side of its child."""
+    """The line from the right side of a node to the left side of its child."""
     x, y = above[0] + above[2], above[1] + HEIGHT / 2
     to_x, to_y = place[0], place[1] + HEIGHT / 2
     return ((x, y), (x + GAP / 2, y), (x + GAP / 2, to_y), (to_x, to_y))
 
 
 def _branch(above: Place, place: Place) -> Line:
-    """Down from the root and along to the top of a branch; within one as `_bracket`."""
+    """The line down from the root and along to the top of a branch; within a branch as `_bracket`."""
     if above[1] > MARGIN:
         return _bracket(above, place)
     x, y, to_x = above[0] + INDENT / 2, above[1] + HEIGHT, place[0] + INDENT / 2
@@ -100,7 +100,7 @@ def _branch(above: Place, place: Place) -> Line:
 
 
 def _bracket(above: Place, place: Place) -> Line:
-    """Down from a node's left end and right to its child."""
+    """The line down from a node's left end and right to its child."""
     x, y = above[0] + INDENT / 2, above[1] + HEIGHT
     return ((x, y), (x, place[1] + HEIGHT / 2), (place[0], place[1] + HEIGHT / 2))
 

@@ -17,7 +17,7 @@ SIGN, MARK = 16, 22  # px: of the sign before a name, and of the mark after it
 
 @dataclass(frozen=True, kw_only=True)
 class Box:
-    """A rounded box; its upper left corner."""
+    """A rounded box, by its upper left corner."""
 
     x: float
     y: float
@@ -38,7 +38,7 @@ class Line:
 
 @dataclass(frozen=True, kw_only=True)
 class Word:
-    """A text of one line; the left end of its middle."""
+    """A text of one line, by the left end of its middle."""
 
     x: float
     y: float
@@ -57,7 +57,7 @@ class Picture:
 
 @dataclass(frozen=True, kw_only=True)
 class Look:
-    """How a status looks: the box, and the strokes of its mark in a square of 10 px."""
+    """The look of a status: the box, and the strokes of its mark in a square of 10 px."""
 
     fill: str
     edge: str
@@ -93,7 +93,7 @@ def _node(row: dict[str, Any], place: Place) -> list[Box | Line | Word]:
 
 
 def _sign(kind: str, x: float, middle: float) -> tuple[list[Line | Word], float]:
-    """What stands before a name, and the room it takes: an arrow for a sequence, `?` for a selector."""
+    """The sign before a name, and the room it takes: an arrow for a sequence, `?` for a selector."""
     if kind == "selector":
         return [Word(x=x + 2, y=middle, text="?")], SIGN - 2
     strokes = SIGNS.get(kind, ())

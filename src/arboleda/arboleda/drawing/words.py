@@ -14,7 +14,7 @@ STATUSES = {"INVALID": "[-]", "RUNNING": "[*]", "SUCCESS": "[o]", "FAILURE": "[x
 
 
 def outline(rows: Sequence[dict[str, Any]], *, statuses: bool = False) -> str:
-    """A line per node; with `statuses` each with what it came to, and what it says."""
+    """An outline with a line per node; with `statuses` each has its result and its message."""
     return "".join(_line(row, statuses) for row in rows)
 
 
@@ -25,7 +25,7 @@ def _line(row: dict[str, Any], statuses: bool) -> str:
 
 
 def dot(rows: Sequence[dict[str, Any]]) -> str:
-    """The tree for whoever has Graphviz: `dot -Tpdf`."""
+    """The tree in the language of Graphviz: `dot -Tpdf` draws it."""
     nodes = [_dot_node(row) for row in rows]
     edges = [f'  "{above}" -> "{row["path"]}";' for row in rows if (above := parent(row["path"]))]
     head = 'digraph tree {\n  rankdir=LR;\n  node [shape=box, style="rounded,filled", fontname="sans-serif"];'

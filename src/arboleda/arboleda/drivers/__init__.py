@@ -1,4 +1,4 @@
-"""What drivers of one's own are written with; `@driver` makes one of a class with `start`, `send`, `stop`."""
+"""Drivers; with `@driver`, a class with `start`, `send` and `stop` makes a driver of your own."""
 
 from arboleda.kinds.arm import MoveJoints, SetEffector
 from arboleda.kinds.declared import VerbCall as VerbCommand

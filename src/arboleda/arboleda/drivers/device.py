@@ -1,4 +1,4 @@
-"""One device behind a driver: what it may be told, what is believed of what comes back, its stop latch."""
+"""Device behind a driver: checks its commands and reports, and keeps its stop latch."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ from arboleda.model.sentence import Sentence
 
 REMEMBERED = 256  # commands; an open one is never that old
 IDS = ("accepted", "done", "rejected", "failed", "answered")
-SILENCE = "silencio"  # what a board gives its work up with that hears no plant
-WORDS = {"rejected": "refusal", "failed": "failure", "answered": "answer"}  # what goes with an id
+SILENCE = "silencio"  # the word of a board that gives up its work without a plant
+WORDS = {"rejected": "refusal", "failed": "failure", "answered": "answer"}  # the field beside each id
 
 
 class DrivenDevice:
-    """Its link is up while reports come, at most `stale_after_s` apart; at `state` silence means nothing."""
+    """Device of a driver; its link is up while reports come at most `stale_after_s` apart, or at `state`."""
 
     def __init__(self, robot: Robot, *, epoch: int, stale_after_s: float) -> None:
         self.robot = robot
@@ -30,13 +30,13 @@ class DrivenDevice:
         self._said_at = -math.inf
         self._boot_id: int | None = None
         self._known: OrderedDict[str, None] = OrderedDict()  # the ids of the commands that it was given
-        self._work: Work | None = None  # what may still move it
+        self._work: Work | None = None  # the work that may still move it
         self._unwatched = False  # it was halted for want of a plant
         self._latched = False
-        self._why: Sentence | None = None  # why there is no link
+        self._why: Sentence | None = None  # the reason for a missing link
 
     def repeated(self, command: Command) -> bool:
-        """Whether a command of this id came before; it counts as known from now on."""
+        """True if a command of this id came before; remembers the id."""
         if command.id in self._known:
             return True
         self._known[command.id] = None
@@ -45,7 +45,7 @@ class DrivenDevice:
         return False
 
     def refusal(self, command: Command) -> str | None:
-        """The word that refuses a command, None where it may leave; a stop is remembered in any case."""
+        """The word that refuses a command; None if it may leave. A stop is remembered in either case."""
         if isinstance(command, Stop):
             if command.mode is not StopMode.HALT:
                 self._latched = command.mode is StopMode.LATCH
@@ -56,7 +56,7 @@ class DrivenDevice:
         return "paro" if self._latched and needs_clear(command) else None
 
     def leaves(self, command: Command) -> None:
-        """A command is handed to the driver."""
+        """Note that a command is handed to the driver."""
         if isinstance(command, Work):
             self._work, self._unwatched = command, False
 
@@ -66,19 +66,19 @@ class DrivenDevice:
         return self._stamped(said)
 
     def halt(self) -> Stop | None:
-        """What ends the work that may still go on."""
+        """The stop that ends work which may still go on; None if there is none, or the device cannot stop."""
         if self._work is None or not self._can_stop:
             return None
         return Stop(id="", robot=self.robot.name, mode=StopMode.HALT)
 
     @property
     def needs_plant(self) -> bool:
-        """Whether it does what must not go on once the plant is not heard."""
+        """True while the device does work that must not go on once the plant has fallen silent."""
         work = self._work
         return work is not None and work.on_stop is OnStop.HALT and not self._unwatched and self._can_stop
 
     def give_up(self, at: float) -> tuple[Report, Stop]:
-        """What a board does by itself that hears no plant: its work has failed, and what moves is halted."""
+        """A report that the work has failed, and a stop that halts it: as a board does without its plant."""
         assert self._work is not None
         self._unwatched = True
         name = self.robot.name
@@ -86,24 +86,24 @@ class DrivenDevice:
         return self._stamped(failed), Stop(id="", robot=name, mode=StopMode.HALT)
 
     def lose(self, at: float, why: Sentence) -> list[Report]:
-        """There is no link any more, and whatever was open is nobody's; nothing is sent again."""
+        """Lose the link: open work is forgotten, and nothing is sent again."""
         return [self.no_link(at, why)] if self.up else []
 
     def say_lost(self, at: float, why: Sentence) -> list[Report]:
-        """The driver says that there is no link; where there was none before, only another reason is news."""
+        """The report of a lost link, on the driver's word; without a link before, only for a new reason."""
         return [self.no_link(at, why)] if self.up or why != self._why else []
 
     def no_link(self, at: float, why: Sentence) -> Report:
-        """The report that there is none, whether that is new or not."""
+        """The report that there is no link, even if that is known."""
         self.up, self.stale_at, self._work, self._why = False, math.inf, None, why
         return self._stamped(Report(at=at, robot=self.robot.name, state=MotionState.NO_LINK, lost=why))
 
     def is_late(self, report: Report, now: float) -> bool:
-        """Whether something newer was heard, or it is as old as a silence that loses the link."""
+        """True if a newer report was heard, or this one is so old that its age alone would lose the link."""
         return report.at < self._said_at or now - report.at > self._longest_s
 
     def hear(self, report: Report) -> tuple[Report, Stop | None]:
-        """The report as the plant is to have it, and the stop that a device has to hear once more.
+        """The report for the plant, and a stop to send once more if the device may have forgotten its latch.
 
         One that comes back, or has booted, may have forgotten its latch; the operator has not.
         """
@@ -123,7 +123,7 @@ class DrivenDevice:
         return self.up and self.robot.has_stop
 
     def _of_ours(self, report: Report) -> Report:
-        """Without what it says of commands that it was not given: they are of another start, or of others."""
+        """The report without commands that this device was not given: another start's, or others'."""
         strange = [
             name for name in IDS if (id := getattr(report, name)) is not None and id not in self._known
         ]
@@ -133,7 +133,7 @@ class DrivenDevice:
         return report.again(report.at, **dict.fromkeys(gone))
 
     def _stamped(self, report: Report) -> Report:
-        """The plant runs this itself: its own start is the one that is heard."""
+        """The report with this start of the plant as the one that the device hears."""
         return replace(
             report,
             epoch=self._epoch,

@@ -1,4 +1,4 @@
-"""What a driver is: the way from the plant to devices that it knows how to speak to."""
+"""Interface of a driver: the way from the plant to devices whose protocol it speaks."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ from arboleda.model.sentence import OWN
 
 
 class Hear(Protocol):
-    """Takes what a device says, from any thread; never blocks, never raises."""
+    """Callback that takes a report of a device; callable from any thread, never blocks, never raises."""
 
     def __call__(self, report: Report) -> None: ...
 
 
 class Clock(Protocol):
-    """The plant's clock, s: what a report was said at."""
+    """Clock of the plant: returns the present time, s, for the field `at` of a report."""
 
     def __call__(self) -> float: ...
 
@@ -31,44 +31,56 @@ METHODS = ("start", "send", "stop")
 
 
 class DriverError(ArboledaError):
-    """A class that cannot be a driver."""
+    """Error in the class or the settings of a driver; the sentence tells the reason."""
 
 
 class NotSent(ArboledaError):
-    """A command could not leave, and will not be sent later; the sentence says why."""
+    """Error of `send`: the command could not leave, and will not be sent later; the sentence says why."""
 
 
 class Driver(Protocol):
-    """One connection to one or several devices. All three are called in one thread of the driver's own."""
+    """Connection to one or several devices.
+
+    All three methods are called in one thread of the driver's own, so a slow one holds up no other driver.
+    """
 
     def start(self, devices: Sequence[Robot], hear: Hear, clock: Clock) -> None:
-        """Begin to reach these devices; raises where that cannot work, and is then tried again later."""
+        """Begin to connect to the devices; returns soon.
+
+        `devices`: all devices that the plant file gives to this driver. `hear`: takes their reports, until
+        `stop`. `clock`: returns the time, s, for the reports. May raise any exception: it is logged, and a
+        new driver is started after 0.5 s, later ones after up to 30 s.
+        """
 
     def send(self, command: Command) -> None:
-        """Send a command now, and return soon; raises (`NotSent`) where it could not leave."""
+        """Send a command now, and return soon; its end comes as a report.
+
+        Raises NotSent if the command could not leave. Any other exception loses the link as well, until the
+        device is heard again.
+        """
 
     def stop(self) -> None:
-        """End: what it opened is closed, its threads have ended. Called once, also after a failed start."""
+        """Close all that was opened, and join all threads; called once, also after a failed `start`."""
 
 
 @runtime_checkable
 class FitsDevice(Protocol):
-    """Settings of a driver that know what of them does not fit a device."""
+    """Settings of a driver that can check themselves against a device."""
 
     def problems(self, device: Robot) -> Iterable[tuple[tuple[str | int, ...], str]]:
-        """Each by the keys that lead to it, and a sentence."""
+        """Settings that do not fit the device, each as its keys and a sentence."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class DriverSpec:
-    """A class that was made a driver: its name in plant files, and the dataclass of its settings."""
+    """Driver as `@driver` makes it: its name in plant files, its class, and the dataclass of its settings."""
 
     name: str
     made_by: Callable[..., Driver]
     settings: type | None = None
 
     def make(self, settings: object) -> Driver:
-        """A driver with these settings; None where it has none."""
+        """A new driver with these settings (None for a driver without settings)."""
         return self.made_by() if self.settings is None else self.made_by(settings)
 
 
@@ -76,9 +88,11 @@ C = TypeVar("C", bound=type)
 
 
 def driver(name: str, *, settings: type | None = None) -> Callable[[C], C]:
-    """Makes a class a driver that plant files call `name`; it is called with its settings, if it has any.
+    """Decorator that makes a class with the methods of Driver a driver, called `name` in plant files.
 
-    `settings` is a frozen dataclass: its fields are the keys of the plant file.
+    `settings` is a frozen dataclass whose fields are the keys of the plant file; the class is called with an
+    instance of it. None: it is called without arguments. Returns the class itself. Raises DriverError if a
+    method is missing, or `settings` is no frozen dataclass.
     """
 
     def marked(made: C) -> C:
@@ -94,13 +108,16 @@ def driver(name: str, *, settings: type | None = None) -> Callable[[C], C]:
 
 
 def spec_of(value: Any) -> DriverSpec | None:
-    """What `driver` made of a class; None for anything else, a subclass of a driver among it."""
+    """The DriverSpec of a class made by `driver`; None for anything else, its subclasses included."""
     found = vars(value).get(MARK) if isinstance(value, type) else None
     return found if isinstance(found, DriverSpec) else None
 
 
 def lost(robot: str, *, at: float, why: str) -> Report:
-    """The report that there is no link to a device, with the reason in words."""
+    """Returns the report that the link to a device is lost.
+
+    `robot`: the name of the device. `at`: the time, s, by the plant's clock. `why`: the reason, in words.
+    """
     return Report(at=at, robot=robot, state=MotionState.NO_LINK, lost=OWN(text=plain(why)))
 
 

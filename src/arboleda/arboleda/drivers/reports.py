@@ -1,4 +1,4 @@
-"""Whether something that a driver handed over is a report that its device can have made."""
+"""Checks that an object from a driver is a report that one of its devices can have made."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ PAIRS = (("rejected", "refusal"), ("failed", "failure"), ("answered", "answer"))
 
 
 def objection(report: object, devices: Mapping[str, Robot]) -> str | None:
-    """Why it is no report of one of these devices; None where it is one."""
+    """The reason why this is no report of one of these devices; None if it is one."""
     if not isinstance(report, Report):
         return f"{quoted(report)} is no Report"
     if report.robot not in devices:
@@ -76,4 +76,4 @@ FIELDS: dict[str, tuple[Callable[[Any], bool], str]] = {
     "facts": (_are_facts, 'a tuple of pairs, (("door", "open"),)'),
     "lost": (lambda value: isinstance(value, Sentence), "a Sentence, as lost() makes it"),
 }
-"""What a driver may say of each field, and what that is in words."""
+"""The check of each field of a report, and the allowed values in words."""

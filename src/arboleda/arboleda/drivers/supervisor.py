@@ -1,4 +1,4 @@
-"""All drivers of a plant as one machine: whom a command goes to, which report counts, and what is lost.
+"""State machine over all drivers of a plant: it routes commands, checks reports, and notices losses.
 
 Drivers are other people's code. Whatever one of them does, its devices lose their link, with a sentence that
 says why; it is ended and made anew, and nothing that was open is sent again.
@@ -22,7 +22,7 @@ from .device import DrivenDevice
 from .reports import objection
 
 FIRST_RETRY_S, LAST_RETRY_S = 0.5, 30.0
-PLANT_GONE_S = 1.0  # without beat or command: as long as a board waits
+PLANT_GONE_S = 1.0  # without heartbeat or command: as long as a board waits
 STARTING = Phrase("driver.starting", "its driver {driver} was started and has said nothing yet")
 SILENT = Phrase("driver.silent", "its driver {driver} has said nothing for {seconds:g} s")
 STUCK = Phrase("driver.stuck", "its driver {driver} has not come back from send for {seconds:g} s")
@@ -40,7 +40,7 @@ NONSENSE = Phrase("driver.nonsense", "the driver {driver} reported nonsense: {wh
 
 @dataclass(frozen=True, kw_only=True)
 class Life:
-    """One object that was made of a driver; what an earlier one says counts no more."""
+    """One object made of a driver; reports of an earlier one no longer count."""
 
     driver: int
     number: int
@@ -48,7 +48,7 @@ class Life:
 
 @dataclass(frozen=True, kw_only=True)
 class CommandRequest:
-    """The plant commands a device."""
+    """Event: the plant commands a device."""
 
     at: float
     command: Command
@@ -56,14 +56,14 @@ class CommandRequest:
 
 @dataclass(frozen=True, kw_only=True)
 class PlantBeat:
-    """The plant is there."""
+    """Event: a heartbeat of the plant."""
 
     at: float
 
 
 @dataclass(frozen=True, kw_only=True)
 class DriverOutput:
-    """A driver handed something over that should be a Report."""
+    """Event: a driver handed over an object that should be a Report."""
 
     at: float
     life: Life
@@ -72,7 +72,7 @@ class DriverOutput:
 
 @dataclass(frozen=True, kw_only=True)
 class DriverCrash:
-    """A driver raised what it should not, or a thread of it died; `started`: its start was over by then."""
+    """Event: a driver raised a forbidden exception, or a thread of it died; `started`: after its start."""
 
     at: float
     life: Life
@@ -96,7 +96,7 @@ class SendResult:
 
 @dataclass(frozen=True, kw_only=True)
 class Leaving:
-    """The plant ends; `halts`: not where another process leads its robots by now."""
+    """Event: the plant ends. `halts` False: another process leads its robots, so none is halted."""
 
     at: float
     halts: bool = True
@@ -104,14 +104,14 @@ class Leaving:
 
 @dataclass(frozen=True, kw_only=True)
 class Begin:
-    """Make the driver of this life, and start it."""
+    """Message: make the driver of this life, and start it."""
 
     life: Life
 
 
 @dataclass(frozen=True, kw_only=True)
 class Give:
-    """Have a driver send a command, unless it is later than `until` by then."""
+    """Message: have a driver send a command, unless it is later than `until` by then."""
 
     life: Life
     command: Command
@@ -120,14 +120,14 @@ class Give:
 
 @dataclass(frozen=True, kw_only=True)
 class End:
-    """Stop the driver of this life."""
+    """Message: stop the driver of this life."""
 
     life: Life
 
 
 @dataclass(frozen=True, kw_only=True)
 class OutputRefused:
-    """Something that a driver said was not used; `sentence` is for the log."""
+    """Message: a report was not used; `sentence` is for the log."""
 
     at: float
     sentence: Sentence
@@ -135,7 +135,7 @@ class OutputRefused:
 
 @dataclass(frozen=True, kw_only=True)
 class DeviceHalt:
-    """A device was halted since the plant was not heard; `sentence` is for the log."""
+    """Message: a device was halted as the plant was silent; `sentence` is for the log."""
 
     at: float
     sentence: Sentence
@@ -146,16 +146,16 @@ Message = Begin | Give | End | OutputRefused | DeviceHalt | Report | Undelivered
 
 
 class SupervisedDriver:
-    """One driver and its devices; `life` is the object that there is of it now."""
+    """Driver and its devices; `life` is the object that is made of it now."""
 
     def __init__(self, number: int, name: str, devices: Sequence[DrivenDevice], stuck_after_s: float) -> None:
         self.name = name
         self.devices = {device.robot.name: device for device in devices}
         self.robots = {name: device.robot for name, device in self.devices.items()}
         self.life = Life(driver=number, number=0)
-        self.begin_at = -math.inf  # when it is to be started; never while there is a life
+        self.begin_at = -math.inf  # time of the next start; inf while there is a life
         self._stuck_after_s = stuck_after_s
-        self._given: deque[float] = deque()  # when the commands left that it has not come back from
+        self._given: deque[float] = deque()  # start times of the calls of `send` that have not returned
         self._stuck = False
         self._began_at = 0.0
         self._delay_s = FIRST_RETRY_S
@@ -182,7 +182,7 @@ class SupervisedDriver:
         return [device.refuse(at, command, word)] if word else [self._give(at, device, command)]
 
     def taken(self, event: SendResult) -> list[Message]:
-        """It came back from `send`."""
+        """Note that the driver came back from `send`."""
         if self._given:
             self._given.popleft()
         self._stuck = self._stuck and bool(self._given)
@@ -194,7 +194,7 @@ class SupervisedDriver:
         return [*news, *(self.devices[name].lose(event.at, why) if event.broken else [])]
 
     def broken(self, event: DriverCrash) -> list[Message]:
-        """It is ended, and made anew after a while: the longer, the sooner it broke down."""
+        """End the driver, and start it anew after a pause, which grows while it keeps breaking down early."""
         what = FAILED if event.started else NOT_STARTED
         held = event.at - self._began_at > LAST_RETRY_S
         self._delay_s = FIRST_RETRY_S if held else self._delay_s
@@ -207,13 +207,13 @@ class SupervisedDriver:
         return [*(device.no_link(event.at, why) for device in self.devices.values()), ended]
 
     def said(self, event: DriverOutput) -> list[Message]:
-        """What counts as heard; the rest is told in the log."""
+        """Take a report of the driver's code: returned if it counts; a refusal for the log if invalid."""
         why = objection(event.report, self.robots)
         if why is not None:
             return [OutputRefused(at=event.at, sentence=NONSENSE(driver=self.name, why=why))]
         assert isinstance(event.report, Report)
         device = self.devices[event.report.robot]
-        report = event.report.again(min(event.report.at, event.at))  # nobody has heard of what is to come
+        report = event.report.again(min(event.report.at, event.at))  # no report is of the future
         if self._stuck or device.is_late(report, event.at):
             return []
         if report.state is MotionState.NO_LINK:
@@ -222,7 +222,7 @@ class SupervisedDriver:
         return [heard] if stop is None else [heard, self._give(event.at, device, stop)]
 
     def pass_time(self, now: float) -> list[Message]:
-        """What silence, and a `send` that does not come back, have lost by now."""
+        """Losses that the passing of time brings: silent devices, and a `send` that does not return."""
         if self.begin_at <= now:
             return self.begin(now)
         if self._given and not self._stuck and self._given[0] + self._stuck_after_s <= now:
@@ -235,11 +235,11 @@ class SupervisedDriver:
 
     @property
     def needs_plant(self) -> bool:
-        """Whether a device of it does what must not go on once the plant is not heard."""
+        """True while a device of this driver does work that must not go on without the plant."""
         return any(device.needs_plant for device in self.devices.values())
 
     def give_up(self, now: float) -> list[Message]:
-        """Halt what only a plant that is there may have moving; once, another plant may lead it by then."""
+        """Halt work that must not go on without the plant; once only, as another plant may lead by then."""
         halted = [device for device in self.devices.values() if device.needs_plant]
         return [message for device in halted for message in self._unwatched(now, device)]
 
@@ -249,7 +249,7 @@ class SupervisedDriver:
         return [self._give(now, device, stop), failed, DeviceHalt(at=now, sentence=said)]
 
     def leave(self, leaving: Leaving) -> list[Message]:
-        """Whatever may still move is halted before the driver ends."""
+        """Halt everything that may still move, then end the driver."""
         halts = [(device, device.halt()) for device in self.devices.values()] if leaving.halts else []
         given: list[Message] = [
             self._give(leaving.at, device, halt) for device, halt in halts if halt is not None
@@ -258,7 +258,10 @@ class SupervisedDriver:
         return [*given, *([End(life=self.life)] if alive else [])]
 
     def _give(self, at: float, device: DrivenDevice, command: Command) -> Give:
-        """What waits behind a `send` that is stuck was given up with it; a stop is never too late."""
+        """The message that hands a command to the driver's `send`.
+
+        It expires with a `send` that is stuck before it; a stop never expires.
+        """
         device.leaves(command)
         self._given.append(at)
         until = math.inf if isinstance(command, Stop) else self._given[0] + self._stuck_after_s
@@ -266,7 +269,7 @@ class SupervisedDriver:
 
 
 class Supervisor:
-    """The drivers by number, each a name and the robots behind it; `epoch` names the plant's start."""
+    """State machine of the drivers, by number, each with a name and robots; `epoch` names the start."""
 
     def __init__(
         self, drivers: Sequence[tuple[str, Sequence[Robot]]], *, epoch: int, stale_after_s: float
@@ -282,18 +285,18 @@ class Supervisor:
         ]
         self._of_device = {name: driver for driver in self._drivers for name in driver.devices}
         self._leaving = False
-        self._plant_gone_at = math.inf  # until it has beaten once
+        self._plant_gone_at = math.inf  # until its first heartbeat
 
     @property
     def next_deadline(self) -> float | None:
-        """When `step` must be called even without events; None: never."""
+        """The time (s) at which `step` is due even without events; None if it never is."""
         due = min((driver.next_deadline for driver in self._drivers), default=math.inf)
         if any(driver.needs_plant for driver in self._drivers):
             due = min(due, self._plant_gone_at)
         return due if due < math.inf and not self._leaving else None
 
     def step(self, now: float, events: Sequence[Event]) -> list[Message]:
-        """Reports and undelivered commands for the plant, and what drivers are to do, in their order."""
+        """Take events; return reports and undelivered commands for the plant, and orders to drivers."""
         out = [message for event in events for message in self._take(event)]
         if self._leaving:
             return out
@@ -320,7 +323,7 @@ class Supervisor:
         return driver.taken(event) if isinstance(event, SendResult) else driver.broken(event)
 
     def _hear_plant(self, event: PlantBeat | CommandRequest) -> list[Message]:
-        """Its silence counts from its first beat on."""
+        """Note a sign of the plant; its silence counts from the first heartbeat on."""
         if isinstance(event, PlantBeat) or self._plant_gone_at < math.inf:
             self._plant_gone_at = event.at + PLANT_GONE_S
         if isinstance(event, PlantBeat):

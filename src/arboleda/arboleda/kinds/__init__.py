@@ -1,4 +1,4 @@
-"""Kinds of devices; `@kind` makes one of one's own of a function of its settings."""
+"""Kinds of devices; with `@kind`, a function of settings makes a kind of your own."""
 
 from .authoring import Kind, WrittenKind, kind
 from .verbs import KindError, Number, Verb, motion, process, query, switch

@@ -1,4 +1,4 @@
-"""An arm: its joints, what it is told, and what it can prove."""
+"""Arm: its joints, its commands, and the proof of its motions."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ ROUNDING = 1e-9  # rad or m, far below a motor step
 
 @dataclass(frozen=True, kw_only=True)
 class MoveJoints(Motion):
-    """Drive an arm to `q` (rad; m for a prismatic joint)."""
+    """Drive an arm to the joint positions `q`, one for each joint: rad, or m for a prismatic joint."""
 
     q: tuple[float, ...]
 
@@ -32,7 +32,7 @@ class MoveJoints(Motion):
 
 @dataclass(frozen=True, kw_only=True)
 class SetEffector(Switch):
-    """Switch an arm's effector."""
+    """Switch an arm's effector; `on`: it takes hold of a part."""
 
     on: bool
 
@@ -47,7 +47,7 @@ class SetEffector(Switch):
 
 @dataclass(frozen=True, kw_only=True)
 class Joint:
-    """One axis: position in rad (revolute) or m (prismatic); `step` is one motor step in that unit."""
+    """Axis: position in rad (revolute) or m (prismatic); `step` is one motor step in that unit."""
 
     name: str
     lower: float
@@ -56,7 +56,7 @@ class Joint:
     acceleration: float
     step: float
     pinion_radius_m: float | None = None  # None: revolute; else the rack pinion of a prismatic axis
-    up: int = -1  # which way a prismatic axis lifts: -1 towards smaller values, 1 greater ones, 0 neither
+    up: int = -1  # the lifting direction of a prismatic axis: -1 smaller values, 1 greater ones, 0 none
 
     @property
     def unit(self) -> str:
@@ -78,7 +78,7 @@ class Joint:
         return replace(self, speed=self.speed * rate, acceleration=self.acceleration * rate**2)
 
     def higher(self, value: float, *others: float) -> float:
-        """The highest of these values where the joint lifts, else `value`."""
+        """The highest of these values if the joint lifts, else `value`."""
         if self.pinion_radius_m is None or self.up == 0:
             return value
         return min(value, *others) if self.up < 0 else max(value, *others)
@@ -94,7 +94,7 @@ class Joint:
 
 @dataclass(frozen=True, kw_only=True)
 class Description:
-    """A model of the plant's own: its URDF without a prefix, and what was assumed of it."""
+    """Model given by the plant: its URDF without a prefix, and the assumptions made on it."""
 
     urdf: str
     notes: tuple[str, ...] = ()
@@ -102,7 +102,7 @@ class Description:
 
 @dataclass(frozen=True, kw_only=True)
 class Arm(Robot):
-    """An arm; `tolerance` per joint overrides the default of half a motor step + 1e-5."""
+    """Arm; `tolerance` per joint overrides the default of half a motor step + 1e-5."""
 
     model: str
     twin: str
@@ -165,7 +165,7 @@ class Arm(Robot):
 
     @cached_property
     def reference(self) -> tuple[float, ...]:
-        """Where the homing routine ends, and the counters begin."""
+        """The joints at the end of the homing routine, from which the counters begin."""
         return (0.0,) * len(self.joints)
 
     @cached_property
@@ -180,18 +180,19 @@ class Arm(Robot):
         return self.quantised(position)
 
     def lifted(self, position: Position, heights: Sequence[Position]) -> Position:
-        """Only prismatic joints lift; how, each of them says. None is sent beyond its limits."""
+        """The position with its lifting (prismatic) joints at the highest of `heights`, within limits."""
         assert isinstance(position, tuple)
         rows = zip(self.joints, position, *[up for up in heights if isinstance(up, tuple)], strict=True)
         return tuple(joint.higher(joint.within(q), *above) for joint, q, *above in rows)
 
     def reached(self, q: tuple[float, ...], target: tuple[float, ...]) -> bool:
-        """Whether reported joints `q` lie within tolerance of a quantised target."""
+        """True if reported joints `q` lie within tolerance of a quantised target."""
         rows = zip(q, target, self.tolerances, strict=True)
         return all(abs(value - goal) <= tolerance for value, goal, tolerance in rows)
 
     def at_rate(self, rate: float) -> Arm:
-        """So accelerating that every ramp keeps its shape."""
+        """The same arm at `rate` times its speed, and its square for accelerations: ramps keep their
+        shape."""
         return replace(self, joints=tuple(joint.at_rate(rate) for joint in self.joints))
 
     def stands_at(self, position: Position, goal: Position) -> bool:
@@ -199,7 +200,7 @@ class Arm(Robot):
         return self.reached(position, self.quantised(goal))
 
     def confuses(self, position: Position, other: Position) -> bool:
-        """It may stop its tolerance away from the one and count as standing as far from the other."""
+        """True if the arm, stopped within tolerance of one position, may count as standing at the other."""
         assert isinstance(position, tuple) and isinstance(other, tuple)
         rows = zip(self.quantised(position), self.quantised(other), self.tolerances, strict=True)
         return all(abs(a - b) <= 2 * within + ROUNDING for a, b, within in rows)

@@ -1,4 +1,4 @@
-"""What a kind of one's own is written with: a function of its settings that returns what its devices can do.
+"""Authoring of kinds of devices: a function of settings that returns the facts and verbs of a kind.
 
 @dataclass(frozen=True, kw_only=True)
 class Saw:
@@ -20,8 +20,8 @@ def saw(settings: Saw) -> Kind:
         },
     )
 
-The fields of the settings are the keys that the plant file takes for a device of this kind. What a verb sets
-and how long it takes may be functions of its parameters, and depend on nothing else.
+The fields of the settings are the keys that the plant file takes for a device of this kind. The facts that a
+verb sets, and the time that it takes, may be functions of its parameters; they depend on nothing else.
 """
 
 from __future__ import annotations
@@ -41,7 +41,10 @@ from .written import refuse, timed, types_of, verb_of
 
 @dataclass(frozen=True, kw_only=True)
 class Kind:
-    """What devices of a kind report and can be told; KindError where that does not fit together.
+    """Facts and verbs of a kind of device; raises KindError if they do not fit together.
+
+    `verbs`, by name, are made by `motion`, `process`, `switch` and `query`; at least one. `facts`, by name,
+    are what the devices report.
 
     A fact and a parameter are bool, int, float, str, a list of words or numbers, or Number(lower, upper).
     """
@@ -61,7 +64,11 @@ class Kind:
 
 @dataclass(frozen=True, kw_only=True)
 class WrittenKind:
-    """A kind that is a function of its settings, a frozen dataclass, or of nothing."""
+    """Kind as `@kind` makes it: its name, and the function that returns its verbs and facts.
+
+    `settings` is the frozen dataclass that the function takes, None if it takes nothing; `about` is the first
+    line of its docstring. Raises KindError if `function` is no function.
+    """
 
     name: str
     function: Callable[..., Kind]
@@ -73,7 +80,10 @@ class WrittenKind:
             raise KindError(f"{self.name}: a kind is a function, and {quoted(self.function)} is none")
 
     def of(self, settings: object | None) -> DeviceKind:
-        """The kind as it is with these settings; KindError where it is none."""
+        """The kind with these settings (None for a function that takes nothing).
+
+        Raises KindError if the function returns no Kind.
+        """
         made = self.function() if self.settings is None else self.function(settings)
         if not isinstance(made, Kind):
             raise KindError(f"{self.name} returns {quoted(made)}; a kind returns Kind(facts=..., verbs=...)")
@@ -81,7 +91,11 @@ class WrittenKind:
 
 
 def kind(name: str) -> Callable[[Callable[..., Kind]], WrittenKind]:
-    """Makes a kind of a function of its settings; the first line of its docstring says what it is."""
+    """Decorator that makes a kind, called `name` in plant files, of a function that returns a Kind.
+
+    The function takes its settings, an instance of a frozen dataclass to which it is annotated, or nothing.
+    The first line of its docstring describes the kind to users. Raises KindError for another signature.
+    """
 
     def made(function: Callable[..., Kind]) -> WrittenKind:
         about = (inspect.getdoc(function) or "").partition("\n")[0]
@@ -92,7 +106,7 @@ def kind(name: str) -> Callable[[Callable[..., Kind]], WrittenKind]:
 
 
 def _settings(name: str, function: Callable[..., Kind]) -> type[Any] | None:
-    """The dataclass that a function is annotated to take; None for one that takes nothing."""
+    """The dataclass that a function is annotated to take; None if it takes nothing."""
     taken = list(inspect.signature(function).parameters)
     if not taken:
         return None

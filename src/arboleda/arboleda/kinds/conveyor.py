@@ -11,7 +11,7 @@ CLEAR, TAKEN = "clear", "taken"
 
 @dataclass(frozen=True, kw_only=True)
 class ConveyorSettings:
-    """Its sensors in the order in which parts pass them, and how long it runs from one to the next."""
+    """Settings of a conveyor: its sensors in the order of passing parts, and the time between two, s."""
 
     sensors: tuple[str, ...] = ("entry", "exit")
     takes_s: float = 3.0
@@ -28,7 +28,7 @@ def conveyor(settings: ConveyorSettings) -> Kind:
     names = settings.sensors
 
     def passed(facts: dict[str, object], to: str) -> dict[str, str]:
-        """A part that stands at a sensor has left those before it."""
+        """The sensors when a part stands at one of them: it has left those before it."""
         return dict.fromkeys(names[: names.index(to)], CLEAR)
 
     return Kind(

@@ -22,15 +22,15 @@ from arboleda.model.outside import among, quoted
 from arboleda.model.plant_model import Robot
 
 Computed = Callable[..., object]
-"""A function of the values of a verb by name; what a virtual device does has its facts before them."""
+"""A function of a verb's values, by name; one for a virtual device takes the facts before them."""
 
 
 class UseError(ArboledaError):
-    """A verb, or a value for it, that a kind of device does not have."""
+    """Error: a kind of device does not have this verb, or the verb does not take this value."""
 
 
 class Effect(str, Enum):
-    """What a verb does, as far as the engine must know it."""
+    """Effect of a verb, as far as the engine must know it."""
 
     MOTION = "motion"
     PROCESS = "process"
@@ -40,18 +40,18 @@ class Effect(str, Enum):
 
 @dataclass(frozen=True, kw_only=True)
 class Slot:
-    """The value of a parameter, `$program` in a plant file."""
+    """Placeholder for the value of a parameter, `$program` in a plant file."""
 
     name: str
 
 
 @dataclass(frozen=True, kw_only=True)
 class FactType:
-    """What a fact can be: one of some words, or any value of a type within its limits."""
+    """Type of a fact: one of some words, or any value of a type within limits."""
 
     type: type[Value]
     words: tuple[Value, ...] = ()
-    first: Value  # what a virtual device begins with
+    first: Value  # the first value of a virtual device
     lower: float = -math.inf
     upper: float = math.inf
 
@@ -63,11 +63,11 @@ class FactType:
 
     @property
     def is_limited(self) -> bool:
-        """Whether it is a number that has limits."""
+        """True for a number that has limits."""
         return self.upper < math.inf
 
     def covers(self, other: FactType) -> bool:
-        """Whether every value of the other type is one of this."""
+        """True if every value of the other type is one of this."""
         if self.words and not other.words:
             return False
         if self.is_limited and not other.words:
@@ -95,7 +95,7 @@ class FactType:
         return value if self.takes(value) else None  # type: ignore[return-value]
 
     def allowed(self) -> str:
-        """In words, for who gave another value."""
+        """The allowed values in words, for the error on another value."""
         if self.words:
             return ", ".join(map(shown, self.words))
         limits = f" from {self.lower:g} to {self.upper:g}" if self.is_limited else ""
@@ -104,7 +104,7 @@ class FactType:
 
 @dataclass(frozen=True, kw_only=True)
 class DeviceVerb:
-    """One thing that a device can be told; times in s."""
+    """Verb of a device, as the engine knows it; times in s."""
 
     name: str
     effect: Effect
@@ -114,15 +114,15 @@ class DeviceVerb:
     takes_s: float = 0.0
     at_most_s: float
     on_stop: OnStop = OnStop.HALT
-    holds: bool = False  # what it sets says whether the device holds a part
+    holds: bool = False  # the fact that it sets tells whether the device holds a part
     answers: tuple[Value, ...] = ()  # to a query; the first is what a virtual device answers
-    sets_by: Computed | None = None  # what it sets, by its values, in the place of `sets`
-    takes_s_by: Computed | None = None  # how long, by its values; `takes_s` is the longest that was tried
-    virtual: Computed | None = None  # what a virtual device shows besides, or its answer, by facts and values
+    sets_by: Computed | None = None  # the facts by its values, in place of `sets`
+    takes_s_by: Computed | None = None  # its time by its values; `takes_s` is then the longest one tried
+    virtual: Computed | None = None  # further facts of a virtual device, or its answer, by facts and values
     rate: float = 1.0
 
     def at_rate(self, rate: float) -> DeviceVerb:
-        """The same verb of a faster device, or of a slower one, which is waited for longer."""
+        """The same verb of a device `rate` times as fast; a slower one gets more time."""
         return replace(
             self,
             takes_s=self.takes_s / rate,
@@ -132,26 +132,26 @@ class DeviceVerb:
 
     @property
     def sets_facts(self) -> bool:
-        """Whether facts prove it."""
+        """True if facts prove the verb."""
         return bool(self.sets) or self.sets_by is not None
 
     @property
     def held(self) -> tuple[str, Value | Slot]:
-        """The fact that says whether the device holds a part, as this verb sets it; for one that holds."""
+        """The name and value of the fact by which this verb, which holds a part, says so."""
         return next(row for row in self.sets if isinstance(self._typical(row[1]), bool))
 
     def lets_go(self) -> bool:
-        """Whether it can end that its device holds a part."""
+        """True if the verb can end its device's hold on a part."""
         return self.holds and self.held[1] is not True
 
     def letting_go(self) -> dict[str, Value]:
-        """The values with which it ends that; what says nothing of it has its first value."""
+        """Values of the parameters with which the verb lets go; others than the fact's have the first."""
         value = self.held[1]
         held = value.name if isinstance(value, Slot) else None
         return {name: False if name == held else type.first for name, type in self.parameters}
 
     def sets_with(self, values: Mapping[str, Value]) -> Facts:
-        """What it sets with these values."""
+        """The facts that the verb sets with these values."""
         if self.sets_by is not None:
             return _facts(f"sets of {self.name}", _computed(f"sets of {self.name}", self.sets_by, **values))
         return tuple(
@@ -159,7 +159,7 @@ class DeviceVerb:
         )
 
     def takes_s_with(self, values: Mapping[str, Value]) -> float:
-        """How long it takes with these values."""
+        """The time that the verb takes with these values, s; raises UseError if its function gives none."""
         if self.takes_s_by is None:
             return self.takes_s
         what = f"takes_s of {self.name}"
@@ -174,7 +174,7 @@ class DeviceVerb:
 
 @dataclass(frozen=True, kw_only=True)
 class DeviceKind:
-    """What devices of one kind report and can be told."""
+    """Kind of device: the facts that its devices report, and the verbs that they carry out."""
 
     name: str
     facts: Mapping[str, FactType]
@@ -182,12 +182,12 @@ class DeviceKind:
 
     @cached_property
     def held_fact(self) -> str | None:
-        """The fact that says whether a device holds a part."""
+        """The name of the fact that says whether a device holds a part; None if the kind has none."""
         holding = (verb.held[0] for verb in self.verbs.values() if verb.holds)
         return next(holding, None)
 
     def command(self, *, id: str, robot: str, verb: str, values: Mapping[str, Value]) -> Command:
-        """The command of a verb; UseError names what is wrong with it."""
+        """The command of a verb with these values; raises UseError, which names the fault."""
         known = self.verbs.get(verb)
         if known is None:
             raise UseError(f"a {self.name} has no verb {quoted(verb)}; {among(verb, self.verbs)}")
@@ -199,7 +199,7 @@ class DeviceKind:
         return COMMANDS[known.effect](id=id, robot=robot, verb=verb, values=in_order, told=known, made=sets)
 
     def shown_by(self, told: VerbCall, facts: Facts) -> Facts:
-        """What a virtual device shows besides once it has done this; UseError for what it cannot show."""
+        """The further facts that a virtual device shows after this; raises UseError for an invalid one."""
         if told.told.virtual is None:
             return ()
         what = f"virtual of {told.verb}"
@@ -208,7 +208,7 @@ class DeviceKind:
         return found
 
     def answer_of(self, told: VerbCall, facts: Facts) -> Value:
-        """What a virtual device answers to a query; UseError where that is none of its answers."""
+        """The answer of a virtual device to a query; raises UseError if the query has no such answer."""
         answers = told.told.answers
         if told.told.virtual is None:
             return answers[0]
@@ -227,7 +227,7 @@ class DeviceKind:
                 raise UseError(f"{what}: {error}") from error
 
     def check_fact(self, name: str, value: object) -> None:
-        """UseError where no device of this kind can say that."""
+        """Raises UseError if no device of this kind can report this value."""
         type = self.facts.get(name)
         if type is None:
             raise UseError(f"a {self.name} has no fact {quoted(name)}; {among(name, self.facts)}")
@@ -249,12 +249,12 @@ class DeviceKind:
 
 @dataclass(frozen=True, kw_only=True)
 class VerbCall(Command):
-    """A verb with its values."""
+    """Command that a device carries out one of its verbs; `values` are those of its parameters, by name."""
 
     verb: str
     values: Facts
     told: DeviceVerb = field(repr=False, compare=False)
-    made: Facts = field(repr=False, compare=False)  # what it sets with these values
+    made: Facts = field(repr=False, compare=False)  # the facts that it sets with these values
 
     @property
     def given(self) -> dict[str, object]:
@@ -266,7 +266,7 @@ class VerbCall(Command):
 
     @property
     def takes_s(self) -> float:
-        """How long a virtual device takes for it."""
+        """The time that a virtual device takes for it, s."""
         return self.told.takes_s_with(dict(self.values))
 
     @property
@@ -285,15 +285,15 @@ class WorkCall(VerbCall, Work):
 
 
 class MotionCall(WorkCall, Motion):
-    """It moves something of the device."""
+    """Command of a verb that moves something of the device."""
 
 
 class ProcessCall(WorkCall, Process):
-    """The device works by itself."""
+    """Command of a verb by which the device works by itself."""
 
 
 class SwitchCall(VerbCall, Switch):
-    """It sets something that stays as it is set."""
+    """Command of a verb that sets something which stays as it is set."""
 
     @property
     def grips(self) -> bool | None:
@@ -301,12 +301,12 @@ class SwitchCall(VerbCall, Switch):
 
 
 class QueryCall(VerbCall, Query):
-    """It asks the device for an answer."""
+    """Command of a verb that asks the device for an answer."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Device(Robot):
-    """A device of a declared kind."""
+    """Device of a declared kind."""
 
     kind: DeviceKind
     position_key: ClassVar[str | None] = None
@@ -344,14 +344,14 @@ class Device(Robot):
         return any(verb.effect in (Effect.MOTION, Effect.PROCESS) for verb in self.kind.verbs.values())
 
     def let_go(self, *, id: str) -> Command:
-        """The verb that ends its holding a part."""
+        """The command that makes the device let go of a part; raises UseError if its kind has none."""
         for verb in self.kind.verbs.values():
             if verb.lets_go():
                 return self.kind.command(id=id, robot=self.name, verb=verb.name, values=verb.letting_go())
         raise UseError(f"a {self.kind.name} has no verb that lets go of a part")
 
     def grip(self, *, id: str) -> Command:
-        """The verb that takes hold of a part, where that is told nothing else."""
+        """The command that takes hold of a part; UseError if that needs further values, or there is none."""
         for verb in self.kind.verbs.values():
             if not verb.holds or verb.held[1] is False:
                 continue
@@ -379,10 +379,10 @@ class Device(Robot):
 
 
 def _computed(what: str, function: Computed, *facts: object, **values: Value) -> object:
-    """What a kind's own function says; UseError, with its error, where it raises."""
+    """The result of a kind's own function; an exception in it is raised as UseError with its text."""
     try:
         return function(*facts, **values)
-    except Exception as error:  # it is somebody's code: whatever it raises is told
+    except Exception as error:  # user code: any exception is reported
         raise UseError(f"{what}: {type(error).__name__}: {error}") from error
 
 

@@ -1,4 +1,4 @@
-"""Where things stand on the floor."""
+"""Placement of things on the floor."""
 
 from __future__ import annotations
 

@@ -9,7 +9,7 @@ from arboleda.kinds import Kind, KindError, Number, kind, switch
 
 @dataclass(frozen=True, kw_only=True)
 class GripperSettings:
-    """How wide it opens, how hard it may close, and how long that takes."""
+    """Settings of a gripper: its opening, mm, its greatest force, N, and the time to move, s."""
 
     max_width_mm: float = 85.0
     max_force_n: float = 140.0
@@ -32,7 +32,7 @@ def gripper(settings: GripperSettings) -> Kind:
                     "width_mm": Number(0.0, settings.max_width_mm),
                     "force_n": Number(0.0, settings.max_force_n),
                 },
-                sets={"gripped": True},  # a part is as wide as it is, so its width and force prove nothing
+                sets={"gripped": True},  # width and force depend on the part, so they prove nothing
                 holds_part=True,
                 virtual=lambda facts, width_mm, force_n: {"width_mm": width_mm, "force_n": force_n},
                 takes_s=settings.takes_s,

@@ -1,4 +1,4 @@
-"""A mobile robot on a grid of nodes: the ways it can take, and what it is told."""
+"""Mobile robot on a grid of nodes: its routes and commands."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from .floor import Placement
 
 @dataclass(frozen=True, kw_only=True)
 class FollowPath(Motion):
-    """Drive a mobile robot over grid nodes."""
+    """Drive a mobile robot over `nodes` of its grid, one after the other to the last."""
 
     nodes: tuple[int, ...]
 
@@ -102,7 +102,7 @@ class Mobile(Robot):
         return None
 
     def route(self, start: Position | None, goal: Position) -> tuple[Position, ...]:
-        """Along the edges of its grid."""
+        """A route along the edges of its grid."""
         assert isinstance(goal, int)
         return self.grid.route(start, goal) if isinstance(start, int) else (goal,)
 
@@ -110,5 +110,5 @@ class Mobile(Robot):
         return FollowPath(id=id, robot=self.name, nodes=tuple(node for node in way if isinstance(node, int)))
 
     def travel_s(self, start: Position | None, way: Sequence[Position]) -> float:
-        """Time of a path; one edge is added for a robot that starts elsewhere."""
+        """The time of a path, s; one edge is added for a robot that starts elsewhere."""
         return len(way) * self.grid.pitch / self.speed

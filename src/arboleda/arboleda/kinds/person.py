@@ -1,4 +1,4 @@
-"""A person at the cell, who is asked something and answers on one of the plant's screens."""
+"""Person at the cell, who is asked something and answers on one of the plant's screens."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ class AskPerson(Question):
 
 @dataclass(frozen=True, kw_only=True)
 class Person(Robot):
-    """Somebody who is there as far as the plant knows; nothing of them can be lost, homed or held."""
+    """Person who is always there, as far as the plant knows; never lost, homed or held."""
 
     @property
     def kind_name(self) -> str:
@@ -60,7 +60,7 @@ class Person(Robot):
 
 
 def person(name: str) -> Person:
-    """A person of that name."""
+    """A person with this name."""
     return Person(
         name=name, mqtt=name, link=Link.SCREEN, evidence=Evidence.IDS, timeout_s=PATIENCE_S, has_stop=True
     )

@@ -1,4 +1,4 @@
-"""What holds for every kind of device, wherever it is written: its types, and verbs that fit each other."""
+"""Rules for every kind of device, however it is written: its types, and verbs that fit each other."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ SLOT = "$"
 
 
 class ListError(Exception):
-    """A list that is no type; `index` is that of the value that is wrong, None for the list itself."""
+    """Error: a list cannot be a type; `index` is that of the wrong value, None for the list itself."""
 
     def __init__(self, sentence: str, index: int | None = None) -> None:
         super().__init__(sentence)
@@ -28,7 +28,10 @@ class ListError(Exception):
 
 
 def listed(values: Sequence[object], shown: Callable[[object], str] = quoted) -> FactType:
-    """One of some words, or of some numbers; a virtual device begins with the first. Else ListError."""
+    """The type of a list of words or of numbers, the first of which a virtual device begins with.
+
+    Raises ListError for any other list.
+    """
     values = [normalize("NFC", value) if isinstance(value, str) else value for value in values]
     types = {type(value) for value in values}
     if types == {int, float}:
@@ -51,26 +54,26 @@ def listed(values: Sequence[object], shown: Callable[[object], str] = quoted) ->
 
 
 def patience_s(takes_s: float) -> float:
-    """How long a verb may take that says only how long it takes."""
+    """The time limit, s, of a verb for which only its usual duration is given."""
     return max(LEAST_S, PATIENCE * takes_s)
 
 
 def slot_objection(name: str, given: FactType, fact: str, type: FactType) -> str | None:
-    """Why a parameter cannot stand for a fact."""
+    """The reason why a parameter cannot stand for a fact; None if it can."""
     if type.covers(given):
         return None
     return f"{name} may be {given.allowed()}, and {fact} is {type.allowed()}"
 
 
 def time_objection(verb: DeviceVerb) -> str | None:
-    """Why a verb has no time to end."""
+    """The reason why a verb has too little time to end; None if it has enough."""
     if verb.at_most_s >= verb.takes_s:
         return None
     return f"must be at least takes_s, which is {verb.takes_s:g}; is {verb.at_most_s:g}"
 
 
 def holding_objection(verb: DeviceVerb) -> str | None:
-    """Why a verb cannot hold a part: that is said by one fact, a yes or no."""
+    """The reason why a verb cannot hold a part, which takes exactly one bool fact; None if it can."""
     if not verb.holds:
         return None
     if verb.effect is not Effect.SWITCH:
@@ -84,7 +87,7 @@ def holding_objection(verb: DeviceVerb) -> str | None:
 
 
 def release_objection(verbs: Mapping[str, DeviceVerb]) -> str | None:
-    """Why what verbs hold is not one part, or cannot be let go."""
+    """The reason why verbs hold more than one part, or cannot let it go; None if all is well."""
     holding = [verb for verb in verbs.values() if verb.holds]
     facts = list(dict.fromkeys(verb.held[0] for verb in holding))
     if len(facts) > 1:

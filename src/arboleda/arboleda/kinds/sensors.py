@@ -1,4 +1,4 @@
-"""What looks and answers: a camera, a scale, a barcode reader."""
+"""Devices that look and answer: a camera, a scale, a barcode reader."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from arboleda.kinds import Kind, kind, query
 
 @dataclass(frozen=True, kw_only=True)
 class CameraSettings:
-    """What it may answer, and how long it takes; a virtual one gives the first answer."""
+    """Settings of a camera: its answers, and the time it takes, s; a virtual one gives the first answer."""
 
     answers: tuple[str | int | float, ...] = ("good", "bad")
     takes_s: float = 0.5
@@ -18,7 +18,7 @@ class CameraSettings:
 
 @dataclass(frozen=True, kw_only=True)
 class SensorSettings:
-    """What it may answer, and how long it takes; a virtual one gives the first answer."""
+    """Settings of a sensor: its answers, and the time it takes, s; a virtual one gives the first answer."""
 
     answers: tuple[str | int | float, ...] = ("present", "absent")
     takes_s: float = 0.1

@@ -1,4 +1,4 @@
-"""The kinds in Python that come with Arboleda; each is written as anybody's would be."""
+"""The kinds in Python that come with Arboleda; each is written as a user's own would be."""
 
 from .conveyor import conveyor
 from .effector import effector

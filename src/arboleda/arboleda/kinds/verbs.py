@@ -1,4 +1,4 @@
-"""What devices of a kind can be told, as a kind in Python writes it down."""
+"""Verbs of a kind that is written in Python."""
 
 from __future__ import annotations
 
@@ -13,17 +13,20 @@ from arboleda.model.facts import Value
 from .declared import Computed, Effect, FactType
 
 Sets = Mapping[str, Value] | Callable[..., Mapping[str, Value]]
-"""The facts that a verb makes so, `"$mm"` for its parameter mm; or a function of its parameters."""
+"""The facts that a verb sets, `"$mm"` for the value of its parameter mm; or a function of its parameters."""
 Seconds = float | Callable[..., float]
 
 
 class KindError(ArboledaError):
-    """A kind that cannot be, or settings that it does not take; the sentence says why."""
+    """Error in a kind, or in the settings that a plant file gives it; the sentence tells the reason."""
 
 
 @dataclass(frozen=True)
 class Number:
-    """A number within two limits; a whole one where both are: `Number(1, 40)`, `Number(0.5, 2.0)`."""
+    """Number within two limits, both included: `Number(0.5, 2.0)`; an int if both are: `Number(1, 40)`.
+
+    Raises KindError unless both limits are finite and `lower` is less than `upper`.
+    """
 
     lower: float
     upper: float
@@ -41,7 +44,25 @@ class Number:
 
 @dataclass(frozen=True, kw_only=True)
 class Verb:
-    """One thing that devices of a kind can be told; `motion`, `process`, `switch` and `query` make one."""
+    """Verb of a kind: one action of its devices. `motion`, `process`, `switch` and `query` make one.
+
+    - `parameters`: the type of each parameter, by name: bool, int, float, str, a list of words or numbers,
+      or `Number(lower, upper)`.
+    - `sets`: the value of each fact that the verb makes true, by name; `"$mm"` is the value of the parameter
+      mm. Or a function of the parameters, given by name, that returns such a mapping.
+    - `needs`: the value that each of these facts must have for the verb to begin, by name.
+    - `takes_s`: the time that a virtual device takes, s; or a function of the parameters that returns it.
+    - `at_most_s`: the time after which the verb has failed, s. None: three times `takes_s`, and at least 2 s;
+      it must be given where `takes_s` is a function.
+    - `virtual`: a function of the facts (a dict) and of the parameters, by name. It returns the further facts
+      that a virtual device shows afterwards, by name; for a query, the answer. None: no further facts; for a
+      query, the first answer.
+    - `on_stop`: HALT ends the verb at a stop, FINISH lets it go on.
+    - `holds_part`: the one bool among `sets` tells whether the device holds a part.
+    - `answers`: all answers to a query, words or numbers.
+
+    The functions depend on nothing but their arguments. `Kind` raises KindError for a verb that does not fit.
+    """
 
     effect: Effect
     parameters: Mapping[str, object] = field(default_factory=dict)
@@ -64,7 +85,10 @@ def motion(
     at_most_s: float | None = None,
     virtual: Computed | None = None,
 ) -> Verb:
-    """It moves something of the device, and is halted by a stop."""
+    """Returns a verb that moves something of the device, and that a stop halts.
+
+    The parameters are those of `Verb`.
+    """
     return Verb(
         effect=Effect.MOTION,
         parameters=parameters or {},
@@ -86,7 +110,11 @@ def process(
     finishes: bool = False,
     virtual: Computed | None = None,
 ) -> Verb:
-    """The device works by itself; one that `finishes` goes on through a stop."""
+    """Returns a verb for work that the device does by itself, such as a machine's program.
+
+    `finishes`: the work goes on through a stop, instead of being halted. The other parameters are those of
+    `Verb`.
+    """
     return Verb(
         effect=Effect.PROCESS,
         parameters=parameters or {},
@@ -109,7 +137,11 @@ def switch(
     holds_part: bool = False,
     virtual: Computed | None = None,
 ) -> Verb:
-    """It sets something that stays as it is set; one that `holds_part` sets a bool: whether it holds one."""
+    """Returns a verb that sets something which stays as it is set, such as a valve; a stop does not undo it.
+
+    `holds_part`: the verb takes or releases a part; exactly one of `sets`, which is no function then, is a
+    bool: True if the device holds a part afterwards. The other parameters are those of `Verb`.
+    """
     return Verb(
         effect=Effect.SWITCH,
         parameters=parameters or {},
@@ -131,7 +163,11 @@ def query(
     at_most_s: float | None = None,
     virtual: Computed | None = None,
 ) -> Verb:
-    """It asks the device for one of some answers; a virtual one gives the first, or what `virtual` says."""
+    """Returns a verb that asks the device a question, such as a camera's verdict on a part.
+
+    `answers`: all possible answers, at least one; all words, or all numbers. A virtual device gives the first
+    one, or that which `virtual` returns. The other parameters are those of `Verb`.
+    """
     return Verb(
         effect=Effect.QUERY,
         parameters=parameters or {},

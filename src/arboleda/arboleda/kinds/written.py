@@ -1,4 +1,4 @@
-"""Kinds as Python writes them down, made into what the engine goes by; KindError where that cannot be."""
+"""Conversion of kinds written in Python to those of the engine; raises KindError if that is impossible."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ FORMS = "motion(...), process(...), switch(...) or query(...)"
 
 
 def types_of(place: str, given: Mapping[str, object]) -> dict[str, FactType]:
-    """What each fact or parameter can be, by name."""
+    """The types of facts or parameters, by name."""
     return {_name(place, name): type_of(f"{place}.{name}", each) for name, each in given.items()}
 
 
@@ -38,7 +38,7 @@ def _name(place: str, name: str) -> str:
 
 
 def verb_of(name: str, verb: Verb, facts: Mapping[str, FactType]) -> DeviceVerb:
-    """A verb as the engine goes by it."""
+    """The engine's form of a verb."""
     _name("verbs", name)
     if not isinstance(verb, Verb):
         raise KindError(f"{name} is {quoted(verb)}; a verb is {FORMS}")
@@ -130,7 +130,7 @@ def _seconds(place: str, value: object, *, at_least: float) -> float:
 
 
 def timed(made: DeviceKind) -> DeviceKind:
-    """The kind, each verb of which was tried with values of its parameters and has its longest time."""
+    """The kind with its verbs tried with values of their parameters, and with the longest time of each."""
     verbs = {name: replace(verb, takes_s=_longest_s(made, verb)) for name, verb in made.verbs.items()}
     for name, verb in verbs.items():
         refuse(f"{name}.at_most_s", rules.time_objection(verb))

@@ -1,1 +1,1 @@
-"""How a plant file is read, from strict YAML to what its parts mean together; `loader.py` is the way in."""
+"""Reader of a plant file, from strict YAML to the meaning of the whole; `loader.py` is the way in."""

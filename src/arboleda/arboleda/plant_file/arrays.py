@@ -1,7 +1,7 @@
 """Arrays of targets: a group that says how many there are and where its corners are.
 
-Between the corners the joints of an arm are interpolated, which is exact only for joints that slide: how
-far that is beside an even grid in space says `layout_check`. A mobile robot stands on nodes, so its array
+Between the corners the joints of an arm are interpolated, which is exact only for sliding joints:
+`layout_check` measures the distance from an even grid in space. A mobile robot stands on nodes, so its array
 must meet them.
 """
 
@@ -40,12 +40,12 @@ class Array:
 
     @property
     def corners(self) -> tuple[int, ...]:
-        """Which of the targets are the corners, without what a single row or column would repeat."""
+        """The indices of the corner targets, without those that a single row or column would repeat."""
         last = self.rows * self.columns - 1
         return tuple(dict.fromkeys((0, self.columns - 1, last - self.columns + 1, last)))
 
     def weights(self, index: int) -> tuple[float, ...]:
-        """How much of each of the `corners` a target has."""
+        """The share of each of the `corners` in a target's position."""
         row, column = divmod(index, self.columns)
         down, along = row / max(self.rows - 1, 1), column / max(self.columns - 1, 1)
         found: dict[int, float] = {}
@@ -57,12 +57,12 @@ class Array:
         return tuple(found.values())
 
     def even(self, index: int, corners: Sequence[Sequence[float]]) -> tuple[float, ...]:
-        """Where a target would be between the corners, were the rows and columns even in space."""
+        """The position of a target between the corners if rows and columns were even in space."""
         return _sums(corners, self.weights(index))
 
 
 def is_array(document: Document, place: Place) -> bool:
-    """Whether a group is an array, going by what it is: a list is one of names."""
+    """True if a group is an array, which a mapping is; a list is one of names."""
     return isinstance(document.value(place), dict)
 
 
@@ -87,7 +87,7 @@ def arrays(document: Document, cell: Place) -> tuple[Array, ...]:
 def poses(
     document: Document, cell: Place, array: Array, robots: Mapping[str, Robot]
 ) -> dict[str, list[Pose | None]]:
-    """Where each robot that has corners stands at each target; None for what is wrong, which is kept."""
+    """The poses at each target of each robot that has corners; None for what is wrong, which is kept."""
     here = (*cell, "groups", array.group, "corners")
     found: dict[str, list[Pose | None]] = {}
     for role in document.keys(here):
@@ -114,7 +114,7 @@ def poses(
 def _between(
     document: Document, place: Place, array: Array, corners: Sequence[Pose], robot: Robot
 ) -> list[Pose | None]:
-    """All the targets of an array for one robot."""
+    """The poses of all targets of an array for one robot."""
     lifted = [pose.above is not None for pose in corners]
     if any(lifted) and not all(lifted):
         document.problem(place, "either every corner has an approach_mm or none", at=place)
@@ -132,7 +132,7 @@ def _between(
 
 
 def _mixed(corners: Sequence[Position], weights: Sequence[float], robot: Robot) -> Position | None:
-    """The position with so much of each corner; None where that is no node."""
+    """The position with these shares of the corners; None if that is no node."""
     if robot.on_grid:
         columns = robot.grid.columns
         rows = _sums([divmod(node, columns) for node in corners if isinstance(node, int)], weights)

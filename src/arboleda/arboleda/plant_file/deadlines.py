@@ -1,4 +1,4 @@
-"""Times within which no robot can show that it has arrived."""
+"""Check that the robots of a plant can show their arrival before their moves are given up."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ ROUNDING_S = 1e-6
 
 
 def check_arrivals_show(document: Document, cells: Iterable[Cell], timing: Timing) -> None:
-    """Keeps a problem for each robot whose moves may be given up or taken for done before they show."""
+    """Keep a problem for each robot whose moves may be given up, or taken for done, before they show."""
     for cell in cells:
         for role, robot in cell.roles.items():
             if not robot.goes:
@@ -51,7 +51,7 @@ def _check_patience(document: Document, robot: Robot, timing: Timing) -> None:
 
 
 def _spare_s(robot: Robot, longest_s: float, timing: Timing) -> float:
-    """How much more than its computed time a move has at least, of all that take up to `longest_s`."""
+    """The least time beyond its computed one that a move has, of all that take up to `longest_s`."""
     factor, floor_s = timing.deadline_factor, timing.deadline_floor_s
     # moves of up to this length have `timeout_s`, however short they are; longer ones have more than that
     even_s = min(max((robot.timeout_s - floor_s) / factor, 0.0), longest_s)

@@ -28,42 +28,42 @@ EVIDENCE = {"facts": Evidence.JOINTS}  # what joints are to an arm
 
 @dataclass(frozen=True, kw_only=True)
 class Kinds:
-    """The kinds that devices of a plant may be of: those that its file declares, and those in Python."""
+    """The kinds of a plant's devices: those that its file declares, and those in Python."""
 
     declared: Mapping[str, DeviceKind]
     names: Collection[str]  # of those that it declares, be they right or wrong
     used: PythonUses
 
     def in_python(self, name: object) -> KindInPython | None:
-        """The kind in Python of that name; what the plant file declares may have the name before it."""
+        """The kind in Python of that name, unless the plant file declares one of the same name."""
         if not isinstance(name, str) or (name in self.names and name not in RESERVED):
             return None
         return self.used.kinds.get(name)
 
     def goes(self, document: Document, place: Place) -> bool:
-        """Whether the device there is a robot that goes from place to place."""
+        """True if the device there is a robot that goes from place to place."""
         kind = self.of_robots(document, place)
         return kind is not None and kind.goes
 
     def has_twin(self, document: Document, place: Place) -> bool:
-        """Whether the device there may be drawn under another name."""
+        """True if the device there may be drawn under another name."""
         kind = self.of_robots(document, place)
         return kind is not None and kind.has_twin
 
     def of_robots(self, document: Document, place: Place) -> RobotKind | None:
-        """The kind of the device there, where that reads by itself what the plant file says."""
+        """The kind of the device there, if it reads the device's keys by itself."""
         kind = self.in_python(document.value((*place, "kind")))
         return kind if isinstance(kind, RobotKind) else None
 
     @property
     def known(self) -> list[str]:
-        """The names of all kinds that there are."""
+        """The names of all kinds."""
         used = self.used
         return list(dict.fromkeys([*self.names, *used.kinds, *COME_WITH_IT, *used.installed]))
 
 
 def is_of_devices(document: Document, place: Place) -> bool:
-    """Whether a cell is one of devices, going by its keys."""
+    """True if a cell is one of devices, going by its keys."""
     has = document.keys(place)
     return "devices" in has or (
         document.has(("kinds",)) and not any(key in has for key in StorageCell.keyed_roles)
@@ -82,7 +82,7 @@ def shared_devices(document: Document, kinds: Kinds) -> dict[str, Robot]:
 
 
 def device_cell(document: Document, place: Place, kinds: Kinds, common: Mapping[str, Robot]) -> Cell | None:
-    """The cell, still without recipes; None, with its problems kept, where something is wrong with it.
+    """The cell, still without recipes; None, with its problems kept, if something is wrong with it.
 
     `common` are the devices that it may share with others, by name.
     """
@@ -184,7 +184,7 @@ def _machine(document: Document, place: Place, kinds: Kinds) -> Device | None:
 
 
 def _kind(document: Document, place: Place, kinds: Kinds) -> DeviceKind | None:
-    """The declared kind of that name; of a misspelt or a broken one None, with the problem kept."""
+    """The declared kind of that name; None, with the problem kept, if there is none or it is wrong."""
     name = document.value(place)
     if not isinstance(name, str) or name in kinds.names:
         return kinds.declared.get(name) if isinstance(name, str) else None
@@ -200,7 +200,7 @@ def _kind(document: Document, place: Place, kinds: Kinds) -> DeviceKind | None:
 def _is_proven(
     document: Document, place: Place, kind: DeviceKind, verb: DeviceVerb, evidence: Evidence
 ) -> bool:
-    """Whether reports of a device of this evidence can show that a verb is done, in the time that it has."""
+    """True if a device's reports, with this evidence, can show in the verb's time that it is done."""
     here = (*place, "evidence")
     spare_s, needed_s = verb.at_most_s - verb.takes_s, SHOWN_S[evidence]
     if verb.effect is Effect.QUERY and evidence is not Evidence.IDS:

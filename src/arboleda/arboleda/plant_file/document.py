@@ -40,9 +40,9 @@ BOUNDS = {
 
 
 class Document(Problems):
-    """A file by the name people know it by; ConfigError at once where nothing in it can be read.
+    """Document: a file by the name people know it by; ConfigError at once if nothing in it can be read.
 
-    `folder` is where the files are that it names; None for a content that lies in no folder.
+    `folder` has the files that it names; None for a content that lies in no folder.
     """
 
     def __init__(self, name: str, raw: bytes, folder: Path | None = None) -> None:
@@ -57,19 +57,19 @@ class Document(Problems):
             self.keep(lesser.mark, lesser.sentence)
 
     def problem(self, place: Place, sentence: str, *, at: Place | None = None) -> None:
-        """Keeps one problem; its line is that of the deepest known part of `place`, or of the key `at`."""
+        """Keep one problem; its line is that of the deepest known part of `place`, or of the key `at`."""
         where = dotted(place)
         mark = self._mark(place) if at is None else self._key_mark(at)
         self.keep(mark, f"{where}: {sentence}" if where else sentence)
 
     def unknown(self, place: Place, known: Iterable[str]) -> None:
-        """Keeps the problem that the last key of `place` is not one of `known`."""
+        """Keep the problem that the last key of `place` is not one of `known`."""
         word, known = str(place[-1]), sorted(known)
         sentence = f"the key {shown(word)} is not known{nearest(word, known)}; known: {', '.join(known)}"
         self.problem(place[:-1], sentence, at=place)
 
     def has(self, place: Place) -> bool:
-        """Whether the file has something there, be it an empty value."""
+        """True if the file has something there, even an empty value."""
         node = self._root
         for key in place:
             if key not in node.children:
@@ -78,16 +78,16 @@ class Document(Problems):
         return True
 
     def value(self, place: Place) -> Any:
-        """The plain value there; None where there is none."""
+        """The plain value there; None if there is none."""
         return self._node(place).value if self.has(place) else None
 
     def keys(self, place: Place) -> tuple[str, ...]:
-        """The keys of the mapping there; none where there is no mapping."""
+        """The keys of the mapping there; none if there is no mapping."""
         value = self.value(place)
         return tuple(value) if isinstance(value, dict) else ()
 
     def read(self, shape: type[M], place: Place = ()) -> M | None:
-        """A mapping of this shape; None, with its problems kept, where it does not fit or is absent."""
+        """The mapping there in this shape; None, with its problems kept, if it does not fit or is absent."""
         keys = tuple(field.alias or name for name, field in shape.model_fields.items())
         return self._read(shape.model_validate, place, keys)
 
@@ -130,13 +130,13 @@ class Document(Problems):
 
 
 def dotted(place: Place) -> str:
-    """`cells.sis_a.home.deg[1]`."""
+    """The place as a person reads it: `cells.sis_a.home.deg[1]`."""
     parts = (f"[{part}]" if isinstance(part, int) else f".{clipped(part)}" for part in place)
     return "".join(parts).lstrip(".")
 
 
 def shown(value: Any) -> str:
-    """A value as a sentence shows it: short, text in quotes."""
+    """The value as a sentence shows it: short, text in quotes."""
     if value is None:
         return "empty"
     if isinstance(value, bool):
@@ -156,13 +156,13 @@ def nearest(word: str, known: Iterable[str]) -> str:
 
 
 def closest(word: str, known: Iterable[str]) -> str | None:
-    """The known word that was meant, as far as can be guessed."""
+    """The known word that was probably meant, if any is near enough."""
     close = get_close_matches(word.lower(), list(known), n=1, cutoff=0.6)
     return close[0] if close else None
 
 
 def choice(words: Iterable[str]) -> str:
-    """`a, b or c`."""
+    """The words as an enumeration: `a, b or c`."""
     *head, tail = words
     return f"{', '.join(head)} or {tail}" if head else tail
 

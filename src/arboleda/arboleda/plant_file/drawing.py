@@ -18,7 +18,7 @@ UPRIGHT = 0.999  # how vertical a sliding joint is that lifts
 
 
 def drawing(chain: Chain, mount: OffsetShape | None = None, tool: OffsetShape | None = None) -> str:
-    """The chain from where it is mounted to its tool point, with stand-ins where it has no shape at all.
+    """The URDF of the chain from its mounting to its tool point; a chain without any shape gets stand-ins.
 
     A link of the file that has one of the two names but stands elsewhere is called `tool0_of_model`.
     """
@@ -39,7 +39,7 @@ def drawing(chain: Chain, mount: OffsetShape | None = None, tool: OffsetShape | 
 
 
 def lifts(urdf: str, joints: Sequence[Joint]) -> list[int]:
-    """For each joint: -1 where smaller values lift the tool, 1 where greater ones do, else 0."""
+    """The direction in which each joint lifts the tool: -1 for smaller values, 1 for greater ones, else 0."""
     body = bodies.read(urdf)
     frames = kinematics.place(body, (0.0,) * len(joints))
     found = [0] * len(joints)
@@ -57,7 +57,7 @@ def lifts(urdf: str, joints: Sequence[Joint]) -> list[int]:
 
 
 def _free(robot: Element, kind: str, name: str) -> str:
-    """The name, or one like it that no other link or joint has."""
+    """The name, or a similar one that no other link or joint has."""
     taken = {each.get("name") for each in robot.findall(kind)}
     while name in taken:
         name += "_"
@@ -72,7 +72,7 @@ def _rename(robot: Element, names: dict[str, str]) -> None:
 
 
 def _fix(robot: Element, new: str, ends: tuple[str, str], offset: OffsetShape | None) -> None:
-    """A fixed joint from one link to another, of which one is new."""
+    """Add a fixed joint between two links, of which one is new."""
     offset = offset or OffsetShape()
     xyz, rpy = map(millimetres, offset.xyz_mm), map(math.radians, offset.rpy_deg)
     SubElement(robot, "link", {"name": new})
@@ -103,5 +103,5 @@ def _xyz(joint: Element) -> list[float]:
 
 
 def in_words(values: Iterable[float]) -> str:
-    """Numbers as an attribute of XML has them."""
+    """The numbers as an attribute of XML has them."""
     return " ".join(f"{value:.10g}" for value in values)

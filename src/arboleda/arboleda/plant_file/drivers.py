@@ -1,4 +1,4 @@
-"""Which driver reaches a device, and with which settings: those of Arboleda, of `uses`, or installed ones."""
+"""Drivers of devices and their settings: those of Arboleda, of `uses`, or installed ones."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ HOW = 'one of your own is a class with @driver("its name") before it, in a file 
 
 
 def link(document: Document, place: Place, written: str, known: Sequence[str]) -> Link:
-    """How a device is reached, by its key `driver` or, as it was `written`, by the short form `link`."""
+    """The link to a device, from its key `driver` or, as it was `written`, from the short form `link`."""
     here = (*place, KEY)
     if not document.has(here):
         return Link(written)
@@ -41,7 +41,7 @@ def link(document: Document, place: Place, written: str, known: Sequence[str]) -
 
 
 def found(document: Document, used: PythonUses) -> dict[str, DriverUse]:
-    """The driver of each place that names one of somebody's own, by the device's name; problems are kept."""
+    """The drivers of one's own, by the device's name, of all places that name one; problems are kept."""
     uses: dict[str, DriverUse] = {}
     for name, place in named(document):
         use = _use(document, place, used)
@@ -51,7 +51,7 @@ def found(document: Document, used: PythonUses) -> dict[str, DriverUse]:
 
 
 def with_drivers(document: Document, plant: PlantModel | None, used: PythonUses) -> PlantModel | None:
-    """The plant whose devices know their drivers, where nothing else is wrong with it."""
+    """The plant whose devices know their drivers, if nothing else is wrong with it."""
     if plant is None or any(document.kept):
         return plant
     uses = found(document, used)
@@ -67,7 +67,7 @@ def with_drivers(document: Document, plant: PlantModel | None, used: PythonUses)
 
 
 def named(document: Document) -> Iterator[tuple[str, Place]]:
-    """The devices with a key `driver` that names none of Arboleda's, with the place of that."""
+    """The devices whose key `driver` names none of Arboleda's, with the place of that key."""
     cells: list[Place] = [("cells", cell) for cell in document.keys(("cells",))]
     places: list[Place] = [(*cell, role) for cell in cells for role in StorageCell.keyed_roles]
     for devices in [*((*cell, "devices") for cell in cells), (SHARED,)]:
@@ -102,7 +102,7 @@ def _use(document: Document, place: Place, used: PythonUses) -> DriverUse | None
 
 
 def _check(document: Document, place: Place, use: DriverUse, device: Robot) -> None:
-    """Keeps what the settings of a driver say is wrong between them and their device."""
+    """Keep the objections of a driver's settings to the device that they belong to."""
     if not isinstance(use.settings, FitsDevice):
         return
     try:
@@ -136,7 +136,7 @@ def _installed(document: Document, place: Place, name: str, used: PythonUses) ->
 
 
 def _settings(document: Document, place: Place, spec: DriverSpec, used: PythonUses) -> Any:
-    """The settings as the driver is given them; FAULTY, with the problems kept, where they are wrong."""
+    """The settings for the driver; FAULTY, with the problems kept, if they are wrong."""
     has = document.has(place) and not isinstance(document.value(place), str)
     if spec.settings is None:
         if has and document.value(place):

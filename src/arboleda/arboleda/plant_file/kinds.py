@@ -25,11 +25,11 @@ PLAIN = {"int": rules.INT, "number": rules.NUMBER, "text": rules.TEXT, "bool": r
 OF_STEPS = tuple(
     name for name, _ in inspect.getmembers(DeviceHandle, inspect.isfunction) if not name.startswith("_")
 )
-OF_FACTS = ("self", "at_most_s")  # what those steps have beside facts
+OF_FACTS = ("self", "at_most_s")  # keys of those steps beside facts
 
 
 def kinds(document: Document) -> dict[str, DeviceKind]:
-    """Every kind of the file that is right, by name; the problems of the others are kept."""
+    """Every correct kind of the file by name; the problems of the others are kept."""
     if not document.has(SECTION):
         return {}
     document.read_plain(MAPPING, SECTION)
@@ -55,7 +55,7 @@ def _kind(document: Document, name: str) -> DeviceKind | None:
 
 
 def _fits(document: Document, place: Place, kind: DeviceKind) -> bool:
-    """Whether a board can be told and can say all that the kind has, in messages as MQTT has them here."""
+    """True if the messages on MQTT can carry all commands and reports of a kind."""
     objections = mqtt_limits.objections(kind)
     for each in objections:
         document.problem((*place, *each.place), each.sentence)
@@ -93,7 +93,7 @@ def _check_time(document: Document, place: Place, verb: DeviceVerb) -> bool:
 
 
 def _is_free_of(document: Document, place: Place, objection: str | None) -> bool:
-    """Whether there is no objection; one that there is is kept."""
+    """True if there is no objection; an objection is kept as a problem."""
     if objection is not None:
         document.problem(place, objection)
     return objection is None
@@ -139,7 +139,7 @@ def _answers(document: Document, place: Place, effect: Effect) -> tuple[Value, .
 
 
 def _types(document: Document, place: Place, what: str, taken: Sequence[str]) -> Types:
-    """The types in a mapping by name; None for one that is wrong, with the problem kept."""
+    """The types in a mapping by name; None for a wrong one, with the problem kept."""
     if not document.has(place):
         return {}
     document.read_plain(MAPPING, place)
@@ -150,7 +150,7 @@ def _types(document: Document, place: Place, what: str, taken: Sequence[str]) ->
 
 
 def _right(rows: Mapping[str, T | None]) -> dict[str, T] | None:
-    """The rows, where none of them is wrong."""
+    """The rows if none of them is wrong, else None."""
     right = {name: value for name, value in rows.items() if value is not None}
     return right if len(right) == len(rows) else None
 
@@ -168,7 +168,7 @@ def _type(document: Document, place: Place) -> FactType | None:
 
 
 def _listed(document: Document, place: Place) -> FactType | None:
-    """One of some words, or of some numbers."""
+    """The type of a value that is one of some words, or of some numbers."""
     try:
         return rules.listed(document.value(place), shown)
     except rules.ListError as error:
@@ -179,7 +179,7 @@ def _listed(document: Document, place: Place) -> FactType | None:
 def _facts(
     document: Document, place: Place, facts: Types, slots: Types | None
 ) -> tuple[tuple[str, Value | Slot], ...] | None:
-    """Facts with their values; `slots` are what a value may stand for, None where it may for none."""
+    """The facts with their values; `slots` are parameters that a value may stand for, None to allow none."""
     if not document.has(place):
         return ()
     mapping = document.read_plain(MAPPING, place)
@@ -224,7 +224,7 @@ def _value(document: Document, place: Place, type: FactType) -> Value | None:
 
 
 def _is_named(document: Document, place: Place, what: str, taken: Sequence[str]) -> bool:
-    """Whether the last key of `place` can be a name in a recipe, as `mill.run(program=1)` has three."""
+    """True if the last key of `place` can be a name in a recipe, as `mill.run(program=1)` has three."""
     objection = name_objection(str(place[-1]), what, taken)
     if objection is not None:
         document.problem(place, objection, at=place)
@@ -232,7 +232,7 @@ def _is_named(document: Document, place: Place, what: str, taken: Sequence[str])
 
 
 def name_objection(name: str, what: str, taken: Sequence[str]) -> str | None:
-    """Why something cannot have that name."""
+    """The reason for which something cannot have that name."""
     if not is_name(name):
         return f"the name of {what} must be {NAME_RULE}"
     if not keyword.iskeyword(name) and name not in taken:

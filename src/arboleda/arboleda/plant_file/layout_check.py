@@ -1,4 +1,4 @@
-"""Whether what a plant file puts somewhere could stand there."""
+"""Check of a plant file's layout: everything has to be able to stand at its place."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ Outline = Sequence[Sequence[float]]  # counterclockwise corners of a convex shap
 
 
 def warnings(plant: PlantModel) -> tuple[str, ...]:
-    """What cannot be as the file says it; also where that cannot be told."""
+    """The places that cannot be as the file says, or the reason for which they could not be checked."""
     try:
         cells = [Stand.of(plant, cell) for cell in plant.cells if cell.is_storage]
         uneven = [*_uneven(plant)]
@@ -42,7 +42,7 @@ def warnings(plant: PlantModel) -> tuple[str, ...]:
 
 
 def _uneven(plant: PlantModel) -> Iterator[str]:
-    """Arrays of targets in which the tool of an arm is beside an even grid between the corners."""
+    """The arrays of targets in which the tool of an arm is beside an even grid between the corners."""
     for cell in plant.cells:
         for group, rows, columns in cell.grids:
             array = Array(group=group, rows=rows, columns=columns)
@@ -91,7 +91,7 @@ class Stand:
         return kinematics.tool(self.body, pose.q, _frame(self.cell.arm.base))
 
     def node(self, node: int) -> Point:
-        """Where the upper end of a part is that a mobile on this node carries."""
+        """The upper end of a part that a mobile carries on this node."""
         x, y = self.cell.mobile.grid.position(node)
         frame = _frame(self.cell.mobile.grid.origin)
         return kinematics.at(frame, (x, y, self.deck_m + PART_HEIGHT_M))
@@ -102,7 +102,7 @@ class Stand:
 
     @property
     def reach_m(self) -> float:
-        """No point is farther from the arm's foot, in plan, than its tool can be."""
+        """The reach of the arm: no point is farther from its foot, in plan, than its tool can be."""
         frames = kinematics.place(self.body, self.cell.arm.reference)
         way = bodies.way(self.body)
         moving = [link for link in way if link["moves"]]
@@ -117,7 +117,7 @@ class Stand:
 
 
 def _pickups(stand: Stand) -> Iterator[str]:
-    """Pick-ups that are not where the mobile robot brings the part."""
+    """The pick-ups that are not where the mobile robot brings the part."""
     cell = stand.cell
     ends = {(path.nodes[-1], cell.pickup_of(path).name): path for path in reversed(cell.paths)}
     for (node, _), path in ends.items():
@@ -137,7 +137,7 @@ def _pickups(stand: Stand) -> Iterator[str]:
 
 
 def _stations(stand: Stand) -> Iterator[str]:
-    """Stations whose parts would be in each other."""
+    """The stations whose parts would be in each other."""
     size = f"a part is {_mm(2 * PART_RADIUS_M)} wide and {_mm(PART_HEIGHT_M)} high"
     places = [(pose.name, stand.part(pose)) for pose in stand.cell.stations]
     for (one, a), (other, b) in combinations(places, 2):
@@ -148,7 +148,7 @@ def _stations(stand: Stand) -> Iterator[str]:
 
 
 def _below(stand: Stand) -> Iterator[str]:
-    """Poses at which a part, or at home the tool, would be below the floor."""
+    """The poses at which a part, or at home the tool, would be below the floor."""
     for pose in stand.cell.poses:
         tool = stand.tool(pose)
         points = [kinematics.at(tool)]
@@ -161,7 +161,7 @@ def _below(stand: Stand) -> Iterator[str]:
 
 
 def _crowded(stands: Sequence[Stand]) -> Iterator[str]:
-    """Bases, grids and stations that take the same piece of floor."""
+    """The bases, grids and stations that take the same piece of floor."""
     floor = [(f"the base of {stand.cell.arm.name}", stand.base) for stand in stands]
     floor += [(f"the grid of {stand.cell.mobile.name}", stand.grid) for stand in stands]
     for (one, a), (other, b) in combinations(floor, 2):
@@ -185,7 +185,7 @@ def _frame(placement: Placement) -> Matrix:
 
 
 def _grid(mobile: Mobile, margin: float) -> Outline:
-    """Around all nodes, as far as the mobile robot reaches beyond its node."""
+    """The outline of all nodes, with the reach of the mobile robot beyond its node."""
     frame = _frame(mobile.grid.origin)
     far_x, far_y = mobile.grid.position(mobile.grid.size - 1)
     corners = ((-1, -1), (1, -1), (1, 1), (-1, 1))
@@ -202,7 +202,7 @@ def _fixed(body: Body) -> Iterator[Body]:
 
 
 def _wide(links: Iterable[Body]) -> float:
-    """How far the boxes and upright cylinders of some links reach from the middle, in plan."""
+    """The reach of the boxes and upright cylinders of some links from the middle, in plan."""
     shapes = [shape for link in links for shape in link["shapes"] if not any(shape["rpy"])]
     return max((_half(shape) for shape in shapes), default=0.0)
 
@@ -216,7 +216,7 @@ def _is_upright(frames: Mapping[str, Matrix], link: Body) -> bool:
 
 
 def _slide_m(arm: Arm, frames: Mapping[str, Matrix], link: Body, upright: bool) -> float:
-    """How far a sliding joint may lengthen the arm, in plan where all else turns upright."""
+    """The length in plan that a sliding joint may add; 0 for an upright one if all else turns upright."""
     if link["moves"]["type"] == "turn" or (upright and _is_upright(frames, link)):
         return 0.0
     joint = arm.joints[link["moves"]["index"]]
@@ -224,9 +224,9 @@ def _slide_m(arm: Arm, frames: Mapping[str, Matrix], link: Body, upright: bool) 
 
 
 def _overlap(a: Outline, b: Outline) -> bool:
-    """Whether two convex outlines share a piece of floor: no edge of either has them on two sides.
+    """True if two convex outlines share a piece of floor: no edge of either has them on two sides.
 
-    What is too thin for an outline takes none.
+    A shape too thin for an outline takes no floor.
     """
     return bool(a and b) and not any(_parts(edge, a, b) for outline in (a, b) for edge in _edges(outline))
 

@@ -48,14 +48,14 @@ ON, OFF = "on", "off"
 def load(path: Path | None = None, *, recipes: bool = True) -> PlantModel:
     """The plant that the file describes, None for the shipped one; ConfigError with every problem.
 
-    Without `recipes` nothing of Python is run: its cells of devices offer nothing, and one whose devices are
-    of kinds in Python has no cells.
+    Without `recipes` no Python is run: cells of devices offer nothing, and a plant with devices of kinds in
+    Python has no cells.
     """
     return _parsed(*_content(path), recipes=recipes)[0]
 
 
 def load_recorded(path: Path | None = None) -> tuple[PlantModel, Recording | None]:
-    """The same plant, and what a record of it begins with; None where its file says `record: off`."""
+    """The same plant, and the beginning of its record; None if its file says `record: off`."""
     plant, document = _parsed(*_content(path), recipes=True)
     if document.value(RECORD) == OFF:
         return plant, None
@@ -64,18 +64,18 @@ def load_recorded(path: Path | None = None) -> tuple[PlantModel, Recording | Non
 
 
 def load_with_files(path: Path | None = None) -> tuple[PlantModel, PlantFiles]:
-    """The same plant, and all that was read for it."""
+    """The same plant, and all files that were read for it."""
     plant, document = _parsed(*_content(path), recipes=True)
     return plant, _files(document)
 
 
 def parse(name: str, content: bytes, folder: Path | None = None, *, recipes: bool = True) -> PlantModel:
-    """The same for the content of a file that problems call `name`; `folder` is where those beside it are."""
+    """The same for the content of a file that problems call `name`; `folder` has the files beside it."""
     return _parsed(name, content, folder, recipes=recipes)[0]
 
 
 def _content(path: Path | None) -> tuple[str, bytes, Path | None]:
-    """What a plant file is called, what is in it, and the folder of those beside it."""
+    """The name of a plant file, its content, and the folder of the files beside it."""
     if path is None:
         return SHIPPED, files("arboleda").joinpath("plants", SHIPPED).read_bytes(), None
     return str(path), user_file.read_bytes(path, LARGEST), path.parent
@@ -98,7 +98,7 @@ def _parsed(name: str, content: bytes, folder: Path | None, *, recipes: bool) ->
 
 
 def _files(document: Document) -> PlantFiles:
-    """All that was read, under paths from the folder that holds all of it."""
+    """All files that were read, under paths from the folder that holds them all."""
     paths = {os.path.normpath(path.absolute()): content for path, content in document.files.items()}
     plant, *_ = paths  # it is read first
     folder = os.path.commonpath([os.path.dirname(path) for path in paths])
@@ -107,7 +107,7 @@ def _files(document: Document) -> PlantFiles:
 
 
 def _limits(document: Document) -> Limits | None:
-    """How much of the record is kept; None, with its problems kept, where that cannot be read."""
+    """The limits of the record that is kept; None, with its problems kept, if they cannot be read."""
     if document.has(RECORD) and document.value(RECORD) == OFF:
         if document.has(REPORTS) and document.value(REPORTS) == ON:
             document.problem(REPORTS, "reports are made of the record, which is off")
@@ -121,7 +121,8 @@ def _limits(document: Document) -> Limits | None:
 def trial(name: str, content: bytes, folder: Path | None, watch: Watch) -> Verdict:
     """The problems of a plant file and of its recipes, which are built here for each task they could have.
 
-    Whatever its files of Python do, they do it to this process: `parse` has it in another one.
+    The plant's Python files run in this process, whatever they do to it; `parse` runs this function in
+    another one.
     """
     document, found = Document(name, content, folder), Verdict()
 
@@ -137,7 +138,7 @@ def trial(name: str, content: bytes, folder: Path | None, watch: Watch) -> Verdi
 
 
 def warnings(plant: PlantModel) -> tuple[str, ...]:
-    """What the plant may do and a person should know before it moves."""
+    """The warnings about this plant that a person should read before it moves."""
     return tuple(
         f'{robot.name}: declared "stop: none", so a stop (software) cannot reach it; '
         "only the hard-wired button that removes motor power can"
@@ -147,7 +148,7 @@ def warnings(plant: PlantModel) -> tuple[str, ...]:
 
 
 def notes(plant: PlantModel) -> tuple[str, ...]:
-    """What was assumed of the models that the plant has of its own."""
+    """The assumptions made about models that are the plant's own, and about recipes tried only in part."""
     described = {
         robot.description: robot.name
         for robot in reversed(plant.robots.values())
@@ -302,7 +303,7 @@ def _cell(document: Document, name: str, kinds: Kinds, common: Mapping[str, Robo
 def _poses(
     document: Document, place: Place, kind: ArmModel | None, routes: tuple[Route, ...]
 ) -> dict[str, Any]:
-    """What the arm needs to know about places; empty, with the problems kept, where one is wrong."""
+    """The poses of an arm's places; empty, with the problems kept, if one is wrong."""
     if kind is None:
         document.read(PositionShape, (*place, "home"))
         document.read(PoseShape, (*place, "pickup"))
@@ -324,7 +325,7 @@ def _poses(
 
 
 def _section(document: Document, place: Place, key: str, *, needed: bool = True) -> Place:
-    """Where a cell has this section: its own, else the one at the top that cells share."""
+    """The place of this section for a cell: its own, else the one at the top that cells share."""
     if document.has((*place, key)):
         return (*place, key)
     if needed and not document.has((key,)) and document.has(place):

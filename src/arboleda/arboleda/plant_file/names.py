@@ -1,4 +1,4 @@
-"""Which names of a plant must differ: one name, one thing, on ROS 2, on MQTT and in what operators say."""
+"""Names of a plant that must differ: one name, one thing, on ROS 2, on MQTT and in operators' words."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ RESERVED = ("plant", "system")  # first words of the plant's own ROS 2 topics
 
 
 def check_names(document: Document, has_twin: Callable[[Place], bool]) -> None:
-    """Keeps a problem for each cell name that is none, each reserved word and each name used twice.
+    """Keep a problem for each invalid cell name, each reserved word and each name used twice.
 
     A device that `has_twin` may be drawn under another name.
     """
@@ -39,7 +39,7 @@ def check_names(document: Document, has_twin: Callable[[Place], bool]) -> None:
 
 
 def _names(document: Document, robots: list[Place], key: str) -> list[tuple[str, Place]]:
-    """Each robot's name under `key`, else its own name, which for a device may be its role."""
+    """The name of each robot under `key`, else its own name, which for a device may be its role."""
     found = []
     for robot in robots:
         places = [(*robot, each) for each in (key, "name") if document.has((*robot, each))]
@@ -51,7 +51,7 @@ def _names(document: Document, robots: list[Place], key: str) -> list[tuple[str,
 
 
 def _is_role(place: Place) -> bool:
-    """Whether a place is that of a device, which may have the name of its role, or of a shared one."""
+    """True if a place is that of a device, which may have the name of its role, or of a shared one."""
     return (len(place) == 4 and place[2] == "devices") or (len(place) == 2 and place[0] == "shared")
 
 

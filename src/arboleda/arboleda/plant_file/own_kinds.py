@@ -30,7 +30,7 @@ GROUP = "arboleda.kinds"
 
 
 def registered() -> dict[str, list[EntryPoint]]:
-    """What installed packages register as kinds, by name."""
+    """The kinds that installed packages register, by name."""
     found: dict[str, list[EntryPoint]] = {}
     for each in entry_points(group=GROUP):
         found.setdefault(each.name, []).append(each)
@@ -38,14 +38,14 @@ def registered() -> dict[str, list[EntryPoint]]:
 
 
 def needs_python(document: Document) -> bool:
-    """Whether a device may be of a kind of a file that is used, or of an installed package."""
+    """True if a device may be of a kind of a file that is used, or of an installed package."""
     names = {name for name, _ in _named(document)}
     uses = document.has(("uses",)) and not names <= COME_WITH_IT.keys()
     return uses or (bool(names) and not names.isdisjoint(registered()))
 
 
 def complete(document: Document, used: PythonUses) -> None:
-    """Adds the kinds that devices name and that come with Arboleda, or from an installed package."""
+    """Add the kinds that devices name and that come with Arboleda, or from an installed package."""
     entries = registered() if any(name not in used.kinds for name, _ in _named(document)) else {}
     for name, place in _named(document):
         rows = entries.get(name, [])
@@ -61,7 +61,7 @@ def complete(document: Document, used: PythonUses) -> None:
 
 
 def robot(document: Document, place: Place, kind: RobotKind, used: PythonUses) -> Robot | None:
-    """The device as its kind reads it; None, with the problems kept, where something is wrong with it."""
+    """The device as its kind reads it; None, with the problems kept, if something is wrong with it."""
     if kind is COME_WITH_IT.get(kind.name):
         return kind.read(document, place)
     used.watch(used.spot(kind), f"making {kind.name} for {place[-1]}")
@@ -80,7 +80,7 @@ def robot(document: Document, place: Place, kind: RobotKind, used: PythonUses) -
 def device(
     document: Document, place: Place, kind: WrittenKind, used: PythonUses
 ) -> tuple[DeviceShape, DeviceKind] | None:
-    """What the plant file says of a device of that kind, and the kind with its settings."""
+    """The device as the plant file describes it, and its kind with its settings."""
     spot = used.spot(kind)
     used.watch(spot, f"making {kind.name} for {place[-1]}")
     try:
@@ -107,7 +107,7 @@ def device(
 
 
 def _named(document: Document) -> Iterator[tuple[str, Place]]:
-    """The kinds that devices are of and that the plant file does not declare, with their places."""
+    """The kinds that devices name and that the plant file does not declare, with their places."""
     declared = document.keys(("kinds",))
     sections: list[Place] = [("cells", cell, "devices") for cell in document.keys(("cells",))]
     for section in [*sections, (SECTION,)]:
@@ -152,7 +152,7 @@ def _package(entry: EntryPoint) -> str:
 
 
 def _shape(kind: WrittenKind) -> type[DeviceShape]:
-    """What the plant file may say of a device of this kind: what it may of any, and the kind's settings."""
+    """The keys that a device of this kind may have: those of any device, and the kind's settings."""
     rows = () if kind.settings is None else fields(kind.settings)
     taken = next((row.name for row in rows if row.name in DeviceShape.model_fields), None)
     if taken is not None:
@@ -163,7 +163,7 @@ def _shape(kind: WrittenKind) -> type[DeviceShape]:
 def _settings(
     document: Document, place: Place, kind: WrittenKind, shape: DeviceShape, used: PythonUses
 ) -> Any:
-    """The settings of a device; None, with the problem kept, where the kind's own rules refuse them."""
+    """The settings of a device; None, with the problem kept, if the kind's own rules refuse them."""
     if kind.settings is None:
         return None
     given = {each.name: getattr(shape, each.name) for each in fields(kind.settings)}
@@ -179,7 +179,7 @@ def _settings(
 def _tell(
     document: Document, place: Place, kind: KindInPython, error: BaseException, used: PythonUses
 ) -> None:
-    """Keeps what a kind raised: at its line, or at the device where no file of a user has that."""
+    """Keep the error that a kind raised: at its line, or at the device if no file of a user has that line."""
     spot = used.where(error.__cause__ or error, used.where(error, used.spot(kind)))
     what = f"{kind.name}: {error}" if isinstance(error, KindError) else f"{kind.name}: {said(error)}"
     _keep(document, place, spot, what, used)
@@ -193,7 +193,7 @@ def _keep(document: Document, place: Place, spot: Spot, what: str, used: PythonU
 
 
 def _unusable(kind: DeviceKind) -> Iterator[str]:
-    """What of a kind has a name that it cannot have, or cannot go over MQTT."""
+    """The objections to a kind: names that it cannot have, and parts that MQTT cannot carry."""
     yield from _misnamed(kind)
     yield from (each.sentence for each in mqtt_limits.objections(kind))
 

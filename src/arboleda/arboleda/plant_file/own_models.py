@@ -1,4 +1,4 @@
-"""A model of the plant's own: a URDF or YAML file beside the plant file, and what `model:` says of it."""
+"""A model of the plant's own: a URDF or YAML file beside the plant file, with the keys of `model:`."""
 
 from __future__ import annotations
 
@@ -32,14 +32,14 @@ LEAST_STEP = 0.001  # deg or mm: MQTT says four decimals
 
 
 def is_own(value: Any) -> bool:
-    """Whether `model:` names a file rather than a model that comes with arboleda."""
+    """True if `model:` names a file rather than a model that comes with arboleda."""
     if isinstance(value, dict):
         return True
     return isinstance(value, str) and ("/" in value or value.endswith((*ENDINGS, ".xacro")))
 
 
 def own_model(document: Document, place: Place) -> ArmModel | None:
-    """The arm of that file; None, with its problems kept, where something is wrong with it."""
+    """The arm of that file; None, with its problems kept, if something is wrong with it."""
     shape = _shape(document, place)
     if shape is None:
         return None
@@ -81,7 +81,7 @@ def _path(document: Document, file: str) -> Path:
 
 
 def _content(document: Document, place: Place, file: str) -> bytes | None:
-    """The file, read whole; None, with the problem kept, where it cannot be."""
+    """The content of the file; None, with the problem kept, if it cannot be read."""
     if file.endswith(".xacro"):
         made = file.removesuffix(".xacro")
         made = made if made.endswith(".urdf") else f"{made}.urdf"
@@ -103,7 +103,7 @@ def _content(document: Document, place: Place, file: str) -> bytes | None:
 
 
 def _fits(document: Document, place: Place, shape: ModelShape) -> bool:
-    """Whether links are named only where the file has some."""
+    """True if links are named only for a file that has some."""
     of_urdf = [key for key in ("base_link", "tip_link") if getattr(shape, key) is not None]
     foreign = of_urdf if not shape.file.endswith(".urdf") else []
     for key in foreign:
@@ -118,7 +118,7 @@ def _chain(shape: ModelShape, raw: bytes, path: Path) -> Chain:
 
 
 def _find_meshes(chain: Chain, folder: Path) -> None:
-    """Have meshes that are named from where the file lies found from everywhere."""
+    """Replace the paths of meshes, which are relative to the file, by absolute ones."""
     for mesh in chain.robot.iter("mesh"):
         name = mesh.get("filename", "")
         if "://" not in name:
@@ -126,7 +126,7 @@ def _find_meshes(chain: Chain, folder: Path) -> None:
 
 
 def _joints(document: Document, place: Place, spot: Place, chain: Chain) -> tuple[Joint, ...] | None:
-    """The joints with all that a motor needs; None, with the problems kept, where one cannot be driven."""
+    """The joints with all that a motor needs; None, with the problems kept, if one cannot be driven."""
     if len(chain.axes) > MOST_JOINTS:
         most = f"at most {MOST_JOINTS}; one MQTT message has room for no more"
         document.problem(spot, f"has {len(chain.axes)} joints that move, {most}")
@@ -142,7 +142,7 @@ def _joints(document: Document, place: Place, spot: Place, chain: Chain) -> tupl
 
 
 def _given(document: Document, place: Place, number: int, axis: Axis) -> Joint:
-    """The joint as its file and the plant file have it, with defaults where both say nothing."""
+    """The joint as its file and the plant file have it, with defaults if both say nothing."""
     si = TO_SI[_unit(axis)]
     acceleration = document.read_plain(POSITIVE, (*place, "accelerations", f"q{number}_{_unit(axis)}_s2"))
     step = document.read_plain(POSITIVE, (*place, "steps", f"q{number}_{_unit(axis)}"))
@@ -163,7 +163,7 @@ def _unit(axis: Axis) -> str:
 
 
 def _is_drivable(document: Document, place: Place, joint: Joint) -> bool:
-    """Whether a board can count, say and drive it."""
+    """True if a board can count, report and drive the joint."""
     least = TO_SI["mm" if joint.unit == "m" else "deg"](LEAST_STEP)
     wide = joint.upper - joint.lower
     if max(abs(to_wire(joint, end)) for end in (joint.lower, joint.upper)) > FARTHEST:
@@ -184,7 +184,7 @@ def _is_drivable(document: Document, place: Place, joint: Joint) -> bool:
 
 
 def _assumed(document: Document, place: Place, chain: Chain) -> Sequence[str]:
-    """What is taken for joints of which nobody says how they speed up and step."""
+    """The notes on accelerations and motor steps that are assumed for joints without their own."""
     open_: dict[str, list[str]] = {"accelerations": [], "steps": []}
     for number, axis in enumerate(chain.axes, start=1):
         given = {"accelerations": axis.acceleration, "steps": axis.step}

@@ -42,7 +42,7 @@ LINKS = tuple(each.value for each in Link)
 
 
 def listed(document: Document) -> tuple[str, ...]:
-    """The files and modules that the plant file uses; none, with the problem kept, where that is no list."""
+    """The files and modules that the plant file uses; none, with the problem kept, if that is no list."""
     words = document.read_plain(WORDS, SECTION) or ()
     for index, word in enumerate(words):
         if word in words[:index]:
@@ -51,7 +51,7 @@ def listed(document: Document) -> tuple[str, ...]:
 
 
 def imported(document: Document, words: Sequence[str], watch: Watch) -> PythonUses:
-    """What all of them bring; the problems of those that cannot be imported are kept."""
+    """Everything that the used files and modules bring; problems of failed imports are kept."""
     used = PythonUses(watch=watch)
     for index, word in enumerate(words):
         place = (*SECTION, index)
@@ -98,7 +98,7 @@ def _file(document: Document, place: Place, word: str, used: PythonUses, watch: 
 
 
 def _trees(document: Document, place: Place, word: str, used: PythonUses) -> None:
-    """The recipe of a file of trees; nothing of it is executed."""
+    """Add the recipe of a file of trees; nothing of it is executed."""
     if document.folder is None:
         document.problem(place, "this plant file lies in no folder, so no trees can lie beside it")
         return
@@ -156,12 +156,12 @@ def _module(document: Document, place: Place, word: str, used: PythonUses, watch
 
 
 def _beside(path: Path) -> list[Path]:
-    """The files of Python in the folder of one."""
+    """The Python files in the folder of a file."""
     return sorted(path.parent.glob(f"*{ENDING}")) if path.parent.is_dir() else []
 
 
 def _run(path: Path, source: bytes) -> ModuleType:
-    """A module of its own of this file; Python keeps no compiled file of it beside the user's."""
+    """Run a file as a module of its own; Python keeps no compiled file of it beside the user's."""
     code = compile(source, str(path), "exec", dont_inherit=True)
     module = ModuleType(f"arboleda_uses_{sha256(str(path).encode()).hexdigest()[:12]}_{path.stem}")
     module.__file__ = str(path)
@@ -172,7 +172,7 @@ def _run(path: Path, source: bytes) -> ModuleType:
 
 @contextmanager
 def _importing(folder: Path, files: dict[Path, bytes]) -> Iterator[None]:
-    """What lies in `folder` can be imported meanwhile, is added to `files`, and is forgotten: other plants
+    """Make the files of `folder` importable meanwhile, add them to `files`, and forget them: other plants
     have other files."""
     before, writes = set(sys.modules), sys.dont_write_bytecode
     sys.path.insert(0, str(folder))
@@ -227,7 +227,7 @@ def _collect(document: Document, place: Place, module: ModuleType, used: PythonU
 def _objection(
     what: str, found: Written, there: Mapping[str, Any], taken: Sequence[str], used: PythonUses
 ) -> str | None:
-    """Why it cannot be one beside those that there are."""
+    """The reason for which it cannot stand beside the ones that exist already."""
     name = found.name
     if not isinstance(name, str) or not is_name(name):
         return f"{shown(name)} cannot be the name of a {what}; it must be {NAME_RULE}"
@@ -237,7 +237,7 @@ def _objection(
 
 
 def _objection_to_node(found: WrittenNode, used: PythonUses) -> str | None:
-    """Why trees of XML cannot have a node."""
+    """The reason for which trees of XML cannot have a node."""
     if not isinstance(found.name, str) or not NODE.fullmatch(found.name):
         return f"{shown(found.name)} cannot be the name of a node; it must be letters, digits and _"
     if built_in(found.name) is not None or found.name in (*OTHER_SPELLINGS, *CATEGORIES):
@@ -254,7 +254,7 @@ def _twice(what: str, found: Written, there: Mapping[str, Any], used: PythonUses
 
 
 def _check_twice(document: Document, known_as: str, source: bytes) -> None:
-    """Keeps a problem for each of these functions whose name a later one has: Python forgets it."""
+    """Keep a problem for each of these functions whose name a later one has: Python forgets it."""
     lines: dict[str, int] = {}
     for node in ast.parse(source).body:
         if not isinstance(node, ast.FunctionDef | ast.ClassDef):

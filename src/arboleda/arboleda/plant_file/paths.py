@@ -1,4 +1,4 @@
-"""The coded ways of a mobile robot over its 3x3 grid."""
+"""The coded paths of a mobile robot over its 3x3 grid."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ CODE = re.compile(r"[0-9A-Za-z]{2}", re.ASCII)
 
 
 def paths(document: Document, place: Place) -> tuple[Path, ...]:
-    """Every path of the section; empty, with the problems kept, where one is wrong."""
+    """Every path of the section; empty, with the problems kept, if one is wrong."""
     document.read_plain(MAPPING, place)
     seen: dict[str, str] = {}
     found = []
@@ -40,7 +40,7 @@ def paths(document: Document, place: Place) -> tuple[Path, ...]:
 
 
 def check_nodes_show(document: Document, place: Place, routes: Iterable[Path], mobile: Mobile) -> None:
-    """Keeps a problem at the mobile robot's `place` for a path whose end could be taken for a way past it."""
+    """Keep a problem for a path that passes its last node before its end, too fast to be shown."""
     edge_s = mobile.grid.pitch / mobile.speed
     if mobile.evidence is not Evidence.JOINTS or edge_s > APART_S - ROUNDING_S:
         return

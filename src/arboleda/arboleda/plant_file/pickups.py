@@ -1,4 +1,4 @@
-"""Where an arm takes parts from its mobile robot: one pose for all exits, poses of single exits, or both."""
+"""Poses at which an arm takes parts from its mobile robot: one for all exits, one for each, or both."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ Pickups = tuple[tuple[str, Pose], ...]  # by exit
 
 
 def default_pickup(reader: PoseReader, cell: Place) -> Pose | None:
-    """The pick-up of all exits that have none of their own."""
+    """The pick-up of all exits without one of their own."""
     return reader.pose((*cell, "pickup"), PICKUP())
 
 
 def pickups(reader: PoseReader, cell: Place, paths: Sequence[Path]) -> Pickups | None:
-    """The pick-ups of single exits; None, with the problems kept, where one is wrong or missing."""
+    """The pick-ups of single exits; None, with the problems kept, if one is wrong or missing."""
     document, place = reader.document, (*cell, "pickups")
     if document.has(place):
         document.read_plain(MAPPING, place)
@@ -44,7 +44,7 @@ def pickups(reader: PoseReader, cell: Place, paths: Sequence[Path]) -> Pickups |
 
 
 def pickup_names(pickup: Pose, each: Pickups) -> dict[str, Pose]:
-    """Pick-ups by the names they have in a plant file: `pickup`, `pickup A`."""
+    """Pick-ups by the names that they have in a plant file: `pickup`, `pickup A`."""
     return {"pickup": pickup} | {f"pickup {exit.lower()}": pose for exit, pose in each}
 
 

@@ -19,7 +19,7 @@ Pair = frozenset[str]  # of names of poses
 
 @dataclass(frozen=True, kw_only=True)
 class PoseConfusion:
-    """Why a zone cannot have what is `named` for it: one pose, or the two ends of a move."""
+    """The reason for which a zone cannot have what is `named` for it: one pose, or the two ends of a move."""
 
     zone: str
     named: tuple[str, ...]
@@ -36,7 +36,7 @@ def alike_crossings(space: Workspace) -> tuple[Crossing, ...]:
 
 
 def confusions(space: Workspace) -> list[PoseConfusion]:
-    """Everything in the zones of a robot of which nobody would know whether it is in it."""
+    """The poses and moves near the zones of a robot that leave unknown whether it is in a zone."""
     return list(_at_reference(space)) or list(_between_poses(space))
 
 
@@ -52,7 +52,7 @@ def _between_poses(space: Workspace) -> Iterator[PoseConfusion]:
 
 
 def _at_reference(space: Workspace) -> Iterator[PoseConfusion]:
-    """Homing ends at the reference, so it lies outside all zones."""
+    """The confusions of poses with the reference, at which homing ends: it must lie outside all zones."""
     reference = space.robot.reference
     for pose in space.poses if reference is not None else ():
         if reference is not None and any(space.robot.confuses(reference, q) for q in _own_spots(pose)):
@@ -89,7 +89,7 @@ def _across(space: Workspace, a: Pose, b: Pose) -> frozenset[str]:
 
 
 def _spots(space: Workspace, pose: Pose) -> list[Position]:
-    """Where a robot counts as standing at a pose; the reference counts as home where no pose is there."""
+    """The positions that count as standing at a pose; the reference counts as home if no pose is there."""
     spots, reference = _own_spots(pose), space.robot.reference
     if reference is not None and pose.name == space.home.name:
         spots += [reference] if all(each.q != reference for each in space.poses) else []

@@ -45,12 +45,12 @@ class PoseReader:
         return self.lifted(pose, shape.approach_mm, place) if pose and shape else None
 
     def position(self, place: Place) -> tuple[float, ...] | None:
-        """Joint values, not yet held against limits: `deg` and `mm` matched to the arm's joints."""
+        """Joint values, not yet checked against limits: `deg` and `mm` matched to the arm's joints."""
         shape = self.document.read(PositionShape, place)
         return self._spread(shape, place) if shape else None
 
     def checked(self, title: Sentence, q: tuple[float, ...], places: tuple[Place, ...]) -> Pose | None:
-        """The pose, if each joint is inside its limits; `places` says where each value stands."""
+        """The pose, if each joint is inside its limits; `places` are those of the values in the file."""
         inside = [self._inside(index, q[index], place) for index, place in enumerate(places)]
         return Pose(name=str(title), title=title, q=q) if all(inside) else None
 
@@ -72,7 +72,7 @@ class PoseReader:
         return replace(pose, above=above)
 
     def heights(self, place: Place, *, needed: bool) -> tuple[float, ...] | None:
-        """`mm` in m, one value for each sliding joint; empty where it may be left out and is."""
+        """The values of `mm` in m, one for each sliding joint; empty if it may be left out and is."""
         slides = [joint for joint in self.joints if joint.unit == "m"]
         place = (*place, "mm")
         if not self.document.has(place):
@@ -86,19 +86,19 @@ class PoseReader:
         return self._listed(place, len(slides))
 
     def problem(self, place: Place, sentence: str, *, at: Place | None = None) -> None:
-        """Keeps a problem, with the cell's name where the section is a shared one."""
+        """Keep a problem, with the cell's name if the section is a shared one."""
         note = "" if place[0] == "cells" else f" (cell {self.cell})"
         self.document.problem(place, sentence + note, at=at)
 
     def places_of_mm(self, place: Place) -> Iterator[Place]:
-        """Where each value of `mm` stands, from the base outwards."""
+        """The place in the file of each value of `mm`, from the base outwards."""
         place = (*place, "mm")
         if isinstance(self.document.value(place), list):
             return ((*place, index) for index in count())
         return repeat(place)
 
     def _listed(self, place: Place, wanted: int) -> tuple[float, ...] | None:
-        """As many numbers as sliding joints; a single one needs no list."""
+        """One number for each sliding joint; a single one needs no list."""
         if not isinstance(self.document.value(place), list) and wanted == 1:
             value = self.document.read_plain(NUMBER, place)
             return None if value is None else (millimetres(value),)

@@ -12,7 +12,7 @@ Kept = Sequence[object]  # line, column and sentence
 
 
 class Problems:
-    """Kept until `finish`; `name` is what people know the file by."""
+    """Problems: keeps them until `finish`; `name` is the file's name for people."""
 
     def __init__(self, name: str) -> None:
         self.name = name
@@ -23,7 +23,7 @@ class Problems:
         self._problems[(mark.line, mark.column, sentence)] = None
 
     def keep_those_of(self, error: ConfigError) -> None:
-        """The problems of another file that this one names; each is kept once."""
+        """Keep the problems of another file that this one names; each is kept once."""
         self._elsewhere |= dict.fromkeys(error.problems)
 
     @property
@@ -32,13 +32,13 @@ class Problems:
         return list(self._problems), list(self._elsewhere)
 
     def keep_all(self, here: Iterable[Kept], elsewhere: Iterable[str]) -> None:
-        """What another reading of the same file has `kept`."""
+        """Keep the problems that another reading of the same file has `kept`."""
         for line, column, sentence in here:
             self._problems[(int(str(line)), int(str(column)), str(sentence))] = None
         self._elsewhere |= dict.fromkeys(elsewhere)
 
     def finish(self) -> None:
-        """ConfigError with every problem in the order of the file, those of other files last."""
+        """Raise ConfigError if there is any problem, in the order of the file, those of other files last."""
         here = (self._line(*problem) for problem in sorted(self._problems))
         if problems := (*here, *self._elsewhere):
             raise ConfigError(problems)

@@ -1,4 +1,4 @@
-"""What a plant file uses of Python, by name, and where in its files a problem stands."""
+"""The Python that a plant file uses, by name, and the places of problems in its files."""
 
 from __future__ import annotations
 
@@ -39,33 +39,33 @@ class Spot:
 
 
 def unwatched(spot: Spot, doing: str) -> None:
-    """Nobody looks how long it takes."""
+    """A watch for a run whose duration nobody limits."""
 
 
 @dataclass
 class PythonUses:
-    """What `uses` has brought, by name, and the files that problems can be found in."""
+    """Everything that `uses` has brought, by name, and the files that problems can be found in."""
 
     recipes: dict[str, Recipe] = field(default_factory=dict)
     kinds: dict[str, KindInPython] = field(default_factory=dict)
     drivers: dict[str, DriverSpec] = field(default_factory=dict)
     nodes: dict[str, WrittenNode] = field(default_factory=dict)  # for trees that are written as XML
-    files: dict[str, str] = field(default_factory=dict)  # as Python knows them: as people do
+    files: dict[str, str] = field(default_factory=dict)  # Python's name of a file: people's name
     watch: Watch = unwatched
     is_whole: bool = True  # False: something could not be imported, so a name may be missing
     may_import: bool = True  # False: it was tried elsewhere, and must not be run here
     installed: tuple[str, ...] = ()  # kinds that packages register
-    broken: set[str] = field(default_factory=set)  # those of these that were told to be wrong
+    broken: set[str] = field(default_factory=set)  # names of these whose problem is kept
 
     def spot(self, written: Written) -> Spot:
-        """Where the function of a recipe, a kind or a node begins, or the first method of a driver."""
+        """The beginning of the function of a recipe, a kind or a node, or of the first method of a driver."""
         if isinstance(written, TreeRecipe):
             return Spot(file=written.file)
         code = inspect.unwrap(_function(written)).__code__
         return Spot(file=self.files.get(code.co_filename, code.co_filename), line=code.co_firstlineno)
 
     def where(self, error: BaseException, otherwise: Spot) -> Spot:
-        """The line of a user's file that an error came by last."""
+        """The last line of a user's file that an error passed through."""
         if isinstance(error, TreeError | NoDeviceError):
             mark = error.place.mark
             return Spot(file=error.place.file, line=mark.line, column=mark.column)
@@ -77,13 +77,13 @@ class PythonUses:
         return Spot(file=self.files[frames[-1].filename], line=frames[-1].lineno or 1)
 
     def keep(self, document: Document, problem: str) -> None:
-        """Keeps a problem of one of the files; that what it brings is missing is not told besides."""
+        """Keep a problem of one of the files; names that it would bring are not reported as missing."""
         self.is_whole = False
         document.keep_those_of(ConfigError((problem,)))
 
 
 def said(error: BaseException) -> str:
-    """An error in words, as a sentence goes on."""
+    """An error as the end of a sentence."""
     if isinstance(error, ArboledaError):
         return str(error)
     if isinstance(error, SystemExit):
@@ -96,7 +96,7 @@ def said(error: BaseException) -> str:
 
 
 def refused(error: BaseException) -> str:
-    """Why the settings of a kind or driver are refused: its own rules raise ValueError with a sentence."""
+    """The reason for which settings are refused: a kind's or driver's rules raise ValueError with it."""
     return str(error) if isinstance(error, ValueError) and str(error) else said(error)
 
 

@@ -1,4 +1,4 @@
-"""The storage stations of a cell, by number or by rule, and what its palletizing picks and places."""
+"""The storage stations of a cell, by number or by rule, and the poses of its palletizing."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ NUMBER = re.compile(r"[0-9]+", re.ASCII)
 
 
 def stations(reader: PoseReader, place: Place, home: Pose | None) -> tuple[Pose, ...]:
-    """The rack; empty, with the problems kept, where a station cannot be read."""
+    """The rack; empty, with the problems kept, if a station cannot be read."""
     keys = reader.document.keys(place)
     listed = any(NUMBER.fullmatch(key) for key in keys)
     poses = _by_number(reader, place, keys) if listed else _by_rule(reader, place, home)
@@ -59,7 +59,7 @@ def _by_number(reader: PoseReader, place: Place, keys: tuple[str, ...]) -> list[
 
 
 def _by_rule(reader: PoseReader, place: Place, home: Pose | None) -> list[Pose | None]:
-    """Row by row: q1 by column, q2 by row, the other joints as in `home`."""
+    """The stations row by row: q1 by column, q2 by row, the other joints as in `home`."""
     shape = reader.document.read(RackShape, place)
     if shape is None or home is None or not _has_columns_and_rows(reader, place):
         return []

@@ -50,7 +50,7 @@ NOT_WOKEN: Mapping[type[Behaviour], str] = {
 
 @dataclass
 class Trial:
-    """The recipes of a plant in its cells: what each offers, and the problems, kept in the document."""
+    """Trial: builds the recipes of a plant in its cells, and keeps their offers and the problems."""
 
     document: Document
     used: PythonUses
@@ -79,12 +79,12 @@ class Trial:
         return self.offers
 
     def _brings_all(self, offered: Collection[str]) -> bool:
-        """Whether nothing else is told of recipes that do not fit: of some that fit elsewhere, or of none."""
+        """True if no misfit says so already: some recipe fits another cell, or the files bring none."""
         none = self.used.is_whole and not self.used.recipes and self.document.has(SECTION)
         return bool(offered) or none
 
     def _named(self, cell: Cell) -> list[str] | None:
-        """The recipes that the cell names and that there are; None where it names none."""
+        """The recipes that the cell names and that exist; None if it names none."""
         place: Place = ("cells", cell.name, "recipes")
         names, known = self.document.value(place), self.used.recipes
         if names is None:
@@ -105,7 +105,7 @@ class Trial:
             self.document.problem(place, f"{there}; is {shown(name)}{nearest(name, offered)}")
 
     def _fits(self, cell: Cell, recipe: Recipe, named: bool) -> bool:
-        """Whether the cell has what a recipe needs, or says so; what is wrong with its builds is kept."""
+        """True if the cell has what a recipe needs or names it; problems with building its trees are kept."""
         spot = self.used.spot(recipe)
         if not named and (empty := _without_value(cell, recipe)):
             self.misfits.setdefault(recipe.name, []).append(spot.problem(empty))
@@ -131,7 +131,7 @@ class Trial:
         return True
 
     def _look(self, recipe: Recipe, order: Order, context: Context) -> Sequence[str]:
-        """What is wrong with the tree of an order, with its place; RoleError where a device is missing."""
+        """The problems of an order's tree, with their places; RoleError if a device is missing."""
         spot = self.used.spot(recipe)
         try:
             tree = recipe.build(order, context)
@@ -149,7 +149,7 @@ class Trial:
 
 
 def _objection(tree: Behaviour) -> str | None:
-    """Why a tree that could be built would never end, or always fail."""
+    """The objection to a tree that could be built but would never end, or always fail."""
     for device in _at_once(tree):
         return f"has {device} do two things at once, in a parallel; it does one after the other: work(...)"
     for node in tree.iterate():
@@ -160,7 +160,7 @@ def _objection(tree: Behaviour) -> str | None:
 
 
 def _at_once(tree: Behaviour) -> Iterator[str]:
-    """The devices that are given work by two branches of a parallel: the second would be refused."""
+    """The devices to which two branches of a parallel give work: the second would be refused."""
     for node in tree.iterate():
         branches = [_at_work(child) for child in node.children] if tree_view.kind(node) == "parallel" else []
         for one, other in pairs(branches, 2):
@@ -174,12 +174,12 @@ def _at_work(branch: Behaviour) -> set[str]:
 
 
 def combinations(cell: Cell, recipe: Recipe) -> int:
-    """How many tasks a recipe has in a cell."""
+    """The number of different tasks that a recipe has in a cell."""
     return math.prod(len(each.words(cell)) for each in recipe.parameters)
 
 
 def _orders(cell: Cell, recipe: Recipe) -> Iterator[Order]:
-    """Every task of a recipe; of more than MOST so many, with each value of each parameter where possible."""
+    """Every task of a recipe; of more than MOST, so many, with each value of each parameter if possible."""
     words = [each.words(cell) for each in recipe.parameters]
     total = combinations(cell, recipe)
     for number in range(min(total, MOST)):
@@ -194,7 +194,7 @@ def _orders(cell: Cell, recipe: Recipe) -> Iterator[Order]:
 
 
 def _nth(words: Sequence[Sequence[str]], number: int) -> list[str]:
-    """One combination; each number below that of all combinations has another one."""
+    """The combination of that number; each number below the number of combinations has another one."""
     chosen = []
     for each in words:
         number, index = divmod(number, len(each))
@@ -203,7 +203,7 @@ def _nth(words: Sequence[Sequence[str]], number: int) -> list[str]:
 
 
 def _sampled(words: Sequence[Sequence[str]], number: int) -> list[str]:
-    """One combination of MOST: each parameter goes through its values, those after the first ever shifted."""
+    """The combination of that number among MOST: parameters go through their values, ever shifted."""
     chosen = []
     for column, each in enumerate(words):
         many = len(each)
@@ -213,7 +213,7 @@ def _sampled(words: Sequence[Sequence[str]], number: int) -> list[str]:
 
 
 def _without_value(cell: Cell, recipe: Recipe) -> str | None:
-    """That a parameter can be nothing in a cell: it has no such targets."""
+    """The sentence that a parameter has no possible value in a cell, for want of targets; else None."""
     for each in recipe.parameters:
         if not each.words(cell):
             how = HOW_TO_CHOOSE if isinstance(recipe, TreeRecipe) else ""
@@ -222,7 +222,7 @@ def _without_value(cell: Cell, recipe: Recipe) -> str | None:
 
 
 def _unspellable(cell: Cell, recipe: Recipe) -> str | None:
-    """Why no task text can name a value of a parameter."""
+    """The reason for which no task text can name a value of a parameter."""
     if empty := _without_value(cell, recipe):
         return empty
     for each in recipe.parameters:
@@ -237,5 +237,5 @@ def _unspellable(cell: Cell, recipe: Recipe) -> str | None:
 
 
 def _is_spellable(word: str) -> bool:
-    """Whether a task text can have it as one of its words, and not as an id."""
+    """True if a task text can have it as one of its words, and not as an id."""
     return word.split() == [word] and word.isprintable() and not word.startswith("#")

@@ -1,4 +1,5 @@
-"""Recipes and kinds tried in a process of their own: whatever never ends, or ends Python, is a problem."""
+"""Trial of recipes and kinds in a process of its own, so that one that never ends, or ends Python, is a
+problem of the file."""
 
 from __future__ import annotations
 
@@ -25,7 +26,7 @@ from .problems import Kept
 from .python_uses import PythonUses, Spot, unwatched
 
 LONGEST_S = 10.0  # for the import of a file, and for each build of a recipe
-STUCK_S = 60.0  # after which not even the watch in the other process has done its work
+STUCK_S = 60.0  # by then the watch of the other process has hung as well
 SLOW = f"nothing came of it for {STUCK_S:g} s; try again when this machine has less to do"
 PATH = "import sys, json; sys.path[:] = json.loads(sys.argv[1]); "
 START = PATH + "from arboleda.plant_file import recipe_trial; recipe_trial.main(sys.argv[2])"
@@ -35,7 +36,7 @@ PLANT, REQUEST, RESULT, PHASE, STACK = "plant", "request.json", "result.json", "
 
 @dataclass
 class Verdict:
-    """What came of it: problems of the plant file with their marks, those of other files, and offers."""
+    """The result of a trial: marked problems of the plant file, those of other files, and offers."""
 
     here: list[Kept] = field(default_factory=list)
     elsewhere: list[str] = field(default_factory=list)
@@ -44,14 +45,14 @@ class Verdict:
 
 @dataclass
 class PlantPython:
-    """What a plant has of Python, and which recipes each of its cells offers."""
+    """The Python of a plant, and the recipes that each of its cells offers."""
 
     document: Document
     used: PythonUses = field(default_factory=PythonUses)
     offers: dict[str, list[str]] = field(default_factory=dict)
 
     def offered(self, cells: Sequence[Cell]) -> dict[str, tuple[Recipe, ...]]:
-        """The recipes of one's own of each of these cells."""
+        """The recipes of one's own for each of these cells."""
         known = {cell.name: self.offers.get(cell.name, []) for cell in cells}
         rows = {name: [self.used.recipes[each] for each in offers] for name, offers in known.items()}
         beside = {cell.name: cell.recipes for cell in cells}  # those that come with its shape
@@ -59,7 +60,7 @@ class PlantPython:
 
 
 def brought(document: Document, content: bytes) -> PlantPython:
-    """What of Python a plant file uses, tried before; nothing, with the problems kept, where it is wrong."""
+    """The Python that a plant file uses, tried before; nothing, with the problems kept, if it is wrong."""
     places = [(*CELLS, name) for name in document.keys(CELLS)]
     of_devices = [place for place in places if is_of_devices(document, place)]
     words = own_recipes.listed(document) if document.has(own_recipes.SECTION) else ()
@@ -85,14 +86,14 @@ def brought(document: Document, content: bytes) -> PlantPython:
 def _marked(
     document: Document, cell: str, recipes: Sequence[Recipe], beside: Sequence[Recipe]
 ) -> tuple[Recipe, ...]:
-    """The recipes of a cell, with the one that a task means which names none: as it says, or the only one."""
+    """The recipes of a cell; one is marked as the default of tasks: the one it names, or its only one."""
     default = document.value((*CELLS, cell, "default_recipe"))
     alone = len(recipes) == 1 and not beside
     return tuple(replace(each, is_default=each.name == default or alone) for each in recipes)
 
 
 def verdict(name: str, beside: Path | None, content: bytes) -> Verdict:
-    """What the recipes that a plant file uses come to, in a process of its own."""
+    """The verdict on the recipes that a plant file uses, tried in a process of its own."""
     with TemporaryDirectory(prefix="arboleda-") as made:
         folder = Path(made)
         (folder / PLANT).write_bytes(content)
@@ -106,7 +107,7 @@ def verdict(name: str, beside: Path | None, content: bytes) -> Verdict:
 
 
 def main(name: str) -> None:
-    """The other process: import, build, write down what came of it, end."""
+    """Run as the other process: import, build, write down the result, end."""
     from . import loader  # which imports this module
 
     folder = Path(name)
@@ -119,7 +120,7 @@ def main(name: str) -> None:
 
 
 def _write_whole(path: Path, data: dict[str, Any]) -> None:
-    """Write it so that whoever reads finds it whole, or what was there before, whenever this process ends."""
+    """Write the file so that a reader finds it whole, or the one before, whenever this process ends."""
     half = path.with_suffix(".half")
     half.write_text(json.dumps(data), "utf-8")
     half.replace(path)
@@ -127,7 +128,7 @@ def _write_whole(path: Path, data: dict[str, Any]) -> None:
 
 @contextmanager
 def watching(folder: Path, longest_s: float) -> Iterator[Any]:
-    """A watch that ends this process, with the line that it was at, where something takes too long."""
+    """A watch that ends this process, with the line that it was at, if something takes too long."""
     with open(folder / STACK, "w", encoding="utf-8") as stack:
 
         def watch(spot: Spot, doing: str) -> None:
@@ -151,7 +152,7 @@ def _run(folder: Path) -> int | None:
 
 
 def _ended(process: subprocess.Popen[bytes], phase: Path) -> int | None:
-    """Its status; None for one that neither ends nor begins anything for long."""
+    """The exit status of the process; None if it neither ends nor begins anything for long."""
     before: float | None = None
     while True:
         try:
@@ -164,7 +165,7 @@ def _ended(process: subprocess.Popen[bytes], phase: Path) -> int | None:
 
 
 def broken_off(folder: Path, status: int | None) -> str:
-    """Why the other process told nothing, with the line that it was at; None: it was given up."""
+    """The reason for which the other process gave no result, and where; `status` None: it was given up."""
     if not (folder / PHASE).exists():
         ended = SLOW if status is None else f"Python ended with status {status}"
         return f"the recipes could not be tried: {ended}"

@@ -1,4 +1,4 @@
-"""A kind of devices that are more than facts and verbs, as an arm with its joints and its model."""
+"""Interface of a kind whose devices are more than facts and verbs, such as arms with joints and models."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ from .document import Document, Place
 
 @dataclass(frozen=True, kw_only=True)
 class RobotKind:
-    """A kind that reads by itself what a plant file says of a device, which it keeps the problems of.
+    """A kind that reads the keys of its devices by itself, and keeps their problems.
 
-    Those that `go` have targets, carry tools and belong to one cell. Those with a twin have a key `twin`:
-    the name under which they are drawn.
+    Devices of a kind that `goes` have targets, carry tools and belong to one cell. Those of a kind with a
+    twin have a key `twin`: the name under which they are drawn.
     """
 
     name: str

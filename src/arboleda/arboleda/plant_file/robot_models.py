@@ -25,7 +25,7 @@ Pair = Annotated[list[Number], Field(min_length=2, max_length=2)]
 
 @dataclass(frozen=True, kw_only=True)
 class ArmModel:
-    """A kind of arm: its joints from the base outwards; `description` where it is the plant's own."""
+    """A model of arm: its joints from the base outwards; `description` if it is the plant's own."""
 
     name: str
     joints: tuple[Joint, ...]
@@ -34,7 +34,7 @@ class ArmModel:
 
 @dataclass(frozen=True, kw_only=True)
 class MobileModel:
-    """A kind of mobile robot; `speed` in m/s."""
+    """A model of mobile robot; `speed` in m/s."""
 
     name: str
     speed: float
@@ -45,7 +45,7 @@ def millimetres(value: float) -> float:
     return value / 1000
 
 
-FULL_TURN_RAD = 2 * math.pi  # either way: what a joint without ends is taken to turn
+FULL_TURN_RAD = 2 * math.pi  # either way, for a joint without ends
 PINION_MM = math.degrees(1.0)  # a pinion that moves its rack by 1 mm per degree
 
 TO_SI: dict[str, Callable[[float], float]] = {"deg": math.radians, "rad": float, "mm": millimetres}
@@ -58,7 +58,7 @@ class Shape(BaseModel):
 
 
 class RobotFile(Shape):
-    """What each robot has: a name, joints, and what its drawing and its reader need."""
+    """The file of a robot: its name, its joints, and the data for its drawing and its reader."""
 
     model: str
     joints: list[Any]
@@ -154,7 +154,7 @@ def _mobile(document: Document) -> MobileModel:
 
 
 def described_joint(document: Document, place: Place) -> Joint | None:
-    """One entry of `joints`; None, with its problems kept, where something is wrong with it."""
+    """One entry of `joints`; None, with its problems kept, if something is wrong with it."""
     shape = document.read(JointFile, place)
     if shape is None:
         return None
@@ -178,7 +178,7 @@ def described_joint(document: Document, place: Place) -> Joint | None:
 
 
 def _limits(document: Document, place: Place, shape: JointFile, units: tuple[str, ...]) -> tuple[float, ...]:
-    """Both ends of a joint; empty, with the problem kept, where they cannot be."""
+    """Both ends of a joint; empty, with the problem kept, if they are impossible."""
     if shape.type == "continuous":
         for key in ("limits_deg", "limits_rad", "limits_mm"):
             if document.has((*place, key)):
@@ -195,7 +195,7 @@ def _limits(document: Document, place: Place, shape: JointFile, units: tuple[str
 
 
 def _quantity(document: Document, place: Place, key: str, units: tuple[str, ...]) -> tuple[float, ...]:
-    """The numbers under the one key that is given, in SI; empty, with the problem kept, if not one is."""
+    """Numbers under the one given key, in SI; empty, with the problem kept, unless exactly one is."""
     keys = {key.format(unit): TO_SI[unit] for unit in units}
     given = [name for name in keys if document.has((*place, name))]
     if len(given) != 1:

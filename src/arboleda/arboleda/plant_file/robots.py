@@ -1,4 +1,4 @@
-"""The robots and people of a plant file: a model's numbers are narrowed by the file and never widened."""
+"""The robots and people of a plant file, which narrows the numbers of a model and never widens them."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ def arm_model(document: Document, place: Place) -> ArmModel | None:
 def arm(
     document: Document, place: Place, model: ArmModel | None, written: type[ArmShape] | None = None
 ) -> Arm | None:
-    """The arm of a cell; None, with its problems kept, where something is wrong with it."""
+    """The arm of a cell; None, with its problems kept, if something is wrong with it."""
     of_a_cell = DrivenArmShape if document.has((*place, drivers.KEY)) else ArmShape
     shape = document.read(written or of_a_cell, place)
     base = _section(document, (*place, "base"), BaseShape)
@@ -84,7 +84,7 @@ def arm(
 
 
 def mobile(document: Document, place: Place, written: type[MobileShape] | None = None) -> Mobile | None:
-    """The mobile robot of a cell; None, with its problems kept, where something is wrong with it."""
+    """The mobile robot of a cell; None, with its problems kept, if something is wrong with it."""
     of_a_cell = DrivenMobileShape if document.has((*place, drivers.KEY)) else MobileShape
     shape = document.read(written or of_a_cell, place)
     grid = _section(document, (*place, "grid"), GridShape)
@@ -106,17 +106,17 @@ def mobile(document: Document, place: Place, written: type[MobileShape] | None =
 
 
 def arm_device(document: Document, place: Place) -> Arm | None:
-    """The same of one that a cell has among its devices."""
+    """The arm that a cell has among its devices; None, with its problems kept, if something is wrong."""
     return arm(document, place, arm_model(document, place), ArmDeviceShape)
 
 
 def mobile_device(document: Document, place: Place) -> Mobile | None:
-    """The same of one that a cell has among its devices."""
+    """The mobile robot that a cell has among its devices; None, with problems kept, if something is wrong."""
     return mobile(document, place, MobileDeviceShape)
 
 
 def person_device(document: Document, place: Place) -> Person | None:
-    """A person at the cell; None, with the problems kept, where something is wrong."""
+    """A person at the cell; None, with the problems kept, if something is wrong."""
     named = document.read(PersonShape, place)
     return None if named is None else person(named.name or str(place[-1]))
 
@@ -159,9 +159,8 @@ def _model(
     default: str | None = None,
     also: tuple[str, ...] = (),
 ) -> T | None:
-    """The model of that name; of a misspelt one, with the problem kept, the model that was meant: what
-    follows is held against that.
-    """
+    """The model of that name; for a misspelt one, with the problem kept, the model probably meant, so that
+    the other keys can be checked against it."""
     name = document.value(place) if document.has(place) else default
     if not isinstance(name, str):
         if also and document.has(place):
@@ -192,7 +191,7 @@ def _refuse_other_keys(document: Document, place: Place, known: list[str]) -> No
 
 
 def _narrowed(document: Document, place: Place, number: int, joint: Joint) -> Joint:
-    """The joint with the file's limits and speed; unchanged, with the problem kept, where they are wrong."""
+    """The joint with the file's limits and speed; unchanged, with the problem kept, if they are wrong."""
     si = TO_SI["deg" if joint.unit == "rad" else "mm"]
     limits_place = (*place, "limits", _limits_key(number, joint))
     speed_place = (*place, "speeds", _speed_key(number, joint))
@@ -226,7 +225,7 @@ def _tolerance(document: Document, place: Place, model: ArmModel) -> tuple[float
 
 
 def check_absence(document: Document, place: Place, on_absence: str, robots: Iterable[Robot]) -> None:
-    """Keep a problem where a cell is to go on after an absence and a device cannot prove what it did then."""
+    """Keep a problem if a cell is to go on after an absence and a device cannot prove its acts meanwhile."""
     unproved = [
         robot.name for robot in robots if robot.link is not Link.NONE and robot.evidence is not Evidence.IDS
     ]

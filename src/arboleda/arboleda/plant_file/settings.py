@@ -20,7 +20,7 @@ TYPES = "give bool, int, float, str, Literal, an Enum, and tuples of them"
 
 
 class SettingsRefused(Exception):
-    """A dataclass of settings refused its values: where, and what it raised."""
+    """A dataclass of settings refused its values: the place of these, and the error."""
 
     def __init__(self, place: Place, error: Exception) -> None:
         super().__init__(str(error))
@@ -29,16 +29,16 @@ class SettingsRefused(Exception):
 
 
 def shape(name: str, settings: type) -> type[Shape]:
-    """What a mapping of the plant file must be to become these settings."""
+    """The shape of the plant file's mapping for these settings."""
     hints = get_type_hints(settings)
     outer = {name: (_outer(hints[name], key[0]), key[1]) for name, key in keys(settings).items()}
     return create_model(name, __base__=Shape, **outer)  # type: ignore[call-overload, no-any-return]
 
 
 def read(document: Document, place: Place, fits: type[Shape], settings: type) -> Any:
-    """These settings, with those inside them; None, with its problems kept, where they do not fit.
+    """The settings, with those inside them; None, with its problems kept, if they do not fit.
 
-    Unfit where a dataclass refuses what was read.
+    Unfit if a dataclass refuses the values.
     """
     read = document.read(fits, place)
     return None if read is None else _made(document, place, settings, dict(read))
@@ -59,7 +59,7 @@ def _made(document: Document, place: Place, settings: type, values: dict[str, An
 
 
 def _inside(document: Document, place: Place, hint: Any, value: Any) -> Any:
-    """A value with its mappings made to the dataclasses of its type; None for what does not fit."""
+    """A value with its mappings made into the dataclasses of its type; None for a value that does not fit."""
     inner = next(_dataclasses(hint), None)
     if inner is None or value is None:
         return value
@@ -76,7 +76,7 @@ def _inside(document: Document, place: Place, hint: Any, value: Any) -> Any:
 
 
 def _outer(hint: Any, written: Any) -> Any:
-    """The type of a key, without what is inside mappings: those are read with keys of their own."""
+    """The type of a key, without the contents of mappings: those are read with keys of their own."""
     if next(_dataclasses(hint), None) is None:
         return written
     if get_origin(hint) in (Union, UnionType):
@@ -109,7 +109,7 @@ def _key(hint: Any, row: Field[Any]) -> tuple[Any, Any]:
 
 
 def _as_in_a_file(hint: Any) -> Any:
-    """The type, where a list serves for a tuple and a word for an Enum."""
+    """The type as a file has it: a list in place of a tuple, a word in place of an Enum."""
     if get_origin(hint) in (Union, UnionType):
         return reduce(or_, map(_as_in_a_file, get_args(hint)))
     is_tuple = get_origin(hint) is tuple or (isinstance(hint, type) and issubclass(hint, Enum))

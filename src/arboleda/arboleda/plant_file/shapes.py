@@ -24,7 +24,7 @@ PLANT_NAME_RULE = "a name of at most 64 small letters, digits, - and _, the firs
 
 
 def is_name(text: str) -> bool:
-    """Whether ROS 2 and MQTT both take `text` as one level of a topic."""
+    """True if ROS 2 and MQTT both take `text` as one level of a topic."""
     return len(text) <= 64 and NAME.fullmatch(text) is not None
 
 
@@ -35,7 +35,7 @@ def _name(text: str) -> str:
 
 
 def is_plant_name(text: str) -> bool:
-    """Whether a plant can be called so."""
+    """True if a plant can have this name."""
     return len(text) <= 64 and PLANT_NAME.fullmatch(text) is not None
 
 
@@ -46,7 +46,7 @@ def _plant_name(text: str) -> str:
 
 
 def _protocol(value: Any) -> Any:
-    """`5` and `"5"` are the same version; `5.0` and `true` are none."""
+    """The version of the protocol: `5` and `"5"` are the same one; `5.0` and `true` are none."""
     return "5" if type(value) is int and value == 5 else value
 
 
@@ -70,7 +70,7 @@ Angles = Annotated[list[Number], Field(min_length=1, max_length=9)]
 
 
 class PlantShape(Shape):
-    """The file itself; `paths`, `stations` and `palletizing` here serve every cell without its own."""
+    """The plant in its file; `paths`, `stations` and `palletizing` here serve every cell without its own."""
 
     name: Annotated[str, AfterValidator(_plant_name)]
     uses: Any = None
@@ -90,14 +90,14 @@ class PlantShape(Shape):
 
 
 class FileShape(PlantShape):
-    """All of the file: the plant, and what is recorded of it."""
+    """The whole file: the plant, and the limits of its record."""
 
     record: Any = None
     reports: Literal["on", "off"] = "off"
 
 
 class RecordShape(Shape):
-    """`record:`, how much of the flight record is kept."""
+    """`record:`, the limits of the flight record."""
 
     megabytes: Annotated[float, Field(ge=2, le=1_000_000, allow_inf_nan=False)] = Limits.megabytes
     days: Annotated[float, Field(gt=0, le=36_500, allow_inf_nan=False)] = Limits.days
@@ -190,7 +190,7 @@ class DeviceShape(Shape):
 
 
 class SharedRoleShape(Shape):
-    """A device that several cells have, in a role of one of them."""
+    """A device that several cells have, in its role in one of them."""
 
     shared: str
 
@@ -203,7 +203,7 @@ class RetryShape(Shape):
 
 
 class RobotShape(Shape):
-    """What an arm and a mobile robot have in common; an empty `mqtt` is the robot's own name.
+    """The keys that an arm and a mobile robot have in common; an empty `mqtt` is the robot's own name.
 
     A `link` is the short form of a `driver` that comes with Arboleda.
     """
@@ -233,14 +233,14 @@ class ArmShape(RobotShape):
 
 
 class OffsetShape(Shape):
-    """Where one frame lies in another: shifted, and turned about x, then y, then z."""
+    """The offset of one frame in another: shifted, and turned about x, then y, then z."""
 
     xyz_mm: Triple = Field(default_factory=lambda: [0.0, 0.0, 0.0])
     rpy_deg: Triple = Field(default_factory=lambda: [0.0, 0.0, 0.0])
 
 
 class ModelShape(Shape):
-    """`model:` of an arm, where it says more of its own file than which one that is."""
+    """`model:` of an arm that gives more than the name of its own file."""
 
     file: str
     base_link: str | None = None
@@ -296,7 +296,7 @@ class PersonShape(Shape):
 
 
 class NodeShape(Shape):
-    """Where a mobile robot stands at a target."""
+    """The node at which a mobile robot stands for a target."""
 
     node: Annotated[int, Field(ge=0)]
 
@@ -309,14 +309,14 @@ class ArrayShape(Shape):
 
 
 class BaseShape(Shape):
-    """`base:`, where an arm stands in the `world` frame."""
+    """`base:`, the place of an arm in the `world` frame."""
 
     origin_m: Pair = Field(default_factory=lambda: [0.0, 0.0])
     yaw_deg: Number = 0.0
 
 
 class GridShape(BaseShape):
-    """`grid:`, where node 0 lies; columns go along x and rows along y of the turned frame."""
+    """`grid:`, the place of node 0; columns go along x and rows along y of the turned frame."""
 
     pitch_mm: Annotated[float, Field(ge=1, le=10_000, allow_inf_nan=False)] = 200.0
 
@@ -353,7 +353,7 @@ class PalletizingShape(Shape):
 class ZoneShape(Shape):
     """One zone under `zones:`; a pose is written `<cell> <pose>`, a move as its two ends.
 
-    `free_while` has the devices that occupy it by themselves, and what they say while they do not.
+    `free_while` has the devices that occupy it by themselves, and their facts while they do not.
     """
 
     poses: list[str] = Field(default_factory=list)

@@ -9,15 +9,15 @@ from arboleda.model.plant_model import Robot
 from .document import Document, Place, choice, nearest, shown
 from .shapes import MAPPING, NAME_RULE, SharedRoleShape, is_name
 
-SECTION = "shared"  # of the file; in a role of a cell, the name of the device
+SECTION = "shared"  # key of the file; in a role of a cell, the key for the device's name
 OF_A_CELL = ("name", "tool_of")
 Read = Callable[[Place], "Robot | None"]
 
 
 def shared_devices(document: Document, read: Read, goes: Callable[[Place], bool]) -> dict[str, Robot]:
-    """The devices by name, as `read` reads one; what is wrong with the others is kept.
+    """The devices by name, as `read` reads one; the problems of the others are kept.
 
-    What `goes` from place to place is one of those.
+    A robot that `goes` from place to place is a problem, too.
     """
     if not document.has((SECTION,)):
         return {}
@@ -38,7 +38,7 @@ def shared_devices(document: Document, read: Read, goes: Callable[[Place], bool]
 
 
 def in_role(document: Document, place: Place, devices: Mapping[str, Robot]) -> Robot | None:
-    """The shared device in a role of a cell; None, with the problem kept, where there is no such one."""
+    """The shared device in a role of a cell; None, with the problem kept, if there is no such one."""
     shape = document.read(SharedRoleShape, place)
     names = document.keys((SECTION,))
     if shape is None:
@@ -58,7 +58,7 @@ def named(document: Document, cell: Place) -> dict[str, str]:
 
 
 def check_use(document: Document) -> None:
-    """Keeps a problem for each shared device that no cell names, and for cells that name it wrongly."""
+    """Keep a problem for each shared device that no cell names, and for cells that name it wrongly."""
     used = set()
     for cell in document.keys(("cells",)):
         place: Place = ("cells", cell)
@@ -81,7 +81,7 @@ def check_use(document: Document) -> None:
 
 
 def _refused(document: Document, place: Place, goes: bool) -> bool:
-    """Whether there is something that only a device of one cell can have."""
+    """True if a shared device has something that only devices of one cell can have; each is a problem."""
     if goes:
         rule = "a robot that goes from place to place belongs to one cell; what is shared stays where it is"
         document.problem((*place, "kind"), rule)

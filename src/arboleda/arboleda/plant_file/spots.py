@@ -1,4 +1,4 @@
-"""Where one robot stands at one target."""
+"""The pose of one robot at one target."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ START = "home"  # the target where each robot waits
 
 
 def spot(document: Document, place: Place, robot: Robot, name: str) -> Pose | None:
-    """The pose that the file has there for a target of this name; None, with the problem kept, else."""
+    """The pose that the file has there for a target of this name; else None, with the problem kept."""
     if robot.on_grid:
         shape = document.read(NodeShape, place)
         if shape is not None and shape.node >= robot.grid.size:

@@ -1,4 +1,4 @@
-"""The targets of a cell of devices: places with one name, and where each of its robots stands there."""
+"""The targets of a cell of devices: places with one name, and the pose of each of its robots there."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from .spots import START, spot
 def workspaces(
     document: Document, place: Place, roles: Mapping[str, Robot], tools: Mapping[str, Robot]
 ) -> tuple[Workspace, ...] | None:
-    """Where each robot of a cell goes; None, with the problems kept, where something is wrong.
+    """The targets of each robot of a cell; None, with the problems kept, if something is wrong.
 
     `tools` are the devices that robots carry, by the role of the robot.
     """
@@ -76,7 +76,7 @@ def groups(
 
 
 def _check_names(document: Document, place: Place, array: arrays.Array, targets: Collection[str]) -> None:
-    """Keeps a problem where an array makes a target that there is."""
+    """Keep a problem if an array makes a target that exists already."""
     taken = [name for name in array.names if name in targets]
     if taken:
         document.problem(place, f"it makes a target {shown(taken[0])}, and there is one already", at=place)

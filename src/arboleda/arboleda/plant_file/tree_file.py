@@ -1,4 +1,4 @@
-"""Files of trees as a person names them on the command line: read with all that they include, and checked."""
+"""Files of trees that a person names on the command line: read with all their includes, and checked."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ LONGEST = 500  # characters of a line
 
 
 def is_tree_file(path: Path) -> bool:
-    """Whether a file is one of trees, by its name."""
+    """True if a file is one of trees, by its name."""
     return path.suffix.lower() == ENDING
 
 
@@ -39,7 +39,7 @@ class TreeFile:
 def load(path: Path, known: Mapping[str, Kind] | None = None) -> TreeFile:
     """The trees of a file and of those that it includes; ConfigError with every mistake.
 
-    `known`: the kinds of leaves that there are, and no others; None: there may be any.
+    `known` are the only kinds of leaves that there are; None: there may be any.
     """
     findings = Findings()
     forest = reading.read(str(path), user_file.read_bytes(path, LARGEST), findings, tree_includes.read)
@@ -50,7 +50,7 @@ def load(path: Path, known: Mapping[str, Kind] | None = None) -> TreeFile:
 
 
 def report(path: Path, known: Mapping[str, Kind] | None = None) -> list[str]:
-    """What there is to say of a file that can be used; ConfigError with every mistake of one that cannot."""
+    """The lines about a file that can be used; ConfigError with every mistake of one that cannot."""
     found = load(path, known)
     lines = [*found.warnings, *_unknown(path, found.checked)]
     trees = ", ".join(found.forest.trees) or "none"

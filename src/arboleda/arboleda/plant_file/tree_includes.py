@@ -18,7 +18,7 @@ HOW = "it was not looked into; name it by its path from this file to have it rea
 
 
 def read(file: str, path: str, package: str) -> tuple[str, bytes]:
-    """The name of an included file and what is in it, as `reading.Fetch` has it."""
+    """The name of an included file and its content, as `reading.Fetch` has it."""
     if "\0" in path or "\0" in package:
         raise ConfigError(("this is not the name of a file",))
     found = os.path.normpath(_placed(file, path, package))
@@ -26,7 +26,7 @@ def read(file: str, path: str, package: str) -> tuple[str, bytes]:
 
 
 def _placed(file: str, path: str, package: str) -> Path:
-    """As BehaviorTree.CPP has it, an absolute path counts also where a package is named."""
+    """The path of an included file; as in BehaviorTree.CPP, an absolute one counts even with a package."""
     if Path(path).is_absolute():
         if not Path(path).exists():
             raise MissingInclude(
@@ -37,7 +37,7 @@ def _placed(file: str, path: str, package: str) -> Path:
 
 
 def _share(path: str, package: str) -> Path:
-    """The folder of what a package shares."""
+    """The shared folder of a package."""
     prefixes = [Path(each) for each in os.environ.get(PREFIXES, "").split(os.pathsep) if each]
     for prefix in prefixes:
         if Path(package).name == package and (prefix / MARKER / package).is_file():

@@ -36,7 +36,7 @@ def robot_urdf(plant: PlantModel, name: str) -> str:
 
 
 def prefix(robot: Arm | Mobile) -> str:
-    """What the names of its links and joints begin with, as in its `joint_states`."""
+    """The prefix of the names of its links and joints, as in its `joint_states`."""
     return f"{robot.twin if robot.has_joints else robot.name}_"
 
 
@@ -46,7 +46,7 @@ def root_link(robot: Arm | Mobile) -> str:
 
 
 def limits(robot: Arm | Mobile) -> dict[str, Limits]:
-    """By joint name without prefix, in SI units; a mobile's joints end where its grid does."""
+    """The limits by joint name without prefix, in SI units; a mobile's joints end with its grid."""
     if robot.has_joints:
         return {joint.name: Limits(joint.lower, joint.upper, joint.speed) for joint in robot.joints}
     far = robot.grid.position(robot.grid.size - 1)

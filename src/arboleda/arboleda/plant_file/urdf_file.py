@@ -27,7 +27,7 @@ REFUSED = {
 
 @dataclass(frozen=True, kw_only=True)
 class Axis:
-    """A joint that moves, as a file describes it; what it leaves open is None."""
+    """A joint that moves, as a file describes it; None for values that it leaves open."""
 
     name: str
     type: str
@@ -41,7 +41,7 @@ class Axis:
 
 @dataclass(frozen=True, kw_only=True)
 class Chain:
-    """The joints from foot to tool, what is drawn, and what was assumed."""
+    """The joints from foot to tool, their drawing, and the assumptions made."""
 
     robot: Element
     base: str
@@ -51,7 +51,7 @@ class Chain:
 
 
 class WrongLink(Exception):
-    """The plant file names a link that cannot be the one: under which key, and a sentence."""
+    """The plant file names a link that cannot be the one: its key, and a sentence."""
 
     def __init__(self, key: str, sentence: str) -> None:
         super().__init__(sentence)
@@ -62,7 +62,7 @@ class WrongLink(Exception):
 def read(name: str, raw: bytes, *, base: str | None = None, tip: str | None = None) -> Chain:
     """The chain from the link `base` to the link `tip`, found where None; ConfigError with every problem.
 
-    WrongLink where one that is given cannot be.
+    WrongLink if a given link cannot be the one.
     """
     try:
         top = parse(raw)
@@ -104,7 +104,7 @@ class _Reader:
         )
 
     def _check_form(self) -> None:
-        """Every tag for itself, and that joints lead from links to links."""
+        """Check every tag by itself, and that joints lead from links to links."""
         if any(tag.name.startswith("xacro:") for tag in _all(self._top)):
             made = "this is xacro; type `xacro FILE.urdf.xacro > FILE.urdf` and name what that makes"
             self._say(self._top, made)
@@ -160,7 +160,7 @@ class _Reader:
                 self._above[link] = joint
 
     def _check_circles(self) -> None:
-        """Every way upwards ends; one that does not is named once."""
+        """Check that the way from each link upwards ends; a circle is named once."""
         for link in self._links:
             above, seen = link, {link}
             while above in self._above:
@@ -228,7 +228,7 @@ class _Reader:
         return way
 
     def _axis(self, joint: Tag) -> Axis | None:
-        """A joint that moves, held against what any motor here can do."""
+        """A joint that moves, checked against the abilities of any motor here."""
         name, kind = joint.attributes["name"], joint.attributes["type"]
         axis = joint.first("axis")
         if axis is not None and numbers(self._problems, axis, "xyz", 3) == (0.0, 0.0, 0.0):
@@ -279,7 +279,7 @@ class _Reader:
         return (child for child, joint in self._above.items() if _end_of(joint, "parent") == link)
 
     def _below(self, link: str) -> Iterator[str]:
-        """The link and all that hang on it."""
+        """The link and all links below it."""
         waiting = [link] if link in self._links else []
         seen: set[str] = set()
         while waiting:
@@ -291,7 +291,7 @@ class _Reader:
             waiting += self._children(each)
 
     def _pruned(self, foot: str, moving: set[str]) -> Element:
-        """What hangs on the foot; a joint that is not one of `moving` is fixed."""
+        """The links below the foot as a robot of their own; a joint that is not one of `moving` is fixed."""
         robot = Element("robot", {"name": self._top.attributes.get("name", "robot")})
         robot.extend(_element(material) for material in self._top.all("material"))
         for link in self._below(foot):

@@ -1,4 +1,4 @@
-"""The numbers, origins and shapes of a URDF: what cannot be meant is kept as a problem with its line."""
+"""The numbers, origins and shapes of a URDF; an impossible one is kept as a problem with its line."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def name_of(problems: Problems, tag: Tag) -> str | None:
 
 
 def number(problems: Problems, tag: Tag, key: str, default: float | None = None) -> float | None:
-    """One number of a tag; None, with the problem kept, where there is none and no default."""
+    """One number of a tag; None, with the problem kept, if there is none and no default."""
     if key not in tag.attributes and default is not None:
         return default
     found = numbers(problems, tag, key, 1)
@@ -37,7 +37,7 @@ def number(problems: Problems, tag: Tag, key: str, default: float | None = None)
 
 
 def numbers(problems: Problems, tag: Tag, key: str, count: int) -> tuple[float, ...] | None:
-    """So many numbers of a tag, with spaces between them."""
+    """This many numbers of a tag, with spaces between them."""
     text = tag.attributes.get(key)
     if text is None:
         problems.keep(tag.mark, f"{key} of <{tag.name}> is missing")
@@ -55,7 +55,7 @@ def numbers(problems: Problems, tag: Tag, key: str, count: int) -> tuple[float, 
 
 
 def check_origin(problems: Problems, tag: Tag) -> None:
-    """The place of a joint or a shape, where it says one."""
+    """Check the place of a joint or a shape, if it gives one."""
     origin = tag.first("origin")
     if origin is None:
         return
@@ -66,7 +66,7 @@ def check_origin(problems: Problems, tag: Tag) -> None:
 
 
 def check_shapes(problems: Problems, link: Tag) -> None:
-    """The shapes by which a link is drawn, and those that it hits with."""
+    """Check the shapes by which a link is drawn, and those that it hits with."""
     for part in (*link.all("visual"), *link.all("collision")):
         check_origin(problems, part)
         geometry = part.first("geometry")
@@ -79,7 +79,7 @@ def check_shapes(problems: Problems, link: Tag) -> None:
 
 
 def check_color(problems: Problems, material: Tag) -> None:
-    """The colour of a material, where it says one."""
+    """Check the colour of a material, if it gives one."""
     color = material.first("color")
     found = numbers(problems, color, "rgba", 4) if color else None
     if color and found and not all(0 <= share <= 1 for share in found):

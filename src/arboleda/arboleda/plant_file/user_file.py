@@ -40,7 +40,7 @@ def read_text(path: Path, largest: int) -> str:
 
 
 def check_writable(path: Path) -> None:
-    """ConfigError now rather than after minutes of work; makes an empty file where there is none."""
+    """Raise ConfigError if a file cannot be written, before minutes of work; makes it if there is none."""
     try:
         # Without O_NONBLOCK, opening a pipe waits until somebody reads from it.
         flags = os.O_WRONLY | os.O_APPEND | os.O_CREAT | os.O_NONBLOCK | os.O_CLOEXEC
@@ -52,7 +52,7 @@ def check_writable(path: Path) -> None:
 
 
 def check_new(path: Path) -> None:
-    """ConfigError now rather than after minutes of work, where `path` is there or cannot be."""
+    """Raise ConfigError if a file exists or cannot be made, before minutes of work."""
     if path.exists():
         raise ConfigError((f"{path}: is there already; name another file",))
     check_writable(path)

@@ -39,7 +39,7 @@ class XmlFault(Exception):
 
 
 def parse(raw: bytes) -> Tag:
-    """The outermost element; XmlFault where the bytes are no XML that is taken here."""
+    """The outermost element; XmlFault if the bytes are no XML of the accepted kind."""
     reader = _Reader()
     try:
         reader.parser.Parse(raw, True)

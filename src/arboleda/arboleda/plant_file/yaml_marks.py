@@ -68,7 +68,7 @@ def parse(raw: bytes) -> tuple[Node, list[YamlFault]]:
 
 
 def scalar(text: str) -> bool | int | float | str | None:
-    """What an unquoted scalar means."""
+    """The value of an unquoted scalar."""
     if text in WORDS:
         return WORDS[text]
     if INTEGER.fullmatch(text):

@@ -21,7 +21,7 @@ UPWARDS = (0.0, 0.0, 1.0)
 
 
 class OwnArmFile(ArmFile):
-    """The form of a packaged arm; what only its drawing and its readers need may be left out."""
+    """The form of a packaged arm; keys that only its drawing and its readers need may be left out."""
 
     model: str = ""
     kind: Literal["arm"] = "arm"

@@ -1,4 +1,4 @@
-"""The regions that robots share: which poses lie in them and which moves cross them."""
+"""The zones that robots share: the poses that lie in them and the moves that cross them."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ class Spot:
 
 @dataclass(frozen=True, kw_only=True)
 class Zone:
-    """What a zone covers, each with its position in its list; a move is the set of its two ends."""
+    """Poses and moves of a zone, each with its position in its list; a move is the set of its two ends."""
 
     name: str
     poses: dict[Spot, int]
@@ -39,7 +39,7 @@ class Zone:
     interlocks: tuple[Interlock, ...] = ()
 
     def place(self, *spots: Spot) -> Place:
-        """Where the file names this pose, or the move between these two; it may not name that itself."""
+        """The place in the file of this pose, or of the move between two; a move need not be named itself."""
         if len(spots) > 1:
             place: Place = (*SECTION, self.name, "moves")
             number = self.moves.get(frozenset(spots))
@@ -59,7 +59,7 @@ def zones(document: Document, cells: Sequence[Cell]) -> tuple[Zone, ...]:
 
 
 def with_zones(document: Document, cell: StorageCell, all_zones: Sequence[Zone]) -> StorageCell:
-    """The cell with the zones of its poses and moves; a problem is kept where no way can be planned."""
+    """The cell with the zones of its poses and moves; a problem is kept if no way can be planned."""
 
     def placed(pose: Pose) -> Pose:
         return _placed(cell, pose, all_zones)
@@ -86,7 +86,7 @@ def with_zones(document: Document, cell: StorageCell, all_zones: Sequence[Zone])
 
 
 def with_zones_of_targets(document: Document, cell: Cell, all_zones: Sequence[Zone]) -> Cell:
-    """A cell of devices with the zones of its targets, and with what of it occupies zones by itself."""
+    """A cell of devices with the zones of its targets, and the devices that occupy zones by themselves."""
     spaces = []
     for space in cell.spaces:
         poses = tuple(_placed(cell, pose, all_zones) for pose in space.poses)
@@ -113,7 +113,7 @@ def _device_names(cell: Cell) -> set[str]:
 def _keep_unplanned(
     document: Document, cell: Cell, unplanned: Mapping[str, str], all_zones: Sequence[Zone]
 ) -> None:
-    """Keeps why no way can be planned, by pose."""
+    """Keep a problem for each pose for which no way can be planned."""
     for pose, sentence in unplanned.items():
         spot = Spot(cell=cell.name, pose=pose)
         zone = next(zone for zone in all_zones if spot in zone.poses)
@@ -121,7 +121,7 @@ def _keep_unplanned(
 
 
 def _keep_confusions(document: Document, cell: Cell, space: Workspace, all_zones: Sequence[Zone]) -> None:
-    """Keeps a problem for each zone of which nobody would know whether the robot is in it."""
+    """Keep a problem for each zone in which a robot might be without anybody knowing it."""
     for found in confusions(space) if space.zones else ():
         zone = next(zone for zone in all_zones if zone.name == found.zone)
         spots = [Spot(cell=cell.name, pose=name) for name in found.named]
@@ -178,7 +178,7 @@ def _interlocks(document: Document, place: Place, cells: Sequence[Cell]) -> tupl
 
 
 def _named_devices(document: Document) -> list[str]:
-    """The names of all devices that the file has, right or wrong."""
+    """The names of all devices in the file, right or wrong."""
     cells: list[Place] = [("cells", name, "devices") for name in document.keys(("cells",))]
     cells.append(("shared",))
     places = [(*cell, role) for cell in cells for role in document.keys(cell)]
@@ -190,7 +190,7 @@ def _spots(document: Document, place: Place, texts: list[str], cells: Sequence[C
 
 
 def _spot(document: Document, place: Place, text: str, cells: Sequence[Cell]) -> Spot | None:
-    """`sis_a pickup` -> its spot; None where it is none, or where its cell could not be read."""
+    """The spot in a text such as `sis_a pickup`; None if it is none, or if its cell could not be read."""
     name, *words = text.lower().split() or [""]
     names = document.keys(("cells",))
     if name not in names:
@@ -226,7 +226,7 @@ def _poses(cell: Cell) -> dict[str, Pose]:
 def _move(
     document: Document, place: Place, ends: Sequence[Spot | None], inside: Collection[Spot | None]
 ) -> frozenset[Spot] | None:
-    """The move between two ends; None, with the problem kept, where it cannot cross a zone with `inside`."""
+    """The move between two ends; None, with the problem kept, if it cannot cross a zone with `inside`."""
     a, b = ends
     if a is None or b is None:
         return None
@@ -243,7 +243,7 @@ def _move(
 
 
 def _once(document: Document, place: Place, values: Iterable[T | None], sentence: str) -> dict[T, int]:
-    """The values that are there, with their first positions; keeps a problem for each that is repeated."""
+    """The values, with their first positions; keeps a problem for each repeated one."""
     found: dict[T, int] = {}
     for index, value in enumerate(values):
         if value is not None and value in found:

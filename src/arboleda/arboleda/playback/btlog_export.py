@@ -21,7 +21,7 @@ OVER = {state.value for state in ENDED}
 
 
 def write(record: Record, task: str, output: Path) -> int:
-    """The file's size; ConfigError for a task that the record does not have, or that had no tree in it."""
+    """Write a task's `.btlog` and return its size; ConfigError if the record has no tree of such a task."""
     changes = list(_changes(record, task))
     if not changes:
         raise ConfigError((f"{plain(task, 80)}: {record.paths[0]} has no such task",))
@@ -40,7 +40,7 @@ def write(record: Record, task: str, output: Path) -> int:
 
 
 def _looks(record: Record, changes: Sequence[Change]) -> Iterator[Look]:
-    """The task's tree whenever it has changed, and once more without rows where it is over."""
+    """The task's tree at each of its changes, and once more without rows at its end."""
     views, was_mine = Views(record), False
     (began_ns, first), (ended_ns, last) = changes[0], changes[-1]
     until_ns = ended_ns + LATER_NS if last["state"] in OVER else views.ended_ns
@@ -52,7 +52,7 @@ def _looks(record: Record, changes: Sequence[Change]) -> Iterator[Look]:
 
 
 def _changes(record: Record, task: str) -> Iterator[Change]:
-    """What became of it, each with its time."""
+    """The changes of a task, each with its time."""
     word = f'"task":{json.dumps(task)}'.encode()
     for unix_ns, data in record.raw():
         if b'"TaskChanged"' in data and word in data:

@@ -10,14 +10,14 @@ from arboleda.recorder.plain_data import sentence_from
 
 
 def moment(unix_ns: int, digits: str = "seconds") -> str:
-    """A time with its date, as the clock on the wall has it."""
+    """A time with its date, in this machine's time zone."""
     with suppress(OverflowError, OSError, ValueError):
         return datetime.fromtimestamp(unix_ns / 1e9).isoformat(" ", digits)
     return "?"
 
 
 def sentence_of(data: Any) -> str:
-    """In English; "" where there is none, or none that can be said."""
+    """The sentence in English; "" if there is none, or none that can be read."""
     try:
         return str(sentence_from(data) or "")
     except (AttributeError, IndexError, KeyError, TypeError, ValueError):

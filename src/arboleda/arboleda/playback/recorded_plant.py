@@ -26,7 +26,7 @@ def model_of(beginning: Beginning, other: Path | None = None) -> PlantModel:
 
 
 def as_it_ran(beginning: Beginning, model: PlantModel) -> PlantModel:
-    """The same with the boards and at the rate that the recorded plant had."""
+    """The same plant with the boards and at the rate of the recorded run."""
     if beginning.simulated:
         return model.on_boards(*ELSEWHERE)
     return at_rate(model.on_boards(Link.DRIVER) if beginning.virtual else model, beginning.rate)
@@ -56,7 +56,7 @@ def _loaded(files: PlantFiles, folder: Path) -> PlantModel:
 
 
 def _inside(name: str) -> str:
-    """The name of a file in a record; NoRecord where it would be written somewhere else."""
+    """The name of a file in a record; NoRecord if it would be written somewhere else."""
     path = PurePosixPath(name)
     if path.is_absolute() or ".." in path.parts or not path.parts or "\0" in name:
         raise NoRecord("Its plant file has a path that no plant writes.")

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 
 class RecordedPast:
-    """`arboleda.dashboard.past.side.PastSide`; NoRecord where the record has nothing to see."""
+    """Recorded: a record as `arboleda.dashboard.past.side.PastSide`; NoRecord if it has nothing to see."""
 
     def __init__(self, record: Record, model: PlantModel) -> None:
         self._model = model
@@ -70,7 +70,7 @@ class RecordServer:
 
 
 def show(record: Record, model: PlantModel, query: dict[str, str], port: int | None) -> None:
-    """Serve the page until Ctrl-C; `query` is where in the record its address leads."""
+    """Serve the page until Ctrl-C; `query` names the place in the record that its address leads to."""
     server = RecordServer(RecordedPast(record, model), port)
     with interruptible():
         try:

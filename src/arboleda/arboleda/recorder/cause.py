@@ -1,4 +1,4 @@
-"""Why a task failed: rules over what the record has of it, the surest first. Pure."""
+"""Rules that find why a task failed, over the facts of its record; the surest rule comes first. Pure."""
 
 from __future__ import annotations
 
@@ -12,19 +12,20 @@ from arboleda.model.sentence import Phrase, Sentence, Value
 
 from .troubles import ALARM, BOOT, BRIDGE, SILENCE, Trouble
 
-BEFORE_S = 0.5  # what had ended so long before the failure was not what it failed of
-SOON_S = 0.3  # what shows so soon after it: who ramps down says why once it stands
+BEFORE_S = 0.5  # a trouble that ended earlier was not the cause
+SOON_S = 0.3  # a robot that ramps down reports its reason only at rest
 TOGETHER_S = 0.3  # connections that break within so long broke for one reason
 GONE = frozenset({"part.lost", "part.gone"})
-MOVES_OFF_S = 0.2  # from the command to the first reports away from where the part lies
-AWAY_S = 2.0  # so long after the plant was away, what fails may fail of that
+MOVES_OFF_S = 0.2  # time from the command to the first reports away from the part's place
+AWAY_S = 2.0  # an absence of the plant may cause failures for so long
 
 
 @dataclass(frozen=True, kw_only=True)
 class TaskCommand:
-    """A command of a task, and what its robot made of it; `switch`: it sets what the robot holds with.
+    """Command of a task, and its course on the robot; `switch`: it sets the effector that holds the part.
 
-    `moved`: it was seen to move for it; `stands`: after that it was seen to stand, and not to have done it.
+    `moved`: the robot was seen to move for it. `stands`: it was seen at rest afterwards, with the command not
+    done.
     """
 
     id: str
@@ -38,9 +39,12 @@ class TaskCommand:
 
 @dataclass(frozen=True, kw_only=True)
 class Evidence:
-    """What the record has of a failed task: the reason and the key that the plant gave, whose failure it was,
-    when, and what happened before; `acts` are operators' words with their times, `absences` those of the
-    plant itself, `foreign` what others commanded, by robot."""
+    """Facts of a failed task from the record, from which rules tell its cause.
+
+    `reason` and `key` are the plant's; `robot` is the one whose failure it was. `sent` and `troubles` are
+    commands and mishaps before it. `acts` are operators' words, each with its time; `absences` the spans in
+    which the plant was away; `foreign` the commands of others to the robot.
+    """
 
     reason: Reason
     key: str
@@ -58,7 +62,7 @@ class Evidence:
 
     @property
     def trouble(self) -> Trouble | None:
-        """The last that befell the robot and had not ended long before."""
+        """The robot's last trouble that had not ended long before the failure; None if there is none."""
         mine = [
             each
             for each in self.troubles
@@ -70,19 +74,19 @@ class Evidence:
 
     @property
     def boot(self) -> Trouble | None:
-        """One after which nobody knows where the robot is, however long ago, where that was the failure."""
+        """The boot since which the robot's place is unknown, if that was the failure; else None."""
         boots = [each for each in self.troubles if each.robot == self.robot and each.kind == BOOT]
         before = [each for each in boots if each.at <= self.failed_at]
         return before[-1] if before and self.reason is Reason.NOT_HOMED else None
 
     @property
     def mine(self) -> list[TaskCommand]:
-        """The commands of the robot before the failure, in their order."""
+        """The robot's commands before the failure, in order."""
         return sorted((each for each in self.sent if each.robot == self.robot), key=_at)
 
     @property
     def last(self) -> TaskCommand | None:
-        """The last of them."""
+        """The robot's last command before the failure; None if there is none."""
         return self.mine[-1] if self.mine else None
 
 
@@ -92,7 +96,7 @@ def _at(sent: TaskCommand) -> float:
 
 @dataclass(frozen=True, kw_only=True)
 class Cause:
-    """What a task failed of: a word of `PHRASES` for programs, whose, and a sentence for people."""
+    """Cause of a failure: a word of `PHRASES` for programs, the robot, and a sentence for people."""
 
     kind: str
     robot: str | None
@@ -164,7 +168,7 @@ BY_KEY = {
     "device.not_free": "busy",
     "device.still_held": "busy",
 }
-"""What the plant's own sentence says by itself, where nothing surer was found."""
+"""The cause for each key of the plant's sentence, if no surer one was found."""
 BY_REASON = {
     Reason.LINK_LOST: "connection",
     Reason.REBOOTED: "boot",
@@ -195,11 +199,11 @@ BEFALLEN = frozenset(
         Reason.PRECONDITION,
     }
 )
-"""Reasons that what befalls a device may lead to."""
+"""Reasons of a failure that a trouble of a device may lead to."""
 
 
 def cause_of(evidence: Evidence) -> Cause:
-    """What a task failed of, by the first rule that knows."""
+    """The cause of a failure, by the first rule that finds one."""
     kind, more = next(found for rule in RULES if (found := rule(evidence)) is not None)
     values = {"robot": evidence.robot or "", "word": evidence.word, "said": evidence.said, **more}
     return Cause(kind=kind, robot=evidence.robot, sentence=PHRASES[kind](**values))
@@ -209,7 +213,7 @@ Found = tuple[str, dict[str, Value]]
 
 
 def _operator(evidence: Evidence) -> Found | None:
-    """Stopped, held and cancelled: what an operator did last before; else somebody else stopped the robot."""
+    """Rule: stopped, held or cancelled by the operator's last act; without one, by somebody else."""
     if evidence.reason not in (Reason.STOPPED, Reason.CANCELLED):
         return None
     acts = [word for at, word in evidence.acts if at <= evidence.failed_at]
@@ -220,14 +224,14 @@ def _operator(evidence: Evidence) -> Found | None:
 
 
 def _away(evidence: Evidence) -> Found | None:
-    """While the plant did nothing, boards stopped by themselves, and nobody heard what they said."""
+    """Rule: the plant was away, so boards stopped by themselves, and their reports were lost."""
     since = evidence.last.at if evidence.last is not None else evidence.failed_at - AWAY_S
     away = [seconds for at, seconds in evidence.absences if since <= at <= evidence.failed_at]
     return ("plant_away", {"seconds": max(away)}) if away and evidence.reason in BEFALLEN else None
 
 
 def _befallen(evidence: Evidence) -> Found | None:
-    """A trouble of the robot says more than what the plant saw of it."""
+    """Rule: a trouble of the robot, which tells more than the plant's own words."""
     trouble = evidence.trouble or evidence.boot
     if trouble is None or evidence.reason not in BEFALLEN:
         return None
@@ -267,7 +271,7 @@ def _of_boot(evidence: Evidence) -> Found | None:
 
 
 def _left_behind(evidence: Evidence) -> Found | None:
-    """A part that is gone as soon as the arm moves off was never held: until then, the sensor saw it lie."""
+    """Rule: a part that is gone as soon as the arm moves off was never held; the sensor saw it lie."""
     *_, before, sent = (None, None, *evidence.mine)
     if evidence.key not in GONE or sent is None or sent.switch or before is None or not before.switch:
         return None
@@ -275,7 +279,7 @@ def _left_behind(evidence: Evidence) -> Found | None:
 
 
 def _deadline(evidence: Evidence) -> Found | None:
-    """Not in time: whether it was taken at all, and what it was."""
+    """Rule: too late; names the command, and whether it was accepted at all."""
     sent = evidence.last
     if evidence.reason is not Reason.DEADLINE or sent is None:
         return None

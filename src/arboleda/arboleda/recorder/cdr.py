@@ -1,4 +1,4 @@
-"""The few types of ROS 2 that a record has, serialised as ROS 2 does: CDR, little-endian.
+"""Serialisation of the few types of ROS 2 that a record has, as ROS 2 does it: CDR, little-endian.
 
 Each number stands at a multiple of its size, counted from behind the head of four bytes. Of the library that
 could do it, `mcap-ros2-support`, the writer makes a file of its own without our other channels.
@@ -17,19 +17,19 @@ Status = tuple[str, str, int, str, Mapping[str, str]]  # name, hardware id, leve
 
 
 def uint8(value: int) -> bytes:
-    """std_msgs/UInt8"""
+    """The bytes of a std_msgs/UInt8."""
     return HEAD + bytes([value])
 
 
 def string(text: str) -> bytes:
-    """std_msgs/String"""
+    """The bytes of a std_msgs/String."""
     data = bytearray(HEAD)
     _add_text(data, text)
     return bytes(data)
 
 
 class JointStates:
-    """sensor_msgs/JointState of joints with these names: positions, and neither velocities nor efforts."""
+    """Serialiser of sensor_msgs/JointState for joints with these names: positions only."""
 
     def __init__(self, names: Sequence[str]) -> None:
         data = bytearray(HEAD + bytes(STAMP.size))
@@ -41,13 +41,13 @@ class JointStates:
         self._positions = struct.Struct(f"<{len(names)}d")
 
     def of(self, unix_ns: int, positions: Sequence[float]) -> bytes:
-        """The message of a moment."""
+        """The bytes of the message of a moment."""
         none = UINT32.pack(0) * 2
         return HEAD + _stamp(unix_ns) + self._before + self._positions.pack(*positions) + none
 
 
 def diagnostics(unix_ns: int, statuses: Sequence[Status]) -> bytes:
-    """diagnostic_msgs/DiagnosticArray"""
+    """The bytes of a diagnostic_msgs/DiagnosticArray."""
     data = bytearray(HEAD + _stamp(unix_ns))
     _add_text(data, "")
     _add_count(data, len(statuses))
@@ -76,7 +76,7 @@ def _add_count(data: bytearray, count: int) -> None:
 
 
 def _add_text(data: bytearray, text: str) -> None:
-    """Its bytes with a zero at their end, after their number."""
+    """Append a text: its length, its bytes, and a zero."""
     encoded = text.encode(errors="replace") + b"\0"
     _add_count(data, len(encoded))
     data += encoded

@@ -1,4 +1,4 @@
-"""What became of one cell in a time of a record."""
+"""Course of one cell in a span of a record."""
 
 from __future__ import annotations
 
@@ -17,8 +17,10 @@ At = tuple[int, Rows]
 
 @dataclass(frozen=True)
 class CellMoment:
-    """A cell at a moment at which something of its tree or its tasks had changed: its name, state, task and
-    tree, whose spans are moments on the plant's clock; and its tasks."""
+    """Cell at a moment at which its tree or its tasks changed: its name, state, task and tree; and its tasks.
+
+    Spans in the tree are moments on the plant's clock.
+    """
 
     unix_ns: int
     cell: Row
@@ -26,7 +28,7 @@ class CellMoment:
 
 
 def followed(views: Views, cell: str, after_ns: int, until_ns: int) -> Iterator[CellMoment]:
-    """Each change of a cell in that time, in order.
+    """The changes of a cell in that time, in order.
 
     Where a long time begins and ends with the same rows, nothing is looked for in between: each has the
     moment at which it last changed.
@@ -36,7 +38,7 @@ def followed(views: Views, cell: str, after_ns: int, until_ns: int) -> Iterator[
 
 
 def _between(views: Views, cell: str, first: At, last: At) -> Iterator[CellMoment]:
-    """`first` and `last` are the ends of a time, each with the rows of then."""
+    """The changes between `first` and `last`, the ends of a span, each with its rows."""
     (after_ns, before), (until_ns, after) = first, last
     if until_ns - after_ns <= AT_ONCE_NS:
         yield from _changes(views, cell, first, until_ns)
@@ -71,7 +73,7 @@ def _looked(unix_ns: int, made: Rows, cell: str) -> CellMoment:
 
 
 def _of(rows: Rows, cell: str) -> Rows:
-    """The rows that its tree depends on; of its own what that needs."""
+    """The rows that the cell's tree depends on, and the needed part of its own row."""
     mine = (f"tree/{cell}/", "tasks/")
     found = {key: row for key, row in rows.items() if key.startswith(mine)}
     own = rows.get(f"cells/{cell}", {})

@@ -1,4 +1,4 @@
-"""The channels of a record: their topics, and what is in their messages."""
+"""Channels of a record: their topics, and the types of their messages."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ SCHEMAS: dict[str, dict[str, Any]] = {
 
 @dataclass(frozen=True)
 class Channel:
-    """A topic, in which encoding its messages are, and of which type, as MCAP has it."""
+    """Topic with the encoding and the type of its messages, as MCAP has them."""
 
     topic: str
     encoding: str
@@ -79,7 +79,7 @@ OURS = tuple(_in_json(topic, schema) for topic, schema in SCHEMAS.items())
 
 
 def register(writer: Writer, channels: Iterable[Channel]) -> dict[str, int]:
-    """Open these channels of a file; their numbers by topic."""
+    """Register these channels in a file; returns their numbers by topic."""
     types: dict[str, int] = {}
     found = {}
     for each in channels:

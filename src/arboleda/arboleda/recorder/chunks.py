@@ -1,4 +1,4 @@
-"""Where in a file its chunks are, and of which time: so a moment is read without what is before it."""
+"""Index of the chunks of a file by time, so that a moment is read without all that precedes it."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ FOOTER_BYTES = HEAD.size + 20
 
 @dataclass(frozen=True)
 class ChunkAt:
-    """One chunk: of which time, where, and where its index of each channel is."""
+    """Chunk of a file: its time, its place, and the place of its index of each channel."""
 
     start_ns: int
     end_ns: int
@@ -38,20 +38,20 @@ class ChunkAt:
 
 @dataclass
 class FileIndex:
-    """What is where in a file, as far as that is written."""
+    """Index of the part of a file that is written."""
 
     chunks: list[ChunkAt] = field(default_factory=list)
     attachments: list[tuple[str, int]] = field(default_factory=list)
-    end: int = len(MAGIC)  # what is before it is known
+    end: int = len(MAGIC)  # the file is indexed up to here
     whole: bool = False
 
     def position(self, unix_ns: int) -> int:
-        """The number of the last chunk that begins before this moment, -1 where none does."""
+        """The number of the last chunk that begins before this moment; -1 if there is none."""
         return bisect_right([chunk.start_ns for chunk in self.chunks], unix_ns) - 1
 
 
 class ChunkFile:
-    """A file of a record, read at any place; what was written since it was asked last is found too."""
+    """File of a record, read at any place; chunks written later are found by the next request."""
 
     def __init__(self, path: Path) -> None:
         self.path = path
@@ -66,14 +66,14 @@ class ChunkFile:
         return self._index
 
     def times(self, offset: int) -> list[tuple[int, int]]:
-        """The messages of one channel in a chunk, by their index: when, and where in the chunk."""
+        """The messages of one channel in a chunk by its index: the time, and the place in the chunk."""
         with suppress(*TORN):
             index = self._read(Opcode.MESSAGE_INDEX, offset)
             return MessageIndex.read(ReadDataStream(BytesIO(index))).records if index else []
         return []
 
     def content(self, chunk: ChunkAt) -> bytes:
-        """All that is in a chunk; nothing where it is damaged."""
+        """The content of a chunk; empty if it is damaged."""
         with suppress(*TORN):
             body = self._read(Opcode.CHUNK, chunk.offset)
             found = Chunk.read(ReadDataStream(BytesIO(body)))
@@ -97,7 +97,7 @@ class ChunkFile:
 
 
 def messages(content: bytes, channels: Iterable[int], begins: int = 0) -> Iterator[Said]:
-    """What a chunk has of these channels, in order; from one of its places on."""
+    """The messages of these channels in a chunk, in order, from the byte `begins` on."""
     wanted = frozenset(channels)
     while begins < len(content):
         opcode, length = HEAD.unpack_from(content, begins)
@@ -110,7 +110,7 @@ def messages(content: bytes, channels: Iterable[int], begins: int = 0) -> Iterat
 
 
 def _summary(file: IO[bytes]) -> FileIndex | None:
-    """The index that a closed file ends with; None where there is none, or none that can be read."""
+    """The index at the end of a closed file; None if there is none that can be read."""
     with suppress(*TORN, OSError, ValueError):
         file.seek(-FOOTER_BYTES - len(MAGIC), 2)
         ends = file.tell()
@@ -142,7 +142,7 @@ def _from_summary(summary: bytes, ends: int) -> FileIndex:
 
 
 def _scan(file: IO[bytes], index: FileIndex) -> None:
-    """Find what is where in a file that nobody closed, from where it was known on."""
+    """Extend the index of a file that nobody closed, from its known end on."""
     size = file.seek(0, 2)
     file.seek(index.end)
     while len(head := file.read(HEAD.size)) == HEAD.size:

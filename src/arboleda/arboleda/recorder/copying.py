@@ -19,7 +19,7 @@ from .steps import TOPIC
 
 
 def as_mcap(record: Record, target: Path, numbers: tuple[int, ...]) -> int:
-    """Write all that can be read of a record to a new file, whole; how many steps that are. NoRecord."""
+    """Write all readable steps of a record to a new, whole file; returns their number. Raises NoRecord."""
     count = 0
     with _made(target) as file:
         writer = Writer(file)
@@ -40,7 +40,7 @@ def as_mcap(record: Record, target: Path, numbers: tuple[int, ...]) -> int:
 
 
 def _opened(writer: Writer, reader: PartReader, known: Container[str]) -> Iterator[tuple[str, int]]:
-    """Open the same channels in the copy, all at once."""
+    """Register the same channels in the copy, all at once."""
     for channel in reader.channels.values():
         if channel.topic not in known:
             schema = reader.schemas.get(channel.schema_id)
@@ -50,13 +50,13 @@ def _opened(writer: Writer, reader: PartReader, known: Container[str]) -> Iterat
 
 
 def _attach(writer: Writer, piece: Attachment) -> None:
-    """What is at the beginning of each file is in the copy once."""
+    """Copy an attachment, unless each file begins with it: then the copy has it already."""
     if piece.name.startswith(DIGEST):
         attach(writer, piece.name, piece.media_type, piece.data, piece.log_time)
 
 
 def as_lines(record: Record, target: Path) -> int:
-    """The same as lines of JSON, each with its Unix time."""
+    """The messages as lines of JSON, each with its Unix time."""
     count = 0
     with _made(target) as file:
         for unix_ns, data in record.raw():
@@ -68,7 +68,7 @@ def as_lines(record: Record, target: Path) -> int:
 
 @contextmanager
 def _made(target: Path) -> Iterator[IO[bytes]]:
-    """A new file, readable by its owner only; none is left where it cannot be written."""
+    """A new file, readable by its owner only; it is removed if writing fails."""
     try:
         opened = os.open(target, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600)
     except FileExistsError as error:

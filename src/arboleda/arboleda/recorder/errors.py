@@ -1,4 +1,4 @@
-"""The error of what reads records."""
+"""Error of readers of records."""
 
 from __future__ import annotations
 
@@ -6,4 +6,4 @@ from arboleda.model.errors import ArboledaError
 
 
 class NoRecord(ArboledaError):
-    """What was read is no record of a plant, or one that this version does not understand."""
+    """Error: a file is no record of a plant, or has a format that this version does not understand."""

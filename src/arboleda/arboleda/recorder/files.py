@@ -1,4 +1,4 @@
-"""The files of records in their folder: their names, what is kept of them, and how one is written."""
+"""Files of records in their folder: their names, how many are kept, and the writer of one."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ FOLDER = "record"
 NAME = re.compile(r"([0-9]{1,10})-([0-9]{4,9})\.mcap")
 METADATA, BEGINNING, OF_PLANT = "arboleda", "beginning.json", "plant/"
 PROFILE = "ros2"
-# Who reads it as a bag takes qos in words where this is absent; we write the numbers that all versions read.
+# Without this, readers of bags expect QoS in words; we write the numbers, which all versions read.
 OF_BAG = ("rosbag2", {"serialized_metadata": ""})
 DIGEST = "events/"  # of the time line, what an attachment has of it
 LIBRARY = f"arboleda {__version__}"
@@ -31,7 +31,7 @@ PART_BYTES = (200_000, 50_000_000)  # a file has at least and at most
 
 @dataclass(frozen=True, kw_only=True, order=True)
 class Part:
-    """One file of a record: that of the start `epoch`, the first is number 1."""
+    """File of a record: the start `epoch` that it belongs to, and its number from 1."""
 
     epoch: int
     number: int
@@ -39,7 +39,7 @@ class Part:
 
     @property
     def bytes(self) -> int:
-        """Its size; 0 where it is gone."""
+        """Its size; 0 if it is gone."""
         with suppress(OSError):
             return self.path.stat().st_size
         return 0
@@ -56,7 +56,7 @@ def part_at(path: Path) -> Part | None:
 
 
 def parts_in(folder: Path) -> list[Part]:
-    """All parts in a folder, the oldest first; none where there is no such folder."""
+    """All parts in a folder, the oldest first; none without such a folder."""
     try:
         return sorted(part for path in folder.iterdir() if (part := part_at(path)) is not None)
     except OSError:
@@ -64,13 +64,13 @@ def parts_in(folder: Path) -> list[Part]:
 
 
 def part_bytes(limits: Limits) -> int:
-    """How large a file grows before the next one begins."""
+    """The size in bytes at which a file is closed and the next one begins."""
     least, most = PART_BYTES
     return int(min(max(limits.megabytes * MEGABYTE / PARTS, least), most))
 
 
 def prune(folder: Path, limits: Limits, unix_s: float) -> None:
-    """Delete the oldest parts, as many as leave room for another one, and those that are too old."""
+    """Delete the oldest parts to make room for another one, and those that are too old."""
     left = [part for part in parts_in(folder) if not _deleted_if_old(part, unix_s - limits.days * DAY_S)]
     total = sum(part.bytes for part in left)
     for part in left:
@@ -89,10 +89,7 @@ def _deleted_if_old(part: Part, before_unix_s: float) -> bool:
 
 
 class PartFile:
-    """One file that is being written; what was put in survives a power cut after `flush`.
-
-    OSError where it cannot be written.
-    """
+    """File that is being written; its content survives a power cut after `flush`. Raises OSError."""
 
     def __init__(
         self, path: Path, beginning: Beginning, number: int, unix_ns: int, channels: Iterable[Channel] = OURS
@@ -109,21 +106,21 @@ class PartFile:
             raise
 
     def put(self, topic: str, unix_ns: int, data: bytes) -> None:
-        """One message of a channel."""
+        """Write one message of a channel."""
         put(self._writer, self._channels[topic], unix_ns, data)
 
     def attach(self, name: str, unix_ns: int, data: bytes) -> None:
-        """What is read without looking at any message."""
+        """Attach data that is read without looking at any message."""
         attach(self._writer, name, "application/zstd", data, unix_ns)
 
     def flush(self) -> int:
-        """Have it on the disk; how large it is then."""
+        """Write everything to the disk; returns the size then."""
         self._writer.flush()  # type: ignore[no-untyped-call]
         self._sync()
         return self._file.tell()
 
     def close(self) -> None:
-        """Write what other tools look for at the end of a file, and give it back."""
+        """Write the end of the file, which other tools look for, and close it."""
         try:
             self._writer.finish()  # type: ignore[no-untyped-call]
             self._sync()
@@ -135,13 +132,13 @@ class PartFile:
         os.fdatasync(self._file.fileno())
 
     def drop(self) -> None:
-        """Give it back as it is."""
-        with suppress(OSError):  # of what could not be written, and was told before
+        """Close the file without an end."""
+        with suppress(OSError):  # of a failed write, which was reported before
             self._file.close()
 
 
 def _sync_folder(folder: Path) -> None:
-    """Have a new file found there after a power cut."""
+    """Make a new file's entry in its folder survive a power cut."""
     opened = os.open(folder, os.O_RDONLY | os.O_DIRECTORY)
     try:
         os.fsync(opened)
@@ -150,7 +147,7 @@ def _sync_folder(folder: Path) -> None:
 
 
 def write_beginning(writer: Writer, beginning: Beginning, numbers: Iterable[int], unix_ns: int) -> None:
-    """What each file starts with; `numbers` are those of the parts that it has the steps of."""
+    """Write the beginning of a file; `numbers` are those of the parts whose steps it has."""
     writer.start(profile=PROFILE, library=LIBRARY)
     metadata = {
         "format": str(FORMAT),
@@ -167,10 +164,10 @@ def write_beginning(writer: Writer, beginning: Beginning, numbers: Iterable[int]
 
 
 def attach(writer: Writer, name: str, kind: str, content: bytes, unix_ns: int) -> None:
-    """A file inside the file."""
+    """Write a file into the file, as an attachment."""
     writer.add_attachment(create_time=unix_ns, log_time=unix_ns, name=name, media_type=kind, data=content)
 
 
 def put(writer: Writer, channel: int, unix_ns: int, data: bytes) -> None:
-    """One message."""
+    """Write one message."""
     writer.add_message(channel, log_time=unix_ns, data=data, publish_time=unix_ns)

@@ -1,4 +1,4 @@
-"""What a record has of one task that failed: collected while it is executed again."""
+"""Facts of one failed task, collected while its record is executed again."""
 
 from __future__ import annotations
 
@@ -27,18 +27,18 @@ from arboleda.views import tree_view, twin_view
 from .cause import BY_KEY, Cause, Evidence, TaskCommand, cause_of
 from .troubles import Trouble, Troubles
 
-FRAMES_S, FRAME_S = 10.0, 0.2  # how far back places of devices are kept, and how far apart
+FRAMES_S, FRAME_S = 10.0, 0.2  # span and interval of the places of devices kept
 MESSAGES = 14  # of each device
-AFTER_S = 20.0  # so long after its end a task is followed
-AWAY_S = 0.9  # a plant steps at least as often as it beats; boards stop by themselves a little later
+AFTER_S = 20.0  # time for which a task is followed after its end
+AWAY_S = 0.9  # a plant steps at least with each heartbeat; boards stop by themselves a little later
 ENDED = frozenset({TaskState.DONE, TaskState.FAILED, TaskState.CANCELLED})
-WHOSE = ("robot", "arm", "device")  # what sentences call the one that they are about
+WHOSE = ("robot", "arm", "device")  # slots of sentences that name the device concerned
 Row = dict[str, Any]
 
 
 @dataclass
 class Incident:
-    """A task as the record has it; times in s of the plant's clock. `frames` are places of devices."""
+    """Failed task as the record has it; times in s of the plant's clock. `frames` are places of devices."""
 
     task: str
     text: str = ""
@@ -46,7 +46,7 @@ class Incident:
     asked_at: float = 0.0
     failed_at: float | None = None
     ended_at: float | None = None
-    unix_ns: int = 0  # when it ended
+    unix_ns: int = 0  # time of its end
     state: TaskState | None = None
     failure: Failure | None = None
     tree: list[Row] = field(default_factory=list)
@@ -60,7 +60,7 @@ class Incident:
 
     @property
     def evidence(self) -> Evidence:
-        """What rules look at; of a task that has failed."""
+        """The facts for the rules of causes; call it only for a task that has failed."""
         assert self.failure is not None and self.failed_at is not None
         parts = list(self.failure.sentence.parts())
         values = {slot: value for part in reversed(parts) for slot, value in part.values.items()}
@@ -89,9 +89,9 @@ class Incident:
 
 
 class Reader:
-    """Watches a plant that is executed again, for one task; `at_once` has all that it needs of a step.
+    """Observer of a plant that is executed again, for one task; `at_once` has all that it needs of a step.
 
-    `drawn`: whether the places of devices and the tree are wanted, too.
+    `drawn`: the places of devices and the tree are wanted, too.
     """
 
     def __init__(self, task: str, model: PlantModel, *, drawn: bool = True) -> None:
@@ -109,14 +109,14 @@ class Reader:
 
     @property
     def over(self) -> bool:
-        """Whether the task has ended, and what came right after it was heard: only then a boot shows."""
+        """True once the task has ended and AFTER_S more have been read, within which a reboot would show."""
         ended_at = self.incident.ended_at
         return ended_at is not None and self._stepped_at is not None and self._stepped_at > ended_at + AFTER_S
 
     def take(
         self, plant: Plant, unix_ns: int, now: float, events: Iterable[Event], messages: Iterable[Any]
     ) -> None:
-        """A step that was made just now."""
+        """Take in a step that was just made."""
         if self._stepped_at is not None and now - self._stepped_at > AWAY_S:
             self.incident.absences.append((now, now - self._stepped_at))
         self._stepped_at = now
@@ -153,7 +153,7 @@ class Reader:
             found.foreign.append((report.at, report.robot))
 
     def _took_from_another(self, report: Report, epoch: int) -> bool:
-        """Whether it took a command just now that another start of a plant gave, as its id says."""
+        """True if the robot has just taken a command whose id is of another start of a plant."""
         now, before = report.accepted, self._accepted.get(report.robot)
         if now is None or now == before:
             return False
@@ -184,7 +184,7 @@ class Reader:
             found.failed_at = now
 
     def _look(self, plant: Plant, now: float) -> None:
-        """What of it is no message: when it began to fail, the tree then, and the places until then."""
+        """Note the state around the failure: its time, the tree just before it, and the places up to it."""
         found = self.incident
         run = plant.cells.get(found.cell)
         if run is None:
@@ -195,7 +195,7 @@ class Reader:
             self._keep()
             return
         failure = run.task.failure or run.context.failure
-        if failure is None:  # a further try, perhaps: what it failed of before is forgiven
+        if failure is None:  # perhaps another attempt: an earlier failure no longer counts
             found.failure = found.failed_at = None
             if self._drawn and run.tree is not None:
                 self._tree = tree_view.rows(run.tree, now)
@@ -205,7 +205,7 @@ class Reader:
             self._keep()
 
     def _keep(self) -> None:
-        """What is drawn of the moment; the tree as it was just before, in the step that failed."""
+        """Keep the drawings of the failure: the tree just before it, the places, and the last messages."""
         found = self.incident
         if self._drawn and found.failed_at is not None and not found.frames:
             found.tree = self._tree
@@ -214,7 +214,7 @@ class Reader:
 
 
 def _after(sent: TaskCommand, report: Report) -> TaskCommand:
-    """What a report of its robot says of a command that it has taken."""
+    """The command after a report of its robot, which has taken it: moving, or at rest without an end."""
     moves = report.state is MotionState.MOVING
     stands = sent.moved and report.state is MotionState.STOPPED and report.done != sent.id
     if sent.accepted_at is not None and (moves, stands) == (sent.moved and not sent.stands, sent.stands):
@@ -224,7 +224,7 @@ def _after(sent: TaskCommand, report: Report) -> TaskCommand:
 
 
 def supervised(model: PlantModel) -> frozenset[str]:
-    """Whose silence means something."""
+    """The names of the robots whose silence is a sign of trouble."""
     silent = (Link.SCREEN, Link.NONE)
     robots = model.robots.values()
     return frozenset(
@@ -238,7 +238,7 @@ news_of = attrgetter(*NEWS, "facts", "boot_id")
 
 
 def told(report: Report) -> str:
-    """What a report says, in words of its fields."""
+    """The fields of a report as text."""
     said = {name: getattr(report, name) for name in SAID}
     return " ".join(f"{name}={_short(value)}" for name, value in said.items() if value is not None)
 

@@ -1,4 +1,4 @@
-"""Where robots are and when they spoke, out of what they report."""
+"""Positions of robots over time, and the times of their reports."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Any
 from arboleda.model.messages import Report
 from arboleda.model.plant_model import MotionState
 
-FRESH_S = 1.0  # a robot that reports as often as that says nothing new by when it spoke last
+FRESH_S = 1.0  # a report of less age is fresh: its exact time is left out
 DIGITS = 6  # of rad and m
 Row = dict[str, Any]
 
@@ -19,19 +19,21 @@ def key_of(robot: str) -> str:
 
 
 class Motion:
-    """A row for each robot: q, node, when it spoke (`heard_at`) and said where it is (`position_at`), in s of
-    the plant's clock; `fresh` names those of the two that are less than FRESH_S ago, and left out.
+    """Positions of robots, a row each: q, node, and the times of the last report and of the last position.
+
+    These times, `heard_at` and `position_at`, are in s of the plant's clock. Those less than FRESH_S ago are
+    named in `fresh`, and left out.
     """
 
     def __init__(self) -> None:
         self._known: dict[str, Row] = {}
 
     def seen(self, robot: Row) -> None:
-        """Take over what the twin's positions say of a robot."""
+        """Take over the twin's positions of a robot."""
         self._known[robot["name"]] = {key: robot[key] for key in ("q", "node", "heard_at", "position_at")}
 
     def hear(self, report: Report) -> None:
-        """Take over what a robot reports, once it was seen."""
+        """Take over a report of a robot, once it is in the twin."""
         known = self._known.get(report.robot)
         if known is None:
             return
@@ -42,7 +44,7 @@ class Motion:
                 known[key], known["position_at"] = said, report.at
 
     def rows(self, now: float) -> Iterator[tuple[str, Row]]:
-        """Key and row of each robot that was seen."""
+        """The key and row of each robot in the twin."""
         for name, known in self._known.items():
             yield key_of(name), _row(known, now)
 

@@ -1,4 +1,4 @@
-"""What crosses the core's border as plain data for JSON, and what went in back from it, to the last bit."""
+"""Conversion of events and messages to plain data for JSON, and of events back, exact to the last bit."""
 
 from __future__ import annotations
 
@@ -43,13 +43,13 @@ EVENTS: dict[str, type[Any]] = {
 
 
 def plain(value: Any) -> Any:
-    """The value as JSON has it: of a dataclass its type and the fields that are not as by default."""
+    """The value as plain data; of a dataclass its type, and the fields that differ from their defaults."""
     write = WRITERS.get(type(value))
     return _other(value) if write is None else write(value)
 
 
 def event_from(data: Any) -> Event:
-    """The event that was made plain; NoRecord where this version knows no such thing."""
+    """The event in plain data; raises NoRecord if this version does not know it."""
     try:
         made: Event = _made(EVENTS[data[TYPE]], data)
     except (AttributeError, IndexError, KeyError, TypeError, ValueError) as error:
@@ -58,7 +58,7 @@ def event_from(data: Any) -> Event:
 
 
 def kept_from(data: Any) -> KeptTask:
-    """The task of an earlier start that was made plain; NoRecord likewise."""
+    """The task of an earlier start in plain data; raises NoRecord if this version does not know it."""
     try:
         return _kept(data)
     except (AttributeError, IndexError, KeyError, TypeError, ValueError) as error:
@@ -66,7 +66,7 @@ def kept_from(data: Any) -> KeptTask:
 
 
 def memory_from(data: Any) -> Memory:
-    """What earlier starts had to keep, that was made plain; NoRecord likewise."""
+    """The memory of earlier starts from plain data; raises NoRecord if it is not valid."""
     try:
         return {
             Fact(fact): {str(name): str(value) for name, value in kept.items()} for fact, kept in data.items()
@@ -76,7 +76,7 @@ def memory_from(data: Any) -> Memory:
 
 
 def value_from(data: Any) -> Any:
-    """What was made plain, with its sentences and numbers; its tuples are lists, its words stay words."""
+    """The value from plain data, with its sentences and numbers; tuples stay lists, and words stay words."""
     if isinstance(data, list):
         return [value_from(each) for each in data]
     if not isinstance(data, dict):
@@ -97,7 +97,7 @@ def _same(value: Any) -> Any:
 
 
 def _number(value: float) -> Any:
-    """JSON has no word for what is no finite number."""
+    """The number as plain data; JSON itself has no word for one that is not finite."""
     return value if math.isfinite(value) else {NUMBER: repr(value)}
 
 
@@ -136,7 +136,7 @@ WRITERS: dict[type, Callable[[Any], Any]] = {
 
 
 def _other(value: Any) -> Any:
-    """Of what has no row of its own: by what it is."""
+    """The value as plain data, by its nature, if its type has no entry of its own."""
     if isinstance(value, Enum):
         return value.value
     if is_dataclass(value):
@@ -171,7 +171,7 @@ def _defaults(kind: type) -> tuple[tuple[str, Any], ...]:
 
 
 def _made(kind: type[Any], data: Mapping[str, Any]) -> Any:
-    """A dataclass of its fields; a field that it does not have raises."""
+    """A dataclass of these fields; raises an error for a missing or unknown one."""
     readers = READERS[kind]
     values = {name: readers.get(name, _value)(each) for name, each in data.items() if name != TYPE}
     missing = [each.name for each in fields(kind) if each.default is MISSING and each.name not in values]
@@ -181,14 +181,14 @@ def _made(kind: type[Any], data: Mapping[str, Any]) -> Any:
 
 
 def _value(data: Any) -> Any:
-    """What has no type of its own: JSON's lists are tuples, which is all that an event has."""
+    """The value from plain data without a type of its own: lists become tuples, the only kind in an event."""
     if isinstance(data, list):
         return tuple(_value(each) for each in data)
     return float(data[NUMBER]) if isinstance(data, dict) else data
 
 
 def sentence_from(data: Any) -> Sentence | None:
-    """The sentence that was made plain, or None; errors of all kinds for anything else."""
+    """The sentence in plain data, or None; raises errors of several types for anything else."""
     if data is None:
         return None
     phrase = Phrase(data["key"], data["english"], **data.get("others", {}))

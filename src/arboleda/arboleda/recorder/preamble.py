@@ -1,4 +1,4 @@
-"""What a record begins with: all that the core was made of, so that it can be made once more."""
+"""First message of a record: all that the core was made of, so that it can be made once more."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ MEGABYTE = 1_000_000
 
 @dataclass(frozen=True, kw_only=True)
 class Limits:
-    """How much is kept of all records of a plant: `megabytes` and `days` at most."""
+    """Limits of all records of a plant together: at most so many `megabytes` and `days`."""
 
     megabytes: float = 1000.0
     days: float = 30.0
@@ -27,7 +27,7 @@ class Limits:
 
 @dataclass(frozen=True, kw_only=True)
 class PlantFiles:
-    """The plant file under its name, and every file that it uses, as they were read; by their paths."""
+    """Plant file under its name, and every file that it uses, by their paths."""
 
     plant: str
     contents: Mapping[str, bytes] = field(default_factory=dict)
@@ -38,7 +38,7 @@ NO_FILES = PlantFiles(plant="plant.yaml")  # of a plant that no file describes
 
 @dataclass(frozen=True, kw_only=True)
 class Recording:
-    """What is recorded of a start beside its events, and within which limits.
+    """Settings of the recording of one start: the plant's files, the limits, and options.
 
     `virtual`: its devices with drivers of their own had virtual boards instead. `reports`: a report of each
     task that fails is written.
@@ -52,7 +52,7 @@ class Recording:
 
 @dataclass(frozen=True, kw_only=True)
 class Beginning:
-    """A start: which plant, what was remembered of earlier ones, and when, on the plant's clock.
+    """Start of a plant: its files, the memory of earlier starts, and the time by the plant's clock.
 
     `virtual`: its devices with drivers had virtual boards instead. `simulated`: all of its devices had.
     """
@@ -70,11 +70,11 @@ class Beginning:
 
     @property
     def shipped(self) -> bool:
-        """Whether its plant file is the one that comes with Arboleda, which needs no naming."""
+        """True if the plant file is the one that comes with Arboleda, which need not be named."""
         return self.plant == "arboleda" and self.files.plant == NO_FILES.plant
 
     def data(self) -> bytes:
-        """All but the files, in JSON."""
+        """The beginning without the files, as JSON."""
         return json.dumps(
             {
                 "plant": self.plant,
@@ -92,7 +92,7 @@ class Beginning:
 
 
 def beginning_from(data: bytes, contents: Mapping[str, bytes]) -> Beginning:
-    """The beginning that `data` is of, with its files; NoRecord for anything else."""
+    """The beginning in `data`, with its files; raises NoRecord for anything else."""
     try:
         rows: dict[str, Any] = json.loads(data)
         files = PlantFiles(plant=str(rows["file"]), contents=contents)

@@ -37,7 +37,7 @@ from .preamble import FORMAT, Beginning, beginning_from
 from .steps import TOPIC, RecordedStep, from_json
 
 LARGEST = 64 * 1024 * 1024  # bytes of one piece of a file, also once it is unpacked; ours are much smaller
-HEAD = struct.Struct("<BQ")  # what a piece begins with: what it is, and its length
+HEAD = struct.Struct("<BQ")  # head of a piece: its kind and its length
 KNOWN = frozenset(Opcode)
 STEPS_CHANNEL = 1  # the first one that a file opens
 INDEX, INDEXED_BYTES = struct.Struct("<HI"), 16  # its channel and its length; bytes of each message in it
@@ -62,10 +62,10 @@ Raw = tuple[int, bytes]  # nanoseconds of Unix time, and a message
 
 @dataclass
 class PartRead:
-    """What one file is: which steps it has of which start, and how it ends.
+    """One file of a record: the start that it belongs to, the steps in it, and how it ends.
 
-    `whole`: it was closed as it should be; else it is being written, or its plant was killed. `damaged`:
-    something in it, up to which it was read, is not as it was written.
+    `whole`: it was closed properly; else it is being written, or its plant was killed. `damaged`: it was read
+    up to a place at which it is not as it was written.
     """
 
     path: Path
@@ -77,9 +77,9 @@ class PartRead:
 
 
 class PartReader:
-    """One file, read from its beginning; NoRecord says in a sentence why it is none.
+    """File of a record, read from its beginning; raises NoRecord, with a sentence, if it is none.
 
-    What it ends with in the middle of a piece is left out: a plant that was killed wrote no more of it.
+    A half-written piece at its end is left out: a killed plant wrote no more of it.
     """
 
     def __init__(self, path: Path) -> None:
@@ -99,26 +99,23 @@ class PartReader:
         self._file.close()
 
     def raw(self) -> Iterator[Raw]:
-        """Its steps that were not given yet, in order, with their times; up to the first damage.
-
-        Asked again, those that were written since.
-        """
+        """The steps not given yet, in order, with their times, up to the first damage."""
         for _, unix_ns, data in self.told(TOPIC):
             yield unix_ns, data
 
     def told(self, *topics: str) -> Iterator[tuple[str, int, bytes]]:
-        """The same of these topics, each message with its own."""
+        """The messages of these topics not given yet, each with its topic."""
         for piece in self.everything():
             if isinstance(piece, Message) and (topic := self.topic_of(piece)) in topics:
                 yield topic, piece.log_time, piece.data
 
     def topic_of(self, message: Message) -> str:
-        """The topic of a message; empty where none was opened for it."""
+        """The topic of a message; empty if its channel was never registered."""
         channel = self.channels.get(message.channel_id)
         return channel.topic if channel else ""
 
     def everything(self) -> Iterator[Message | Attachment]:
-        """The same of all channels, and what is attached between."""
+        """All messages not given yet, and the attachments between them."""
         for record in self._records:
             if isinstance(record, Attachment):
                 yield record
@@ -133,7 +130,7 @@ class PartReader:
         self._records = self._rest()
 
     def _is_closed(self) -> bool:
-        """Whether it ends as a file does that was closed."""
+        """True if the file ends as one does that was closed."""
         at, size = self._file.tell(), self._file.seek(0, SEEK_END)
         self._file.seek(max(0, size - len(MAGIC)))
         end = self._file.read(len(MAGIC))
@@ -141,7 +138,7 @@ class PartReader:
         return size > len(MAGIC) and end == MAGIC
 
     def _messages(self, chunk: Chunk) -> list[Message] | None:
-        """Those of a chunk; None where it is damaged, or larger than a plant writes them."""
+        """The messages of a chunk; None if it is damaged, or larger than any that a plant writes."""
         records = _unpacked(chunk)
         if records is None:
             return None
@@ -187,13 +184,13 @@ class PartReader:
         )
 
     def _pieces(self) -> Iterator[McapRecord]:
-        """All of the file that is whole and of a kind that a plant writes; others than READ are left out."""
+        """The whole pieces of the file, of kinds in READ only."""
         if self._file.read(len(MAGIC)) != MAGIC:
             raise NoRecord(f"{self.path} is no MCAP file.")
         yield from self._rest()
 
     def _rest(self) -> Iterator[McapRecord]:
-        """What of that is not read yet; what is half written is left for the next time."""
+        """The records not read yet; one that is half written is left for the next call."""
         begins = self._file.tell()
         while len(head := self._file.read(HEAD.size)) == HEAD.size:
             opcode, length = HEAD.unpack(head)
@@ -246,18 +243,18 @@ def _opened(path: Path) -> IO[bytes]:
 
 @dataclass
 class Record:
-    """All there is of one start: its files in order. `missing` is how many of its first ones are gone."""
+    """Record of one start: its files in order. `missing` is the number of first files that are gone."""
 
     paths: list[Path]
     first: PartRead
     missing: int = 0
-    broken: str = ""  # why it ends before its end, once all of it was read
+    broken: str = ""  # reason of a premature end, once all was read
     last: PartRead | None = field(default=None, repr=False)
-    last_ns: int = 0  # when the last step was made that was read
+    last_ns: int = 0  # time of the last step read
 
     @property
     def numbers(self) -> tuple[int, ...]:
-        """Those of its parts, as far as they are there one after the other."""
+        """The numbers of its parts, up to the first gap."""
         return self.first.numbers if len(self.paths) == 1 else tuple(self._follow_on())
 
     def _follow_on(self) -> Iterator[int]:
@@ -275,7 +272,7 @@ class Record:
                 yield self.last_ns, data
 
     def readers(self) -> Iterator[PartReader]:
-        """Each of its files, opened, to be read to its end before the next one is asked for."""
+        """A reader of each file, to be read to its end before the next one is asked for."""
         after: tuple[int, ...] = ()
         for path in self.paths:
             with closing(PartReader(path)) as reader:
@@ -295,7 +292,7 @@ class Record:
 
 
 def steps_there(paths: Iterable[Path]) -> int | None:
-    """How many steps files have, also behind what is damaged; None where nothing in them can tell.
+    """The number of steps in files, also behind damaged places; None if that cannot be told.
 
     They are counted by the indexes that stand behind the chunks.
     """
@@ -329,13 +326,13 @@ def channels_of(path: Path) -> dict[str, int]:
 
 
 def alone(path: Path) -> Record:
-    """The same for this file alone."""
+    """The record that consists of this file alone."""
     with closing(PartReader(path)) as reader:
         return Record([path], reader.read)
 
 
 def opened(path: Path) -> Record:
-    """The record that a file is part of: with the others beside it, as a plant writes them; NoRecord."""
+    """The record that a file belongs to, with the other files beside it; raises NoRecord."""
     with closing(PartReader(path)) as reader:
         read = reader.read
     part = part_at(path)
@@ -348,7 +345,7 @@ def opened(path: Path) -> Record:
 
 
 def _follows(part: Part, read: PartRead) -> bool:
-    """Whether the file beside is another part of the same record."""
+    """True if the neighbouring file is another part of the same record."""
     with suppress(NoRecord), closing(PartReader(part.path)) as reader:
         return reader.read.beginning.epoch == read.beginning.epoch
     return False

@@ -1,4 +1,4 @@
-"""The thread that writes the record: whoever hands it a step waits for nothing."""
+"""Thread that writes the record; handing it a step never waits."""
 
 from __future__ import annotations
 
@@ -17,18 +17,18 @@ from .view_log import ViewSnapshot
 from .writing import Writing
 
 LOG = logging.getLogger(__name__)
-PERIOD_S = 0.25  # between two looks at what waits
+PERIOD_S = 0.25  # interval of looks at the queue
 SLICE_S, PAUSE_S = 0.0003, 0.001  # of work, and between two slices of it, in which others have Python's lock
-SHARE = 0.1  # of the time for what screens see, at most
+SHARE = 0.1  # greatest share of the time for snapshots
 MOST_WAITING = 20_000  # steps; some minutes of a large plant
 PATIENCE_S = 5.0  # for the rest, at the end
 
 
 class Recorder:
-    """Has written what `stepped` and `saw` are told, from `start` to `stop`.
+    """Writer of the record, in a thread of its own, from `start` to `stop`.
 
-    Where that cannot be, for whatever reason, the record ends: one line in the log says why, `trouble` too,
-    and the plant goes on.
+    If writing fails, for whatever reason, the record ends: one line in the log tells the reason, as does
+    `trouble`, and the plant goes on.
     """
 
     def __init__(self, writing: Writing, unix_ns: Callable[[], int] = time.time_ns) -> None:
@@ -37,7 +37,7 @@ class Recorder:
         self._unix_ns = unix_ns
         self._waiting: deque[Step | ViewSnapshot] = deque()
         self._turn = 0
-        self._seen_in = self._seen_out = 0  # snapshots that were told, and that were looked at
+        self._seen_in = self._seen_out = 0  # snapshots put in, and taken out
         self._see_after = 0.0
         self._over = False
         self._ending = threading.Event()
@@ -47,13 +47,13 @@ class Recorder:
         self._thread.start()
 
     def stop(self) -> None:
-        """Write what waits and close the file; a disk that hangs is not waited for. Idempotent."""
+        """Write the rest and close the file, without waiting for a disk that hangs. Idempotent."""
         self._ending.set()
         if self._thread.ident is not None:
             self._thread.join(PATIENCE_S)
 
     def stepped(self, plant: Plant, now: float, events: Sequence[Any], messages: Sequence[Any]) -> None:
-        """Take in a step that was made just now; in the plant's thread, and never raises."""
+        """Take in a step in the plant's thread; never raises."""
         if self._over:
             return
         try:
@@ -65,7 +65,7 @@ class Recorder:
         self._wait(step)
 
     def saw(self, snapshot: dict[str, Any], drawn: dict[str, Any]) -> None:
-        """Take in a snapshot and the twin's positions, as screens get them; likewise in its thread."""
+        """Take in a snapshot and the twin's positions in the plant's thread; never raises."""
         if not self._over:
             self._seen_in += 1
             self._wait(ViewSnapshot(self._unix_ns(), snapshot, drawn))
@@ -94,7 +94,7 @@ class Recorder:
                 self._writing.drop()
 
     def _write(self, *, pausing: bool) -> None:
-        """Write what waits, in slices between which whoever needs the processor more may have it."""
+        """Write all that waits, in slices, so that others may have the processor in between."""
         began = time.perf_counter()
         while self._waiting and not self._over:
             for _ in self._put(self._waiting.popleft()):
@@ -105,7 +105,7 @@ class Recorder:
             self._writing.tend()
 
     def _put(self, item: Step | ViewSnapshot) -> Iterator[None]:
-        """Where that takes more than its share of the time, a snapshot is passed over for the next one."""
+        """Write a step, or a snapshot if snapshots have not used up their share of the time; else skip it."""
         if isinstance(item, Step):
             yield from self._writing.put(item)
             return

@@ -1,4 +1,4 @@
-"""A record executed once more: the plant as it began, stepped with what went into it, and compared."""
+"""Replay of a record: the plant as it began, stepped with the recorded events, and compared."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from .steps import RecordedStep, hash_of, outcome
 
 @dataclass(frozen=True)
 class Difference:
-    """Where a replay does something else: in which value, `recorded` and `now`, None where there is none."""
+    """First difference of a replay from the record: the field and both values, None for a missing one."""
 
     field: str
     recorded: Any
@@ -26,7 +26,7 @@ class Difference:
 
 @dataclass(frozen=True)
 class ReplayedStep:
-    """A step that was made once more; `number` counts from 1. `difference` where it did something else."""
+    """Step of a replay; `number` counts from 1. `difference` is set if it did not do as recorded."""
 
     number: int
     recorded: RecordedStep
@@ -41,7 +41,7 @@ def plant_of(beginning: Beginning, model: PlantModel) -> Plant:
 
 
 def replayed(plant: Plant, steps: Iterable[RecordedStep]) -> Iterator[ReplayedStep]:
-    """Make each step again, up to the first that does something else: what is after it says nothing."""
+    """Make each step again, up to and including the first that differs; later ones would prove nothing."""
     for number, step in enumerate(steps, start=1):
         try:
             said = outcome(plant.step(step.now, step.events), state_of(plant, number))
@@ -55,7 +55,7 @@ def replayed(plant: Plant, steps: Iterable[RecordedStep]) -> Iterator[ReplayedSt
 
 
 def first_difference(recorded: Any, now: Any, field: str = "") -> Difference:
-    """The first value that is another one; of what is equal, and only its hash is not, the hash."""
+    """The first value that differs; the hash, if only that differs."""
     return next(_differences(recorded, now, field), Difference("hash", "another", "the same values"))
 
 
@@ -73,7 +73,7 @@ def _differences(recorded: Any, now: Any, field: str) -> Iterator[Difference]:
 
 
 def _kind(*pair: Any) -> str:
-    """Of which type a message is, where both are of the same."""
+    """The type that both messages have, in brackets; "" if they differ."""
     kinds = {each.get(TYPE) if isinstance(each, dict) else None for each in pair}
     kind = kinds.pop()
     return f" ({kind})" if kind and not kinds else ""

@@ -1,4 +1,4 @@
-"""What tools for ROS 2 read in a record: where robots are, what they do, tasks and diagnostics.
+"""Topics of a record for ROS 2 tools: positions and states of robots, tasks and diagnostics.
 
 Each topic says what is new; a file begins with all that was said last.
 """
@@ -25,7 +25,7 @@ DIAGNOSED_NS = 1_000_000_000  # between two looks at the diagnostics
 
 
 class RosLog:
-    """Makes messages of steps and snapshots, as `ViewLog` does; `channels` are those that it writes to."""
+    """Source of messages for ROS 2 tools, made of steps and snapshots, on its `channels`."""
 
     def __init__(self, model: PlantModel) -> None:
         self._robots = {robot.name: _Topics(robot) for robot in model.robots.values()}
@@ -39,7 +39,7 @@ class RosLog:
         )
 
     def stepped(self, step: Step) -> Iterator[Message | None]:
-        """What robots have reported, and what became of tasks."""
+        """The messages that a step makes: reports of robots, changes of tasks, and diagnostics when due."""
         self._ns = step.unix_ns
         for event in step.events:
             if isinstance(event, Report) and event.robot in self._robots:
@@ -54,7 +54,7 @@ class RosLog:
             yield from self._diagnosed(snapshot)
 
     def saw(self, seen: ViewSnapshot) -> Iterator[Message | None]:
-        """A snapshot, of which the diagnostics are made later."""
+        """Keep a snapshot, from which diagnostics are made later."""
         self._snapshot = seen.snapshot
         yield None
 
@@ -76,7 +76,7 @@ class RosLog:
 
 
 class _Topics:
-    """Those of one robot, and what was said there last."""
+    """Topics of one robot, with its last messages."""
 
     def __init__(self, robot: Robot) -> None:
         self._robot = robot
@@ -90,7 +90,7 @@ class _Topics:
             self.channels.append(ros_types.channel(self._joints, ros_types.JOINT_STATE))
 
     def heard(self, report: Report, unix_ns: int) -> Iterator[Message]:
-        """What is new in a report; nothing of one that means nothing to the plant, either."""
+        """The messages for the news in a report; none for a report that the plant rejects, too."""
         if self._robot.objection(report) is not None:
             return
         if report.state is not None and report.state != self._said:
@@ -104,7 +104,7 @@ class _Topics:
             yield self._joints, unix_ns, self._message.of(unix_ns, position)
 
     def again(self, unix_ns: int) -> Iterator[Message]:
-        """What was said last."""
+        """The last messages once more, for the beginning of a file."""
         if self._said is not None:
             yield self._state, unix_ns, cdr.uint8(self._said)
         if self._message is not None and self._position is not None:

@@ -1,4 +1,4 @@
-"""The types of ROS 2 that a record has, as their packages define them, and how their topics are delivered."""
+"""Types of ROS 2 that a record has, as their packages define them, and the QoS of their topics."""
 
 from __future__ import annotations
 
@@ -26,11 +26,11 @@ DEFINITIONS = {
         "std_msgs/Header header\ndiagnostic_msgs/DiagnosticStatus[] status\n" + HEADER + STATUS + KEY_VALUE
     ),
 }
-FOR_EVER = "sec: 9223372036, nsec: 854775807"  # what ROS 2 takes for no deadline
+FOR_EVER = "sec: 9223372036, nsec: 854775807"  # ROS 2's value for no deadline
 
 
 def channel(topic: str, type: str, *, depth: int = 10, is_kept: bool = False) -> Channel:
-    """A topic of this type, reliable; `is_kept`: who comes later hears the last ones (transient local).
+    """The channel of a topic of this type, reliable; `is_kept`: late subscribers get the last messages.
 
     The numbers are those of rmw, which `ros2 bag` of every version reads.
     """

@@ -1,4 +1,4 @@
-"""A snapshot as rows of which few change from one to the next, and back.
+"""Conversion of a snapshot to rows, few of which change from one to the next, and back.
 
 Spans are kept as the moments on the plant's clock that they are counted from or to: a moment stays, where a
 span is another one at each look. Where robots are, and when they spoke, is in the rows of `motion`.
@@ -24,12 +24,12 @@ TABLES = {
 }
 SPANS = {"age_s": -1, "since_s": -1, "deadline_s": 1, "left_s": 1}
 DRAWN = ("homed", "reports", "going_since", "reached")  # of a robot in the twin, and in no snapshot
-ELSEWHERE = ("age_s", "q", "node")  # what `motion` knows of a robot
+ELSEWHERE = ("age_s", "q", "node")  # fields of a robot that are in the rows of `motion`
 PLANT, ORDER, LINKS = "plant", "order", "links"
 
 
 def rows_of(snapshot: Row, drawn: Row) -> Iterator[tuple[str, Row]]:
-    """Key and row of all that a snapshot, and the twin's positions of that moment, say."""
+    """The key and row of each part of a snapshot, and of the twin's positions at that moment."""
     at = snapshot["at"]
     yield PLANT, {key: value for key, value in snapshot.items() if key not in TABLES and key != "at"}
     yield ORDER, {table: [row[key] for row in snapshot[table]] for table, key in TABLES.items()}
@@ -52,7 +52,7 @@ def rows_of(snapshot: Row, drawn: Row) -> Iterator[tuple[str, Row]]:
 
 
 def snapshot_of(rows: Rows, at: float) -> Row:
-    """The snapshot that these rows are of, with its spans as of `at` on the plant's clock."""
+    """The snapshot made of these rows, with its spans as of `at` on the plant's clock."""
     order = rows[ORDER]
     tasks = {id: _task(_row(rows, f"tasks/{id}"), at) for id in order["tasks"]}
     return {
@@ -69,7 +69,7 @@ def snapshot_of(rows: Rows, at: float) -> Row:
 
 
 def positions_of(rows: Rows, at: float) -> Row:
-    """The twin's positions likewise."""
+    """The twin's positions made of these rows, as of `at`."""
     order = rows[ORDER]
     cells = {name: _row(rows, f"parts/{name}") for name in order["cells"]}
     return {
@@ -82,12 +82,12 @@ def positions_of(rows: Rows, at: float) -> Row:
 
 
 def links_of(rows: Rows) -> Row:
-    """What is said of the plant's links; an empty row where that was not told yet."""
+    """The row of the plant's links; empty if there is none yet."""
     return _row(rows, LINKS) if LINKS in rows else {}
 
 
 def _moments(row: Row, at: float) -> Row:
-    """To a tenth of a second: the parts of a snapshot are not of the same moment to the last digit."""
+    """The spans of a row as moments, to a tenth of a second: parts of a snapshot differ by less."""
     return {
         key: round(at + SPANS[key] * value, 1) if key in SPANS and value is not None else value
         for key, value in row.items()

@@ -1,4 +1,4 @@
-"""The record of a simulated plant: written in its own time, step by step, with all that a real one has."""
+"""Record of a simulated plant, written step by step, with everything that a real one has."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from .writing import Writing
 
 
 class RecordNotWritten(BaseException):
-    """The record cannot be written, `error` says why; an Exception would be laid to the plant."""
+    """Error: the record cannot be written, as `error` says; an Exception would be blamed on the plant."""
 
     def __init__(self, error: OSError) -> None:
         self.error = error
@@ -43,7 +43,7 @@ class SimulatedRecorder:
         self._writing: Writing | None = None
 
     def plant(self, model: PlantModel, **made_of: Any) -> Plant:
-        """The plant of a start that begins now; the record of the one before ends."""
+        """A plant for a start that begins now; the record of the start before ends."""
         self.close()
         self._now_ns, self._shown = self._began_ns + round(made_of["now"] * SECOND), -1
         told = partial(RecordingPlant, tell=self._stepped, files=self._files, began_ns=self._began_ns)
@@ -57,7 +57,7 @@ class SimulatedRecorder:
             self._writing = None
 
     def _stepped(self, step: Step) -> None:
-        """Write a step, and what screens would see after it."""
+        """Write a step, and the views that screens would have after it."""
         plant = self._plant
         assert plant is not None
         try:

@@ -1,4 +1,4 @@
-"""What of a plant's state is compared after each step: all of one cell, the cells by turns."""
+"""State of a plant that is compared after each step: all of one cell, the cells in turns."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ State = dict[str, Any]
 
 
 def state_of(plant: Plant, turn: int) -> State:
-    """The plant's own counters, and all of the cell whose turn it is; nothing in it changes any more."""
+    """The plant's own counters, and the whole state of the cell whose turn it is, as unchanging values."""
     names = tuple(plant.cells)
     run = plant.cells[names[turn % len(names)]]
     return {"version": plant.version, "next_deadline": plant.next_deadline, **_cell(plant, run)}
@@ -75,7 +75,7 @@ def _zones(plant: Plant, robot: str) -> list[str]:
 
 
 def named(state: Any) -> dict[str, Any]:
-    """The same as plain data, with a name for each value: what a difference is told by."""
+    """The state as plain data, with a name for each value, by which a difference is told."""
     rows = dict(state)
     rows["stands"] = dict(zip(STANDS, state["stands"], strict=True))
     rows["commands"] = [dict(zip(OPENED, each, strict=True)) for each in state["commands"]]

@@ -33,7 +33,7 @@ SCHEMA = {
 
 @dataclass(frozen=True)
 class Step:
-    """What the plant's thread hands over: objects that do not change any more. `unix_ns` is for people."""
+    """Step as the plant's thread hands it over, of unchanging objects. `unix_ns` is for people only."""
 
     unix_ns: int
     now: float
@@ -44,7 +44,7 @@ class Step:
 
 @dataclass(frozen=True)
 class RecordedStep:
-    """A step as it was read: `said` is what came out and the state, as the hash has them."""
+    """Step as it was read; `said` is its messages and state, in the form that is hashed."""
 
     unix_ns: int
     now: float
@@ -54,17 +54,17 @@ class RecordedStep:
 
 
 def outcome(messages: Sequence[Any], state: State) -> dict[str, Any]:
-    """What a step did, as plain data."""
+    """The messages and state of a step, as plain data."""
     return {"messages": plain(messages), "state": plain(named(state))}
 
 
 def hash_of(said: dict[str, Any]) -> str:
-    """Of what a step did: equal only where that is equal to the last bit of every number."""
+    """The hash of a step's result; equal only if every number is equal to the last bit."""
     return _hash(_text(said))
 
 
 def as_json(step: Step) -> bytes:
-    """The message of a step."""
+    """The record's message for a step."""
     said = _text(outcome(step.messages, step.state))
     head = _text({"now": step.now, "events": plain(step.events)})
     return f'{head[:-1]},{said[1:-1]},"hash":"{_hash(said)}"}}'.encode()
@@ -79,7 +79,7 @@ def _hash(text: str) -> str:
 
 
 def from_json(unix_ns: int, data: bytes) -> RecordedStep:
-    """The step of such a message; NoRecord for anything else."""
+    """The step in a message; raises NoRecord for anything else."""
     try:
         rows = json.loads(data)
         events = tuple(event_from(each) for each in rows["events"])

@@ -1,4 +1,4 @@
-"""What simulated plants did, for whatever reads records: each step is told, or kept in memory."""
+"""Record of a simulated plant: each step goes to a listener, or is kept in memory."""
 
 from __future__ import annotations
 
@@ -18,10 +18,9 @@ SECOND = 1_000_000_000
 
 
 class RecordingPlant(Plant):
-    """A simulated plant that tells what each of its steps was made of and what it did.
+    """Simulated plant that reports each of its steps, with its events and results, to `tell`.
 
-    `beginning` is what a record of it begins with; `began_ns` what the clock on the wall says where its own
-    is 0.
+    `beginning` is the first message of a record of it; `began_ns` the Unix time at which its own clock is 0.
     """
 
     def __init__(
@@ -49,14 +48,14 @@ class RecordingPlant(Plant):
 
 
 class TapedPlant(RecordingPlant):
-    """A plant that keeps its steps."""
+    """Simulated plant that keeps its steps in memory."""
 
     def __init__(self, model: PlantModel, *, files: PlantFiles = NO_FILES, **made_of: Any) -> None:
         self.tape: list[Step] = []
         super().__init__(model, tell=self.tape.append, files=files, **made_of)
 
     def steps(self) -> Iterator[RecordedStep]:
-        """All of them, as they are read from a file; their Unix time is the plant's own."""
+        """All steps, as if read from a file; their Unix time is the plant's own."""
         for step in self.tape:
             said = outcome(step.messages, step.state)
             yield RecordedStep(step.unix_ns, step.now, tuple(step.events), said, hash_of(said))

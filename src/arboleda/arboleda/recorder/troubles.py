@@ -1,4 +1,4 @@
-"""What befell the devices of a recorded plant, as far as their reports tell: silences, boots, alarms."""
+"""Troubles of the devices of a recorded plant, seen in their reports: silences, boots, alarms."""
 
 from __future__ import annotations
 
@@ -9,17 +9,17 @@ from dataclasses import dataclass, field, replace
 from arboleda.model.messages import Report
 from arboleda.model.plant_model import MotionState
 
-SILENT_S = 0.6  # boards speak ten times a second: whoever says nothing for so long has lost some messages
+SILENT_S = 0.6  # boards report ten times a second, so such a silence means lost messages
 ROUNDING_S = 1e-6
 SILENCE, BOOT, ALARM, BRIDGE = "silence", "boot", "alarm", "bridge"
 
 
 @dataclass(frozen=True, kw_only=True)
 class Trouble:
-    """Something that befell a robot, from `at` on for `seconds` of the plant's clock; inf: to the end.
+    """Trouble of a robot, from `at` on for `seconds` of the plant's clock; inf: to the end.
 
-    `lost_at`: when its link was reported as lost, None where nobody noticed; `cut`: that was sooner than
-    silence alone tells, so the connection broke.
+    `lost_at`: the time at which its link was reported as lost, None if it was not. `cut`: the report came
+    sooner than a silence would cause one, so the connection broke.
     """
 
     kind: str
@@ -36,7 +36,7 @@ class Trouble:
 
 @dataclass
 class _RobotState:
-    """A robot as it was heard last."""
+    """Last report of a robot."""
 
     at: float
     report: Report
@@ -60,7 +60,7 @@ class Troubles:
                 self._hear(event)
 
     def of(self, now: float) -> list[Trouble]:
-        """All of them in their order, with those that had not ended `now`."""
+        """All troubles in order, including those still open at `now`."""
         return sorted([*self.found, *self._open(now)], key=lambda each: each.at)
 
     def _hear(self, report: Report) -> None:
@@ -100,7 +100,7 @@ class Troubles:
 
 
 def _between(before: Report, report: Report, silence: Trouble) -> Iterator[Trouble]:
-    """What must have happened between two reports of a robot."""
+    """The trouble that two consecutive reports prove, if any: a new bridge, a boot, or a silence."""
     if None not in (report.epoch, before.epoch) and report.epoch != before.epoch:
         yield replace(silence, kind=BRIDGE)
     elif None not in (report.boot_id, before.boot_id) and report.boot_id != before.boot_id:

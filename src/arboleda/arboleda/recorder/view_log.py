@@ -1,4 +1,4 @@
-"""What screens see, as messages of a record: all of it now and then, in between what changed."""
+"""Snapshots of the plant as messages of a record: a whole one now and then, changes in between."""
 
 from __future__ import annotations
 
@@ -21,14 +21,14 @@ from .rows import LINKS, Row, Rows, rows_of
 from .steps import Step
 
 LOOK_S = 0.25  # between two looks at where robots are
-WHOLE_S = 30.0  # after so long all of it is written again: what is between two of these is read at once
-DIGEST_S = 300.0  # as long is what of the time line a reader has to look for among all messages
+WHOLE_S = 30.0  # a whole view is written so often; a reader reads from one to the next at once
+DIGEST_S = 300.0  # at most this part of the time line has to be read from messages
 Message = tuple[str, int, bytes]  # topic, ns of Unix time, content
 
 
 @dataclass(frozen=True)
 class ViewSnapshot:
-    """A snapshot as screens got it, and the twin's positions of that moment."""
+    """Snapshot as screens got it, and the twin's positions of that moment."""
 
     unix_ns: int
     snapshot: Row
@@ -36,8 +36,9 @@ class ViewSnapshot:
 
 
 class ViewLog:
-    """Makes messages of steps and snapshots, as `writing.Log` has it. Times never run back, as clocks on the
-    wall may.
+    """Source of view messages, made of steps and snapshots.
+
+    Times never run back, as clocks on the wall may.
     """
 
     channels: Sequence[Channel] = ()  # those of each record
@@ -45,7 +46,7 @@ class ViewLog:
     def __init__(self, past_acts: Iterable[Row] = (), links: Callable[[], Mapping[str, Any]] = dict) -> None:
         self._links = links
         self._chronicle = Chronicle(past_acts)
-        self._told = 0  # the number of the last event that was
+        self._told = 0  # number of the last event written
         self._motion = Motion()
         self._rows: Rows = {}
         self._at = self._looked_at = 0.0
@@ -53,7 +54,7 @@ class ViewLog:
         self._digest: list[str] = []
 
     def stepped(self, step: Step) -> Iterator[Message | None]:
-        """What a step changes of where robots are."""
+        """The messages for a step's changes of positions."""
         for event in step.events:
             if isinstance(event, Report):
                 self._motion.hear(event)
@@ -62,7 +63,7 @@ class ViewLog:
             yield from self._news(step.unix_ns, step.now, self._motion.rows(step.now))
 
     def saw(self, seen: ViewSnapshot) -> Iterator[Message | None]:
-        """What of a snapshot is new."""
+        """The messages for the changes in a snapshot."""
         for robot in seen.drawn["robots"]:
             self._motion.seen(robot)
         at = seen.snapshot["at"]
@@ -73,13 +74,16 @@ class ViewLog:
         yield from self._events()
 
     def whole(self) -> Iterator[Message | None]:
-        """All that was told so far, for the beginning of a file; nothing where that is nothing."""
+        """The whole view so far, for the beginning of a file; empty if there is none yet."""
         if self._rows:
             self._whole_ns = self._ns
             yield from self._message(VIEW, [], self._rows.items())
 
     def digest(self, *, ends: bool) -> bytes:
-        """What no digest has of the time line yet, compressed; empty where it is not time for one."""
+        """The events of the time line since the last digest, compressed; empty if no digest is due.
+
+        `ends`: the file ends, so one is due at once.
+        """
         if not self._digest or not (ends or self._ns - self._digest_ns >= DIGEST_S * 1e9):
             return b""
         self._digest_ns, told = self._ns, f"[{','.join(self._digest)}]"
@@ -89,7 +93,7 @@ class ViewLog:
     def _news(
         self, unix_ns: int, at: float, rows: Iterable[tuple[str, Row]], *, everything: bool = False
     ) -> Iterator[Message | None]:
-        """`everything`: rows that are not among these are gone."""
+        """The message for new rows; `everything`: rows that are not among these are gone."""
         self._ns, self._at = max(self._ns, unix_ns), at
         fields, keys = [], set()
         for key, row in rows:

@@ -1,4 +1,4 @@
-"""The plant as screens saw it, at any moment of a record."""
+"""Views of the plant as screens had them, at any moment of a record."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ EXACT_NS = 1000  # a time as a float of Unix seconds, as events have it, is not 
 
 @dataclass(frozen=True)
 class ViewChange:
-    """What was told at a moment: of everything, or what had changed."""
+    """View message: a whole view, or the changes since the one before."""
 
     unix_ns: int
     at: float
@@ -39,7 +39,7 @@ class ViewChange:
 
 @dataclass(kw_only=True)
 class Window:
-    """What was told from one whole view to the next; `ended` where that one is there already."""
+    """Views from one whole view to the next; `ended` if that next one is written already."""
 
     told: list[ViewChange]
     ended: bool
@@ -50,7 +50,7 @@ class Window:
         return [each.unix_ns for each in self.told]
 
     def between(self, after_ns: int, until_ns: int) -> list[ViewChange]:
-        """What was told after a moment and up to another."""
+        """The views after one moment and up to another."""
         return self.told[bisect_right(self.times, after_ns) : bisect_right(self.times, until_ns)]
 
 
@@ -69,50 +69,50 @@ class Views:
 
     @property
     def began_ns(self) -> int:
-        """When something was told first; NoRecord where nothing was."""
+        """The time of the first view, Unix ns; raises NoRecord if there is none."""
         with _legible(self._files):
             return self._first().times[0]
 
     @property
     def ended_ns(self) -> int:
-        """When its last step was made."""
+        """The time of the last step, Unix ns."""
         with _legible(self._files):
             ends = [file.index().chunks[-1].end_ns for file in self._followed() if file.index().chunks]
         return ends[-1] if ends else self.began_ns
 
     def at(self, unix_ns: int) -> Row:
-        """The snapshot as screens had it then, its spans as of that moment; earlier, the first one."""
+        """The snapshot at a moment, with its spans as of then; before the first one, the first."""
         with _legible(self._files):
             return snapshot_of(*self._moment(unix_ns))
 
     def positions(self, unix_ns: int) -> Row:
-        """What the twin was drawn of, likewise."""
+        """The row from which the twin is drawn at a moment."""
         with _legible(self._files):
             return positions_of(*self._moment(unix_ns))
 
     def links(self, unix_ns: int) -> Row:
-        """Broker, ROS 2 and refused messages, likewise."""
+        """The row of the plant's links at a moment: broker, ROS 2 and refused messages."""
         with _legible(self._files):
             return links_of(self._moment(unix_ns)[0])
 
     def times(self) -> Sequence[int]:
-        """Every moment at which something was told, in order."""
+        """The times of all views, in order."""
         with _legible(self._files):
             return [at for file in self._followed() for at in self._times_of(file)]
 
     def events(self) -> list[Row]:
-        """The time line, as `views.chronicle` has it: all of it, the oldest event first."""
+        """The whole time line, as `views.chronicle` makes it, the oldest event first."""
         with _legible(self._files):
             found = {row["number"]: row for file in self._followed() for row in self._events_of(file)}
             return [found[number] for number in sorted(found)]
 
     def rows(self, unix_ns: int) -> Rows:
-        """What was told up to a moment, to the last ns."""
+        """The rows of the view at a moment, exact to the ns."""
         with _legible(self._files):
             return self._moment(unix_ns - EXACT_NS)[0]
 
     def told(self, after_ns: int, until_ns: int) -> Iterator[ViewChange]:
-        """All that was told after a moment and up to another, in order."""
+        """All views after a moment and up to another, in order."""
         with _legible(self._files):
             for window in self._windows_from(after_ns, until_ns):
                 yield from window.between(after_ns, until_ns)
@@ -132,7 +132,7 @@ class Views:
                         yield self._read(file, number, place)
 
     def _followed(self) -> list[ChunkFile]:
-        """Its files that are still there; where the last one was closed, also the one that came after it."""
+        """The files that are still there, with the one that came after the last, if that was closed."""
         while len(self._files) > 1 and not self._files[0].path.exists():
             del self._files[0]
         self._know_channels()
@@ -147,7 +147,7 @@ class Views:
         return self._files
 
     def _know_channels(self) -> None:
-        """They are in the first chunk, which a plant that has just begun has not written yet."""
+        """Read the channels from the first chunk, which a plant that just began has not written yet."""
         if not self._channels:
             path = self._files[0].path
             self._channels = channels_of(path)
@@ -155,7 +155,7 @@ class Views:
                 raise NoRecord(f"{path} was written by an Arboleda that kept no views: replay it.")
 
     def _moment(self, unix_ns: int) -> tuple[Rows, float]:
-        """The rows of a moment, and when that was on the plant's clock."""
+        """The rows at a moment, and the time of it on the plant's clock."""
         window = self._window(unix_ns + EXACT_NS) or self._first()
         count = max(1, bisect_right(window.times, unix_ns + EXACT_NS))
         rows: Rows = {}
@@ -169,7 +169,7 @@ class Views:
         return rows, last.at + max(0, since_ns) / 1e9
 
     def _window(self, unix_ns: int) -> Window | None:
-        """What was told from the last whole view before this moment on."""
+        """The views from the last whole one before a moment on; None if there is none."""
         for file in reversed(self._followed()):
             for number in range(file.index().position(unix_ns), -1, -1):
                 index = file.index().chunks[number].indexes.get(self._channels.get(VIEW, NONE))
@@ -201,7 +201,7 @@ class Views:
         return known
 
     def _told(self, file: ChunkFile, number: int, place: int) -> Iterator[ViewChange | None]:
-        """What was told from a place on, up to the next whole view: None, where there is one."""
+        """The views from a place on; a None in the end if the next whole view follows."""
         view, changes = (self._channels.get(topic, NONE) for topic in (VIEW, CHANGES))
         first = True
         for chunk in file.index().chunks[number:]:
@@ -224,7 +224,7 @@ class Views:
         return self._times[file.path]
 
     def _events_of(self, file: ChunkFile) -> Iterator[Row]:
-        """Out of the digests of a file, and of what is not in one yet."""
+        """The events in the digests of a file, and those not in a digest yet."""
         index, channel, digested = file.index(), self._channels.get(EVENTS, NONE), 0
         for name, offset in index.attachments:
             if name.startswith(DIGEST):
@@ -238,7 +238,7 @@ class Views:
 
 @contextmanager
 def _legible(files: list[ChunkFile]) -> Iterator[None]:
-    """Whatever damage has made of a file is a sentence."""
+    """Context that turns any error from a damaged file into a sentence."""
     try:
         yield
     except OSError as error:

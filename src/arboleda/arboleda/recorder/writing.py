@@ -1,4 +1,4 @@
-"""One start's record as a row of files: what it is told goes into the last one, until that is full."""
+"""Writer of one start's record as a row of files: messages go into the last one until it is full."""
 
 from __future__ import annotations
 
@@ -14,23 +14,23 @@ from .preamble import Beginning, Limits
 from .steps import TOPIC, Step, as_json
 from .view_log import Message, ViewLog, ViewSnapshot
 
-FLUSH_S = 1.0  # what a killed process or a power cut loses at most
-LEAST_FREE = 200_000_000  # bytes that the disk keeps for the plant's memory and for whatever else is on it
+FLUSH_S = 1.0  # at most this is lost with a killed process or power
+LEAST_FREE = 200_000_000  # bytes to keep free on the disk for the plant's memory and anything else
 
 
 class Log(Protocol):
-    """What makes messages of steps and snapshots, in their order; None between two pieces of that work."""
+    """Source of a record's messages, made of steps and snapshots; None between two pieces of work."""
 
     @property
     def channels(self) -> Sequence[Channel]: ...
     def stepped(self, step: Step) -> Iterator[Message | None]: ...
     def saw(self, seen: ViewSnapshot) -> Iterator[Message | None]: ...
     def whole(self) -> Iterator[Message | None]:
-        """All that was told so far, for the beginning of a file."""
+        """The whole view so far, for the beginning of a file."""
 
 
 class Writing:
-    """`open`, then `put` and `tend` again and again, then `close`; OSError where it cannot be written.
+    """Writer of a record: `open`, then `put` and `tend` repeatedly, then `close`; raises OSError.
 
     Old files go as new ones come, within the `limits`.
     """
@@ -59,7 +59,7 @@ class Writing:
         self._flushed_ns = 0
 
     def open(self) -> None:
-        """Begin the next file, with all that was told so far."""
+        """Begin the next file, with the whole view so far."""
         self._folder.mkdir(mode=0o700, exist_ok=True)
         self._refuse_full_disk()
         now = self._flushed_ns = self._unix_ns()
@@ -72,15 +72,15 @@ class Writing:
                 self._part.put(*message)
 
     def put(self, item: Step | ViewSnapshot) -> Iterator[None]:
-        """Write what was told; in pieces, between which others may work."""
+        """Write the messages of a step or snapshot; in pieces, between which others may work."""
         for message in self._messages(item):
             if message is not None and self._part is not None:
                 self._part.put(*message)
             yield
 
     def tend(self) -> None:
-        """Have on the disk what was written, where that is due."""
-        passed_ns = self._unix_ns() - self._flushed_ns  # less than nothing where the clock was set back
+        """Write to the disk if that is due."""
+        passed_ns = self._unix_ns() - self._flushed_ns  # negative if the clock was set back
         if self._part is None or 0 <= passed_ns < FLUSH_S * 1e9:
             return
         self._refuse_full_disk()
@@ -91,13 +91,13 @@ class Writing:
             self.open()
 
     def close(self) -> None:
-        """End the last file as other tools want it."""
+        """End the last file as other tools expect it."""
         if self._part is not None:
             self._digest(self._part, ends=True)
             self._part.close()
 
     def drop(self) -> None:
-        """Leave the last file as it is."""
+        """Leave the last file without an end."""
         if self._part is not None:
             self._part.drop()
 
@@ -111,7 +111,7 @@ class Writing:
                 yield from log.saw(item)
 
     def _digest(self, part: PartFile, *, ends: bool = False) -> None:
-        """Have the newest part of the time line where it is found at once."""
+        """Attach the newest part of the time line, where it is found without reading messages."""
         digest = self._view.digest(ends=ends)
         if digest:
             self._digests += 1

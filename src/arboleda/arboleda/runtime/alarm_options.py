@@ -1,4 +1,5 @@
-"""Where alarms go: of an installation, not of a plant, and partly secret; so the environment says it."""
+"""Receivers of alarms: they belong to an installation, not to a plant, and are partly secret; so the
+environment names them."""
 
 from __future__ import annotations
 
@@ -24,7 +25,7 @@ class AlarmOptions:
     topic: str | None = None
 
     def check(self, model: PlantModel, *, has_broker: bool) -> None:
-        """StartError where there is nowhere to publish, or the topic may be one of a board."""
+        """Raise StartError if there is no broker to publish on, or the topic may be one of a board."""
         if self.topic is None:
             return
         if not has_broker:
@@ -34,7 +35,7 @@ class AlarmOptions:
 
 
 def alarm_options() -> AlarmOptions:
-    """Those of the environment; StartError for what means nothing."""
+    """The receivers that the environment names; StartError if a variable means nothing."""
     topic = os.environ.get(TOPIC) or None
     if topic is not None and not (len(topic) <= LONGEST and TOPICS.fullmatch(topic)):
         raise StartError(f"${TOPIC}: {quoted(topic)} is no topic for alarms; write one like arboleda/alarms")

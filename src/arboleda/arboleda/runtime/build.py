@@ -68,7 +68,7 @@ LOG = logging.getLogger(__name__)
 
 @dataclass(frozen=True, kw_only=True)
 class Options:
-    """What the command line or the ROS parameters chose; `link` is the ROS 2 link, None without ROS."""
+    """The choices of the command line or the ROS parameters; `link` is the ROS 2 link, None without ROS."""
 
     link: Any | None = None
     broker: str | None = None
@@ -144,7 +144,7 @@ class App:
 
     @property
     def notes(self) -> list[str]:
-        """What a person should know of this start, a line each."""
+        """The lines that a person should read about this start."""
         notes = [*self._notes, *(self._link.notes if self._link else ())]
         if self.model.has_boards:
             notes.append(f"MQTT broker: {self._broker.address}")
@@ -160,12 +160,12 @@ class App:
 
     @property
     def log_file(self) -> Path:
-        """Where details go that are too much for a terminal."""
+        """The file for details that are too much for a terminal."""
         return self._state.path / self._log_name
 
     @property
     def log_outputs(self) -> list[Output]:
-        """Where else than to terminal and file the log goes."""
+        """The outputs of the log beside terminal and file."""
         return [self._link.log] if self._link else []
 
     def start(self) -> None:
@@ -190,7 +190,7 @@ class App:
             callback()
 
     def when_over(self, callback: Callable[[], None]) -> None:
-        """Have the end of `wait` told as well; from any thread, before `start`."""
+        """Call back at the end of `wait`, too; from any thread, before `start`."""
         self._callbacks.append(callback)
 
     def wait(self) -> None:
@@ -210,11 +210,11 @@ class App:
         self._let_go()
 
     def listen(self, *listeners: Callable[[TaskChanged], None]) -> None:
-        """Have every change of a task told, in the plant's thread; before `start`."""
+        """Call back with every change of a task, in the plant's thread; before `start`."""
         self.plant.listeners.extend(listeners)
 
     def watch(self, watcher: Callable[[dict[str, Any]], None]) -> None:
-        """Have a snapshot told when more than a position changed; in the plant's thread, before `start`."""
+        """Call back with snapshots if more than a position changed; in the plant's thread, before `start`."""
         self.plant.watchers.append(watcher)
 
     def links(self) -> dict[str, Any]:
@@ -274,7 +274,7 @@ class App:
         return self.orchestrator
 
     def _recorder(self, epoch: int, plant: Orchestrator, options: Options) -> list[Part]:
-        """What writes the flight record of this start, where one is wanted; it ends after the plant."""
+        """The parts that write the flight record of this start, if wanted; they end after the plant."""
         wanted = options.recording
         if wanted is None:
             return []
@@ -304,7 +304,7 @@ class App:
         return [self._reports(wanted), recorder]
 
     def _reports(self, wanted: Recording) -> ReportsPart:
-        """What has reports written: those that are asked for, or one of each failure where that is wanted."""
+        """The part that has reports written: those that are asked for and, if wanted, one of each failure."""
         self._reporting = ReportsPart(self._state.path)
         if wanted.reports:
             self.listen(self._reporting.changed)
@@ -375,20 +375,20 @@ class App:
             self._parts += [systemd] if systemd else []
 
     def _looks(self) -> list[Callable[[], None]]:
-        """What is looked at all the time: how fast the memory is, whether files are in their place."""
+        """The regular checks: the speed of the memory, and that its files are still in their place."""
         is_leased = self._store.renew_s is not None  # then the thread of the lease finds out
         places = [self._state.confirm] if is_leased else [self._store.confirm, self._state.confirm]
         return [self._pace.look, *places]  # a disk that hangs may hold up the others
 
     def _lead(self, now: int) -> int:
-        """The number of this start, higher than any before, also than those of other hosts."""
+        """The number of this start, higher than that of any start before, on any host."""
         epoch = self._store.lead(self._state.next_epoch(now))
         if self._store.renew_s is not None:
             self._parts.append(LeasePart(self._store, self._store.renew_s, self._crash, self._hand_over))
         return epoch
 
     def _hand_over(self) -> None:
-        """Hold what is at work, for the next leader to go on with, and end."""
+        """Hold the cells that are at work, so that the next leader can go on with them, and end."""
         LOG.warning("another process is to lead the plant: what is at work is held")
         try:
             self._store.hand_over(hold_all(self.plant))
@@ -404,14 +404,14 @@ class App:
             LOG.warning("standbys are not told where the page is: %s", error)
 
     def _own_address(self) -> str:
-        """By which hosts that reach the memory may reach this one."""
+        """The address of this host that hosts which reach the memory may reach it by."""
         return self._store.own_address() or other_address()
 
     def _seen_at(self, cell: str, task: str | None) -> str | None:
         return self._web.address_of(cell, task) if self._web is not None else None
 
     def _count(self) -> None:
-        """Have what happens counted."""
+        """Count events for the metrics."""
         if self._metrics is not None and self.orchestrator is not None:
             self.watch(self._metrics.saw)
             self.listen(self._metrics.changed)
@@ -434,7 +434,7 @@ class App:
         return [virtual, *compiled]
 
     def _let_go(self) -> None:
-        """Give back what only one process may have; idempotent."""
+        """Give back everything that only one process may have; idempotent."""
         self._history.close()
         self._recalled.close()
         self._store.close()
@@ -512,7 +512,7 @@ def _nothing() -> None: ...
 
 
 def _groot2(model: PlantModel, options: Options) -> Groot2Part | None:
-    """What shows trees to Groot2, where that is wanted; on the address of the HTTP API."""
+    """The part that shows trees to Groot2, if wanted; on the address of the HTTP API."""
     wanted = model.groot2_port is not None if options.groot2 is None else options.groot2
     if not wanted:
         return None
@@ -521,7 +521,7 @@ def _groot2(model: PlantModel, options: Options) -> Groot2Part | None:
 
 
 def _acts(store: PlantMemory) -> list[dict[str, Any]]:
-    """What operators did before this start, oldest first."""
+    """The acts of operators before this start, oldest first."""
     entries = reversed(store.entries())
     return [
         {"at": each.unix_s, "scope": each.scope, "cell": each.cell, "sentence": _told(each)}
@@ -530,7 +530,7 @@ def _acts(store: PlantMemory) -> list[dict[str, Any]]:
 
 
 def _told(entry: JournalEntry) -> Sentence:
-    """What an operator did; of older starts, or of another version, only as text."""
+    """The sentence about an operator's act; plain text if an older start or another version wrote it."""
     try:
         return from_data(json.loads(entry.said or ""), ACTS_TOLD)
     except ValueError:

@@ -54,7 +54,7 @@ class Demo:
         return min((*self._repairs.values(), *(self._rested.values() if self.is_on else ())), default=None)
 
     def step(self, now: float, events: Sequence[Snapshot | DemoEnded]) -> list[Task | Reboot | Alarm]:
-        """See what is new; the tasks and faults that are due."""
+        """The tasks and faults that are due after a look at the news of the plant."""
         out: list[Task | Reboot | Alarm] = []
         for event in events:
             if isinstance(event, DemoEnded):
@@ -91,8 +91,7 @@ class Demo:
         return [Alarm(at=now, board=robot.mqtt, is_on=True)]
 
     def _next(self) -> Robot | None:
-        """The device whose turn it is: cells take turns, and in them those that get well by themselves come
-        first."""
+        """The device that fails next: cells take turns, in each of them self-healing devices come first."""
         cells = [cell for cell in self._cells.values() if _boards(cell)]
         if not cells:
             return None
@@ -107,7 +106,7 @@ class Demo:
 
 
 def _boards(cell: Cell) -> list[Robot]:
-    """Those of its devices that have a virtual board and move, arms last."""
+    """The devices of a cell that have a virtual board and move, arms last."""
     boards = [robot for robot in cell.robots if robot.link is Link.MQTT and robot.position_key]
     return sorted(boards, key=lambda robot: robot.has_joints)
 

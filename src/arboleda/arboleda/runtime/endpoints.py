@@ -1,4 +1,4 @@
-"""Where plants may be reached, and what is shown to them."""
+"""Addresses of plants, and the credentials that are shown to them."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from arboleda.web.names import public_origin
 from . import tokens
 from .state import Running, find_running, running_plants
 
-if TYPE_CHECKING:  # they take a while to load, and only who asks a plant needs them
+if TYPE_CHECKING:  # slow to load, and only needed to ask a plant
     import ssl
 
     from arboleda.store.postgres.leaders import Leaders
@@ -30,7 +30,7 @@ LINE = re.compile(r"(\S+)\s+(\S+)")
 class Place:
     """An address where a plant may be; "" where nobody leads the plant of that name.
 
-    `token` is "" where none is known; `certificate`, as PEM, is the one that is believed, "" asks the
+    `token` is "" if none is known; `certificate`, as PEM, is the one that is believed, "" leaves that to the
     authorities of this machine.
     """
 
@@ -40,7 +40,7 @@ class Place:
     certificate: str = ""
 
     def believed(self) -> ssl.SSLContext:
-        """Whom a client there believes."""
+        """The certificates that a client of this plant believes."""
         if not self.certificate:
             return _authorities()
         from arboleda.adapters.server_tls import pinned
@@ -59,20 +59,20 @@ Find = Callable[[], list[Place]]
 
 
 def named(addresses: Iterable[str]) -> Find:
-    """Those that were given."""
+    """The places at the given addresses."""
     places = [Place(url=public_origin(address)) for address in addresses]
     return lambda: places
 
 
 def of_this_machine() -> list[Place]:
-    """The plants that run here on their default state directories."""
+    """The plants that run on this machine on their default state directories."""
     found = ((path, find_running(path)) for path in running_plants())
     return [here(path, running) for path, running in found if running is not None and running.port]
 
 
 def here(state: Path, running: Running) -> Place:
-    """The process of that state directory, with the operator's token where it wants one: whoever may read it
-    may operate. StartError where the token cannot be read."""
+    """The process of that state directory, with the operator's token if it wants one: a user who may read it
+    may operate. StartError if the token cannot be read."""
     token = ""
     if running.guarded:
         token = tokens.TokenFile(state)()[Role.OPERATOR]
@@ -80,15 +80,15 @@ def here(state: Path, running: Running) -> Place:
 
 
 def of_database(leaders: Leaders) -> Find:
-    """Whoever leads a plant of this database now."""
+    """The leaders of the plants of this database now."""
     return lambda: [
         Place(url=leader.url if leader.leads else "", plant=plant) for plant, leader in leaders.all().items()
     ]
 
 
 def with_tokens(find: Find, known: Mapping[str, str]) -> Find:
-    """The places with the tokens of a file, by address or by the name of the plant; else with what a plant of
-    this machine that is there shows to its own commands."""
+    """The places with the tokens of a file, by address or by plant; a plant of this machine without one there
+    gets the token that its own commands use."""
 
     def found() -> list[Place]:
         near = {place.url: place for place in _readable()}
@@ -114,7 +114,7 @@ def _shown(place: Place, known: Mapping[str, str], near: Place | None) -> Place:
 
 
 def tokens_of(file: Path) -> dict[str, str]:
-    """A line for each plant: its address or its name, and its token; ConfigError."""
+    """The tokens of a file, a line for each plant: its address or its name, and its token; ConfigError."""
     if file.exists() and file.stat().st_mode & tokens.OWNER_ONLY:
         raise ConfigError((f"{file}: others can read the tokens in it; chmod 600 {file}",))
     found: dict[str, str] = {}

@@ -1,4 +1,4 @@
-"""How the person who started this calls the commands that a sentence names."""
+"""Commands that a sentence names, written as the person who started this process would type them."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import sys
 
 
 def command() -> str:
-    """`arboleda`, where a shell finds it, else the path of the one that runs."""
+    """`arboleda` if a shell finds it, else the path of the one that runs."""
     return "arboleda" if shutil.which("arboleda") else sys.argv[0]
 
 

@@ -1,4 +1,4 @@
-"""Who leads a plant, as its database or a process that stands by says it."""
+"""The leader of a plant, as its database or a process that stands by names it."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, kw_only=True)
 class LeaderInfo:
-    """The process and its host, the address of its page, "" where it has said none that is one, and the
-    number of its start."""
+    """Led: the process that leads a plant, its host, the address of its page, "" if it has announced none,
+    and the number of its start."""
 
     plant: str
     host: str
@@ -28,22 +28,22 @@ class LeaderInfo:
 
     @property
     def here(self) -> bool:
-        """Whether its host is called as this one."""
+        """True if the leader's host has the name of this one."""
         return _is_here(self.host)
 
     @property
     def is_far(self) -> bool:
-        """Whether the address leads there from its own host alone, and that is not this one."""
+        """True if the address works only on the leader's own host, and that is not this one."""
         return bool(self.url) and not way_to(self.host, self.url)
 
     @property
     def way(self) -> str:
-        """The address, where it leads there from this host; else ""."""
+        """The address if it can be used from this host; else ""."""
         return way_to(self.host, self.url)
 
 
 def of_leader(plant: str, leader: Leader) -> LeaderInfo:
-    """As the database says it."""
+    """The leader as the database names it."""
     return LeaderInfo(
         plant=plant,
         host=leader.host,
@@ -54,14 +54,14 @@ def of_leader(plant: str, leader: Leader) -> LeaderInfo:
 
 
 def said_of(led: LeaderInfo | None) -> dict[str, Any]:
-    """What a process that stands by says of it, for `of_standby`."""
+    """The leader's row in the answer of a process that stands by, for `of_standby`."""
     if led is None:
         return {"leader": "", "host": "", "process": 0, "epoch": 0}
     return {"leader": led.url, "host": led.host, "process": led.process, "epoch": led.epoch}
 
 
 def of_standby(said: Mapping[str, Any]) -> LeaderInfo:
-    """As a process that stands by says it."""
+    """The leader as a process that stands by names it."""
     return LeaderInfo(
         plant=plain(str(said.get("plant", ""))),
         host=plain(str(said.get("host", ""))),
@@ -72,7 +72,7 @@ def of_standby(said: Mapping[str, Any]) -> LeaderInfo:
 
 
 def way_to(host: str, url: str) -> str:
-    """The address of a process of that host, where it is one and leads there from this host; else ""."""
+    """The address of a process of that host if it is valid and can be used from this host; else ""."""
     url = _origin(url)
     return "" if url and is_near_only(url) and not _is_here(host) else url
 

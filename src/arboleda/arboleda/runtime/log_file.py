@@ -1,4 +1,4 @@
-"""The log file of a process: details for whoever has to look, tracebacks among them."""
+"""Log file of a process: details for a person who has to look, tracebacks among them."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ LOG_BYTES = 1_000_000  # the file before this one is kept as well
 
 
 class LogFile(RotatingFileHandler):
-    """Grows to twice LOG_BYTES; where it cannot be written, `tell` gets a sentence, and all else goes on."""
+    """LogFile: grows to twice LOG_BYTES; if it cannot be written, `tell` gets a sentence, work goes on."""
 
     def __init__(self, file: Path, tell: Callable[[str], None]) -> None:
         with suppress(OSError):  # whatever is in the way, the first line finds it there and says it
@@ -25,7 +25,7 @@ class LogFile(RotatingFileHandler):
         self._failed = False
 
     def handleError(self, record: logging.LogRecord) -> None:
-        """Called where a line could not be written."""
+        """Report that a line could not be written; `logging` calls this."""
         error = sys.exc_info()[1]
         if not self._failed:
             self._failed = True

@@ -1,4 +1,4 @@
-"""Log lines on their way out: whoever logs waits for no terminal, no file and no network."""
+"""Queue of log lines on their way out: no caller waits for a terminal, a file or a network."""
 
 from __future__ import annotations
 
@@ -63,25 +63,25 @@ class LogQueue(logging.Handler):
             self.handleError(record)
 
     def add(self, output: Output) -> None:
-        """Hand what is logged from now on to this output too."""
+        """Add an output for lines that are logged from now on."""
         self._outputs = (*self._outputs, output)
 
     def then(self, job: Callable[[], None]) -> None:
-        """Have `job` done once what was logged so far is out; at once where an output is stuck."""
+        """Call `job` once everything logged so far is out; at once if an output is stuck."""
         try:
             self._queue.put_nowait(job)
         except Full:
             job()
 
     def flush(self) -> None:
-        """Wait until what was logged is out, at most FLUSH_S."""
+        """Wait until everything logged is out, at most FLUSH_S."""
         out = threading.Event()
         with suppress(Full):
             self._queue.put(out.set, timeout=FLUSH_S)
             out.wait(FLUSH_S if self._thread.is_alive() else 0.0)
 
     def close(self) -> None:
-        """Put out what waits; where an output is stuck, that is given up after FLUSH_S."""
+        """Put out the remaining lines; if an output is stuck, give up after FLUSH_S."""
         if self._thread.is_alive():
             self.flush()
             _empty(self._queue)
@@ -109,7 +109,7 @@ class LogQueue(logging.Handler):
 
 
 class LineRate:
-    """Whether one more line may leave a place: a bucket of as many lines as its rate allows at once."""
+    """LineRate: limits the lines of each place by a bucket of as many as its rate allows at once."""
 
     def __init__(self, clock: Callable[[], float]) -> None:
         self._clock = clock
@@ -128,7 +128,7 @@ class LineRate:
 
 @contextmanager
 def log_to(*outputs: Output) -> Iterator[LogQueue]:
-    """Have every line of ours put out meanwhile, and of libraries those that warn."""
+    """Put out every line of Arboleda meanwhile, and the warnings of libraries."""
     root, ours = logging.getLogger(), logging.getLogger(OURS)
     queue, before = LogQueue(*outputs), ours.level
     ours.setLevel(logging.DEBUG)
@@ -142,7 +142,7 @@ def log_to(*outputs: Output) -> Iterator[LogQueue]:
 
 
 def _ready(record: logging.LogRecord, left_out: int) -> logging.LogRecord:
-    """A copy that holds its text; the traceback, where there is one, as text of its own."""
+    """A copy of a record that holds its text, and its traceback as text of its own."""
     line = copy.copy(record)
     text = plain(record.getMessage(), LONGEST)
     line.msg = f"{text} ({left_out} more lines like this one were left out)" if left_out else text
@@ -154,7 +154,7 @@ def _ready(record: logging.LogRecord, left_out: int) -> logging.LogRecord:
 
 
 def _indented(traceback: str) -> str:
-    """Lines that nobody takes for lines of the log, whatever an error quotes."""
+    """The lines of a text, indented so that they do not look like lines of the log."""
     return "\n".join(f"  {plain(line, LONGEST)}" for line in traceback.splitlines())
 
 

@@ -19,11 +19,11 @@ Result = TypeVar("Result")
 
 
 class StepInFlight(Exception):
-    """What came out of the last step is still being sent."""
+    """The messages of the last step are still being sent."""
 
 
 class Machine(Protocol[Event, Message]):
-    """What Plant, Bridge and Devices have in common."""
+    """The interface that Plant, Bridge and Devices have in common."""
 
     def step(self, now: float, events: Sequence[Event]) -> list[Message]: ...
 
@@ -32,12 +32,12 @@ class Machine(Protocol[Event, Message]):
 
 
 def log_send_error(message: object, error: Exception) -> None:
-    """What happens to a message that could not leave, where nobody asked for more."""
+    """Log a message that could not be sent; the default."""
     log.warning("%s was not sent: %s", message, error)
 
 
 def log_crash(name: str, error: BaseException) -> None:
-    """What happens to a crash, where nobody asked for more."""
+    """Log a crash; the default."""
     log.critical("%s has stopped on an internal error: %r", name, error)
     log.debug("%s crashed here", name, exc_info=error)
 
@@ -81,8 +81,8 @@ class Loop(Generic[Event, Message]):
         self._step_by: float | None = None
         self._between_steps = threading.Lock()
         self._handed_on = threading.Condition(self._between_steps)
-        self._handing_on_since: float | None = None  # while what came out of a step is being sent
-        self._readers = 0  # that wait for the end of that
+        self._handing_on_since: float | None = None  # while the messages of a step are being sent
+        self._readers = 0  # threads that wait until they are sent
         self.busy = False  # from the moment in which a step takes what waits to the end of what follows it
         self._thread = threading.Thread(target=self._run, name=name, daemon=True)
 
@@ -91,13 +91,13 @@ class Loop(Generic[Event, Message]):
 
     @property
     def running(self) -> bool:
-        """Whether the loop was started and has not ended."""
+        """True if the loop was started and has not ended."""
         return self._thread.is_alive()
 
     def post(self, event: Any, within_s: float = 0.0) -> None:
         """Put an event into the inbox; from any thread, never blocks; after the end it is dropped.
 
-        It is stepped with the next step, within `within_s` at the latest.
+        The next step takes it, within `within_s` at the latest.
         """
         due = self._clock() + within_s if within_s else -math.inf
         with self._awake:
@@ -115,9 +115,9 @@ class Loop(Generic[Event, Message]):
             return fn(self._machine)
 
     def read_handed_on(self, fn: Callable[[Any], Result], within_s: float) -> Result:
-        """As `read`, but of a step whose messages are all sent; not in the loop's thread.
+        """Read as `read`, but after a step whose messages are all sent; not in the loop's thread.
 
-        UnderWay where that is not so `within_s` after the step.
+        UnderWay if they are not all sent `within_s` after the step.
         """
         with self._between_steps:
             while (since := self._handing_on_since) is not None:
@@ -177,7 +177,7 @@ class Loop(Generic[Event, Message]):
             self._on_crash(self.name, error)
 
     def _sleep(self) -> bool:
-        """Whether there is something to step; False at the end."""
+        """Sleep until there is something to step; False at the end."""
         with self._awake:
             while not self._ending:
                 deadline = self._sleeps_until = self._deadline()

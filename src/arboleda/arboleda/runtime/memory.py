@@ -1,4 +1,4 @@
-"""What a plant remembers of earlier starts, checked before it believes it."""
+"""Memory of earlier starts, checked before a plant believes it."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ MEANS = {  # a quarantined zone has the name of a robot, which may be none of th
 
 
 def remembered(store: PlantMemory) -> dict[Fact, dict[str, str]]:
-    """Name to value by kind of fact; StartError where a value means nothing: it may have been a latch."""
+    """Name to value by kind of fact; StartError if a value is unreadable: it may have been a latch."""
     facts = {fact: store.facts(fact) for fact in Fact}
     for fact, allowed in MEANS.items():
         for name, value in facts[fact].items():
@@ -70,7 +70,7 @@ def kept_task(row: TaskRow, *, clock_s: float, unix_s: float) -> KeptTask:
 
 
 def failure_of(row: TaskRow) -> Failure | None:
-    """Why a task failed, as far as that was kept."""
+    """The failure of a task, as far as it was kept."""
     if row.reason is None:
         return None
     return Failure(reason=Reason(row.reason), sentence=sentence_of(row))

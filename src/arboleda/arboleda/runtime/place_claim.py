@@ -12,7 +12,7 @@ from pathlib import Path
 from arboleda.model.errors import StartError
 
 HAS_ABSTRACT = sys.platform == "linux"  # elsewhere the lock alone keeps plants apart
-ASKERS = 64  # those that may ask who has it; nobody answers them, the system knows
+ASKERS = 64  # processes that may ask for the owner at once; the system answers them
 CREDENTIALS = struct.Struct("3i")  # process, user, group
 
 
@@ -28,7 +28,7 @@ class PlaceClaim:
         self._socket: socket.socket | None = None
 
     def take(self) -> None:
-        """StartError where another process has it; idempotent."""
+        """Take the place; StartError if another process has it; idempotent."""
         if self._socket is not None or not HAS_ABSTRACT:
             return
         name = _name(self._place)
@@ -45,21 +45,21 @@ class PlaceClaim:
         self._socket = claim
 
     def release(self) -> None:
-        """Idempotent."""
+        """Give the place back; idempotent."""
         if self._socket is not None:
             self._socket.close()
             self._socket = None
 
 
 def _name(place: Path) -> str:
-    """The same for all ways to write the path; another one in a container, which has a root of its own."""
+    """The socket's name: one for all ways to write the path, another in a container with its own root."""
     root = os.stat("/")
     what = f"{root.st_dev} {root.st_ino} {os.path.realpath(place)}"
     return f"\0arboleda/{hashlib.sha256(os.fsencode(what)).hexdigest()}"
 
 
 def _owner(name: str) -> str:
-    """Which process has it, where the system tells."""
+    """The process that has the place, if the system tells it."""
     with socket.socket(socket.AF_UNIX) as asker:
         asker.setblocking(False)
         try:

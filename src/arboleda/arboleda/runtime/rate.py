@@ -9,7 +9,7 @@ from arboleda.model.plant_model import PlantModel
 
 
 def check_rate(rate: float) -> float:
-    """The rate itself; StartError where it makes no sense."""
+    """The rate itself; StartError if it makes no sense."""
     if not 0.1 <= rate <= 100:
         raise StartError(f"{rate:g} is not a rate; allowed: 0.1 to 100")
     return rate

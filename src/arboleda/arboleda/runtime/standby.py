@@ -1,4 +1,4 @@
-"""A second process for a plant: it waits until the one that leads it ends, and shows that it waits."""
+"""Standby: a second process for a plant, which waits until the leader ends, and shows that it waits."""
 
 from __future__ import annotations
 
@@ -45,12 +45,12 @@ NEEDS_STORE = (
 
 
 def take_over(model: PlantModel, parts: set[str], options: Options, tell: Callable[[str], None]) -> App:
-    """Wait until nobody leads the plant, and be the one who does; StartError, KeyboardInterrupt."""
+    """Wait until nobody leads the plant, then lead it; StartError, KeyboardInterrupt."""
     store = options.store or model.store
     if not store:
         raise StartError(NEEDS_STORE)
     state = options.state_dir or default_state(model.name)
-    # Who logged in while it waited stays so when it leads.
+    # A person who logged in while it waited stays logged in when it leads.
     options = replace(options, web=replace(options.web, door=options.web.door_of(state)))
     while True:
         port = _wait(model, store, state, options, tell)
@@ -62,7 +62,7 @@ def take_over(model: PlantModel, parts: set[str], options: Options, tell: Callab
 
 
 def _wait(model: PlantModel, store: str, state: Path, options: Options, tell: Callable[[str], None]) -> int:
-    """Wait until nobody leads the plant; the port of the page that said so meanwhile."""
+    """Wait until nobody leads the plant; returns the port of the page that showed so meanwhile."""
     from .stores import leadership_of
 
     for each in NEEDED_THEN:  # so that it need not be loaded when the plant waits for it
@@ -86,14 +86,14 @@ def _wait(model: PlantModel, store: str, state: Path, options: Options, tell: Ca
 
 
 class _StandbyNotices:
-    """Whom it tells what it waits for: its page, `/diagnostics` each second, people where it changes."""
+    """The receivers of a standby's news: its page, `/diagnostics` each second, people at each change."""
 
     def __init__(self, room: WaitingRoom, voice: Any | None, tell: Callable[[str], None]) -> None:
         self._room, self._voice, self._tell = room, voice, tell
         self._said, self._said_at = "", 0.0
 
     def waits(self, sentence: str, level: int, led: LeaderInfo | None = None) -> None:
-        """`led` is who leads, None where nobody knows it."""
+        """Publish the sentence on which this process waits; `led` is the leader, None if nobody knows it."""
         self._room.show(sentence, led)
         now = time.monotonic()
         if self._voice is not None and (sentence != self._said or now - self._said_at > SAY_S):
@@ -105,8 +105,8 @@ class _StandbyNotices:
 
 
 def _until_free(others: Leadership, plant: str, own: Callable[[], str], told: _StandbyNotices) -> None:
-    """Look again and again; a database that is away says nothing of who leads. `own()` is where the page of
-    who waits is."""
+    """Look for a leader again and again until there is none; a database that is away says nothing of it.
+    `own()` is the address of the page of this process."""
     said_at = 0.0
     while True:
         try:

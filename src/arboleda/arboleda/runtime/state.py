@@ -1,4 +1,4 @@
-"""The state directory of a running plant: one owner at a time, and where to reach it."""
+"""The state directory of a running plant: one owner at a time, and the address of the plant."""
 
 from __future__ import annotations
 
@@ -64,10 +64,10 @@ def _default_root() -> Path:
 
 @dataclass(frozen=True, kw_only=True)
 class Running:
-    """Who runs the plant, and where this machine reaches its HTTP API: `port` is None until it listens,
-    `host` is as in a URL (`[::1]`). `guarded` where it wants a token of everybody; `certificate` is what it
-    shows where it speaks TLS, as PEM. `plant` is its name, `store` the database that keeps its memory, "" a
-    file of this directory."""
+    """The process that runs a plant, and its HTTP API as this machine reaches it: `port` is None until it
+    listens, `host` is as in a URL (`[::1]`). `guarded` if everybody needs a token; `certificate` is the one
+    that it shows with TLS, as PEM. `plant` is its name, `store` the database that keeps its memory, "" a file
+    of this directory."""
 
     pid: int
     started: str
@@ -95,7 +95,7 @@ class StateDir:
         self._running = Running(pid=os.getpid(), started=started, plant=plant, store=store)
 
     def open(self) -> None:
-        """Take the directory; StartError says who holds it, or why it cannot be used."""
+        """Take the directory; StartError names its owner, or the reason for which it cannot be used."""
         with self._explained():
             self.path.mkdir(mode=0o700, parents=True, exist_ok=True)
             lock = os.open(self.path / LOCK, os.O_RDWR | os.O_CREAT, 0o600)
@@ -116,8 +116,8 @@ class StateDir:
             raise
 
     def next_epoch(self, unix_s: int) -> int:
-        """A number for this start, higher than that of any start before, though the clock was set back;
-        StartError where nobody knows what the last one was, or no robot would obey the next."""
+        """A number for this start, higher than that of any start before, even if the clock was set back;
+        StartError if the last number is unknown, or no robot would take a higher one."""
         last = self._last_epoch()
         epoch = max(unix_s, last + 1)
         if epochs.objection(epoch, unix_s if unix_s >= KNOWN_TIME_S else None) is not None:
@@ -146,7 +146,7 @@ class StateDir:
     def announce(
         self, port: int, *, host: str = "127.0.0.1", guarded: bool = False, certificate: str = ""
     ) -> None:
-        """Say where the HTTP API is reached and what it wants and shows (see `Running`)."""
+        """Write down the address of the HTTP API and its login (see `Running`)."""
         known = replace(self._running, port=port, host=host, guarded=guarded, certificate=certificate)
         with self._explained():
             replace_file(self.path / FACTS, json.dumps(asdict(known)))
@@ -161,7 +161,7 @@ class StateDir:
         self._claim.release()
 
     def confirm(self) -> None:
-        """ArboledaError where the lock that this process has is not in its place; from any thread."""
+        """Raise ArboledaError if the lock of this process is not in its place; from any thread."""
         loss = self._held.loss()
         if loss is not None:
             raise ArboledaError(
@@ -172,7 +172,7 @@ class StateDir:
 
     @contextmanager
     def _explained(self) -> Iterator[None]:
-        """Turn what the system raises into one sentence."""
+        """Turn an error of the system into one sentence."""
         try:
             yield
         except OSError as error:
@@ -189,8 +189,8 @@ class StateDir:
 
 
 def replace_file(file: Path, content: str) -> None:
-    """The file appears with all of its content, readable by its owner only, also after a power cut; OSError,
-    and all is as before, where it cannot."""
+    """Replace a file as a whole, readable by its owner only, safe against a power cut; OSError, and all is as
+    before, if that fails."""
     fresh = file.with_name(f".{file.name}.{os.getpid()}")
     try:
         with os.fdopen(os.open(fresh, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o600), "w") as opened:
@@ -204,7 +204,7 @@ def replace_file(file: Path, content: str) -> None:
 
 
 def find_running(path: Path) -> Running | None:
-    """Who runs a plant on `path`; None if nobody does, whatever a killed one left behind."""
+    """The process that runs a plant on `path`; None if there is none, whatever a killed one left behind."""
     try:
         lock = os.open(path / LOCK, os.O_RDONLY)
     except OSError:
@@ -219,12 +219,12 @@ def find_running(path: Path) -> Running | None:
 
 
 def last_run(path: Path) -> Running | None:
-    """Who runs a plant on `path`, or was the last to do so."""
+    """The process that runs a plant on `path`, or was the last to do so."""
     return read_facts(path / LOCK)
 
 
 def read_facts(file: Path) -> Running | None:
-    """What the file says, None where it is absent or half written."""
+    """The facts in a file, None if it is absent or half written."""
     try:
         return Running(**json.loads(file.read_bytes()))
     except (OSError, ValueError, TypeError):
@@ -232,14 +232,14 @@ def read_facts(file: Path) -> Running | None:
 
 
 def holder(path: Path) -> str:
-    """One sentence on who holds the directory."""
+    """The sentence on the process that holds the directory."""
     running = read_facts(path / LOCK)
     who = f"process {running.pid}, since {running.started}" if running else "another process"
     return f"A plant is already running on {path} ({who})."
 
 
 def take(lock: int) -> bool:
-    """Whether the exclusive lock was free."""
+    """Take the exclusive lock; True if it was free."""
     for attempt in range(LOCK_TRIES):
         try:
             fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)

@@ -1,4 +1,4 @@
-"""Where a plant's memory is: a file in its state directory, or a database that several hosts reach."""
+"""Store of a plant's memory: a file in its state directory, or a database that several hosts reach."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 def memory_of(store: str, state: Path, plant: str) -> PlantMemory:
-    """The memory of a plant: in the database `store`, or in `state` where that is ""; StartError."""
+    """The memory of a plant: in the database `store`, or in `state` if that is ""; StartError."""
     if not store:
         return Store(state / STORE, plant)
     refuse_without_library()
@@ -28,8 +28,8 @@ def memory_of(store: str, state: Path, plant: str) -> PlantMemory:
 
 
 def history_of(store: str, state: Path, plant: str, *, is_checked: bool = False) -> History:
-    """What only reads the tasks there; a file is not asked whose it is where `plant` is "", nor whether it is
-    whole where it `is_checked`."""
+    """The reader of the tasks there. A file is not checked for its owner if `plant` is "", nor for damage if
+    it `is_checked` already."""
     if not store:
         return TaskHistory(state / STORE, plant, is_checked=is_checked)
     refuse_without_library()
@@ -39,7 +39,7 @@ def history_of(store: str, state: Path, plant: str, *, is_checked: bool = False)
 
 
 def leadership_of(store: str, plant: str) -> Leadership:
-    """Who leads that plant, as its database knows it; StartError where `store` is none."""
+    """The leadership of that plant in its database; StartError if `store` is none."""
     if not store:
         raise StartError(
             "This plant's memory is a file, which one process of one host has: give it a database with"
@@ -52,7 +52,7 @@ def leadership_of(store: str, plant: str) -> Leadership:
 
 
 def refuse_without_library() -> None:
-    """StartError where the extra is not installed."""
+    """Raise StartError if the extra is not installed."""
     try:
         import psycopg  # noqa: F401 - it is an extra
     except ImportError as error:

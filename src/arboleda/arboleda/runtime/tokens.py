@@ -19,14 +19,14 @@ OWNER_ONLY = 0o077
 
 
 def read(state: Path) -> dict[Role, str]:
-    """The token of each role, made where there is none yet; StartError where the file cannot be used."""
+    """The token of each role, made if there is none yet; StartError if the file cannot be used."""
     if not (state / TOKENS).exists():
         renew(state, Role)
     return TokenFile(state)()
 
 
 def renew(state: Path, roles: Collection[Role]) -> None:
-    """Give these roles new tokens; whoever used the old ones is out at once."""
+    """Give these roles new tokens; the old ones are refused at once."""
     try:
         state.mkdir(mode=0o700, parents=True, exist_ok=True)
         kept = TokenFile(state)() if (state / TOKENS).exists() and set(roles) != set(Role) else {}
@@ -38,7 +38,7 @@ def renew(state: Path, roles: Collection[Role]) -> None:
 
 
 class TokenFile:
-    """Gives the tokens as the file has them now; reads it anew only where it changed."""
+    """TokenFile: gives the tokens as the file has them now; reads it anew only if it has changed."""
 
     def __init__(self, state: Path) -> None:
         self._file = state / TOKENS
@@ -46,7 +46,7 @@ class TokenFile:
         self._tokens: dict[Role, str] = {}
 
     def __call__(self) -> dict[Role, str]:
-        """StartError where the file is missing, readable by others, or not as `renew` makes it."""
+        """The tokens by role; StartError if the file is missing, readable by others, or malformed."""
         try:
             about = self._file.stat()
             if (about.st_ino, about.st_mtime_ns) != self._seen:

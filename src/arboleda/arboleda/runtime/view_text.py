@@ -12,7 +12,7 @@ _encode = json.JSONEncoder(ensure_ascii=False, default=in_json).encode
 
 
 def in_parts(snapshot: Mapping[str, Any]) -> Generator[None, None, str]:
-    """The same text as of `json.dumps`, letters beyond ASCII as they are; a part is a row of a list."""
+    """The same text as of `json.dumps`, with letters beyond ASCII as they are; a part is a row of a list."""
     members = []
     for key, value in snapshot.items():
         if isinstance(value, list):

@@ -26,7 +26,7 @@ def until(event: threading.Event) -> None:
 
 
 def taken_from(queue: SimpleQueue[T | None]) -> Iterator[T]:
-    """What is put into the queue, as it comes, up to a None."""
+    """The items put into the queue, as they come, up to a None."""
     while True:
         try:
             taken = queue.get(timeout=LOOK_S)
@@ -41,21 +41,21 @@ def taken_from(queue: SimpleQueue[T | None]) -> Iterator[T]:
 class Interrupted(KeyboardInterrupt):
     """A signal wants the program to end.
 
-    While Python carries out a text, as it does to make a dataclass, it takes a plain KeyboardInterrupt for
+    While Python executes source text, as it does to make a dataclass, it takes a plain KeyboardInterrupt for
     one that nobody will catch: `python -m` would end with the status of a signal, however clean the end was.
     """
 
 
 def raise_at_signals() -> dict[signal.Signals, Any]:
-    """SIGINT and SIGTERM are Interrupted from now on, the first of them only; the handlers of before."""
+    """Raise Interrupted at SIGINT and SIGTERM from now on, once only; returns the former handlers."""
     sys.unraisablehook = _silent_about_signals(sys.unraisablehook)
     return {number: signal.signal(number, _interrupt) for number in SIGNALS}
 
 
 def heed() -> None:
-    """Interrupted where a signal came for which nobody has ended yet.
+    """Raise Interrupted if a signal came that has ended nothing yet.
 
-    Whatever waits asks for it: what is raised while Python carries out a finalizer is dropped.
+    Every wait calls it, as an exception raised while Python runs a finalizer is dropped.
     """
     if _Signals.unheeded:
         raise Interrupted
@@ -63,7 +63,7 @@ def heed() -> None:
 
 @contextmanager
 def interruptible() -> Iterator[None]:
-    """SIGTERM is Interrupted like Ctrl-C; a second signal does not break a clean end."""
+    """Raise Interrupted for SIGTERM as for Ctrl-C; a second signal does not break a clean end."""
     told_before = sys.unraisablehook
     before = raise_at_signals()
     try:
@@ -77,7 +77,7 @@ def interruptible() -> Iterator[None]:
 
 @contextmanager
 def until_interrupted() -> Iterator[None]:
-    """A signal ends the block, and nothing that waits after it."""
+    """Run a block that a signal ends; the waits after it go on."""
     try:
         yield
     except KeyboardInterrupt:
@@ -85,13 +85,13 @@ def until_interrupted() -> Iterator[None]:
 
 
 class _Signals:
-    """What the handler leaves behind, beside what it raises."""
+    """The mark that the signal handler leaves, beside the exception that it raises."""
 
     unheeded = False
 
 
 def _silent_about_signals(tell: Callable[[Any], object]) -> Callable[[Any], None]:
-    """Tells what Python drops, but not a signal: the next wait ends for it, so nothing went wrong."""
+    """Keep Python silent about a dropped signal, not about others: the next wait ends for the signal."""
 
     def tell_if_wrong(dropped: Any) -> None:
         if not issubclass(dropped.exc_type, Interrupted):

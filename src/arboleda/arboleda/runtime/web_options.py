@@ -1,4 +1,4 @@
-"""Where the HTTP server listens, and for whom."""
+"""Options of the HTTP server: its address and its access rules."""
 
 from __future__ import annotations
 
@@ -12,14 +12,15 @@ from arboleda.web.names import DEFAULT_PORT, EVERY_NETWORK, LOCAL, is_loopback, 
 
 from . import tokens
 
-if TYPE_CHECKING:  # it takes a while to load, and only who speaks TLS needs it
+if TYPE_CHECKING:  # slow to load, and only needed for TLS
     from arboleda.adapters.server_tls import ServerTls
 
 
 @dataclass(frozen=True, kw_only=True)
 class WebOptions:
-    """Where to listen; `port` None is `usual_port` or a free one. `public_url` is how a proxy is reached.
-    With `tls` everybody speaks TLS. `door` is that of who listened there before, with its sessions."""
+    """The address to listen on; `port` None is `usual_port` or a free one. `public_url` is the address of a
+    proxy. With `tls` everybody speaks TLS. `door` is the one of the previous server there, with its sessions.
+    """
 
     host: str = LOCAL
     port: int | None = None
@@ -30,12 +31,12 @@ class WebOptions:
 
     @property
     def scheme(self) -> str:
-        """That of the server itself."""
+        """The scheme of the server itself."""
         return "https" if self.tls else "http"
 
     @property
     def guarded(self) -> bool:
-        """Whether everybody needs a token; StartError for a host that is no address."""
+        """True if everybody needs a token; StartError for a host that is no address."""
         return not is_loopback(self.host) or self.public_url is not None
 
     @property
@@ -49,12 +50,12 @@ class WebOptions:
         return url_host(self.address)
 
     def origin(self, port: int, own_address: Callable[[], str]) -> str:
-        """Where people and other hosts reach it, where any do. What listens on every network has no address
-        of its own: then `own_address()` is that of this host, "" for none."""
+        """The address for people and other hosts, if any reach it. A server that listens on every network has
+        no address of its own: then `own_address()` is that of this host, "" for none."""
         own = own_address() if self.address in EVERY_NETWORK else ""
         host = url_host(own) if own else self.near
         return self.public_url or f"{self.scheme}://{host}:{port}"
 
     def door_of(self, state: Path) -> Door:
-        """Who is let in: with the tokens of that state directory, where everybody needs one."""
+        """The door that lets people in: with the tokens of that state directory, if everybody needs one."""
         return self.door or Door(tokens.TokenFile(state) if self.guarded else None)

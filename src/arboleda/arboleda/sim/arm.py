@@ -1,4 +1,4 @@
-"""The axes, effector and virtual piece of an arm's board."""
+"""Body of an arm's board: axes, effector and virtual piece."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ WIRE_ROUNDING_DEG = 1e-4
 
 
 class ArmBody(Robotic):
-    """One stepper per joint; `start` and `pickups` are joint positions in rad and m.
+    """Body of an arm: one stepper per joint; `start` and `pickups` are joint positions in rad and m.
 
-    The piece sensor sees the piece that lies ready at each pick-up, and the one the effector holds.
-    `supplied` False: no piece lies there; `grips` False: the effector closes beside the piece; `stuck`:
-    the effector does not follow its switch. `true_position` is where the axes are, whatever was counted.
+    The piece sensor sees the piece that lies ready at each pick-up, and the one in the effector. `supplied`
+    False: no piece lies there; `grips` False: the effector closes beside the piece; `stuck`: the effector
+    does not follow its switch. `true_position` is that of the axes, whatever was counted.
     """
 
     channels = frozenset({Channel.JOINTS, Channel.EFFECTOR, Channel.STOP, Channel.HOME, Channel.BEAT})
@@ -37,13 +37,13 @@ class ArmBody(Robotic):
         self.stuck = False
         self._axes = tuple(_axis(joint) for joint in arm.joints)
         self._drift = self._steps(start)  # true position minus counted position, per joint
-        self._seen: tuple[object, ...] = ()  # what the next was made of
+        self._seen: tuple[object, ...] = ()  # the values that `_told` was made of
         self._told = BodyReport()
         self.reset()
         self._count_anew()
 
     def reset(self) -> None:
-        """Position counters 0, effector off, as a board comes up; the axes stay where they are."""
+        """Reset as a board comes up: counters 0, effector off; the axes stay where they are."""
         self._drift = self.true_position
         self._axes = tuple(_axis(joint) for joint in self._joints)
         self.next_change_us: int | None = None
@@ -56,12 +56,12 @@ class ArmBody(Robotic):
 
     @property
     def position(self) -> tuple[int, ...]:
-        """Motor steps per joint."""
+        """The counted positions, in motor steps per joint."""
         return tuple([axis.position for axis in self._axes])
 
     @property
     def true_position(self) -> tuple[int, ...]:
-        """Where the axes are, in motor steps per joint."""
+        """The true positions of the axes, in motor steps per joint."""
         return tuple([axis.position + drift for axis, drift in zip(self._axes, self._drift, strict=True)])
 
     @property
@@ -75,12 +75,12 @@ class ArmBody(Robotic):
 
     @property
     def targets(self) -> tuple[int, ...]:
-        """Where it heads for, in motor steps per joint."""
+        """The goals of the axes, in motor steps per joint."""
         return tuple(axis.target for axis in self._axes)
 
     @property
     def speeds(self) -> tuple[float, ...]:
-        """How fast each joint turns, in motor steps/s, without a sign."""
+        """The speed of each joint, in motor steps/s, without a sign."""
         return tuple(axis.speed for axis in self._axes)
 
     def admits(self, goal: JointsGoal) -> bool:
@@ -91,7 +91,7 @@ class ArmBody(Robotic):
         self._head_for(now_us, self._steps(tuple(values)))
 
     def home(self, now_us: int) -> None:
-        """Drive to the switches: each axis gets to its true 0, whatever was counted before."""
+        """Drive to the switches: each axis gets to its true 0, whatever its counter says."""
         self._count_anew()
         self._head_for(now_us, (0,) * len(self._joints))
 
@@ -117,16 +117,16 @@ class ArmBody(Robotic):
         self._grip()
 
     def take_out(self) -> None:
-        """Somebody opens the effector, also one that does not follow its switch, and takes the piece."""
+        """Open the effector by hand, even one that does not follow its switch, and take the piece."""
         self.effector = False
         self.lose_piece()
 
     def lose_piece(self) -> None:
-        """The piece falls; the effector does not notice."""
+        """Drop the piece; the effector does not notice."""
         self.holding = False
 
     def lose_steps(self, joint: int, steps: int) -> None:
-        """An axis slips by so many motor steps; the counter does not notice."""
+        """Slip by so many motor steps; the counter does not notice."""
         drift = list(self._drift)
         drift[joint] += steps
         self._drift = tuple(drift)
@@ -160,11 +160,11 @@ class ArmBody(Robotic):
         self._plan(now_us)
 
     def _plan(self, now_us: int) -> None:
-        """Work out when the slowest axis comes to rest; even no way at all takes a moment."""
+        """Find the time at which the slowest axis comes to rest; a move of no length takes a moment, too."""
         self.next_change_us = max(now_us + 1, *(axis.still_at_us for axis in self._axes))
 
     def _count_anew(self) -> None:
-        """Have the counters say where the axes are."""
+        """Set the counters to the true positions."""
         for axis, drift in zip(self._axes, self._drift, strict=True):
             axis.shift(drift)
         self._drift = (0,) * len(self._joints)
@@ -184,7 +184,7 @@ def _axis(joint: Joint) -> Axis:
 
 
 def limits_deg(joint: Joint) -> tuple[float, float]:
-    """The least and the greatest target on the wire: a limit, or the motor step that stands for it."""
+    """The least and the greatest target on the wire: a limit, or the nearest motor step."""
     lower = min(joint.lower, joint.quantised(joint.lower))
     upper = max(joint.upper, joint.quantised(joint.upper))
     least, most = units.to_wire(joint, lower), units.to_wire(joint, upper)

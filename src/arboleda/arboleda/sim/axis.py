@@ -1,4 +1,4 @@
-"""One axis of an arm: a stepper whose moves are looked up instead of stepped through."""
+"""Axis of an arm: a stepper whose moves are looked up instead of stepped through."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from .stepper import Stepper
 
 
 class Axis:
-    """Polls a stepper every microsecond, as far as anybody can tell; `position` in steps, for reading."""
+    """Axis that behaves as if its stepper were polled every microsecond; `position` in steps, for reading."""
 
     def __init__(self, *, max_speed: float, acceleration: float) -> None:
         self.position = 0
@@ -16,13 +16,13 @@ class Axis:
         self._stepper.set_acceleration(acceleration)
         self._now_us = 0
         self._course: Course | None = None  # while it moves
-        self._begin_us = self._origin = 0  # when and where the course began
+        self._begin_us = self._origin = 0  # time and place of the course's begin
         self._polled_us = 0  # since the course began; 0 = not yet
         self._forward = 1  # of the course; -1 = counterclockwise
 
     @property
     def target(self) -> int:
-        """The position it heads for."""
+        """The position that it heads for."""
         return self._stepper.target
 
     @property
@@ -32,7 +32,7 @@ class Axis:
 
     @property
     def speed(self) -> float:
-        """How fast it turns, steps/s, without a sign."""
+        """The speed of the axis, steps/s, without a sign."""
         self._catch_up()
         return abs(self._stepper.speed)
 
@@ -49,7 +49,7 @@ class Axis:
         self._set_out(now_us)
 
     def shift(self, steps: int) -> None:
-        """Call the place where it is, and the one it heads for, by other numbers; the move goes on."""
+        """Renumber the present position and the target; the move goes on."""
         self._stepper.shift(steps)
         self._origin += steps
         self.position += steps
@@ -67,7 +67,7 @@ class Axis:
             self.position, self._course = self._stepper.target, None
 
     def _set_out(self, now_us: int) -> None:
-        """Find the course from where the stepper is."""
+        """Find the course from the stepper's present state."""
         stepper, self._now_us = self._stepper, now_us
         first_step_us = stepper.next_step_us(now_us)
         if first_step_us is None:
@@ -81,7 +81,7 @@ class Axis:
         self._begin_us, self._origin, self._polled_us = first_step_us - stepper.interval, stepper.position, 0
 
     def _catch_up(self) -> None:
-        """Have the stepper take the steps that were due at the last poll."""
+        """Let the stepper take the steps that were due at the last poll."""
         if self._course is None or not self._polled_us:
             return
         time_us, steps, pace = self._course.last_mark(self._polled_us)

@@ -1,4 +1,4 @@
-"""The virtual ESP32: one board's command rules, stop latch, heartbeat watch and telemetry."""
+"""Virtual ESP32: a board's command rules, stop latch, heartbeat watch and telemetry."""
 
 from __future__ import annotations
 
@@ -33,14 +33,14 @@ from .uplink import Uplink
 
 SILENCE_US = 1_000_000  # without beat or command while moving: ramp to a stop
 KNOWN_ORDERS = 8  # a machine may do several things at once, and any of them may be told again
-SILENCE, ALARM = "silencio", "alarma"  # why a machine gives its work up
+SILENCE, ALARM = "silencio", "alarma"  # words for the reasons why a machine gives up its work
 
 
 class Board:
-    """One board as a pure machine: calls in, publications collected until `take`.
+    """Virtual board as a pure machine: calls in, publications collected until `take`.
 
-    It says what its robot's declared evidence level says, and only at `ids` it knows command numbers.
-    `watch`, where set, is told every command that the board carries out.
+    It reports what its robot's declared evidence level allows, and knows command numbers at `ids` only.
+    `watch`, if set, is called with every command that the board carries out.
     """
 
     def __init__(self, robot: Robot, body: Body, *, boot_id: int, now_us: int) -> None:
@@ -55,7 +55,7 @@ class Board:
         self._channels = {topic(robot.mqtt, channel): channel for channel in Channel if channel in heard}
         self._now_us = now_us
         self._uplink = Uplink(robot.mqtt)
-        self._said: tuple[Any, ...] | None = None  # what the last telemetry was made of
+        self._said: tuple[Any, ...] | None = None  # values of the last telemetry
         self._boot(boot_id, homed=True)
 
     def _boot(self, boot_id: int, *, homed: bool) -> None:
@@ -86,7 +86,7 @@ class Board:
 
     @property
     def least_epoch(self) -> int | None:
-        """The oldest epoch whose commands it takes; None: any."""
+        """The oldest epoch whose commands the board takes; None: any."""
         return self._receipts.least
 
     @property
@@ -97,24 +97,24 @@ class Board:
         return None if due_us == math.inf else int(due_us)
 
     def take(self) -> list[Publication]:
-        """What the board published since the last call, in order."""
+        """The messages published since the last call, in order."""
         return self._uplink.take()
 
     def connect(self, now_us: int, up: bool) -> None:
-        """The board's MQTT client reached or lost its broker."""
+        """Note that the board's MQTT client reached or lost its broker."""
         self.advance(now_us)
         self._uplink.connected = up
         self._announce()
 
     def reboot(self, now_us: int, boot_id: int) -> None:
-        """Power lost and back: numbers, position, latch and grip are gone."""
+        """Lose power and start again: numbers, position, latch and grip are gone."""
         self.advance(now_us)
         self.body.reset()
         self._boot(boot_id, homed=self._assume_homed)
         self._announce()
 
     def put_at_reference(self) -> None:
-        """Somebody moves the still robot to where its counters begin.
+        """Move the resting robot by hand to where its counters begin.
 
         A board without command numbers is not told to home; who stands beside it says so at the board.
         """
@@ -122,20 +122,20 @@ class Board:
         self.homed = self.homed or not self._numbered
 
     def place(self, told: BodyReport, *, holds: bool, homed: bool | None, latched: bool) -> None:
-        """Have the still robot be as another one has told of itself, `told` in SI units."""
+        """Put the resting robot into the state that another one reported, `told` in SI units."""
         self.body.place(told, holds=holds)
         self.homed = self.homed if homed is None else homed
         self.latched = latched
 
     def fail(self, now_us: int) -> None:
-        """A driver reports an alarm: the board ramps to a stop and moves nothing until `repair`."""
+        """Raise an alarm of a driver: the board ramps to a stop and moves nothing until `repair`."""
         self.advance(now_us)
         self.faulted = True
         self._break_off(ALARM)
         self._tell()
 
     def repair(self, now_us: int) -> None:
-        """The alarm is gone."""
+        """End the alarm."""
         self.advance(now_us)
         self.faulted = False
         self._tell()
@@ -152,7 +152,7 @@ class Board:
             self._tell()
 
     def receive(self, now_us: int, delivery: Delivery) -> None:
-        """One message of a subscribed topic; whatever is wrong with it changes nothing but the refusal."""
+        """Take a message of a subscribed topic; an invalid one changes nothing but the refusal."""
         self.advance(now_us)
         channel = self._channels.get(delivery.topic)
         if channel is None:
@@ -170,7 +170,7 @@ class Board:
             self._obey(message)
 
     def _hear(self, beat: Beat) -> None:
-        """A beat of the newest epoch counts; it keeps alive what was begun under that epoch."""
+        """Take a heartbeat; one of the newest epoch keeps alive the work begun under that epoch."""
         receipts = self._receipts
         if self._numbered and not receipts.hear(beat.epoch):
             self._refuse("formato", None, beat.epoch)
@@ -200,14 +200,14 @@ class Board:
         self._tell()
 
     def _refusal(self, goal: Goal) -> str | None:
-        """The word for a well-numbered command that the board must not carry out now."""
+        """The word for a command with a good number that the board must not carry out now; None if it may."""
         if isinstance(goal, StopGoal):
             return None
         in_time = goal.heard is None or self._freshness.covers(self._now_us, goal.heard)
         return self._objection(goal) or (None if in_time else "tarde")
 
     def _objection(self, goal: Goal) -> str | None:
-        """What the board's own state has against a command."""
+        """The word with which the board's state refuses a command; None if it can be carried out."""
         if isinstance(goal, EffectorGoal) and not goal.on:
             return None
         if isinstance(goal, OrderGoal):
@@ -247,15 +247,15 @@ class Board:
             self._break_off()
 
     def _break_off(self, word: str | None = None) -> None:
-        """End what it does; with a word, it was the board itself that did so."""
+        """End the present work; with a word, the board itself did so."""
         job, self._job = self._job, None
-        if self.body.moving and job is not None:  # told again, a ramp on its way down would begin anew
+        if self.body.moving and job is not None:  # a second stop would begin the ramp down anew
             self.body.stop(self._now_us)
         if word is not None and isinstance(job, OrderGoal):
             self._receipts.fail(job, word)
 
     def _next_motion_us(self) -> int:
-        """When a moving body arrives somewhere, or the silence, where it is watched, gets too long."""
+        """The time (us) at which a moving body arrives, or at which a watched silence gets too long."""
         change_us = self.body.next_change_us
         assert change_us is not None
         if not self._beaten or self._job is None or self.body.finishes:
@@ -269,7 +269,7 @@ class Board:
         self.body.advance(until_us)
 
     def _move_on(self) -> None:
-        """An arrival or the end of patience, at the time the board has reached."""
+        """Handle an arrival, or the end of patience, at the board's present time."""
         self.body.advance(self._now_us)
         if self.body.ends:
             self._book_ends()
@@ -304,7 +304,7 @@ class Board:
         self._tell()
 
     def _tell(self) -> None:
-        """Telemetry; most of it says what the one before said, and is not written anew."""
+        """Send telemetry; a message equal to the last one but for its number is not built anew."""
         told = self.body.tell()
         said = (told, self.state, self.boot_id, self.homed, self._receipts.told)
         last, self._said = self._said, said
@@ -352,7 +352,7 @@ def _joints_apart(said: tuple[Any, ...]) -> tuple[object, ...]:
 
 
 def _numbers_in(raw: bytes) -> tuple[int | None, int | None]:
-    """seq and epoca of a message that is refused whole, as far as they can be read."""
+    """The seq and epoca of a message that is refused whole, as far as they can be read."""
     try:
         fields = strict.read(raw)
         return fields.optional("seq"), fields.optional("epoca")

@@ -1,4 +1,4 @@
-"""What a board drives: the axes of an arm, a mobile robot on its grid, or a machine of a declared kind."""
+"""Body that a board drives: axes of an arm, a mobile robot on its grid, or a machine of a declared kind."""
 
 from __future__ import annotations
 
@@ -12,8 +12,7 @@ from arboleda.wire.topics import Channel
 
 
 class BodyReport(NamedTuple):
-    """What a body can say of itself: the angles of an arm, the node of a mobile or the facts of a machine,
-    and what it holds."""
+    """State that a body reports: angles of an arm, node of a mobile or facts of a machine, and its load."""
 
     q: tuple[float, ...] | None = None
     node: int | None = None
@@ -23,7 +22,7 @@ class BodyReport(NamedTuple):
 
 
 class End(NamedTuple):
-    """A command that a machine ended by itself: answered, or given up with a word for why."""
+    """Command that a machine ended by itself: answered, or given up with a word for the reason."""
 
     goal: Goal
     answer: Value | None = None
@@ -31,13 +30,13 @@ class End(NamedTuple):
 
 
 class Robotic:
-    """A body that takes no orders: it halts when it is stopped, and is done when it arrives."""
+    """Body without orders: it halts when it is stopped, and is done when it arrives."""
 
     def set_by_hand(self, facts: Facts) -> None:
-        """It has no facts."""
+        """Does nothing: it has no facts."""
 
     def take_out(self) -> None:
-        """It holds nothing."""
+        """Does nothing: it holds nothing."""
 
     homes = True
     ends: Sequence[End] = ()
@@ -57,10 +56,10 @@ class Robotic:
 
 
 class Body(Protocol):
-    """Every time is in microseconds and never earlier than the one before.
+    """Body behind a board; every time is in microseconds, and never earlier than the one before.
 
-    `next_change_us`: when it arrives somewhere if nobody interferes; None while still. `homes`: whether it
-    has a reference. `ends` are those that its board has not taken yet.
+    `next_change_us`: the time of its next arrival if nobody interferes; None at rest. `homes`: it has a
+    reference. `ends`: ends of commands that its board has not taken yet.
     """
 
     axes: int | None
@@ -70,11 +69,11 @@ class Body(Protocol):
 
     @property
     def true_place(self) -> Position | None:
-        """Where it is, whatever it takes itself to be, in SI units; None where it has no place."""
+        """The true place, whatever the body takes it to be, in SI units; None if it has no place."""
 
     @property
     def true_facts(self) -> Mapping[str, Value]:
-        """What is so of it, whatever its board says."""
+        """The true facts, whatever the board reports."""
 
     @property
     def ends(self) -> Sequence[End]: ...
@@ -84,25 +83,25 @@ class Body(Protocol):
 
     @property
     def finishes(self) -> bool:
-        """Whether what it does now goes on through a stop and a silence."""
+        """True if the present work goes on through a stop and through a silence of the plant."""
 
     def objection(self, goal: OrderGoal, *, latched: bool, faulted: bool) -> str | None:
-        """The word that refuses an order now; None where it can be carried out."""
+        """The word that refuses an order now; None if it can be carried out."""
 
     def command(self, goal: OrderGoal) -> Command | None:
-        """What an order asks for; None where it knows no such verb or value."""
+        """The command that an order means; None if the body knows no such verb or value."""
 
     def is_work(self, goal: OrderGoal) -> bool:
-        """Whether an order that can be carried out keeps the machine busy."""
+        """True if an order that can be carried out keeps the machine busy."""
 
     def take_ends(self) -> list[End]:
-        """What ended since the last call, in order."""
+        """The ends of work since the last call, in order."""
 
     def admits(self, goal: Any) -> bool:
-        """Whether a goal, of the type that `decode` makes for this body, is within its limits."""
+        """True if a goal, of the type that `decode` makes for this body, is within its limits."""
 
     def start(self, now_us: int, goal: Any) -> None:
-        """Head for an admitted goal; even no way at all takes a moment."""
+        """Head for an admitted goal; a move of no length takes a moment, too."""
 
     def home(self, now_us: int) -> None:
         """Head for the reference position."""
@@ -116,19 +115,19 @@ class Body(Protocol):
     def switch_effector(self, on: bool) -> None: ...
 
     def place(self, told: BodyReport, *, holds: bool) -> None:
-        """Be, still, as somebody else's body has told of itself; what it has not told stays as it is."""
+        """Take, at rest, the state that another body reported; unreported parts stay as they are."""
 
     def set_by_hand(self, facts: Facts) -> None:
-        """Somebody makes facts so at the machine, which does nothing meanwhile."""
+        """Set facts by hand at the idle machine."""
 
     def take_out(self) -> None:
-        """Somebody takes out the part that the machine holds, which does nothing meanwhile."""
+        """Take out by hand the part that the idle machine holds."""
 
     def put_at_reference(self) -> None:
-        """Somebody moves the still robot by hand to its reference, and has it count from there."""
+        """Move the resting robot by hand to its reference, from where it counts then."""
 
     def reset(self) -> None:
-        """Everything as a board without memory comes up; what is moved stays where it is."""
+        """Reset as a board without memory comes up; moved parts stay where they are."""
 
     def tell(self) -> BodyReport:
-        """Where it is and what it holds."""
+        """The place and load that the body reports."""

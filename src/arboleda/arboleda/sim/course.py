@@ -1,4 +1,4 @@
-"""The way of a stepper to rest, stepped through once and looked up from then on.
+"""Course of a stepper to rest, stepped through once and looked up from then on.
 
 All moves from rest begin with the same ramp, and all that get to full speed slow down in the same way: they
 have these parts in common.
@@ -18,10 +18,10 @@ FAR = 2**62  # steps; no move is as long
 
 
 class Trail:
-    """Steps of a stepper, with a mark wherever the interval between them becomes another one.
+    """Steps of a stepper, with a mark wherever the interval between steps changes.
 
-    Times are in us since the first mark, steps are counted from there; who asks about the first so many
-    `marks` only, follows the last of them for ever.
+    Times are in us since the first mark, steps are counted from there. With `marks` only the first so many
+    count, and the motion goes on as at the last of them.
     """
 
     def __init__(self) -> None:
@@ -32,7 +32,7 @@ class Trail:
         self._intervals = array("f")
 
     def mark(self, time_us: int, stepper: Stepper) -> None:
-        """Note where it is and how it moves on."""
+        """Note the stepper's position and how it moves on."""
         ramp, interval = stepper.pace
         self._times.append(time_us)
         self._steps.append(stepper.position)
@@ -40,31 +40,31 @@ class Trail:
         self._intervals.append(interval)
 
     def steps(self, elapsed_us: int, marks: int | None = None) -> int:
-        """How far it is after this time."""
+        """The steps made after this time."""
         index = bisect_right(self._times, elapsed_us, 0, marks) - 1
         interval = int(self._intervals[index])
         steps = (elapsed_us - self._times[index]) // abs(interval)
         return self._steps[index] + (steps if interval > 0 else -steps)
 
     def last_mark(self, elapsed_us: int, marks: int | None = None) -> tuple[int, int, Pace]:
-        """Time, steps and pace of the mark before this time."""
+        """Time, steps and pace of the last mark before this time."""
         index = bisect_right(self._times, elapsed_us, 0, marks) - 1
         return self._times[index], self._steps[index], Pace(self._ramps[index], self._intervals[index])
 
 
 class Ramp:
-    """How a stepper speeds up from rest, known as far as somebody needed it."""
+    """Acceleration of a stepper from rest, computed as far as it was needed."""
 
     def __init__(self, max_speed: float, acceleration: float) -> None:
         self.trail = Trail()
         self._stepper = _stepper(max_speed, acceleration)
         self._stepper.move_to(FAR)
         self._time_us = self._shortest_way = 0
-        self._shortest_ways = array("q")  # for each mark: who has to go no farther slows down before it
+        self._shortest_ways = array("q")  # for each mark, the way below which a move slows down before it
         self._mark()
 
     def marks(self, distance: int) -> int:
-        """How many marks there are before a move over `distance` slows down, or before full speed."""
+        """The number of marks before a move over `distance` slows down, or before full speed."""
         while self._shortest_way < distance and not self._stepper.cruises:
             self._step()
         return bisect_left(self._shortest_ways, distance)
@@ -100,20 +100,20 @@ class Course:
         self.duration_us = self._turn_us + self._down.duration_us
 
     def steps(self, elapsed_us: int) -> int:
-        """How many steps forward it is at a time before the last one."""
+        """The steps made forward at a time before the last one."""
         if elapsed_us < self._turn_us:
             return self._up.steps(elapsed_us, self._marks)
         return self._turn_steps + self._down.steps(elapsed_us - self._turn_us)
 
     def last_mark(self, elapsed_us: int) -> tuple[int, int, Pace]:
-        """Time, steps and pace at a time before this one, from where it is not far to step."""
+        """Time, steps and pace at a time shortly before this one, from which stepping on is cheap."""
         if elapsed_us < self._turn_us:
             return self._up.last_mark(elapsed_us, self._marks)
         time_us, steps, pace = self._down.last_mark(elapsed_us - self._turn_us)
         return self._turn_us + time_us, self._turn_steps + steps, pace
 
     def _speed_up(self, stepper: Stepper) -> int:
-        """Have it go up the ramp and along until it slows down or rests; the time then."""
+        """Run the stepper until it slows down or rests; returns the time then."""
         now, steps, pace = self._up.last_mark(FAR, self._marks)
         stepper.resume(steps, pace, now)
         while stepper.pace.ramp == stepper.position + 1:
@@ -131,7 +131,7 @@ def _stepper(max_speed: float, acceleration: float) -> Stepper:
 
 @lru_cache(maxsize=KEPT)
 def _trail(max_speed: float, acceleration: float, distance: int, pace: Pace) -> Trail:
-    """All steps from this pace to rest."""
+    """The steps from this pace to rest."""
     stepper, trail = _stepper(max_speed, acceleration), Trail()
     stepper.target = distance
     stepper.resume(0, pace, 0)

@@ -1,4 +1,4 @@
-"""All virtual boards of a plant as one machine."""
+"""Machine of all virtual boards of a plant."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from .mobile import MobileBody
 
 @dataclass(frozen=True, kw_only=True)
 class ToBoard:
-    """What a board's own MQTT client received or noticed; `board` is the MQTT name."""
+    """Event of a board's own MQTT client; `board` is the MQTT name."""
 
     board: str
     event: Delivery | Connection
@@ -31,7 +31,7 @@ class ToBoard:
 
 @dataclass(frozen=True, kw_only=True)
 class Reboot:
-    """A board loses power and comes back at once."""
+    """Event: a board loses power and comes back at once."""
 
     at: float
     board: str
@@ -39,7 +39,7 @@ class Reboot:
 
 @dataclass(frozen=True, kw_only=True)
 class Alarm:
-    """A motor driver of a board reports an alarm, or that it is over."""
+    """Event: a motor driver of a board reports an alarm, or its end."""
 
     at: float
     board: str
@@ -48,7 +48,7 @@ class Alarm:
 
 @dataclass(frozen=True, kw_only=True)
 class FromBoard:
-    """What a board publishes with its own MQTT client."""
+    """Message that a board publishes with its own MQTT client."""
 
     board: str
     publication: Publication
@@ -74,12 +74,12 @@ class Devices:
             for robot in model.robots.values()
             if robot.link is Link.MQTT and robot.name not in elsewhere
         }
-        self._due_us: dict[str, float] = {}  # when each board is to be stepped
+        self._due_us: dict[str, float] = {}  # time of the next step of each board
         for name in self.boards:
             self._plan(name)
 
     def subscriptions(self, board: str) -> tuple[str, ...]:
-        """The topics a board listens to."""
+        """The topics that a board listens to."""
         return self.boards[board].subscriptions
 
     @property
@@ -117,7 +117,7 @@ class Devices:
 
 
 def _body(model: PlantModel, robot: Robot) -> Body:
-    """The body of a robot standing where its cell has it begin, or of a device as its facts begin."""
+    """The body of a robot at the start position in its cell, or of a device with its first facts."""
     body = nearest(BODIES, type(robot))
     if body is None:
         raise TypeError(f"{robot.name} has no virtual board: nothing says how a {robot.kind_name} moves")

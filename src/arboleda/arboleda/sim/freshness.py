@@ -1,18 +1,18 @@
-"""Whether a command comes in time: who gave it must have heard the board lately, wherever it waited since."""
+"""Check that a command is not old: its sender must have heard the board lately, wherever it waited since."""
 
 from __future__ import annotations
 
 from collections import deque
 
 FRESH_US = 2_000_000
-MARK_US = 250_000  # how exactly a board remembers what it told when
+MARK_US = 250_000  # the resolution of a board's memory of telemetry times
 
 
 class Freshness:
-    """What a board has told within FRESH_US, as marks of (time, number of the telemetry) some MARK_US apart.
+    """Numbers of the board's telemetry of the last FRESH_US, as marks (time, number) about MARK_US apart.
 
-    A number that it told longer ago, or has not told since its boot, is that of a command which waited: in a
-    broker, in the queue of a connection that was cut, in a process that was stopped.
+    A command with an older number, or with one not sent since the boot, has waited: in a broker, in the queue
+    of a connection that was cut, or in a process that was stopped.
     """
 
     def __init__(self) -> None:
@@ -20,12 +20,12 @@ class Freshness:
         self._told = 0
 
     def tell(self, now_us: int, number: int) -> None:
-        """Telemetry of this number leaves."""
+        """Note that telemetry of this number leaves."""
         self._told = number
         if not self._marks or now_us - self._marks[-1][0] >= MARK_US:
             self._marks.append((now_us, number))
 
     def covers(self, now_us: int, number: int) -> bool:
-        """Whether telemetry of this number left lately."""
+        """True if telemetry of this number left within FRESH_US."""
         first = next((told for at_us, told in self._marks if now_us - at_us <= FRESH_US), None)
         return first is not None and first <= number <= self._told

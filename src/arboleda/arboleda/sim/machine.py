@@ -1,4 +1,4 @@
-"""What a declared device drives, virtual: it does what its verbs say, in the time that they take."""
+"""Virtual machine of a declared device: it does what its verbs say, in the time that they take."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ UNSHOWN = "virtual"  # the word for what ends in an error of the function that i
 
 @dataclass(frozen=True, kw_only=True)
 class RunningOrder:
-    """An order that it carries out, until `ends_us`."""
+    """Order that is carried out until `ends_us`."""
 
     goal: OrderGoal
     command: VerbCall
@@ -39,16 +39,17 @@ class RunningOrder:
 
 
 class MachineBody:
-    """One work at a time, one switch per fact, one query; each becomes true at its end, and not before.
+    """Body of a declared device: one work at a time, one switch per fact, one query; facts change at its end.
 
-    `facts` are how the machine truly is, whatever its board does. Without power it lets go of what it holds,
-    as a gripper does whose spring opens it: what it holds is then lost, which is worse for the plant than a
-    clamp that stays. Everything else stays as it is: a door does not move because its board boots.
+    `facts` are the true ones, whatever the board reports. Without power the machine lets go of a part, as a
+    gripper opened by a spring does: the part is then lost, which is worse for the plant than a clamp that
+    stays. Everything else stays as it is: a door does not move because its board boots.
 
-    How it behaves is asked for each order. `answer`: what it answers to a query; `repeats`: after how many s
-    it answers that again, None: never; `refuses`, `fails`: with what word it does not take it, or gives it
-    up, None: not at all; `does`: whether it truly does what it says is done; `lasts`: how many s longer than
-    it should.
+    Functions of the order decide on its behaviour:
+
+    - `answer`: the answer to a query; `repeats`: the time in s after which it is given again, None: never.
+    - `refuses`, `fails`: the word with which the order is refused, or given up; None: it is not.
+    - `does`: True if the order truly has its effect; `lasts`: the further time that it takes, s.
     """
 
     axes: int | None = DEVICE
@@ -74,13 +75,13 @@ class MachineBody:
             self.facts[self.kind.held_fact] = False
 
     def forget_settings(self) -> None:
-        """What was switched is as it was in the beginning; what was moved stays where it is."""
+        """Set switches back to their first values; what was moved stays as it is."""
         switches = (verb for verb in self.kind.verbs.values() if verb.effect is Effect.SWITCH)
         for name in {name for verb in switches for name, _ in verb.sets}:
             self.facts[name] = self.kind.facts[name].first
 
     def catch_up(self, now_us: int) -> None:
-        """End at last what is late."""
+        """End orders that are late."""
         self._deeds = [replace(deed, ends_us=now_us + 1) if deed.is_late else deed for deed in self._deeds]
         self._plan()
 
@@ -97,7 +98,7 @@ class MachineBody:
 
     @property
     def true_place(self) -> None:
-        """It stands where it is."""
+        """None: a machine has no place."""
 
     @property
     def true_facts(self) -> dict[str, Value]:
@@ -112,13 +113,13 @@ class MachineBody:
         return any(deed.is_work and deed.verb.on_stop is OnStop.FINISH for deed in self._deeds)
 
     def first_answer(self, goal: OrderGoal) -> Value:
-        """What its kind has a virtual device answer to a query."""
+        """The answer to a query that the kind gives for a virtual device."""
         command = self.command(goal)
         assert command is not None
         return self.kind.answer_of(command, tuple(self.facts.items()))
 
     def objection(self, goal: OrderGoal, *, latched: bool, faulted: bool) -> str | None:
-        """The word that refuses an order now; None where it can be carried out."""
+        """The word that refuses an order now; None if it can be carried out."""
         command = self.command(goal)
         if command is None:
             return "formato"
@@ -133,7 +134,7 @@ class MachineBody:
         return None if met and not self._breaks_its_work(command) else "condicion"
 
     def _breaks_its_work(self, command: VerbCall) -> bool:
-        """Whether a command would end what the work under way needs."""
+        """True if a command would change a fact that the present work needs."""
         needs = (need for deed in self._deeds if deed.is_work for need in deed.command.needs)
         sets = dict(command.sets)
         return any(sets.get(name, value) != value for name, value in needs)
@@ -156,7 +157,7 @@ class MachineBody:
         return self.kind.verbs[goal.verb].effect in WORK
 
     def start(self, now_us: int, goal: OrderGoal) -> None:
-        """Begin an order without an objection; even what takes no time takes a moment."""
+        """Begin an order that has no objection; one that takes no time takes a moment, too."""
         command = self.command(goal)
         assert command is not None
         self._supersede(command)
@@ -166,7 +167,7 @@ class MachineBody:
         self._plan()
 
     def stop(self, now_us: int) -> None:
-        """Work ends where it is; what it would have set stays as it was."""
+        """Halt the work; facts that it would have set stay as they were."""
         self._deeds = [deed for deed in self._deeds if not deed.is_work]
         self._plan()
 
@@ -195,10 +196,10 @@ class MachineBody:
         raise NotImplementedError("what a machine holds is one of its facts")
 
     def put_at_reference(self) -> None:
-        """It has none."""
+        """Does nothing: it has no reference."""
 
     def _supersede(self, command: VerbCall) -> None:
-        """Forget the query that was asked before, and give up the switches whose facts this one sets."""
+        """Forget the query asked before, and give up the switches that set the same facts."""
         effect, sets = command.told.effect, {name for name, _ in command.sets}
         for deed in [deed for deed in self._deeds if deed.verb.effect is effect and not deed.is_said_again]:
             if effect is Effect.SWITCH and sets & {name for name, _ in deed.command.sets}:
@@ -218,7 +219,7 @@ class MachineBody:
             self.ends.append(End(deed.goal, failure=UNSHOWN))
 
     def _become(self, deed: RunningOrder, now_us: int) -> None:
-        """What an order leaves behind; UseError where its kind has a function that does not say it."""
+        """Apply the end of an order to the facts; raises UseError if a function gives no valid value."""
         if deed.verb.effect is Effect.QUERY:
             self.ends.append(End(deed.goal, answer=self.answer(deed.goal)))
             self._say_again(deed, now_us)
@@ -239,12 +240,12 @@ class MachineBody:
 
 
 def _goes_on_while_stopped(command: VerbCall) -> bool:
-    """A query, or what lets go of a part."""
+    """True for a query, and for an order that lets go of a part."""
     return command.told.effect is Effect.QUERY or getattr(command, "grips", None) is False
 
 
 def _never(goal: OrderGoal) -> None:
-    """No order is treated so."""
+    """The default for refusals and the like: None for every order."""
 
 
 def _always(goal: OrderGoal) -> bool:

@@ -1,4 +1,4 @@
-"""The drive of a mobile robot's board: node to node over its grid."""
+"""Drive of a mobile robot's board: node to node over its grid."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ from .body import BodyReport, Robotic
 
 
 class MobileBody(Robotic):
-    """At a node, or on an edge that it always drives to its end; each takes pitch / speed.
+    """Body of a mobile robot at a node, or on an edge that it always drives to its end, in pitch / speed.
 
-    `node` is where it takes itself to be, `true_node` where it is.
+    `node` is where it believes to be, `true_node` where it is.
     """
 
     channels = frozenset({Channel.PATH, Channel.STOP, Channel.HOME, Channel.BEAT})
@@ -29,7 +29,7 @@ class MobileBody(Robotic):
         self.reset()
 
     def reset(self) -> None:
-        """At its start node, as a board comes up that knows no better; the robot stays where it is."""
+        """Reset as a board comes up, believing the start node; the robot stays where it is."""
         self.node = self._start_node
         self._way: tuple[int, ...] = ()  # nodes ahead; the first one ends the edge it is on
         self.next_change_us: int | None = None
@@ -47,7 +47,7 @@ class MobileBody(Robotic):
         return {}
 
     def admits(self, goal: PathGoal) -> bool:
-        """Whether the path starts here or next door and never leaves the grid's edges."""
+        """True if the path starts here or next door and never leaves the grid's edges."""
         way = self._ahead(goal.nodes)
         nodes_exist = all(node < self._grid.size for node in goal.nodes)
         edges = pairwise((self._next_node, *way))
@@ -57,7 +57,7 @@ class MobileBody(Robotic):
         self._drive(now_us, self._ahead(goal.nodes))
 
     def home(self, now_us: int) -> None:
-        """Drive to the start node by what it sees, whatever it took itself for before."""
+        """Drive to the start node by sight, whatever node it believed to be at."""
         if not self._way:
             self.node = self.true_node
         self._drive(now_us, self._grid.route(self._next_node, self._start_node)[1:])
@@ -88,11 +88,11 @@ class MobileBody(Robotic):
 
     @property
     def _next_node(self) -> int:
-        """Where the next edge can begin."""
+        """The node at which the next edge can begin."""
         return self._way[0] if self._way else self.node
 
     def _pass(self, node: int) -> None:
-        """Reach the next node; a robot beside its way drives the same edge there, up to the border."""
+        """Reach the next node; a misplaced robot drives the same edge from there, up to the border."""
         columns = self._grid.columns
         row, column = (
             here + to - since
@@ -111,7 +111,7 @@ class MobileBody(Robotic):
         return nodes[1:] if nodes[0] == self._next_node else nodes
 
     def _drive(self, now_us: int, ahead: tuple[int, ...]) -> None:
-        """Finish the edge it is on, then go `ahead`; even no way at all takes a moment."""
+        """Finish the present edge, then go `ahead`; a way of no length takes a moment, too."""
         if self._way:
             self._way = (self._way[0], *ahead)
             return

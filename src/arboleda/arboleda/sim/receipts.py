@@ -1,4 +1,4 @@
-"""The (epoca, seq) rules of a board: which command counts, and what its telemetry says about it."""
+"""Numbering rules of a board for (epoca, seq): the choice of the commands that count, and their receipts."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ UNKNOWN_SEQ = 0  # senders count from 1
 
 
 class Receipts:
-    """The numbers of the last accepted, finished and refused command, of the last answer and of the last few
-    failures; all count only for `epoch`.
+    """Numbers of the last accepted, finished and refused command, the last answer, and the last few failures.
 
-    `least` is the oldest epoch that still counts: that of the newest beat or command. `told` is all of it.
-    `known` is how many accepted commands it knows again, should one come twice.
+    All count only for `epoch`. `least` is the oldest epoch that still counts: that of the newest heartbeat or
+    command. `told` has all of the numbers. `known` is the number of accepted commands that are recognised if
+    they come twice.
     """
 
     def __init__(self, *, known: int = 1) -> None:
@@ -24,7 +24,7 @@ class Receipts:
         self._enter(None)
 
     def _enter(self, epoch: int | None) -> None:
-        """Forget all numbers: those of one epoch mean nothing in the next."""
+        """Forget all numbers, as those of one epoch mean nothing in the next."""
         self.epoch = self.least = epoch
         self.accepted: int | None = None
         self.finished: int | None = None
@@ -49,10 +49,10 @@ class Receipts:
         )
 
     def hear(self, epoch: int) -> bool:
-        """A beat: what is older counts for nothing from now on; False where no plant can have that epoch.
+        """Take a heartbeat, after which older epochs no longer count; False if no plant can have this epoch.
 
-        The numbers stay until a command comes: a plant that has just begun reads in them what became of the
-        last one.
+        The numbers stay until a command comes: a plant that has just begun reads in them the end of the last
+        one.
         """
         if self.least is not None and epoch <= self.least:
             return True
@@ -63,11 +63,11 @@ class Receipts:
         return True
 
     def repeats(self, goal: Goal) -> bool:
-        """Whether this is an accepted command once more (QoS 1 may deliver twice)."""
+        """True if this is an accepted command once more (QoS 1 may deliver twice)."""
         return goal.seq is not None and goal.epoch == self.epoch and goal.seq in self._recent
 
     def objection(self, goal: Goal) -> str | None:
-        """The refusal its numbers deserve; a fresh command makes its epoch the current one."""
+        """The refusal of a command by its numbers, None for none; a newer epoch becomes the current one."""
         if goal.seq is None or goal.epoch is None:
             return "formato"
         if self.least is not None and goal.epoch < self.least:
@@ -84,26 +84,26 @@ class Receipts:
         self._note()
 
     def finish(self, goal: Goal) -> None:
-        """A motion ended by itself; one of an older epoch is nobody's news any more."""
+        """Note that a motion ended by itself; one of an older epoch no longer matters."""
         if goal.epoch == self.epoch:
             self.finished = goal.seq
             self._note()
 
     def answered(self, goal: Goal, answer: Value) -> None:
-        """A query has its answer."""
+        """Note the answer to a query."""
         if goal.epoch == self.epoch and goal.seq is not None:
             self.answer = (goal.seq, answer)
             self._note()
 
     def fail(self, goal: Goal, word: str) -> None:
-        """A command ended short, by itself."""
+        """Note a command that gave up by itself."""
         if goal.epoch == self.epoch and goal.seq is not None:
             self.failures = (*self.failures, (goal.seq, word))[-FAILURES_KEPT:]
             self._note()
 
     def refuse(self, word: str, seq: int | None, epoch: int | None) -> None:
-        """Note a refusal; under a foreign epoch its number could be taken for one of the current sender."""
-        # `viejo` is for the sender of the older epoch, which knows itself by its number
+        """Note a refusal; a number under a foreign epoch could be taken for one of the current sender."""
+        # `viejo` is for the sender of the older epoch, which recognises its number
         ours = word == "viejo" or self.epoch in (None, epoch)
         self.refusal = word
         self.refused = seq if ours and seq is not None else UNKNOWN_SEQ

@@ -1,4 +1,4 @@
-"""The boards' stepper ramp, step for step (D. Austin, 2005; DESIGN section 11)."""
+"""Stepper ramp of the boards, step for step (D. Austin, 2005; DESIGN section 11)."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ _store, _load = _FLOAT.pack, _FLOAT.unpack  # the fastest rounding to binary32 i
 
 
 class Pace(NamedTuple):
-    """What the next steps of a stepper depend on, besides the way that it has to go."""
+    """State on which the next steps of a stepper depend, besides the way still to go."""
 
     ramp: int  # number of the next step in the ramp: > 0 speeding up, < 0 slowing down
     interval: float  # us to the next step, exactly; < 0 = counterclockwise, 0 = still
 
     @property
     def mirrored(self) -> Pace:
-        """The same to the other side."""
+        """The same pace in the other direction."""
         return Pace(self.ramp, -self.interval)
 
 
@@ -93,25 +93,25 @@ class Stepper:
             self.move_to(self.position + (way if self.speed > 0.0 else -way))
 
     def set_current_position(self, position: int) -> None:
-        """Stand still here and call it `position`."""
+        """Stop at once and call this place `position`."""
         self.position = self.target = position
         self._ramp = self.interval = 0
         self.speed = 0.0
 
     def arrive(self, at_us: int) -> None:
-        """Come to rest at the target, the last step of the move taken then."""
+        """Come to rest at the target, after the last step of the move."""
         self.set_current_position(self.target)
         self._last_step_us = at_us
 
     @property
     def pace(self) -> Pace:
-        """How it moves."""
+        """The stepper's present pace."""
         if not self.interval:
             return Pace(0, 0.0)
         return Pace(self._ramp, self._exact_interval if self._clockwise else -self._exact_interval)
 
     def resume(self, position: int, pace: Pace, at_us: int) -> None:
-        """Be where a step was taken at `at_us`, and go on towards the target at this pace."""
+        """Continue from a step taken at `at_us` towards the target, at this pace."""
         self.position, self._last_step_us = position, at_us
         self._ramp, self._exact_interval = pace.ramp, abs(pace.interval)
         self._clockwise = pace.interval > 0.0
@@ -119,19 +119,19 @@ class Stepper:
         self.speed = _binary32(1e6 / pace.interval) if pace.interval else 0.0
 
     def shift(self, steps: int) -> None:
-        """Call the place where it is, and the one it heads for, by other numbers; the move goes on."""
+        """Renumber the present position and the target; the move goes on."""
         self.position += steps
         self.target += steps
 
     def run(self, now_us: int) -> bool:
-        """Poll once: take one step if one is due; whether it did."""
+        """Poll once, and take one step if it is due; True if it was."""
         if not self.interval or (now_us - self._last_step_us) & CLOCK_MASK < self.interval:
             return False
         self.step(now_us)
         return True
 
     def next_step_us(self, now_us: int) -> int | None:
-        """The first of the polls at `now_us`, +1, +2, ... that will step; None while still."""
+        """The first of the polls at `now_us`, +1, +2, ... that will step; None at rest."""
         if not self.interval:
             return None
         return now_us + max(0, self.interval - ((now_us - self._last_step_us) & CLOCK_MASK))
@@ -153,7 +153,7 @@ class Stepper:
         self._compute()
 
     def cruise(self, due: int, until_us: int = FOREVER_US) -> int:
-        """Take at once the steps from `due` on that change nothing but the position; when the next is due."""
+        """Take all steps from `due` on that change only the position; returns when the next is due."""
         if not self.cruises:
             return due
         way = self.target - self.position
@@ -169,16 +169,16 @@ class Stepper:
 
     @property
     def cruises(self) -> bool:
-        """Whether it is as fast as it may be."""
+        """True at full speed."""
         return self._exact_interval == self._shortest_interval
 
     @property
     def stopping_distance(self) -> int:
-        """How many steps it needs to slow down."""
+        """The number of steps that it needs to slow down."""
         return int(_load(_store(self.speed * self.speed))[0] / (2.0 * self.acceleration))
 
     def _compute(self) -> None:
-        """Choose the next interval and speed; one piece, as it runs once per step."""
+        """Compute the next interval and speed; one piece, as it runs once per step."""
         distance = self.target - self.position
         stopping = int(_load(_store(self.speed * self.speed))[0] / (2.0 * self.acceleration))
         if distance == 0 and stopping <= 1:
@@ -212,7 +212,7 @@ def _binary32(value: float) -> float:
 
 
 def _magnitude(value: float) -> float:
-    """|value| in binary32; ValueError for what is not a finite number."""
+    """|value| in binary32; raises ValueError if it is not finite."""
     if not math.isfinite(value):
         raise ValueError(f"{value} is not a finite number")
     return _binary32(abs(value))

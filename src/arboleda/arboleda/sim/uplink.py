@@ -1,4 +1,4 @@
-"""A board's way to the broker: presence, and telemetry in time."""
+"""Uplink of a board to the broker: presence, and telemetry in time."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from arboleda.wire.transport import Publication
 
 PERIOD_US = 100_000
 UNNUMBERED = b'"seq":0,'
-STATE = b',"estado":'  # what follows the joints
+STATE = b',"estado":'  # the first key after the joints
 
 
 class Uplink:
@@ -21,38 +21,38 @@ class Uplink:
         self.told = 0
         self._presence = topic(name, Channel.PRESENCE)
         self._telemetry = topic(name, Channel.TELEMETRY)
-        self.due_us: float = math.inf  # when the next periodic telemetry is; never while not connected
+        self.due_us: float = math.inf  # time of the next periodic telemetry; inf while not connected
         self._frame = (b"", b"", b"")  # the last telemetry: up to its number, the number, after it
         self._outbox: list[Publication] = []
 
     def take(self) -> list[Publication]:
-        """What was published since the last call, in order."""
+        """The messages published since the last call, in order."""
         taken, self._outbox = self._outbox, []
         return taken
 
     def announce(self, now_us: int) -> None:
-        """Presence; periodic telemetry follows at each tenth of a second, as that of its neighbours does."""
+        """Publish the presence; telemetry follows at each tenth of a second, as for its neighbours."""
         self.due_us = (now_us // PERIOD_US + 1) * PERIOD_US if self.connected else math.inf
         if self.connected:
             presence = encode(Presence(online=True))
             self._outbox.append(Publication(topic=self._presence, payload=presence, retain=True))
 
     def tell(self, said: Telemetry) -> None:
-        """Telemetry; a `seq` of 0 stands for the number that it gets."""
+        """Publish telemetry; a `seq` of 0 is replaced by the next number."""
         if self.connected:
             raw = encode(said)
             self._frame = (raw, b"", b"") if said.seq is None else raw.partition(UNNUMBERED)
             self.tell_again()
 
     def tell_angles(self, q: tuple[float, ...]) -> None:
-        """What the last telemetry said, but for the joints, under the next number."""
+        """Send the last telemetry with new joints, under the next number."""
         before, number, after = self._frame
         _, estado, rest = before.partition(STATE)
         self._frame = (angles(q) + estado + rest, number, after)
         self.tell_again()
 
     def tell_again(self) -> None:
-        """What the last telemetry said, under the next number."""
+        """Send the last telemetry again, under the next number."""
         if not self.connected:
             return
         self.told += 1
@@ -61,5 +61,5 @@ class Uplink:
         self._outbox.append(Publication(topic=self._telemetry, payload=payload, qos=0))
 
     def next_period(self, now_us: int) -> None:
-        """Periodic telemetry is told now; missed periods are not made up for, as on a blocked board."""
+        """Begin the next period of telemetry; missed periods are left out, as on a blocked board."""
         self.due_us += PERIOD_US * ((now_us - self.due_us) // PERIOD_US + 1)

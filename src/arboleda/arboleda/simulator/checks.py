@@ -1,4 +1,4 @@
-"""What a file tells a run is checked with: sentences that know their place in the file."""
+"""Checks of a file that tells a run what to do: their sentences name the place in the file that is wrong."""
 
 from __future__ import annotations
 
@@ -11,8 +11,7 @@ from arboleda.model.errors import ArboledaError
 
 
 class BadFaults(ArboledaError):
-    """Something in a file of faults that cannot be: the sentence says what is allowed, `place` is the way of
-    keys and positions to it."""
+    """An impossible entry in a file of faults; `place` are the keys and positions that lead to it."""
 
     def __init__(self, sentence: str, *place: str | int) -> None:
         super().__init__(sentence)
@@ -21,7 +20,7 @@ class BadFaults(ArboledaError):
 
 @contextmanager
 def within(*place: str | int) -> Iterator[None]:
-    """What is found to be bad inside is so at this place."""
+    """Add `place` in front of the place of every BadFaults that is raised inside."""
     try:
         yield
     except BadFaults as bad:
@@ -30,12 +29,12 @@ def within(*place: str | int) -> Iterator[None]:
 
 
 def is_number(value: Any) -> bool:
-    """Whether it is a finite number."""
+    """True if `value` is a finite number."""
     return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
 
 
 def only(data: Any, allowed: Sequence[str], where: str) -> dict[str, Any]:
-    """`data` as a mapping with no other keys; BadFaults."""
+    """`data` as a mapping that has no other keys than the known ones; raises BadFaults otherwise."""
     if not isinstance(data, dict):
         raise BadFaults(f"{where} is not a mapping; its keys are {', '.join(allowed)}")
     for key in data:

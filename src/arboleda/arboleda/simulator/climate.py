@@ -1,4 +1,4 @@
-"""How much goes wrong: drawn from a seed, or as a file tells it."""
+"""The climate of a run: how many faults it has and of which kinds, drawn from a seed or read from a file."""
 
 from __future__ import annotations
 
@@ -22,14 +22,14 @@ CRASH_WEIGHT = 8.0  # beside one of each other kind
 ABSENT = 0.25  # the share of kinds that a seed does without
 FIELDS = tuple(each.name for each in fields(Fault))
 NUMBERS = ("at", "seconds", "amount", "seed")
-KEYS = ("plant", "seconds", "people", "rates", "faults")  # the first three are no faults, and read elsewhere
+KEYS = ("plant", "seconds", "people", "rates", "faults")  # the first three are read elsewhere
 
 
 @dataclass(frozen=True, kw_only=True)
 class Climate:
-    """The faults of one run: `rates` are how many of a kind are drawn per minute, `told` come as they are.
+    """The faults of one run: `rates` of each kind per minute are drawn from, `told` have a fixed time.
 
-    The same climate gives the same faults for the same minute, whichever were asked for before.
+    The same climate gives the same faults for a minute, whichever minutes were asked for before.
     """
 
     model: PlantModel
@@ -39,9 +39,9 @@ class Climate:
 
     @classmethod
     def draw(cls, model: PlantModel, seed: int, level: str, *, standby: bool = False) -> Climate:
-        """What a seed has in store at a level of LEVELS: how much in all, and of which kinds how much.
+        """The climate that a seed gives at one of the LEVELS: a total rate, shared among kinds of fault.
 
-        `standby`: the plant has two hosts, which much befalls too.
+        `standby`: the plant has two hosts, so faults of hosts are possible too.
         """
         if level not in LEVELS:
             raise BadFaults(f"{level!r} is not a level of faults; there are {', '.join(LEVELS)}")
@@ -54,9 +54,10 @@ class Climate:
 
     @classmethod
     def from_file(cls, model: PlantModel, seed: int, data: Any, *, standby: bool = False) -> Climate:
-        """What a file holds: `{"rates": {kind: per minute}}`, `{"faults": [{"kind": ..., "at": s}]}` or both.
+        """The climate in a file: `{"rates": {kind: per minute}}`, `{"faults": [{"kind": ..., "at": s}]}`, or
+        both.
 
-        What such a fault leaves out is drawn; BadFaults says what is wrong with the first bad one.
+        Whatever such a fault leaves out is drawn; raises BadFaults for the first entry that is wrong.
         """
         known = only(data, KEYS, "the file")
         with within("rates"):
@@ -73,7 +74,7 @@ class Climate:
         return cls(model=model, seed=seed, rates=rates, told=tuple(told))
 
     def faults(self, minute: int) -> list[Fault]:
-        """What goes wrong in a minute of the run, in order."""
+        """The faults that begin in a minute of the run, in the order of their times."""
         begin, dice = minute * MINUTE_S, Dice(self.seed, "faults", minute)
         drawn = [self._fault(dice, begin) for _ in range(_count(dice, sum(self.rates.values())))]
         told = [fault for fault in self.told if begin <= fault.at < begin + MINUTE_S]
@@ -114,7 +115,7 @@ def _shared(total: float, weights: Mapping[str, float]) -> dict[str, float]:
 
 
 def _count(dice: Dice, mean: float) -> int:
-    """A whole number of that mean."""
+    """A whole number, drawn so that its mean is this."""
     return int(mean) + dice.chance(mean % 1.0)
 
 

@@ -1,4 +1,4 @@
-"""What a message to a board asks it to do."""
+"""Decoding of messages to a board into the commands that they carry."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What boards say and cannot be believed: for as long as it is said, under way, or remembered."""
+"""Book of the false reports of boards, kept for as long as one is sent, under way, or believed."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ Done = Callable[[], None]
 
 
 def begin_to_deceive(world: World, board: str, whats: Sequence[str]) -> Done:
-    """Note in `world.deceptions` that a board deceives about `whats`; what is called when it stops.
+    """Note that a board deceives about `whats`; return the call that ends the deception.
 
-    The note stays until no such lie is under way and none that was heard can still be believed.
+    The note stays until no false report is under way and none that was received can still be believed.
     """
     for what in whats:
         world.deceptions[board, what] += 1
@@ -25,7 +25,7 @@ def begin_to_deceive(world: World, board: str, whats: Sequence[str]) -> Done:
     def forget() -> None:
         for what in whats:
             world.deceptions[board, what] -= 1
-        world.deceptions += Counter()  # without those that are over
+        world.deceptions += Counter()  # drops those at 0, which are over
 
     clients = world.broker.clients
     way = [(clients[board].up, NOBODY), (clients[BRIDGE].down, BRIDGE), (world.to_plant, PLANT)]
@@ -33,7 +33,7 @@ def begin_to_deceive(world: World, board: str, whats: Sequence[str]) -> Done:
 
 
 def _follow(world: World, way: Sequence[Stage], done: Done) -> None:
-    """Call `done` when the last lie has gone this way, and is stale even if nothing came after it."""
+    """Call `done` when the last false report has passed this line and must be stale."""
     if way:
         world.at(way[0][0].busy_until, lambda _: _wait_for_reader(world, way, done))
     else:

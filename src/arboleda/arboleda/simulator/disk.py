@@ -1,4 +1,4 @@
-"""What a simulated plant has on its disk: as the store keeps it, and what a power cut leaves of that."""
+"""Disk of a simulated plant: commits as in the real store, and the loss of the last ones in a power cut."""
 
 from __future__ import annotations
 
@@ -24,30 +24,30 @@ Kept = Remember | Journal | TaskChanged
 
 
 def is_kept(message: object) -> bool:
-    """Whether a plant commits a message before it tells anybody."""
+    """True if a plant commits this message before it tells anybody."""
     if isinstance(message, TaskChanged):
         return message.state is not TaskState.REFUSED
     return isinstance(message, Remember | Journal)
 
 
 def is_step(message: object) -> bool:
-    """Whether it says where a task stands."""
+    """True if the message records which step a task has reached."""
     return isinstance(message, Remember) and message.fact is Fact.STEP
 
 
 class DiskFull(ArboledaError):
-    """Something could not be kept, and is not."""
+    """Raised when the disk has no room: the message was not kept."""
 
 
 @dataclass(slots=True)
 class Content:
-    """The rows: name to value by kind of fact, and tasks by id in the order of acceptance."""
+    """Rows on the disk: name to value by kind of fact, and tasks by id in the order of acceptance."""
 
     facts: dict[Fact, dict[str, str]] = field(default_factory=dict)
     tasks: dict[str, KeptTask] = field(default_factory=dict)
 
     def take(self, message: Kept, now: float) -> None:
-        """A commit: a change of a task that is known already stays without effect, as in the store."""
+        """Apply a commit; a change of a task to its present state changes nothing, as in the store."""
         if isinstance(message, Remember):
             self._fact(message)
         elif isinstance(message, TaskChanged):
@@ -88,13 +88,13 @@ class Content:
 
 
 class Disk:
-    """The memory of a plant over its starts.
+    """Disk: keeps the memory of a plant over its starts.
 
-    What was committed survives a plant that dies. A power cut undoes the last commits that nothing has
-    synced: those since the last one that had to be, as that one brings all before it along. How often a step
-    was tried again, and what was answered to a task that has ended, is left out: it is for history alone. So
-    is the recipe of a task, without which a next start only expects of a task what that very task took.
-    As long as it is `full`, nothing more is committed; `slow` are the seconds that a synced commit takes.
+    What was committed survives the death of the plant's process. A power cut undoes the last commits, back to
+    the last one that had to be synced: syncing one syncs all before it. Left out is what is for history
+    alone: how often a step was tried again, and what was answered to a task that has ended. The recipe of a
+    task is left out, too: a next start then expects of a task what that very task took.
+    While it is `full`, nothing more is committed; `slow` is how many seconds a synced commit takes.
     """
 
     def __init__(self) -> None:
@@ -117,11 +117,11 @@ class Disk:
 
     @property
     def unsynced(self) -> int:
-        """How many commits a power cut may undo."""
+        """The number of commits that a power cut may undo."""
         return len(self._unsynced)
 
     def commit(self, message: Notice, now: float) -> float:
-        """Keep what a plant wants kept; anything else is none of the disk's. It takes so many s; DiskFull."""
+        """Keep a message if a plant keeps such ones; return the seconds that it takes; raises DiskFull."""
         if not isinstance(message, Remember | Journal | TaskChanged):
             return 0.0
         if self.full:
@@ -134,14 +134,14 @@ class Disk:
         return max(self.slow, default=0.0)
 
     def cut_power(self, reached: int) -> None:
-        """Of the unsynced commits the first ones had `reached` the disk, the others are gone."""
+        """Undo the unsynced commits, except the first `reached` ones."""
         self.cuts += 1
         self._sync(min(reached, len(self._unsynced)))
         self._unsynced.clear()
         self._live = self._synced.copy()
 
     def found(self) -> Content:
-        """What a start is handed: all facts, the tasks that have not ended, and the last that have."""
+        """The content for a starting plant: all facts, the open tasks, the last HISTORY ended ones."""
         ended = [task.id for task in self.tasks.values() if task.state in ENDED]
         forgotten = set(ended[:-HISTORY])
         found = self._live.copy()
@@ -150,7 +150,7 @@ class Disk:
         return found
 
     def ended(self, id: str) -> KeptTask | None:
-        """The task of an id, where it has ended."""
+        """The task with this id, if it has ended."""
         task = self.tasks.get(id)
         return task if task is not None and task.state in ENDED else None
 

@@ -1,7 +1,7 @@
-"""What must hold in a plant of any devices, judged by how they truly are, whatever kinds they are of.
+"""Invariants for a plant of any devices, judged by their true facts, whatever kinds of device they are.
 
-Most of what holds where parts are stored holds everywhere, and is looked at here, too; what only storage has
-are paths, stations and a grammar of its own. The rules of this file are those of devices, which have facts.
+Most of what holds for storage holds everywhere and is looked at here, too; only storage has paths, stations
+and a task grammar of its own. The rules of this file are those of devices, which have facts.
 """
 
 from __future__ import annotations
@@ -41,16 +41,16 @@ from .truth.stops import is_order_of, robots_of
 from .world import World
 
 KEPT = 16  # commands of a robot that may still be under way to its board
-RELEASE_S = 60.0  # in which what an operator has opened opens
+RELEASE_S = 60.0  # within which an operator's release opens a tool
 
 
 def is_general(model: PlantModel) -> bool:
-    """Whether a plant has a cell, or a recipe, that the invariants of storage do not know."""
+    """True if a plant has a cell, or a recipe, that the invariants of storage do not know."""
     return not all(map(only_stores, model.cells))
 
 
 class GeneralTruth(RobotsTruth):
-    """How robots and devices are, which facts were so when, and what was answered to which question.
+    """The true facts of robots and devices, since when they are so, and devices' true answers.
 
     `done_tasks` of this step: the cells whose task is called done, the task, and since when it ran.
     """
@@ -70,26 +70,26 @@ class GeneralTruth(RobotsTruth):
         self._orders = {topic(robot.mqtt, Channel.ORDER): robot.name for robot in robots}
 
     def was_so(self, robot: str, fact: str, value: Value, since: float) -> bool:
-        """Whether a robot truly had this value of a fact since then."""
+        """True if a robot truly had this value of a fact at some time since `since`."""
         return self._facts[robot].get(fact) == value or self._left_since(robot, (fact, value), since)
 
     def stood_at(self, robot: str, command: Motion, since: float) -> bool:
-        """Whether a robot truly stood at the goal of a command since then; True where that is no target."""
+        """True if a robot truly stood at a command's goal since `since`, or if that is no target."""
         space = self.world.model.cell_of[robot].workspaces.get(robot)
         names = [pose.name for pose in space.poses if pose.q == command.way[-1]] if space else []
         here = self.robots[robot].here
         return not names or any(name in here or self._left_since(robot, name, since) for name in names)
 
     def released(self, robot: str) -> bool:
-        """Whether what a robot holds is let go on an operator's word."""
+        """True while what a robot holds may be let go on an operator's word."""
         return self._released.get(robot, -RELEASE_S) + RELEASE_S >= self.world.now
 
     def answers(self, question: str) -> set[Value]:
-        """What a device has truly answered to the query with this id."""
+        """The answers that a device has truly given to the query with this id."""
         return self._answers.get(question, set())
 
     def last_done(self, robot: str) -> EndedCommand | None:
-        """The last command of a robot but questions, if it is called done."""
+        """The last command of a robot, questions left out, if it is called done."""
         return self._last.get(robot)
 
     def look(self) -> None:
@@ -108,7 +108,7 @@ class GeneralTruth(RobotsTruth):
         return self._left.get((robot, what), -1.0) >= since
 
     def _new_plant(self) -> None:
-        """What became of the last command of each robot is not for the new one's books to say."""
+        """Forget the last commands of robots: a new plant has no book of what became of them."""
         super()._new_plant()
         self._last.clear()
 
@@ -131,7 +131,7 @@ class GeneralTruth(RobotsTruth):
             self._last.pop(command.robot, None)
 
     def _follow_questions(self, events: list[object], out: list[object]) -> None:
-        """The bridge sent questions on, each under a number."""
+        """Take in the questions that the bridge sent on, each under a number."""
         said = [each.message for each in events if isinstance(each, FromPlant)]
         asked = [each for each in said if isinstance(each, Query) and each.id]
         for each in out if asked else ():
@@ -146,7 +146,7 @@ class GeneralTruth(RobotsTruth):
                     break
 
     def _hear_answer(self, robot: str, payload: bytes) -> None:
-        """A board tells its last answer, to the question with this number."""
+        """Take in the answer in a board's telemetry; it belongs to the question with this number."""
         said = json.loads(payload)
         question = self._asked.get((robot, said.get("epoca_ack"), said.get("respuesta_seq")))
         if question is not None:
@@ -191,7 +191,7 @@ def what_is_done_was_so(look: Look) -> Iterator[str]:
 
 
 def _unprovable(truth: GeneralTruth, booked: EndedCommand, robot: RobotTruth) -> bool:
-    """Whether what a robot may say, at its level and as its board lies, proves nothing.
+    """True if a robot's reports prove nothing of a command, by its evidence or by lies.
 
     At `ids` work shows in two ways, its number and what it sets, and both must be lies; a switch shows in
     what it sets alone.
@@ -209,8 +209,8 @@ def _unprovable(truth: GeneralTruth, booked: EndedCommand, robot: RobotTruth) ->
 
 @invariant(Trigger.DONE_TASKS)
 def what_a_task_left_is_so(look: Look) -> Iterator[str]:
-    """When a task is called done, what the last command of each of its devices has set is still so, unless
-    its power, somebody's hand or a lie has changed that.
+    """A task that is called done leaves each of its devices as the last command to that has set it, unless
+    power, somebody's hand or a lie has changed that.
     """
     truth = look.truth
     for cell, task, began in truth.done_tasks:
@@ -228,7 +228,7 @@ def what_a_task_left_is_so(look: Look) -> Iterator[str]:
 
 @invariant(Trigger.CHANGED)
 def needs_hold(look: Look) -> Iterator[str]:
-    """What a verb needs is so when it begins, and as long as it is work that goes on."""
+    """The needs of a verb are met when it begins, and for as long as it is work that goes on."""
     for robot in look.truth.changed:
         for command, why in robot.unmet:
             yield f"{robot.robot.name} carries out {command.given}: {why}"
@@ -262,8 +262,8 @@ def finishing_work_is_finished(look: Look) -> Iterator[str]:
 
 @invariant(Trigger.CHANGED)
 def nothing_is_dropped(look: Look) -> Iterator[str]:
-    """What a robot carries is let go only where it stands at a target, or on an operator's word; where its
-    tool has said too early that it had let go, nobody could know.
+    """A robot lets go of what it carries only where it stands at a target, or on an operator's word; where
+    its tool has said too early that it had let go, nobody could know.
     """
     truth = look.truth
     for cell in look.world.model.cells:
@@ -278,7 +278,7 @@ def nothing_is_dropped(look: Look) -> Iterator[str]:
 
 
 def _is_said_too_early(truth: GeneralTruth, hand: RobotTruth) -> bool:
-    """Whether the last command of a tool is called done by a lie about what it holds."""
+    """True if the last command of a tool is called done because of a lie about what it holds."""
     booked = truth.last_done(hand.robot.name)
     return booked is not None and truth.deceived_since(hand.robot.mqtt, hand.PLACE, booked.sent_at)
 
@@ -307,7 +307,7 @@ def commands_of_others_are_told(look: Look) -> Iterator[str]:
 
 @invariant(Trigger.COMMANDED)
 def a_shared_device_serves_one_cell(look: Look) -> Iterator[str]:
-    """What cells share is told something by the cell that holds it, once its work for another one ended."""
+    """A device that cells share is commanded by the cell that holds it, once another one's work has ended."""
     plant, shared = look.world.plant, look.world.model.shared
     for sent in look.record.commands.new if shared else ():
         if sent.robot not in shared or sent.entry is None:

@@ -1,4 +1,4 @@
-"""What somebody does who follows an advice: says a verb, or goes to the machine."""
+"""Hands: carries out an advice as a person would, with an operator's verb or at the machine itself."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from .world import World
 
 
 def do(world: World, advice: Advice) -> None:
-    """Do what is advised; who declares what was done by hand has done that before."""
+    """Do what is advised; work that a verb only declares as done by hand is done by hand first."""
     if isinstance(advice.do, Hand):
         HANDS[advice.do](world, advice.scope)
     elif advice.by_hand:
@@ -33,16 +33,16 @@ def _reference(world: World, robot: str) -> None:
 
 
 def _check(world: World, zone: str) -> None:
-    """Whoever may be in the zone is moved out of it: the reference lies outside all zones."""
+    """Move out of the zone whoever may be in it, to its reference, which lies outside all zones."""
     holder = world.plant.zones.holder(zone)
     if holder in world.model.robots:  # a shared device has no reference, and is held by a cell
         world.put_at_reference(holder)
 
 
 def _free(world: World, device: str) -> None:
-    """Somebody opens the door, or whatever it is, at the machine, where it is not so already.
+    """Get the machine out of the way, where it is not so already, as by opening its door.
 
-    A lift is in the way of one zone or of another: it gets out of that in which it is.
+    A lift is always in the way of one of two zones: it is moved out of the one in which it is.
     """
     board = world.model.robots[device].mqtt
     facts = world.boards[board].body.true_facts

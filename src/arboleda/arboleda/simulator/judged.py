@@ -1,4 +1,4 @@
-"""By which invariants a plant is judged."""
+"""Choice of the invariants by which a plant is judged."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ from .invariants.hosts import HOSTS
 
 
 def every() -> tuple[Invariant, ...]:
-    """All that some plant is judged by."""
+    """Every invariant by which some plant is judged."""
     return (*INVARIANTS, *GENERAL, *HOSTS)
 
 
 def judged_by(model: PlantModel, *, standby: bool = False) -> tuple[Invariant, ...]:
-    """All of storage where that is all that the plant has, else those of any plant; of two hosts, too."""
+    """The invariants for a plant: of storage or general, and those of two hosts where there are two."""
     of_plant = GENERAL if is_general(model) else INVARIANTS
     return (*of_plant, *HOSTS) if standby else of_plant

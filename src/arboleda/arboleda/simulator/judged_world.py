@@ -1,4 +1,4 @@
-"""A world whose faults, truth, record, trace and invariants go along with every step."""
+"""World under watch: its faults, truth, record, trace and invariants go along with every step."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ class BrokenInvariant(Exception):
 
 
 class JudgedWorld:
-    """A world in which every step is judged: Broken leaves the one that breaks an invariant.
+    """A world in which every step is judged: raises Broken in the step that breaks an invariant.
 
     `faults` are those that have begun; their times are in s since `start`. `standby`: a second host waits to
     lead.
@@ -73,17 +73,17 @@ class JudgedWorld:
 
     @property
     def start(self) -> float:
-        """When it began, were it not for the time in which nobody did anything."""
+        """The time at which the run began, moved on by the time in which nobody did anything."""
         return self._start + self.world.skipped_s
 
     @property
     def seconds(self) -> float:
-        """How long it runs, s."""
+        """The duration of the run so far, s."""
         return self.world.now - self.start
 
     @property
     def checks(self) -> Counter[str]:
-        """How often each invariant was looked at."""
+        """The number of looks at each invariant, by its name."""
         return self._judges.looks
 
     def expect(self, fault: Fault) -> None:
@@ -103,7 +103,7 @@ class JudgedWorld:
             world.at(world.now + fault.seconds, self._end, number)
 
     def come_to_rest(self) -> None:
-        """Without any fault, let everything come to rest, and judge whether it did and stays there."""
+        """End all faults, let everything come to rest, and judge that it does so and stays at rest."""
         self._rests += 1
         for number in list(self._ends):
             self._end(number)

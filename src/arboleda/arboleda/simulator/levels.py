@@ -1,4 +1,4 @@
-"""How much may go wrong, by name."""
+"""Levels of faults, by name: the range of faults per minute."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What lies between two processes: a broker, and lines that lose, repeat, delay and reorder messages."""
+"""Network between two processes: a broker, and lines that lose, repeat, delay and reorder messages."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ Trouble = Callable[[Any], Iterable[float]]  # a message -> how late each of its 
 class Line:
     """One direction of a connection; messages keep their order unless `reorders`, presence always does.
 
-    `busy_until` is when the last of what was sent so far arrives.
+    `busy_until` is the time at which the last message that was sent so far arrives.
     """
 
     def __init__(self) -> None:
@@ -23,18 +23,18 @@ class Line:
         self.busy_until = 0.0
 
     def is_clear(self, now: float) -> bool:
-        """Whether a message arrives at once, and once."""
+        """True if a message arrives at once, and only once."""
         return not self.troubles and self.busy_until <= now
 
     def carry(self, now: float, message: Any) -> list[float]:
-        """When each copy of a message arrives; empty where it is lost."""
+        """The arrival times of the copies of a message; empty if it is lost."""
         if self.is_clear(now):
             return [now]
         earliest = now if self.reorders and not keeps_its_place(message) else self.busy_until
         return self._arrivals(now, message, earliest)
 
     def skip(self, seconds: float) -> None:
-        """Whatever was under way arrives so much later."""
+        """Delay every message that is under way."""
         self.busy_until += seconds
 
     def _arrivals(self, now: float, message: Any, earliest: float) -> list[float]:
@@ -58,7 +58,7 @@ class Hop(Line):
         self._busy_until = {topic: until + seconds for topic, until in self._busy_until.items()}
 
     def carry_on(self, topic: str, now: float, message: Any) -> list[float]:
-        """When each copy of a message of a topic arrives; empty where it is lost."""
+        """The arrival times of the copies of a message on a topic; empty if it is lost."""
         if self.is_clear(now):
             return [now]
         arrivals = self._arrivals(now, message, self._busy_until.get(topic, now))
@@ -68,9 +68,9 @@ class Hop(Line):
 
 
 def keeps_its_place(message: Any) -> bool:
-    """Whether MQTT never loses or overtakes it while a connection lasts: presence, retained with QoS 1.
+    """True for presence (retained, QoS 1): MQTT never loses or reorders it while a connection lasts.
 
-    Nothing numbers it, so that order is all that protects it; lost with its connection, it is told anew.
+    Presence has no number, so its order is its only protection; if its connection breaks, it is sent anew.
     """
     return isinstance(message, Publication) and message.retain
 
@@ -114,20 +114,20 @@ class Broker:
             self._listeners.setdefault(topic, []).append(client)
 
     def leave(self, client: Client) -> None:
-        """A client that never comes back."""
+        """Remove a client that never comes back."""
         client.connect(False)
         del self.clients[client.name]
         for topic in client.topics:
             self._listeners[topic].remove(client)
 
     def rename(self, client: Client, name: str) -> None:
-        """Another process takes its place under its name."""
+        """Give a client another name, as another process takes its place."""
         del self.clients[client.name]
         client.name = name
         self.clients[name] = client
 
     def publish(self, publication: Publication, sender: Client | None = None) -> None:
-        """Somebody publishes; None: somebody who is no part of the plant, or the broker for a lost client."""
+        """Publish for a sender; None: somebody outside the plant, or the broker with a client's last will."""
         now = self._clock()
         if sender is None or (sender.connected and sender.up.is_clear(now)):
             self._spread(publication, now)
@@ -136,13 +136,13 @@ class Broker:
                 self._when(at, self._arrive, (self._lives, publication))
 
     def tell_retained(self, client: Client) -> None:
-        """What a client hears right after it subscribed."""
+        """Deliver the retained messages to a client that has just subscribed."""
         for publication in self.retained.values():
             if publication.topic in client.topics:
                 self._send(client, publication, self._clock(), retained=True)
 
     def die(self) -> None:
-        """Every connection ends, and what was retained or under way is gone."""
+        """End every connection, and drop all that was retained or under way."""
         self.is_up = False
         self._lives += 1
         self.retained.clear()

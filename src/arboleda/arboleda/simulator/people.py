@@ -84,7 +84,7 @@ class Customers:
         self._come(cell)
 
     def _come_back(self) -> None:
-        """The plant has died: who got no answer comes anew, and who has an id asks for it again."""
+        """Ask again after a death of the plant: anew where no answer came, by id where the task has one."""
         for cell in self._asked.values():
             self._come(cell)
         self._asked.clear()
@@ -101,7 +101,7 @@ class Customers:
             self._world.request_task(text, token)
 
     def _heard_again(self, answer: TaskChanged) -> None:
-        """What became of a task meanwhile; one that is taken only now waits as any other."""
+        """Take a task's state by its repeated request; one that is only accepted now waits as any other."""
         if answer.state is TaskState.QUEUED and answer.task not in self._waiting:
             self._waiting.add(answer.task)
         elif answer.state is not TaskState.QUEUED:
@@ -155,7 +155,7 @@ class Customers:
 
 
 def text_of(cell: Cell, dice: Dice) -> str:
-    """A task of a cell; that of a storage cell as people type it."""
+    """The text of a task for a cell; for a storage cell as people type it."""
     if not only_stores(cell):
         return any_text(cell, dice)
     if dice.chance(0.2):
@@ -165,14 +165,14 @@ def text_of(cell: Cell, dice: Dice) -> str:
 
 
 def any_text(cell: Cell, dice: Dice) -> str:
-    """One of the recipes of a cell, with one of the words of each parameter."""
+    """The text of one of the recipes of a cell, with one of the words of each parameter."""
     chosen = dice.pick(cell.recipes)
     words = [dice.pick(list(each.words(cell))) for each in chosen.parameters]
     return " ".join([cell.name, chosen.name, *words])
 
 
 def answer_anything(world: World, seed: int) -> None:
-    """Devices that are asked give any of their answers: a camera sees bad parts, too."""
+    """Have devices that are queried give any of their answers: a camera sees bad parts, too."""
     for name, board in world.boards.items():
         if isinstance(board.body, MachineBody):
             board.body.answer = partial(_any_answer, board.body, Dice(seed, "answers", name))
@@ -183,9 +183,9 @@ def _any_answer(body: MachineBody, dice: Dice, goal: OrderGoal) -> Value:
 
 
 class Attendant:
-    """Comes by every few seconds and does, cell by cell, the first thing that is advised.
+    """Attendant: comes by every few seconds and does the first thing that is advised, cell by cell.
 
-    What is lost or broken comes back when its fault is over: nobody brings it back or repairs it before.
+    It neither brings back what is lost nor repairs what is broken: that ends with its fault.
     """
 
     def __init__(self, world: World, seed: int) -> None:
@@ -205,7 +205,7 @@ class Attendant:
         self._next_round()
 
     def _answer(self) -> None:
-        """People who are asked something give one of the answers."""
+        """Have people who are asked something give one of the answers."""
         plant = self._world.plant
         for name in self._people:
             entry = plant.dispatcher.question(name)
@@ -214,8 +214,8 @@ class Attendant:
                 self._world.request_verb(Verb.ANSWER, f"{name} {answer}")
 
     def _see_to(self, ways: tuple[Advice, ...]) -> None:
-        """The first; who has looked into a zone, or was at a robot's reference, goes on with what comes next,
-        as the plant cannot know.
+        """Follow the first advice; after a look into a zone, or work at a reference, also the next, as the
+        plant cannot know that this was done.
         """
         for advice in ways:
             if advice.refusal is not None or advice.do in BY_THEMSELVES:

@@ -1,4 +1,4 @@
-"""Which branches a run went through: names, counted; whether all of them fire is for a campaign to say."""
+"""Probes: counts the branches that a run went through, by name; a campaign checks that all of them fire."""
 
 from __future__ import annotations
 
@@ -71,7 +71,7 @@ class Probes:
                 yield f"bridge: {report.refusal}"
 
     def _latches(self) -> Iterator[str]:
-        """A latch that goes out although nobody stops anything in this step is one that is told again."""
+        """Count latches that the plant sends again, in steps in which nobody stops anything."""
         moment = self._world.moment
         stops = any(isinstance(each, OperatorAnswer) and each.verb is Verb.STOP for each in moment.sent)
         for each in moment.sent if not stops else ():
@@ -110,7 +110,7 @@ LOOKS: tuple[Callable[[Probes], Iterable[str]], ...] = (
 
 
 def _step(node: Behaviour) -> Iterator[str]:
-    """A step that has begun: whether it is part of a recovery, and whether it is tried again."""
+    """A step that has begun: `recovering` if it is part of a recovery, `again` if it is tried again."""
     if isinstance(node, Act) and node.tries:
         yield "step: tried again"
     if node.name.startswith("try ") and node.name != "try 1":
@@ -120,7 +120,7 @@ def _step(node: Behaviour) -> Iterator[str]:
 
 
 def _gave_up(board: Board) -> bool:
-    """Whether a board stops as it has heard nobody; what it keeps is no part of its interface."""
+    """True if a board stops as it has heard nobody; read from its private state, for want of an interface."""
     return board.body.moving and board._job is None and board._alive_us + SILENCE_US <= board._now_us
 
 

@@ -1,4 +1,4 @@
-"""What was said and done in a world so far, kept apart from the plant's own books."""
+"""Record of all that was said and done in a world so far, kept apart from the plant's own books."""
 
 from __future__ import annotations
 
@@ -60,20 +60,18 @@ SLOW_S = 10.0  # after the last sign of it, a bridge that stalled or a slow line
 class Record:
     """Follows requests, commands, reports and tasks step by step.
 
-    `stepped`: whether the plant made a step in this pass; `born`: whether it started in it; `begins`: whether
-    that step was its first; `news`: whether something changed in it besides what robots report, or it is time
-    to look at everything again.
-    `anew`: the last reports that said something else than before, or the same for some time.
-    `away`: whether the plant finds in this step that it did nothing for long; `unattended`: the cells for
-    which nobody has asked for anything since, and whether they had something to do then; `unasked`: the
-    motions that it sends to such a cell by itself in this step; `stirring`: the same after a start.
-    `born_at`: when the plant started last, unless that was the first time.
-    `undisturbed`: no operator has asked for anything yet.
-    `told`: whether the plant spoke of a task, answered somebody, or a cell changed its state.
-    `shown`: what each robot said, its board and what the plant shows of it. `slow_until`: reports may be old
-    until then. `answers`, `errors` and `transitions` (cell, state before, state after) are of this step;
-    `unnumbered`: whether a cell or a task changed in this step and the number of what screens show did not.
-    `differences` are what a step changed in which everything asked was refused and nothing was heard.
+    Of a step: `stepped`: the plant made it in this pass; `born`: the plant started in this pass; `begins`: it
+    is the plant's first; `news`: something changed in it besides what robots report, or it is time to look at
+    everything again; `told`: the plant spoke of a task, answered somebody, or a cell changed its state.
+    `anew`: the last reports that said something else than before, or the same for some time. `away`: the
+    plant finds in this step that it did nothing for long; `unattended`: the cells for which nobody has asked
+    for anything since, with whether they had something to do then; `unasked`: the motions that it sends to
+    such a cell by itself in this step; `stirring`: the same after a start. `born_at`: when the plant started
+    last, unless that was the first time. `undisturbed`: no operator has asked for anything yet. `slow_until`:
+    reports may be old until then. `shown`: by robot its record, its board and the plant's belief. `answers`,
+    `errors` and `transitions` (cell, state before, state after) are of this step; `unnumbered`: a cell or a
+    task changed in this step, but not the number by which screens know of changes. `differences` are what
+    changed in a step in which everything asked for was refused and nothing was heard.
     """
 
     def __init__(self, world: World) -> None:
@@ -174,16 +172,16 @@ class Record:
             self.stepped = self.news = self.born = self.begins = False
 
     def effector_of(self, arm: str) -> str:
-        """What is kept of an effector."""
+        """The state of an effector as the plant's memory has it."""
         return self._kept.get(Fact.EFFECTOR, {}).get(arm, "off")
 
     def told_since(self, at: float) -> float:
-        """Since when a position that reached the plant at `at` may have been told."""
+        """The time since when a position that reached the plant at `at` may have been reported."""
         return 0.0 if at < self.slow_until else at - self.world.model.timing.stale_after_s
 
     @property
     def questions(self) -> list[Entry]:
-        """What people are being asked: nothing is sent for that."""
+        """The open questions to people: nothing is sent for those."""
         dispatcher = self.world.plant.dispatcher
         return [entry for name in self._people if (entry := dispatcher.question(name)) is not None]
 
@@ -191,14 +189,14 @@ class Record:
         return plant is not self._plant
 
     def due_for(self, what: str, every_s: float) -> bool:
-        """Whether something that need not be looked at after every step is to be looked at now."""
+        """True if a check that is made only every `every_s` is due now; counts as made then."""
         if self.world.now < self._next.get(what, 0.0):
             return False
         self._next[what] = self.world.now + every_s
         return True
 
     def _begin(self, plant: Plant) -> None:
-        """A plant that starts knows nothing but what it had to keep."""
+        """Begin with a plant that starts: it knows nothing but what it had to keep."""
         self._plant, self._start = plant, self.world.starts
         self.stepped_at, self._version = plant.now, -1
         self.unattended.clear()
@@ -223,7 +221,7 @@ class Record:
         self.shown = {name: (self.robots[name], board, beliefs[name]) for name, board in boards.items()}
 
     def _take_over(self, plant: Plant) -> None:
-        """What robots said before this record began; the only time that the plant is asked."""
+        """Take over the plant's beliefs, this once: reports from before this record began."""
         self.bridges.take_over(self.world.bridge, self.world.now, plant.dispatcher.beliefs)
         for name, known in self.robots.items():
             belief = plant.dispatcher.beliefs[name]
@@ -263,11 +261,11 @@ class Record:
                 cell.name: self._has_work(cell)
                 for cell in self._cells
                 if (cell.tree is not None and not cell.cell.goes_on_after_absence)
-                or cell.queued == 0  # with nothing under way, what waits begins
+                or cell.queued == 0  # tasks may start by themselves where none is under way
             }
             self._since_start = False
             for cell in self._cells:
-                if cell.cell.goes_on_after_absence:  # once more by itself, as if somebody had said retry
+                if cell.cell.goes_on_after_absence:  # it goes on by itself, as after a retry
                     self._retried(cell.name)
         self.proofs.clear_news()
         self.works.clear_news()
@@ -288,7 +286,7 @@ class Record:
             self.acts.look(self.cells, last_fault_at=last, faults=faults)
 
     def _take_last_words(self) -> None:
-        """What a plant said that died in the middle of its step: nobody knows what else it meant to say."""
+        """Take in what a plant said in the step in which it died, of which the rest is unknown."""
         words = self.world.moment.last_words
         self._unanswered = deque(event for event in words if isinstance(event, OperatorRequest))
         self.undisturbed &= not self._unanswered
@@ -296,7 +294,7 @@ class Record:
             take = taker(type(message))
             if take is not None:
                 take(self, message)
-        for request in words:  # what it did of that may be kept, though nobody was told
+        for request in words:  # its effects may be kept, though nobody was told
             if isinstance(request, OperatorRequest) and request.verb is Verb.RETRY:
                 self._retried(request.scope)
             elif isinstance(request, OperatorRequest) and request.verb is Verb.CANCEL:
@@ -318,7 +316,7 @@ class Record:
             self._take_over_stops()
 
     def _take_over_stops(self) -> None:
-        """What an operator asked for in such a step was done as far as the disk says."""
+        """Take over the stops on the disk: of a step in which the plant died, they show how far it got."""
         kept = self._kept.get(Fact.LATCH, {})
         for name in self.scopes.commanded(""):
             self.robots[name].stop = STOPS.get(kept.get(name, ""))
@@ -342,7 +340,7 @@ class Record:
                 self.unattended[cell.name] = has_work
 
     def _is_behind_work(self, cell: KnownCell) -> bool:
-        """Whether those who have what its arm waits for, or are to get it before, were at work until now."""
+        """True if all who have, or get earlier, the zones that this cell's arm wants were at work."""
         zones, asked = self._plant.zones, dict(self._requests)
         arms = list(asked)
         wanted = asked[cell.cell.arm.name]
@@ -357,9 +355,9 @@ class Record:
         return cell.tree is not None or cell.queued > 0
 
     def _is_unasked(self, command: Command) -> bool:
-        """Whether it moves a robot of a cell for which nobody has asked for anything since the absence.
+        """True for a motion in a cell for which nobody has asked for anything since the absence.
 
-        What is asked of one robot of a cell may move the other: `abandon` of the mobile brings the arm home.
+        A request for one robot of a cell may move the other: `abandon` of the mobile brings the arm home.
         """
         moves = isinstance(command, Work)
         if self._since_start and isinstance(command, Home) and self.robots[command.robot].robot.home_at_start:
@@ -421,7 +419,7 @@ class Record:
             self._look_into_trees(plant.now)
 
     def _hear(self, asked: bool) -> None:
-        """Where somebody asked in between, a command may rest on any of the words before it."""
+        """Take in reports; if somebody asked for something among them, a command may rest on any."""
         moment, robots = self.world.moment, self.robots
         self.anew = []
         commanded = {each.robot for each in moment.sent if isinstance(each, Command)}
@@ -449,7 +447,7 @@ class Record:
                     self._verbs.setdefault(robot, set()).add(event.verb)
 
     def _look_at_zones(self, plant: Plant) -> None:
-        """Called before the cells are taken over: until now each was in the state it had."""
+        """Look at the zones, before the cells are taken over: each still has its previous state."""
         requests = plant.zones.waiting
         if requests != self._requests:
             self._requests, robots = requests, dict(requests)
@@ -458,7 +456,7 @@ class Record:
             cell.wait(plant.now - self.stepped_at, behind_work=self._is_behind_work(cell))
         moves: dict[str, list[SentCommand]] = {}
         for each in self.commands.new:
-            if each.entry is not None and each.entry.cancelled_at is None:  # halted at once: the work's last
+            if each.entry is not None and each.entry.cancelled_at is None:  # not halted at once
                 of_cell = moves.setdefault(each.entry.cell, [])
                 of_cell += [each] if isinstance(each.command, MoveJoints) else []
         holders = plant.zones.robots
@@ -468,7 +466,7 @@ class Record:
             cell.holds_zones = cell.cell.arm.name in holders
 
     def _look_at_cells(self) -> bool:
-        """Whether any of them is not as it was."""
+        """Take over the states of the cells; True if any of them changed."""
         changed = False
         for cell in self._cells:
             cell.looked = False
@@ -480,7 +478,7 @@ class Record:
         return changed
 
     def _look_into_trees(self, now: float) -> None:
-        """Into those that sent something, and from time to time into all."""
+        """Look into the trees of the cells that sent something, and from time to time into all."""
         self.news = self._has_news = True
         due = now >= self._look_again_at
         if due:
@@ -495,7 +493,7 @@ class Record:
                 self._follow_steps(cell, sent)
 
     def _follow_steps(self, cell: KnownCell, sent: set[str]) -> None:
-        """Which steps of its task gave the commands of this step."""
+        """Note the steps of the cell's task that gave the commands of this step."""
         run = cell.run
         if run.task is None or run.run.recovering:
             return
@@ -519,14 +517,14 @@ class Record:
             known.stop = StopProgress.CLEARED if known.stop is StopProgress.LATCHED else known.stop
 
     def _missed(self, command: Stop, known: KnownRobot, verbs: frozenset[Verb]) -> frozenset[Verb]:
-        """An operator's clear of a robot that was offline counts once more, when it is back."""
+        """Count a clear once more when a robot that was offline at that time is back."""
         missed, asked = known.missed_clear, Verb.CLEAR in verbs
         known.missed_clear = command.mode is StopMode.CLEAR and asked and known.offline(self._plant.now)
         known.missed_clear |= command.mode is StopMode.HALT and missed
         return frozenset({Verb.CLEAR}) if missed else NO_VERBS
 
     def _obstacles(self, known: KnownRobot) -> frozenset[Obstacle]:
-        """What spoke against a command all through this step."""
+        """The obstacles that spoke against a command to this robot all through this step."""
         asked = self.world.moment.asked
         now = min((event.at for event in asked), default=self._plant.now)
         found = known.obstacles(now, self._plant.epoch)
@@ -578,7 +576,7 @@ class Record:
             cell = self.cells[name]
             if cell.state is CellState.STOPPED:
                 cell.stopped = False
-                for robot in cell.cell.robots:  # what is shared only with the last of its cells
+                for robot in cell.cell.robots:  # a shared device only with the last of its cells
                     cells = self.world.model.cells_of[robot.name]
                     if not any(self.cells[each.name].stopped for each in cells):
                         self.robots[robot.name].stop = None
@@ -588,19 +586,19 @@ class Record:
             self.cells[name].again += 1
 
     def _follow_homing(self) -> None:
-        """Whose routine has ended knows again where it is."""
+        """Take over that a robot knows its place again, once its homing routine has ended."""
         for sent, _ in self.commands.moved:
             if isinstance(sent.command, Home) and sent.state is State.DONE:
                 self.robots[sent.robot].displaced = False
 
     def _follow_refusals(self, plant: Plant) -> None:
-        """A refusal is nothing to the plant where it heard the halted robot stand still just before."""
+        """Take the plant's word on refused halted commands: those of a robot at rest mean nothing."""
         for sent, _ in self.commands.moved:
             if sent.rejected and sent.state is State.CANCELLED:
                 self.robots[sent.robot].barred = plant.dispatcher.beliefs[sent.robot].barred
 
     def _put_right(self, scope: str) -> None:
-        """An operator says so; a boot that a robot tells in the same step may have come after that."""
+        """Take over that operators put robots right; a boot reported in this step may be later."""
         beliefs = self._plant.dispatcher.beliefs
         for name in self.scopes.robots(scope):
             self.robots[name].displaced = name in self._booted and beliefs[name].displaced
@@ -625,7 +623,7 @@ class Record:
             self.unattended.pop(cells[0], None)
 
     def _may_be_cancelled(self, scope: str) -> None:
-        """Nobody knows whether the cancel was kept of a task, or of what runs in the cells of the scope."""
+        """Note cancels in a scope, of tasks by id or in its cells, that may or may not have been kept."""
         named = self.tasks.known(scope.strip().lstrip("#"))
         running = (self.tasks.running.get(name, "") for name in self.scopes.cells(scope))
         found = [named] if named is not None else [self.tasks.open.get(id) for id in running]
@@ -646,7 +644,7 @@ TAKES: dict[type, Callable[[Record, Any], None]] = {
 
 @cache
 def taker(kind: type) -> Callable[[Record, Any], None] | None:
-    """What takes in messages of a class; it is asked for every message."""
+    """The method that takes in messages of a class, or None; looked up for every message."""
     return nearest(TAKES, kind)
 
 

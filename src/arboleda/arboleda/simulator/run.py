@@ -27,7 +27,7 @@ Plan = Callable[[int], Iterable[Fault]]  # minute of the run -> its faults
 
 @dataclass(kw_only=True)
 class Result:
-    """What one run did; times in s since it began. `broken` is None where every invariant held."""
+    """Result of one run; times in s since it began. `broken` is None if every invariant held."""
 
     seed: int
     digest: str = ""
@@ -42,10 +42,10 @@ class Result:
 
 
 class Simulation:
-    """A world with people and faults; `run` until so many cycles, or so many seconds, and then to rest.
+    """A world with people and faults; `run` goes on for so many cycles, or so many seconds, and then to rest.
 
     `plan` gives the faults of each minute; the same model, seed and plan give the same `digest`. With a
-    `script` people do what it says, and none are drawn: the run is as long as that, and until its tasks end.
+    `script` people do what it says and no tasks are drawn: the run ends after it, once its tasks have ended.
     With `any_of` customers name several cells for about half of their tasks.
     `standby`: a second host waits to lead.
     """
@@ -91,7 +91,7 @@ class Simulation:
         return ScriptedPeople(self.world, script, lambda: Attendant(self.world, seed))
 
     def run(self, *, cycles: int | None = None, seconds: float | None = None) -> Result:
-        """Minute by minute until `cycles` or `seconds` are reached, then to rest; a breach ends it."""
+        """Run by the minute until `cycles` or `seconds` are reached, then to rest; a breach ends it."""
         if seconds is None and self._script is not None:
             seconds = self._script.seconds
         try:

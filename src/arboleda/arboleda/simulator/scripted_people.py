@@ -1,4 +1,4 @@
-"""What people do where a file tells it: tasks and operators' words, each at its time."""
+"""Script of people: tasks and operators' verbs that a file gives, each at its time."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ EXAMPLE = '[{"at": 2, "task": "..."}, {"at": 9.5, "do": "stop ..."}]'
 
 @dataclass(frozen=True, kw_only=True)
 class Act:
-    """Somebody asks for a `task`, or says a `verb` on a scope, `at` s after the run began."""
+    """One act of a script: a `task`, or a `verb` on a scope, `at` s after the run began."""
 
     at: float
     task: str | None = None
@@ -31,27 +31,27 @@ class Act:
 
     @property
     def words(self) -> str:
-        """The verb as it is typed."""
+        """The verb as an operator types it."""
         said = [self.verb.value if self.verb else "", self.scope, HAND if self.by_hand else ""]
         return " ".join(word for word in said if word)
 
 
 @dataclass(frozen=True, kw_only=True)
 class Script:
-    """All that people do, in its order. For `seconds` nobody does anything else; None: until the last act."""
+    """All acts of people, in order. For `seconds` nobody does anything else; None: until the last act."""
 
     acts: tuple[Act, ...]
     seconds: float | None = None
 
     @property
     def ends(self) -> float:
-        """From then on an attendant sees to the cells, in s since the run began."""
+        """The time from which an attendant sees to the cells, in s since the run began."""
         last = self.acts[-1].at if self.acts else 0.0
         return last if self.seconds is None else self.seconds
 
 
 def script_from(model: PlantModel, data: Any) -> Script | None:
-    """What a file has of people, None where it has nothing; BadFaults with the place of the first bad one."""
+    """The script in a file, or None if it has none; raises BadFaults with the place of the first bad act."""
     if not isinstance(data, dict) or "people" not in data:
         return None
     seconds = data.get("seconds")
@@ -107,7 +107,7 @@ def _verb(at: float, text: str) -> Act:
 
 
 def scopes(model: PlantModel) -> tuple[str, ...]:
-    """What operators' words may be on, beside the whole plant and tasks."""
+    """The scopes that an operator's verb may name, besides the whole plant and tasks."""
     return (*(cell.name for cell in model.cells), *model.robots, *model.zones)
 
 
@@ -119,9 +119,9 @@ def _check_scope(model: PlantModel, act: Act, ids: set[str]) -> None:
 
 
 class ScriptedPeople:
-    """Does what is told, as `Customers` does what is drawn: `cycles` and `outcomes` are of tasks that ended.
+    """Performs a script, as `Customers` brings drawn tasks: `cycles` and `outcomes` are of tasks that ended.
 
-    `attend` is called once, when it is over or they `go`.
+    `attend` is called once, when the script is over or at `go`.
     """
 
     def __init__(self, world: World, script: Script, attend: Callable[[], object]) -> None:
@@ -144,7 +144,7 @@ class ScriptedPeople:
 
     @property
     def over(self) -> bool:
-        """Whether all has been done, and each task has ended."""
+        """True once every act is done and each task has ended."""
         return not self._left and not self._open
 
     def go(self) -> None:

@@ -13,7 +13,7 @@ Progress = Callable[[int, int], None]  # (runs so far, faults that are left)
 
 
 def explicit(faults: Iterable[Fault]) -> Plan:
-    """The plan of exactly these faults."""
+    """A plan of exactly these faults."""
     by_minute: dict[int, list[Fault]] = {}
     for fault in faults:
         by_minute.setdefault(int(fault.at // MINUTE_S), []).append(fault)

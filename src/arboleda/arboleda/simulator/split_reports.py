@@ -26,7 +26,7 @@ STATE = "estado"
 
 
 def come_apart(world: World, seed: int) -> None:
-    """Have each robot without command ids say things together, in two messages, or in one of two instants."""
+    """Have robots without command ids report in one message, in two, or from one of two instants."""
     for robot in world.model.robots.values():
         dice = Dice(seed, "apart", robot.name)
         if (way := dice.pick(_ways(robot))) is not None:
@@ -34,7 +34,7 @@ def come_apart(world: World, seed: int) -> None:
 
 
 def _ways(robot: Robot) -> tuple[Callable[[World, Robot, Dice], None] | None, ...]:
-    """Two instants are two readings: a state, or a node, that lasts shorter would not be told at all."""
+    """The ways to report of this robot; not two instants if a short state or node would never be reported."""
     if robot.evidence is Evidence.IDS:
         return (None,)
     too_fast = robot.on_grid and robot.grid.pitch / robot.speed < APART_S
@@ -48,9 +48,9 @@ def _two_topics(world: World, robot: Robot, dice: Dice) -> None:
 
 
 class TwoTopics:
-    """Each report as one of its position and one of all the rest; each of them late, and in its own order.
+    """Two topics for each report, position and all the rest; each has its own delay and keeps its order.
 
-    `skipped_s` is how much of the time until now nobody did anything: what was under way came later by it.
+    `skipped_s` is how much of the time until now nobody did anything: reports under way came later by it.
     """
 
     def __init__(self, dice: Dice, skipped_s: Callable[[], float]) -> None:
@@ -60,7 +60,7 @@ class TwoTopics:
         self._last = {"state": 0.0, "position": 0.0}  # when the last of each comes, less what was skipped
 
     def parted(self, report: Report) -> Iterable[Report]:
-        """The parts, stamped with when they come."""
+        """The parts of a report, each stamped with its time of arrival."""
         place = report.q is not None or report.node is not None
         if place:
             position = Report(at=0.0, robot=report.robot, q=report.q, node=report.node)

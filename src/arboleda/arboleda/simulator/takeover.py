@@ -1,4 +1,4 @@
-"""A plant that is at work, handed over to virtual robots: they go on from where it believes the real ones."""
+"""Handover of a plant at work to virtual robots, which go on from where it believes the real ones to be."""
 
 from __future__ import annotations
 
@@ -18,15 +18,15 @@ from arboleda.wire.transport import Publication
 from .world import BRIDGE, World
 
 Given = tuple[float, Command | Heartbeat]
-APART_S = 0.3  # a virtual robot is where the real one was heard if that gets there in so long
+APART_S = 0.3  # a virtual robot may be as far away as the real one moves in this time
 
 
 def taken_over(plant: Plant, model: PlantModel) -> World:
     """A world at the time of the plant's last step, in which virtual boards do what is under way.
 
-    `model` is the plant's own, with a board on MQTT for everybody who has one in simulations. They do it anew
-    from where and when it began, so that they are in the middle of it. Where that leads somewhere else than
-    the real one was heard last, they do the rest of it from there.
+    `model` is the plant's own, in which each robot that has a board in simulations has one on MQTT. The
+    boards repeat their open commands from where and when they began, so that they are in the middle of them.
+    Where that ends elsewhere than the real robot was heard last, they do the rest from that place instead.
     """
     entries = list(plant.dispatcher.ledger.entries.values())
     world = _played(plant, model, entries, {entry.command.robot: entry.origin for entry in entries})
@@ -42,7 +42,7 @@ def taken_over(plant: Plant, model: PlantModel) -> World:
 def _played(
     plant: Plant, model: PlantModel, entries: Iterable[Entry], began: dict[str, Position | None]
 ) -> World:
-    """Boards that were given these commands at their times; the plant of this world only beats."""
+    """Boards that were given these commands at their times; the plant of this world only sends heartbeats."""
     given = sorted(_given(plant, entries), key=lambda each: each[0])
     world = World(model, now=min([plant.now, *(at for at, _ in given)]), epoch=plant.epoch)
     world.stop_plant()
@@ -59,7 +59,7 @@ def _played(
 
 
 def _place(world: World, plant: Plant, robot: Robot, began: Position | None) -> None:
-    """Where it was when it began what is under way, else where it was heard last."""
+    """Put a virtual robot where its open command began; without one, where the real robot was heard last."""
     belief, board = plant.dispatcher.beliefs[robot.name], world.boards[robot.mqtt]
     q = began if isinstance(began, tuple) else belief.q
     node = began if isinstance(began, int) else belief.node
@@ -75,9 +75,9 @@ def _place(world: World, plant: Plant, robot: Robot, began: Position | None) -> 
 
 
 def _given(plant: Plant, entries: Iterable[Entry]) -> Iterator[Given]:
-    """What robots were told and have not ended, with the stops that they were told since, and the beats.
+    """The open commands of robots, the stops that they got since, and heartbeats, each with its time.
 
-    The ids of these stops are of the plant, which fences others off, and no others: it counts from 1.
+    The ids of these stops have the plant's epoch, which fences others off, and numbers that it never gives.
     """
     first = plant.now
     for entry in entries:
@@ -94,7 +94,7 @@ def _given(plant: Plant, entries: Iterable[Entry]) -> Iterator[Given]:
 
 
 def _give(world: World, message: Command | Heartbeat) -> None:
-    """Have the bridge tell a board; what it answers is nobody's news."""
+    """Have the bridge send a command to a board, and drop the answers."""
     assert world.bridge is not None
     bridge = world.broker.clients[BRIDGE]
     for said in world.bridge.step(world.now, [FromPlant(at=world.now, message=message)]):
@@ -103,7 +103,7 @@ def _give(world: World, message: Command | Heartbeat) -> None:
 
 
 def _is_astray(world: World, plant: Plant, name: str) -> bool:
-    """Whether a virtual robot is not where the real one was heard last, or could be soon."""
+    """True if a virtual robot is further from where the real one was heard last than it could have moved."""
     belief, robot = plant.dispatcher.beliefs[name], plant.model.robots[name]
     board = world.boards.get(robot.mqtt)
     place = None if board is None else board.body.true_place
@@ -127,7 +127,7 @@ def _finish(world: World, plant: Plant) -> None:
     """Have the boards speak to this plant from now on, in place of the real ones."""
     for name, belief in plant.dispatcher.beliefs.items():
         world.partings[name] = Dress(belief)
-        belief.number = None  # the boards in their place count anew
+        belief.number = None  # the boards that replace them count from 1
         if belief.state is MotionState.FAULT and belief.robot.mqtt in world.boards:
             world.boards[belief.robot.mqtt].fail(round(world.now * 1e6))
             world.wake(belief.robot.mqtt)
@@ -136,9 +136,9 @@ def _finish(world: World, plant: Plant) -> None:
 
 
 class Dress:
-    """Makes a virtual robot's reports those of the robot in whose place it is: its bridge, its boot.
+    """Makes the reports of a virtual robot those of the real one: with its bridge's and its boot's numbers.
 
-    Later ones of the virtual ones are as many later ones of the others.
+    Later bridges and boots of the virtual robot become as many later ones of the real one.
     """
 
     def __init__(self, belief: Belief) -> None:
@@ -154,5 +154,5 @@ class Dress:
 
 
 def _later(ours: int | None, first: int | None, now: int | None) -> int | None:
-    """As much later than ours as `now` is than the first."""
+    """The number that is as much later than ours as `now` is than the first."""
     return now if None in (ours, first, now) else ours + now - first  # type: ignore[operator]

@@ -1,4 +1,4 @@
-"""What happened, as one hash and, for people, line by line."""
+"""Trace of a run: everything that happened as one hash and, for people, line by line."""
 
 from __future__ import annotations
 

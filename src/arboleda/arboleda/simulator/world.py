@@ -1,4 +1,4 @@
-"""A whole plant in one process: plant, bridge, boards and broker, under time that is handed to them."""
+"""World: a whole plant in one process, with bridge, boards and broker, under time that is handed to them."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ START_S = 100.0  # what its clock says where a world begins
 FIRST_EPOCH = 1000  # of its plant; its bridge has the next one
 PLANT, BRIDGE = "plant", "bridge"
 ENDS_S = 6.0  # how long a plant that ends waits for its robots to stand
-BY_HAND_S = 1.0  # from a robot put right to the word that it is
+BY_HAND_S = 1.0  # from putting a robot right by hand to declaring it
 AT_ONE_INSTANT = 1000  # passes; more means two machines that never stop talking
 Carry = Callable[[Publication], Iterable[Publication]]
 Part = Callable[[Report], Iterable[Report]]
@@ -56,7 +56,7 @@ Gate = Callable[[Command | Heartbeat], None]
 
 
 class Side(Enum):
-    """On which side of a commit, or of a message that leaves."""
+    """The side of a commit, or of a message that leaves: just before it, or just after it."""
 
     BEFORE = "before"
     AFTER = "after"
@@ -71,13 +71,13 @@ class Fuse:
     die: Callable[[], None]
 
     def burns(self, side: Side) -> bool:
-        """Whether this is the instant; called on both sides of everything that counts."""
+        """True if the plant dies now; called before and after each commit and message that counts."""
         self.count -= side is Side.BEFORE
         return self.count <= 0 and side is self.side
 
 
 class _PlantDeath(Exception):
-    """The plant died in the middle of its step."""
+    """Raised inside of a step in which the plant dies."""
 
 
 @dataclass(slots=True, eq=False)
@@ -114,7 +114,7 @@ class BridgeStep:
 
 @dataclass(slots=True)
 class Moment:
-    """What happened in one pass over the machines, in order; emptied before the next one.
+    """All that happened in one pass over the machines, in order; emptied before the next one.
 
     `last_words` are what a plant that died in the middle of its step was asked and had sent by then: the
     rest of that step is nobody's. `unkept` is what leaves a plant that ends as it can keep nothing more.
@@ -227,33 +227,33 @@ class World:
         self.settle()
 
     def request_task(self, text: str, token: str | None = None) -> None:
-        """Somebody asks for a task; the plant takes it in at its next step, and answers with the token."""
+        """Ask for a task in somebody's name; the plant's next step takes it in, and answers by the token."""
         kept = self.disk.ended(text.rpartition("#")[2]) if "#" in text else None
         self.tell(TaskRequest(at=self.now, text=text, request=text if token is None else token, kept=kept))
 
     def request_verb(self, verb: Verb, scope: str = "", *, by_hand: bool = False) -> None:
-        """An operator acts; one who declares what was done by hand has done that before."""
+        """Act as an operator; what a verb only declares as done by hand must have been done before."""
         self.tell(OperatorRequest(at=self.now, verb=verb, scope=scope, by_hand=by_hand))
 
     def home_by_hand(self, scope: str) -> None:
-        """Somebody puts the still robots of a scope at their reference, then tells the plant so."""
+        """Put the robots of a scope that stand still at their reference by hand, and declare that."""
         self.put_at_reference(scope)
         self.at(self.now + BY_HAND_S, self._declare_homed, scope)
 
     def put_at_reference(self, scope: str) -> None:
-        """Somebody moves the still robots of a scope by hand to where their counters begin."""
+        """Move the robots of a scope that stand still by hand to where their counters begin."""
         for name in self._boards_of(scope):
             if not self.boards[name].body.moving:
                 self.boards[name].put_at_reference()
                 self.moment.put_right.append(name)
 
     def release_by_hand(self, scope: str) -> None:
-        """Somebody takes out what the still robots of a scope hold, then tells the plant so."""
+        """Take out by hand what the robots of a scope that stand still hold, and declare that."""
         self.take_out(scope)
         self.at(self.now + BY_HAND_S, self._declare_empty, scope)
 
     def take_out(self, scope: str) -> None:
-        """Somebody takes out what the still robots of a scope hold."""
+        """Take out by hand what the robots of a scope that stand still hold."""
         for name in self._boards_of(scope):
             body = self.boards[name].body
             if not body.moving:
@@ -263,19 +263,19 @@ class World:
                 self.moment.opened += [name] if opens else []
 
     def open_effector(self, board: str) -> None:
-        """Somebody else than this plant opens an effector; its board says that it is off."""
+        """Open an effector as if by somebody else than this plant; its board says that it is off."""
         body = self.boards[board].body
         if isinstance(body, ArmBody) and self.is_on(board) and not body.stuck:
             body.switch_effector(False)
             self.moment.opened.append(board)
 
     def set_by_hand(self, board: str, facts: Facts) -> None:
-        """Somebody makes facts so at a device that does nothing meanwhile."""
+        """Make facts so at a device by hand."""
         self.boards[board].body.set_by_hand(facts)
         self.moment.put_right.append(board)
 
     def tell(self, event: Event) -> None:
-        """Put an event into the plant's inbox; nobody hears it where the plant does not run."""
+        """Put an event into the plant's inbox; it is lost if the plant does not run."""
         self._post(event)
 
     @property
@@ -284,7 +284,7 @@ class World:
         return self.disk.facts
 
     def crash(self, process: str = PLANT) -> None:
-        """A process dies and starts anew at once, the plant with what it kept, a board as it boots."""
+        """Kill a process and start it at once, the plant with what it kept, a board as it boots."""
         self.last_fault_at = self.now
         if process == PLANT:
             if self.is_on(PLANT):
@@ -298,9 +298,9 @@ class World:
             self.power_on(process)
 
     def stop_plant(self) -> None:
-        """The plant's process dies; the next one has what was kept, and does nothing before it starts."""
+        """Kill the plant's process; the next one will have what was kept."""
         self.last_fault_at = self.now
-        if PLANT in self._stalled:  # one that is frozen does nothing, not even that
+        if PLANT in self._stalled:  # a frozen process cannot even die
             return
         self.fuses.clear()
         if PLANT in self._off:
@@ -331,8 +331,9 @@ class World:
                 self.plant = self._new_plant()
 
     def change_leaders(self, epoch: int) -> SupersededProcess | None:
-        """Another process leads from now on, plant and bridge, under that number and on what is kept; what is
-        left of the one before, where that runs."""
+        """Have another process lead, plant and bridge, under this number and on what is kept; return what is
+        left of the one before, if that runs.
+        """
         self._be_gone(self._ending)
         client, bridge, left = self.broker.clients[BRIDGE], self.bridge, None
         until = max(self._stalled.pop(PLANT, self.now), self._stalled.pop(BRIDGE, self.now))
@@ -341,7 +342,7 @@ class World:
         else:
             left = SupersededProcess(self.plant, bridge, client, self._plant_inbox, until)
             self.broker.rename(client, f"{BRIDGE} before {epoch}")
-            self._stalled[client.name] = math.inf  # whoever has it steps it
+            self._stalled[client.name] = math.inf  # only the holder of `left` steps it
         self.fuses.clear()
         self._writes_until, self._plant_inbox, self.last_fault_at = self.now, [], self.now
         self._off.discard(PLANT)
@@ -353,23 +354,23 @@ class World:
         return left
 
     def bury(self, left: SupersededProcess) -> None:
-        """Nothing is left of a process that led."""
+        """Remove the rest of a process that led."""
         self.broker.leave(left.client)
         del self._stalled[left.client.name]
 
     @property
     def is_ending(self) -> bool:
-        """Whether there is a plant that can keep nothing more, and waits for its robots to stand."""
+        """True while a plant that can keep nothing more waits for its robots to stand still."""
         return self._ending is not None
 
     def cut_power(self, reached: int) -> None:
-        """The plant's machine loses power: of the commits that nothing had synced the first ones stay."""
+        """Cut the power of the plant's machine: of the unsynced commits only the first `reached` stay."""
         if PLANT not in self._off or self._ending is not None:
             self.disk.cut_power(reached)
             self.stop_plant()
 
     def stall(self, process: str, seconds: float) -> None:
-        """A process does nothing for a while; what reaches it waits."""
+        """Have a process do nothing for a while; what reaches it waits."""
         self.last_fault_at = self.now
         self._stall(process, self.now + seconds)
 
@@ -379,7 +380,7 @@ class World:
         self.at(until, self._go_on, process)
 
     def skip(self, seconds: float) -> None:
-        """Time passes in which nobody does anything: whatever was to come happens so much later."""
+        """Let time pass in which nobody does anything: whatever was to come happens so much later."""
         self.now += seconds
         self.skipped_s += seconds
         self._writes_until += seconds
@@ -399,19 +400,19 @@ class World:
             yield from (client.up, client.down)
 
     def go_on(self, process: str) -> None:
-        """A process that is stalled does something again; a plant that waits for its disk goes on waiting."""
+        """Have a stalled process go on; a plant that waits for its disk goes on waiting."""
         if process == PLANT and self.writes:
             self._stalled[PLANT] = self._writes_until
         elif self._stalled.pop(process, None) is not None:
             self.wake(process)
 
     def is_stalled(self, process: str) -> bool:
-        """Whether a process does nothing for a while."""
+        """True while a process does nothing for a while."""
         return process in self._stalled
 
     @property
     def writes(self) -> bool:
-        """Whether the plant waits for a commit."""
+        """True while the plant waits for a commit."""
         return self._writes_until > self.now
 
     def wake(self, process: str) -> None:
@@ -420,7 +421,7 @@ class World:
             self._due[process] = self.now
 
     def power_off(self, board: str, *, will_after_s: float = 0.0) -> None:
-        """A board loses power; the broker tells its last will when it notices."""
+        """Cut a board's power; the broker tells its last will when it notices."""
         self.last_fault_at = self.now
         if board in self._off:
             return
@@ -441,7 +442,7 @@ class World:
             self._tell_will(will)
 
     def power_on(self, board: str) -> None:
-        """The board boots and reaches the broker."""
+        """Power a board: it boots and reaches the broker."""
         if board not in self._off:
             return
         self._off.discard(board)
@@ -449,24 +450,24 @@ class World:
         self._reconnect(self.broker.clients[board])
 
     def is_on(self, process: str) -> bool:
-        """Whether a board has power, or the bridge or the plant runs."""
+        """True if a board has power, or if the bridge or the plant runs."""
         return process not in self._off
 
     def stop_broker(self) -> None:
-        """The broker dies: every connection breaks, and what it retained is gone."""
+        """Stop the broker: every connection breaks, and what it retained is gone."""
         self.last_fault_at = self.now
         self.broker.die()
         for client in self.broker.clients.values():
             self._tell_connection(client)
 
     def start_broker(self) -> None:
-        """A new broker: everybody is back."""
+        """Start a new broker, to which everybody connects again."""
         self.broker.is_up = True
         for client in self.broker.clients.values():
             self._reconnect(client)
 
     def stop_bridge(self) -> None:
-        """The bridge's process dies."""
+        """Kill the bridge's process."""
         self.last_fault_at = self.now
         self.bridge = None
         self._off.add(BRIDGE)
@@ -477,7 +478,7 @@ class World:
         self._due.pop(BRIDGE, None)
 
     def start_bridge(self, epoch: int | None = None) -> None:
-        """A new bridge process connects; the broker delivers what it retained."""
+        """Start a new bridge; it connects, and the broker delivers what it retained."""
         self.bridge = Bridge(self.model, epoch=next(self._epochs) if epoch is None else epoch, now=self.now)
         self._off.discard(BRIDGE)
         if BRIDGE not in self.broker.clients:
@@ -486,7 +487,7 @@ class World:
         self._reconnect(self.broker.clients[BRIDGE])
 
     def publish(self, publication: Publication, sender: Client | None = None) -> None:
-        """Somebody publishes; None: a foreign client, over a line without faults."""
+        """Publish for a sender; None: a foreign client, over a line without faults."""
         self.moment.published.append((sender.name if sender else "", publication))
         if not self.carriers:
             self.broker.publish(publication, sender)
@@ -502,7 +503,7 @@ class World:
         heappush(self._agenda, (time, next(self._agenda_no), call, argument))
 
     def advance(self, seconds: float, until: Callable[[], bool] = lambda: False) -> bool:
-        """Let time pass, at most `seconds`; whether `until` came true."""
+        """Let at most `seconds` pass; return True as soon as `until` comes true."""
         end = self.awake_s + seconds
         if self._has_work():
             self.settle()
@@ -517,7 +518,7 @@ class World:
 
     @property
     def next_deadline(self) -> float:
-        """When something happens next if nobody interferes."""
+        """The time at which something happens next if nobody interferes."""
         due = self._agenda[0][0] if self._agenda else math.inf
         if not self._stalled:
             return min(due, *self._due.values())
@@ -545,7 +546,7 @@ class World:
 
     @property
     def _plant_awake(self) -> bool:
-        """Whether a plant steps, be it one that ends."""
+        """True if the plant can make a step; one that is ending still makes steps."""
         return (PLANT not in self._off or self._ending is not None) and PLANT not in self._stalled
 
     def _go_on(self, process: str) -> None:
@@ -636,7 +637,7 @@ class World:
             self._stall(PLANT, self._writes_until)
 
     def _let_out(self, message: Any) -> None:
-        """What is kept is on the disk before anybody hears of it."""
+        """Let a message of the plant out, with what has to be kept on the disk before anybody hears of it."""
         if is_kept(message):
             self._burn(Side.BEFORE)
             self._writes_until += self.disk.commit(message, self.now)
@@ -655,7 +656,7 @@ class World:
             self._burn(Side.AFTER)
 
     def _burn(self, side: Side) -> None:
-        """One commit, or one message that leaves, nearer to the instant in which the plant is to die."""
+        """Count one commit, or one message that leaves; the plant dies here if its fuse has burnt down."""
         self._burn_fuses(side)
         if PLANT in self._off:
             self._make_last_words()
@@ -667,7 +668,7 @@ class World:
                 fuse.die()
 
     def _say_late(self, late: tuple[Plant, Command | Heartbeat]) -> None:
-        """What had to wait for a commit leaves after it, unless it is too late or its plant has died."""
+        """Send a message that waited for a commit, unless it is too late or its plant has died."""
         plant, message = late
         if plant is not self.plant or PLANT in self._off or not self._leads_still(message):
             return
@@ -679,7 +680,7 @@ class World:
             self._post(Undelivered(at=self.now, id=message.id, robot=message.robot, sentence=why))
 
     def _leads_still(self, message: Command | Heartbeat) -> bool:
-        """Whether what had to wait may leave; where not, the plant finds out itself with the next one."""
+        """True if a message that waited may leave; if not, the plant finds that out with its next one."""
         try:
             if self.gate is not None:
                 self.gate(message)
@@ -688,7 +689,7 @@ class World:
         return True
 
     def _make_last_words(self) -> None:
-        """What the plant was asked and has sent in this step is all that there will be of it."""
+        """Make all that the plant was asked and has sent in this step its last words."""
         moment = self.moment
         moment.last_words += [*moment.asked, *moment.sent]
         moment.asked.clear()
@@ -696,7 +697,7 @@ class World:
         moment.sent.clear()
 
     def _end(self, unkept: Iterable[Any], why: DiskFull) -> None:
-        """A plant that cannot keep something ends: it counts as dead, and has its robots halted before."""
+        """End a plant that cannot keep something: it counts as dead, but has its robots halted first."""
         ending, fuses = Ending(self.plant, why), [*self.fuses]
         self.stop_plant()
         self._make_last_words()
@@ -733,7 +734,7 @@ class World:
                 return
 
     def _be_gone(self, ending: Ending | None) -> None:
-        """Nothing is left of a plant that ends, if this is the one that does."""
+        """Remove a plant that has ended, if it is this one."""
         if ending is None or ending is not self._ending:
             return
         self._ending, self._plant_inbox, self._due[PLANT] = None, [], math.inf
@@ -761,7 +762,7 @@ class World:
         )
 
     def _say(self, message: Command | Heartbeat) -> None:
-        """The plant speaks to the bridge on topics of ROS 2, to all of which another node listens, too."""
+        """Send a message of the plant to the bridge, on topics of ROS 2 to which others listen, too."""
         if isinstance(message, Heartbeat):
             self._to_hop(HEARTBEAT, FromPlant(at=self.now, message=message))
             return
@@ -796,7 +797,7 @@ class World:
         client.inbox.append(delivery)
 
     def _declare_homed(self, scope: str) -> None:
-        """Nobody says so of a robot that moves; one that booted meanwhile is put right once more."""
+        """Declare robots homed by hand, unless one moves; one that has booted since is put right again."""
         if not any(self.boards[name].body.moving for name in self._boards_of(scope)):
             self.put_at_reference(scope)
             self.request_verb(Verb.HOME, scope, by_hand=True)

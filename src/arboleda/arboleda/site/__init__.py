@@ -1,1 +1,1 @@
-"""Many plants on one page: where they are, what they say, and what is asked of them."""
+"""Many plants on one page: their addresses, their states, and requests to them."""

@@ -1,4 +1,4 @@
-"""Which plant gets a task that names cells of several: where it is expected to be done first."""
+"""Choice of the plant for a task that names cells of several: the one expected to finish first."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ class TaskRefused(ArboledaError):
 
 @dataclass(frozen=True, kw_only=True)
 class Choice:
-    """The plant, the text for it, and why it is that one, None where it has the task already."""
+    """The chosen plant, the text for it, and the reason, None if the plant has the task already."""
 
     plant: str
     text: str
@@ -43,7 +43,7 @@ class Choice:
 
 
 def names_plants(text: str) -> bool:
-    """Whether a text says itself for which plants it is."""
+    """True if a text itself names its plants."""
     return OF_PLANT in (text.split() or [""])[0]
 
 
@@ -73,7 +73,7 @@ async def chosen(text: str, plants: Mapping[str, Reach]) -> Choice:
 
 
 def _by_plant(text: str, plants: Mapping[str, Reach]) -> tuple[dict[str, str], str]:
-    """The text for each plant, which names its cells alone, and the id, "" where there is none."""
+    """The text for each plant, which names its cells alone, and the id, "" if there is none."""
     names, *words = text.split()
     cells: dict[str, list[str]] = {}
     for name in names.split(BETWEEN_CELLS):
@@ -88,7 +88,7 @@ def _by_plant(text: str, plants: Mapping[str, Reach]) -> tuple[dict[str, str], s
 
 
 async def _prospects(plant: str, text: str, reach: Reach) -> list[Prospect] | Sentence:
-    """What its cells promise; why it does not answer."""
+    """The promises of a plant's cells; a sentence about the silence if it does not answer."""
     try:
         rows = await reach.get(f"/api/promises?{urlencode({'text': text})}")
         return [
@@ -109,7 +109,7 @@ async def _prospects(plant: str, text: str, reach: Reach) -> list[Prospect] | Se
 
 
 def _of_silent(plant: str, why: Sentence) -> Prospect:
-    """It promises nothing, and is named among those that were not chosen."""
+    """The prospect of a silent plant: it promises nothing, and is named among those not chosen."""
     return Prospect(
         order=Order(text="", cell=plant, recipe=""), seconds=math.inf, hindrance=why, is_full=True
     )

@@ -1,4 +1,4 @@
-"""The HTTP API of one plant, asked without ever waiting long for it."""
+"""The HTTP API of one plant, with short limits of time for each request."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ class PlantRefusal(ArboledaError):
 
 
 class Reach:
-    """One address; Silent and Said where it gives no answer, or refuses."""
+    """Reach: one address; Silent if it gives no answer, Said if it refuses."""
 
     def __init__(self, place: Place) -> None:
         self.place = place
@@ -48,7 +48,7 @@ class Reach:
         )
 
     async def get(self, path: str) -> Any:
-        """What the plant answers there."""
+        """The answer of the plant to a GET of that path."""
         return await self._asked("GET", path, None)
 
     async def post(self, path: str, body: dict[str, Any] | None = None) -> Any:

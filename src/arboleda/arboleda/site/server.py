@@ -1,4 +1,4 @@
-"""Serves the page of a site, behind the same door as a plant's."""
+"""Server of a site's page, with the same login as a plant's."""
 
 from __future__ import annotations
 
@@ -25,8 +25,8 @@ from .watch import Site
 
 
 class SiteServer:
-    """From `start`, which returns what a person should know, to `stop`. `state` keeps the tokens of the page
-    where it is open to a network."""
+    """SiteServer: serves from `start`, which returns the notes for a person, to `stop`. `state` keeps the
+    tokens of the page if it is open to a network."""
 
     def __init__(self, find: Find, options: WebOptions, state: Path) -> None:
         self._options, self._state = options, state

@@ -1,4 +1,4 @@
-"""Watches the plants of a site, each by itself: one that is silent holds up no other."""
+"""Watch over the plants of a site, each by itself: a silent one holds up no other."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ NOT_STOPPED_THAT = Phrase("site.not_stopped_that", "{plant} ({why})")
 
 
 class WatchedPlant:
-    """One address, and what was heard there last."""
+    """Watched: one address, and its last answers."""
 
     def __init__(self, place: Place) -> None:
         self.reach = Reach(place)
@@ -57,7 +57,7 @@ class WatchedPlant:
 
     @property
     def name(self) -> str:
-        """The name of the plant; of one that was never heard its address."""
+        """The name of the plant; its address if it never answered."""
         return self._name or self.url
 
     async def follow(self, after_s: float) -> None:
@@ -71,7 +71,7 @@ class WatchedPlant:
             await self.reach.close()
 
     async def look(self) -> None:
-        """Ask once; whatever comes of that is known then."""
+        """Ask once, and keep the answer or the silence."""
         try:
             self._take_in(await self.reach.get("/api/plant"))
             now = asyncio.get_running_loop().time()
@@ -90,7 +90,7 @@ class WatchedPlant:
 
 
 class Site:
-    """`arboleda.dashboard.site.side.SiteSide`."""
+    """Site: the plants as `arboleda.dashboard.site.side.SiteSide`."""
 
     def __init__(self, find: Find) -> None:
         self._find = find
@@ -108,7 +108,7 @@ class Site:
         await asyncio.gather(*map(ended, running))
 
     def plants(self) -> list[LastSeenPlant]:
-        """A row for each plant, whatever number of processes there is for it."""
+        """A row for each plant, whatever number of processes it has."""
         return [_seen(name, those) for name, those in self._rows()]
 
     async def submit(self, plant: str, text: str) -> RequestOutcome:
@@ -134,7 +134,7 @@ class Site:
         )
 
     async def stop(self, plant: str = "") -> RequestOutcome:
-        """Have one plant stop, or all of them; who asks for the same meanwhile gets the same answer."""
+        """Stop one plant, or all of them; the same request meanwhile gets the same answer."""
         running = self._stopping.get(plant)
         if running is None or running.done():
             running = self._stopping[plant] = asyncio.create_task(self._stop(plant))
@@ -159,8 +159,8 @@ class Site:
         return RequestOutcome(good=True, sentence=STOPPED_ALL(count=len(rows)))
 
     def _rows(self) -> Iterator[tuple[str, list[WatchedPlant]]]:
-        """The name of each plant, and its addresses, the one where it is led first. Two that both say that
-        they lead a plant of that name are two rows: neither may be hidden behind the other."""
+        """The name of each plant, and its addresses, that of its leader first. Two that both claim to lead a
+        plant of that name are two rows: neither may be hidden by the other."""
         found: dict[str, list[WatchedPlant]] = defaultdict(list)
         for watched in self._watched.values():
             found[watched.name].append(watched)
@@ -180,7 +180,7 @@ class Site:
             await asyncio.sleep(FIND_S)
 
     def _follow(self, places: list[Place]) -> None:
-        """Watch those that are new, and those no more that are gone."""
+        """Watch the new places, and no longer those that are gone."""
         for place in self._watched.keys() - set(places):
             self._watched.pop(place).is_left = True
             self._tasks.pop(place).cancel()
@@ -192,13 +192,13 @@ class Site:
 
 
 async def _stop_plant(those: list[WatchedPlant]) -> Sentence | None:
-    """Say stop wherever the plant may be led; why nobody heard it, None where somebody did."""
+    """Send the stop to all addresses of a plant; the reason if none heard it, None if one did."""
     answers = await asyncio.gather(*map(_told_to_stop, those))
     return None if None in answers else answers[0]
 
 
 async def _told_to_stop(watched: WatchedPlant) -> Sentence | None:
-    """Why the stop was not heard there. A connection that lay idle may be closed: then another is tried."""
+    """Send a stop there; the reason if it fails. An idle connection may be closed: then it tries another."""
     for is_last in (False, True):
         try:
             await watched.reach.post("/api/plant/stop")

@@ -1,4 +1,4 @@
-"""What the cell does, a function for each kind of task."""
+"""The recipes of the cell: a function for each kind of task."""
 
 from arboleda.recipes import Choice, Target, recipe, work
 

@@ -1,4 +1,4 @@
-"""What must hold of the plant: run them with pytest, no hardware is needed."""
+"""Tests of the plant: run them with pytest, no hardware is needed."""
 
 
 def test_a_blank_is_pressed(sim):

@@ -9,12 +9,12 @@ SECRETS = {"password", "sslpassword"}
 
 
 def is_address(text: str) -> bool:
-    """Whether it names a database."""
+    """True if `text` is the address of a database."""
     return text.startswith(SCHEMES)
 
 
 def has_password(address: str) -> bool:
-    """Whether anybody who reads it reads a password, too; True where nobody can tell."""
+    """True if an address holds a password in the clear, or if that cannot be told."""
     try:
         parts = urlsplit(address)
         return bool(parts.password) or any(key in SECRETS for key, _ in parse_qsl(parts.query))

@@ -74,7 +74,7 @@ def restore(source: sqlite3.Connection, copy: Path, memory: Path, plant: str = "
     try:
         _refuse_other(owner(source), copy, _fold(memory))
         _copy(source, fresh)
-        with Store(fresh) as restored:  # it says what is wrong with it, and brings it up to date
+        with Store(fresh) as restored:  # raises an error if it is damaged, and brings it up to date
             restored.tasks(TaskQuery(limit=1))
         with explained(memory, StartError, "cannot be replaced"):
             _set_aside(memory)
@@ -86,14 +86,14 @@ def restore(source: sqlite3.Connection, copy: Path, memory: Path, plant: str = "
 
 
 def _begin(source: sqlite3.Connection, path: Path) -> None:
-    """Read from now on what is there now; what another program has locked is an error, not a wait."""
+    """Begin to read the memory; raises an error, without waiting, if another program has locked it."""
     source.execute("BEGIN")
     refuse_version(source, path)
     refuse_damage(source)
 
 
 def _copy(source: sqlite3.Connection, copy: Path) -> None:
-    """Make a file that nobody had; StartError, and there is none, where that cannot be."""
+    """Make a new file and fill it; raises StartError, and leaves no file, if that is impossible."""
     try:
         with copy.open("xb"):
             pass
@@ -125,9 +125,9 @@ def _refuse_other(found: str | None, copy: Path, plant: str | None) -> None:
 
 
 def _fold(memory: Path) -> str | None:
-    """Have all of a memory in one file, where it is not too damaged for that; whose it is.
+    """Merge a memory and its log into one file, unless it is too damaged; returns the plant's name.
 
-    StartError where another program uses it.
+    None: there is no memory, or its owner is unknown. Raises StartError if another program uses it.
     """
     if not memory.exists():
         return None

@@ -1,4 +1,4 @@
-"""Files that this process keeps open: says which of them its path leads to no more."""
+"""Watch over files that this process keeps open: finds those that their paths no longer lead to."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ GONE, OTHER = "was deleted or moved away", "was replaced by another file"
 
 @dataclass(frozen=True, kw_only=True)
 class Loss:
-    """A file that is not in its place, and what became of it."""
+    """Open file that is no longer in its place, and its fate."""
 
     path: Path
     fate: str
@@ -33,7 +33,7 @@ class HeldFiles:
         self._held = {path: opened for path, opened in found.items() if opened is not None}
 
     def loss(self) -> Loss | None:
-        """The first file that is not in its place; None where all are there."""
+        """The first file that is not in its place; None if all are there."""
         for path, opened in self._held.items():
             now = _identity(path)
             if now != opened:
@@ -42,7 +42,7 @@ class HeldFiles:
 
 
 def _identity(path: str) -> tuple[int, int] | None:
-    """None where there is nothing; what else the system refuses, the next write says."""
+    """Device and inode of the file at a path; None without one. The next write shows any other error."""
     try:
         found = os.stat(path)
     except (FileNotFoundError, NotADirectoryError):

@@ -1,4 +1,4 @@
-"""The file of a plant's memory: which one may be used, and one sentence for each that may not."""
+"""File of a plant's memory: checks that it can be used, with one sentence for each reason why not."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ LOST_WITH_IT = (
     " journal"
 )
 MOVE_AWAY = f"move it away, together with its -wal and -shm files, and start again; {LOST_WITH_IT}"
-ADVICE = {  # by what SQLite says; Python 3.10 tells no codes
+ADVICE = {  # by SQLite's text; Python 3.10 has no error codes
     "not a database": MOVE_AWAY,
     "malformed": MOVE_AWAY,
     "full": "make room on the disk and start again; what was kept before is not lost",
@@ -31,8 +31,8 @@ ADVICE = {  # by what SQLite says; Python 3.10 tells no codes
 }
 
 
-SPOILT = (sqlite3.Error, UnicodeDecodeError)  # the second where SQLite names what is no UTF-8
-UNMADE = ("unable to open", "I/O error", "readonly")  # what SQLite says where it can make no log
+SPOILT = (sqlite3.Error, UnicodeDecodeError)  # SQLite raises the second for a name that is no UTF-8
+UNMADE = ("unable to open", "I/O error", "readonly")  # SQLite's errors if it cannot make its log
 
 
 @contextmanager
@@ -49,19 +49,19 @@ def explained(path: Path, kind: type[ArboledaError], cannot: str = "cannot be us
 
 
 def in_words(error: sqlite3.Error | UnicodeDecodeError) -> str:
-    """What SQLite says, on one line: it quotes what it could not decode."""
+    """SQLite's error on one line, without the bytes that it could not decode."""
     if isinstance(error, UnicodeDecodeError) or "decode to UTF-8" in str(error):
         return "not UTF-8 text"
     return plain(str(error))
 
 
 def advice(what: str) -> str:
-    """What to do about it."""
+    """The advice to the user for an error in these words."""
     return next((ADVICE[words] for words in ADVICE if words in what), MOVE_AWAY)
 
 
 def read_only(path: Path) -> sqlite3.Connection:
-    """A connection that writes nothing, for one thread at a time; sqlite3.Error where there is no file."""
+    """A connection that only reads, for one thread at a time; raises sqlite3.Error if there is no file."""
     address = f"{path.resolve().as_uri()}?mode=ro"
     db = _connected(address)
     try:
@@ -71,7 +71,7 @@ def read_only(path: Path) -> sqlite3.Connection:
         log, unmade = Path(f"{path}-wal"), any(words in str(error) for words in UNMADE)
         if not unmade or not path.exists() or (log.exists() and log.stat().st_size):
             raise
-        # Where nobody may write, or the disk is full, no log can be made; where none is, nothing is missing.
+        # Read-only, or with a full disk, no log can be made; without one nothing is missing.
         db = _connected(f"{address}&immutable=1")
     return db
 
@@ -81,12 +81,12 @@ def _connected(address: str) -> sqlite3.Connection:
 
 
 def version(db: sqlite3.Connection) -> int:
-    """Of the format; 0 for what was not made here."""
+    """The version of the format; 0 for a file that Arboleda did not make."""
     return int(db.execute("PRAGMA user_version").fetchone()[0])
 
 
 def refuse_version(db: sqlite3.Connection, path: Path) -> None:
-    """StartError where the memory is of a newer Arboleda, or none."""
+    """Raises StartError if the memory is of a newer Arboleda, or is none."""
     found = version(db)
     if found > VERSION:
         raise StartError(
@@ -101,7 +101,7 @@ def refuse_version(db: sqlite3.Connection, path: Path) -> None:
 
 
 def refuse_damage(db: sqlite3.Connection) -> None:
-    """sqlite3.DatabaseError where the file is not as it was written."""
+    """Raises sqlite3.DatabaseError if the file is not as it was written."""
     if db.execute("PRAGMA integrity_check(1)").fetchone() != ("ok",):
         raise sqlite3.DatabaseError("database disk image is malformed")
     if version(db) == VERSION and not row_sums.are_right(db):
@@ -109,13 +109,13 @@ def refuse_damage(db: sqlite3.Connection) -> None:
 
 
 def owner(db: sqlite3.Connection) -> str | None:
-    """The name of the plant whose memory it is; None where it is older than that."""
+    """The name of the plant whose memory it is; None for a file older than that entry."""
     found = db.execute("SELECT value FROM fact WHERE fact = ? AND name = ?", OWNER).fetchone()
     return None if found is None else str(found[0])
 
 
 def refuse_other(db: sqlite3.Connection, path: Path, plant: str) -> None:
-    """StartError where it is the memory of another plant."""
+    """Raises StartError if it is the memory of another plant."""
     found = owner(db)
     if found not in (None, plant):
         raise StartError(

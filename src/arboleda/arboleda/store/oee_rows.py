@@ -1,4 +1,4 @@
-"""What a plant's memory has for the OEE of its cells."""
+"""The rows of a plant's memory from which the OEE of its cells is computed."""
 
 from __future__ import annotations
 
@@ -14,26 +14,26 @@ DAY_S = 86_400.0
 
 @dataclass(frozen=True, kw_only=True)
 class OeeQuery:
-    """Of which cell, "" for all, and of which time, Unix times; of the last day where nothing is said."""
+    """Query for OEE: a cell, "" for all, and a span in Unix times; without a span, the last day."""
 
     cell: str = ""
     since_s: float | None = None
     until_s: float | None = None
 
     def span(self, now_s: float) -> tuple[float, float]:
-        """From when until when, nothing of it later than now."""
+        """The begin and the end of the span, neither later than now."""
         until_s = now_s if self.until_s is None else min(self.until_s, now_s)
         return (until_s - DAY_S if self.since_s is None else self.since_s), until_s
 
 
 class Database(Protocol):
-    """What runs a query, each of its values in the place of a `?`, and gives its rows."""
+    """Database connection that runs a query, with a value for each `?`, and returns its rows."""
 
     def execute(self, statement: str, values: tuple[object, ...] = ..., /) -> Iterable[tuple[Any, ...]]: ...
 
 
 def kept(db: Database, since_s: float, until_s: float) -> KeptFigures:
-    """What there is of that time."""
+    """The tasks, runs and downtimes that the memory has of this time, in s."""
     begun = "started_s IS NOT NULL AND ended_s > started_s"
     works = db.execute(
         "SELECT cell, text, state, accepted_s, started_s, ended_s FROM task WHERE ended_s IS NULL"

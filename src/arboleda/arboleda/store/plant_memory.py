@@ -30,25 +30,25 @@ from .task_rows import (
     unchecked_written,
 )
 
-PRUNED = 20  # ended tasks that are forgotten with one that ends: many more than end meanwhile, and soon done
+PRUNED = 20  # ended tasks forgotten with each new end: more than come in, and quickly done
 Statement = tuple[str, tuple[object, ...]]  # with its values, each in the place of a `?`
 Memory = TypeVar("Memory", bound="PlantMemory")
 
 
 class Superseded(ArboledaError):
-    """Another process leads this plant now: this one writes nothing more, and must send nothing more."""
+    """Error: another process leads this plant now; this one must neither write nor send anything more."""
 
 
 class OtherLeader(StartError):
-    """Another process leads this plant, and is alive."""
+    """Error: another process leads this plant, and is alive."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class JournalEntry:
-    """One act of an operator; `id` grows, `unix_s` is what the clock of the plant's machine said.
+    """Act of an operator; `id` grows, `unix_s` is the time by the clock of the plant's machine.
 
-    `cell` is None where the act was for more than one, or is older than this column; `said` is JSON of the
-    sentence, None where it is older than that column.
+    `cell` is None if the act was for more than one, or is older than this column; `said` is JSON of the
+    sentence, None if it is older than that column.
     """
 
     id: int
@@ -62,7 +62,7 @@ class JournalEntry:
 
 @dataclass(frozen=True, kw_only=True)
 class Standby:
-    """A process that waits to lead the plant: its host, and its page, "" where it has said none."""
+    """Process that waits to lead the plant: its host, and its page, "" if it gave none."""
 
     host: str
     url: str
@@ -76,24 +76,24 @@ class PlantMemory(ABC):
     sentence what is wrong, and what to do.
     """
 
-    name: str  # as sentences call it
-    remedy: str  # what to do where something in it means nothing
-    standbys: Sequence[Standby] = ()  # who waits to lead the plant, as of the last renewal
-    going: Sequence[str] = ()  # the cells that the leader before held for nothing but the change
+    name: str  # its name in sentences
+    remedy: str  # advice for a damaged memory
+    standbys: Sequence[Standby] = ()  # processes that wait to lead, as of the last renewal
+    going: Sequence[str] = ()  # cells that the last leader held only for the change
     timing: AbstractContextManager[None] = nullcontext()  # around each commit that waits for the disk
-    renew_s: float | None = None  # how often `renew` has to be called while the plant is led, None: never
+    renew_s: float | None = None  # period of calls of `renew` while the plant is led; None: never
 
     @abstractmethod
     def open(self) -> None:
-        """Open it, a new one where there is none; StartError; idempotent."""
+        """Open the memory, or make a new one; raises StartError. Idempotent."""
 
     @abstractmethod
     def close(self) -> None:
-        """Give it back; idempotent."""
+        """Close the memory; idempotent."""
 
     @abstractmethod
     def _write(self, *statements: Statement, durable: bool) -> None:
-        """Commit all of them, or none."""
+        """Commit all of the statements, or none."""
 
     def _commit(self, *statements: Statement, durable: bool) -> None:
         with self.timing if durable else nullcontext():
@@ -105,30 +105,38 @@ class PlantMemory(ABC):
 
     @abstractmethod
     def _damaged(self) -> ArboledaError:
-        """What is said of a row that is not as it was written."""
+        """The error for a row that is not as it was written."""
 
     def lead(self, epoch: int) -> int:
-        """Lead the plant from now on, under the number that is returned: this one, or a higher one where the
-        memory knows of higher ones; StartError where another process leads it."""
+        """Take the lead under `epoch`, or a higher number if the memory knows higher ones; returns the
+        number.
+
+        Raises StartError if another process leads.
+        """
         return epoch
 
     def renew(self) -> bool:
-        """Go on leading; from one other thread. Whether somebody wants another process to lead.
+        """Renew the lead; True if another process is wanted as the leader.
 
-        Superseded, or ArboledaError where nobody can say.
+        Called in one thread of its own. Raises Superseded, or ArboledaError if the memory cannot be reached.
         """
         return False
 
     def own_address(self) -> str:
-        """By which address hosts that reach the memory may reach this one, "" where that is not known; from
-        any thread. ArboledaError."""
+        """The address by which hosts that reach the memory may reach this one, "" if unknown.
+
+        Callable from any thread; raises ArboledaError.
+        """
         return ""
 
     def announce(self, url: str) -> None:  # noqa: B027 - who asks a file is on this machine
-        """Say where the plant's page is; from any thread. ArboledaError."""
+        """Store the address of the plant's page; callable from any thread, raises ArboledaError."""
 
     def hand_over(self, going: Sequence[str]) -> None:  # noqa: B027
-        """Tell the next leader which cells are held for the change alone; from any thread. ArboledaError."""
+        """Store for the next leader the cells that are held for the change only.
+
+        Callable from any thread; raises ArboledaError.
+        """
 
     def confirm(self) -> None:  # noqa: B027
         """Make sure that this process still leads, and that what it wrote can be found again; ArboledaError.
@@ -136,17 +144,17 @@ class PlantMemory(ABC):
 
     @property
     def leads_for_certain(self) -> bool:
-        """Whether it is known, without a question to anybody, that this process leads; from any thread."""
+        """True while this process is known to lead, without asking the server; callable from any thread."""
         return True
 
     def keep(self, *facts: Remember) -> None:
-        """Commit facts, or forget those whose value is None: all of them, or none."""
+        """Commit facts, and forget those whose value is None: all of them, or none."""
         last_words = {(fact.fact, fact.name): fact for fact in facts}.values()
         durable = any(outlives_power(fact) for fact in facts)
         self._commit(*map(_kept, last_words), durable=durable)
 
     def facts(self, fact: Fact) -> dict[str, str]:
-        """Name to value of what is remembered."""
+        """The stored facts: value by name."""
         rows = self._read("SELECT name, value FROM fact WHERE fact = ? ORDER BY name", fact.value)
         if not all(isinstance(each, str) for row in rows for each in row):
             raise self._damaged()
@@ -198,17 +206,17 @@ class PlantMemory(ABC):
             self._commit((end, values), durable=durable)
 
     def attempted(self, task: str, attempts: int) -> None:
-        """Commit how often a task was begun or tried again."""
+        """Commit the number of times that a task was begun."""
         self._commit(("UPDATE task SET attempts = ? WHERE id = ?", (attempts, task)), durable=False)
 
     def forget_tasks(self, before_unix_s: float) -> None:
-        """Forget the oldest tasks that ended before, at most PRUNED of them."""
+        """Forget the oldest tasks that ended before a time, at most PRUNED of them."""
         oldest = "SELECT number FROM task WHERE ended_s < ? ORDER BY ended_s LIMIT ?"
         delete = f"DELETE FROM task WHERE number IN ({oldest})"
         self._commit((delete, (before_unix_s, PRUNED)), durable=False)
 
     def began(self, unix_s: float, before_unix_s: float) -> None:
-        """Commit that the plant runs, and forget the times of cells that were over before."""
+        """Commit that the plant runs, and forget downtimes that ended long ago."""
         last = "SELECT seen_s FROM run WHERE number = (SELECT max(number) FROM run) AND seen_s > down.since_s"
         for statement in (
             (f"UPDATE down SET until_s = coalesce(({last}), since_s) WHERE until_s IS NULL", ()),
@@ -225,7 +233,7 @@ class PlantMemory(ABC):
         self._commit((update, (unix_s, int(ended))), durable=False)
 
     def stands(self, cell: str, state: str | None, unix_s: float) -> None:
-        """Commit that a cell does no work from now on, in this state; or works again, where that is None."""
+        """Commit that a cell does no work from now on, in this state; None: it works again."""
         over = "UPDATE down SET until_s = ? WHERE cell = ? AND until_s IS NULL"
         self._commit((over, (unix_s, cell)), durable=False)
         if state is not None:

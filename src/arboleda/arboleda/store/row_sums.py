@@ -19,7 +19,7 @@ UPPER_BIT = 2**31  # SQLite keeps the sum of the schema in a number with a sign
 
 
 def know(db: sqlite3.Connection) -> None:
-    """Give this connection the function with which rows are summed."""
+    """Register the checksum function with this connection."""
     db.create_function("arboleda_crc", -1, lambda *row: _sum(row))
 
 
@@ -36,14 +36,14 @@ def watch(db: sqlite3.Connection) -> None:
 
 
 def fill(db: sqlite3.Connection) -> Iterator[str]:
-    """What sums a memory without sums, statement by statement: each looks at what those before it left."""
+    """The SQL statements that add checksums to a memory without them; run each before taking the next."""
     for table in KEYS:
         yield f"UPDATE {table} SET crc = arboleda_crc({', '.join(_columns(db, table))})"
     yield f"PRAGMA application_id = {_schema(db)}"
 
 
 def are_right(db: sqlite3.Connection) -> bool:
-    """Whether tables and rows are as they were written."""
+    """True if tables and rows still match their checksums."""
     (kept,) = db.execute("PRAGMA application_id").fetchone()
     return kept == _schema(db) and all(_is_right(db, table) for table in KEYS)
 
@@ -66,5 +66,5 @@ def _schema(db: sqlite3.Connection) -> int:
 
 
 def _sum(values: Sequence[object]) -> int:
-    """Of the same values the same one in every Python: JSON in ASCII, where 1, 1.0 and "1" differ."""
+    """The checksum of values, the same in every Python: over JSON in ASCII, where 1, 1.0 and "1" differ."""
     return zlib.crc32(json.dumps(values, default=repr).encode())

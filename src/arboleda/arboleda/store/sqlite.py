@@ -83,8 +83,7 @@ IN_PLACE = "start again; as the plant ends now, all that it kept goes into the m
 
 
 class Store(PlantMemory):
-    """The memory of a plant in one SQLite file. It is refused where it is not that of `plant`; "" asks for
-    none."""
+    """Memory of a plant in one SQLite file; raises StartError if it is not that of `plant` ("": any)."""
 
     remedy = f"put a copy in its place, or {MOVE_AWAY}"
 
@@ -93,11 +92,11 @@ class Store(PlantMemory):
         self.name = str(path)
         self._plant = plant
         self._opened: sqlite3.Connection | None = None
-        self._durable: bool | None = None  # what commits are now; None: not said yet
+        self._durable: bool | None = None  # durability of commits now; None: not set yet
         self._held = HeldFiles()
 
     def open(self) -> None:
-        """Open the file, a new one where there is none; StartError; idempotent."""
+        """Open the file, or make a new one; raises StartError. Idempotent."""
         if self._opened is not None:
             return
         with self._explained(StartError):
@@ -114,18 +113,20 @@ class Store(PlantMemory):
             self._held = HeldFiles([self.path, self._log])
 
     def close(self) -> None:
-        """Give the file back; idempotent."""
+        """Close the file; idempotent."""
         if self._opened is not None:
             if self._held.loss() is not None:
-                with suppress(sqlite3.Error):  # of a file that was moved SQLite itself leaves the log unread
+                with suppress(sqlite3.Error):  # SQLite itself does not read the log of a moved file
                     self._opened.execute("PRAGMA wal_checkpoint(TRUNCATE)")
             self._held = HeldFiles()
             self._opened.close()
             self._opened = None
 
     def confirm(self) -> None:
-        """ArboledaError where another file, or none, is in the place of the one that is open: what is written
-        from now on would be lost with this process. From any thread; it takes some microseconds."""
+        """Raises ArboledaError if the open file is no longer in its place: later writes would be lost.
+
+        Callable from any thread; takes some microseconds.
+        """
         loss = self._held.loss()
         if loss is not None:
             advice = IN_PLACE if loss.path == self._log else PUT_BACK
@@ -148,20 +149,20 @@ class Store(PlantMemory):
                 self._db.execute(*statements[0])
             else:
                 _carry_out(self._db, statements)
-        self.confirm()  # after the commit: whoever is told of it hears only of what is in its place
+        self.confirm()  # after the commit, so that nobody hears of a write to a file that is not in its place
 
     def _read(self, statement: str, *values: object) -> list[tuple[Any, ...]]:
         with self._explained(ArboledaError):
             return self._db.execute(statement, values).fetchall()
 
     def _sync(self, *, durable: bool) -> None:
-        """Whether the next commits survive a power cut."""
-        if durable is not self._durable:  # most commits are as the one before: a command waits for them
+        """Set whether the next commits must survive a power cut."""
+        if durable is not self._durable:  # most commits are like the one before, and a command waits for each
             self._db.execute(f"PRAGMA synchronous = {'FULL' if durable else 'NORMAL'}")
             self._durable = durable
 
     def _prepare(self, db: sqlite3.Connection) -> None:
-        """Refuse what cannot be used now, rather than at the first fact."""
+        """Refuse a file that cannot be used now, rather than at the first fact."""
         row_sums.know(db)
         found = version(db)
         if found or self.path != IN_MEMORY:
@@ -180,7 +181,7 @@ class Store(PlantMemory):
             self._claim(db)
 
     def _claim(self, db: sqlite3.Connection) -> None:
-        """Say whose memory it is where nothing does; StartError where it is another plant's."""
+        """Enter the plant's name in a memory that has none; raises StartError if it is another plant's."""
         refuse_other(db, self.path, self._plant)
         if owner(db) is None:
             db.execute("INSERT INTO fact (fact, name, value) VALUES (?, ?, ?)", (*OWNER, self._plant))
@@ -191,7 +192,7 @@ class Store(PlantMemory):
         )
 
     def _is_there(self) -> bool:
-        """Whether there is a memory to open; StartError where only a part of one is."""
+        """True if there is a memory to open; raises StartError if only a part of one is there."""
         log = self._log
         if self.path == IN_MEMORY or self.path.exists():
             return True
@@ -220,14 +221,14 @@ class Store(PlantMemory):
 
 
 def _made(db: sqlite3.Connection, statements: Iterable[str]) -> Iterator[str]:
-    """What brings a file to the format of today, with the sums of what is there then."""
+    """The SQL statements that bring a file to the present format, with checksums of all rows."""
     yield from statements
     yield from row_sums.fill(db)
     yield f"PRAGMA user_version = {VERSION}"
 
 
 def _carry_out(db: sqlite3.Connection, statements: Iterable[str | Statement]) -> None:
-    """All of them, or none."""
+    """Run all of the statements in one transaction."""
     with db:
         db.execute("BEGIN IMMEDIATE")
         for each in statements:

@@ -30,14 +30,16 @@ STATES, REASONS = {state.value for state in TaskState}, {None, *(reason.value fo
 
 @dataclass(frozen=True, kw_only=True)
 class TaskRow:
-    """One task as it was kept; times are Unix times, `ended_s` is None while it waits or runs.
+    """Task as it is stored; times are Unix times, `ended_s` is None while it waits or runs.
 
-    `sentence` is why it failed, in English; `said` is JSON of the same sentence. `number` grows with each
-    task that the plant accepts. `asked_by` is the way by which it came, None where nobody knows;
-    `attempts` how often it was begun or tried again, 0 before, and of tasks that are older than this column.
-    `answers` is JSON of what was answered while it ran, None where nothing was, or before it has ended.
-    `choice` is JSON of why it is done in its cell, None where it names no other; `course` of how it went,
-    None before it is done. `unchecked` are words for what of a done one nobody confirmed, None for nothing.
+    - `number` grows with each task that the plant accepts.
+    - `sentence` is the reason of a failure, in English; `said` is the same sentence as JSON.
+    - `asked_by` is the way by which the task came, None if unknown.
+    - `attempts` is the number of times that it was begun, 0 before, and for tasks older than this column.
+    - `answers` is JSON of the answers given while it ran, None for none, or before it has ended.
+    - `choice` is JSON of the reason why it is done in its cell, None if no other cell was allowed.
+    - `course` is JSON of the times of its steps, None before it is done.
+    - `unchecked` are words for those parts of a finished task that nobody confirmed, None for none.
     """
 
     number: int
@@ -62,10 +64,10 @@ class TaskRow:
 
 @dataclass(frozen=True, kw_only=True)
 class TaskQuery:
-    """Which tasks; "" and None ask for no such thing.
+    """Filter for tasks; "" and None set no condition.
 
-    `words`: part of the task text or of its id. `since_s`, `until_s`: accepted then, Unix time. `before`:
-    with a lower number, as the next page begins.
+    `words`: part of the task text or of its id. `since_s`, `until_s`: the span in which it was accepted, Unix
+    time. `before`: only tasks with a lower number, to read the next page.
     """
 
     id: str = ""
@@ -80,7 +82,7 @@ class TaskQuery:
     limit: int | None = 100
 
 
-WILD = re.compile("[!%_]")  # what LIKE takes for more than itself
+WILD = re.compile("[!%_]")  # characters with a meaning in LIKE
 COLUMNS = tuple(each.name for each in fields(TaskRow))
 KINDS: dict[str, tuple[type, ...]] = {
     "int": (int,),
@@ -102,7 +104,7 @@ ASKED = {
 
 
 def selection(query: TaskQuery) -> tuple[str, tuple[object, ...]]:
-    """The query in SQL with its values, the last accepted first."""
+    """The SQL of a query and its values, the last accepted task first."""
     asked = {column: getattr(query, column) for column in ASKED}
     wanted = {column: value for column, value in asked.items() if value not in ("", None)}
     where, values = [ASKED[column] for column in wanted], list(wanted.values())
@@ -119,7 +121,7 @@ def selection(query: TaskQuery) -> tuple[str, tuple[object, ...]]:
 
 
 def to_row(row: tuple[object, ...]) -> TaskRow:
-    """A row of a `selection`; ArboledaError where it is damaged."""
+    """A row of a `selection`; raises ArboledaError if it is damaged."""
     known = dict(zip(COLUMNS, row, strict=True))
     if not all(isinstance(known[name], kinds) for name, kinds in KINDS_OF.items()):
         raise ArboledaError(
@@ -133,7 +135,7 @@ def to_row(row: tuple[object, ...]) -> TaskRow:
 
 
 def sentence_of(row: TaskRow) -> Sentence:
-    """Why a task failed; as it was kept, where its data is not as it was written."""
+    """The reason why a task failed; only its stored English if the data cannot be read."""
     try:
         return retold(row.sentence or "", json.loads(row.said or ""))
     except ValueError:
@@ -141,7 +143,7 @@ def sentence_of(row: TaskRow) -> Sentence:
 
 
 def choice_of(row: TaskRow) -> Sentence | None:
-    """Why a task is done in its cell, where several were allowed; None where that is not as written."""
+    """The reason why a task is done in its cell, if several were allowed; None if it cannot be read."""
     try:
         data = json.loads(row.choice or "null")
         return None if data is None else retold(str(data["english"]), data)
@@ -150,12 +152,12 @@ def choice_of(row: TaskRow) -> Sentence | None:
 
 
 def choice_written(choice: Sentence | None) -> str | None:
-    """What `choice_of` reads."""
+    """The text under which a choice is stored; `choice_of` reads it."""
     return choice and json.dumps({"english": str(choice), **choice.data()}, ensure_ascii=False)
 
 
 def course_of(row: TaskRow) -> Course | None:
-    """How a task went that is done; None where that is not as written."""
+    """The times of a task's steps, if it is done; None if there are none, or they cannot be read."""
     try:
         said = json.loads(row.course or "null")
         begun = {step: float(at) for step, at in said["begun"].items()}
@@ -165,12 +167,12 @@ def course_of(row: TaskRow) -> Course | None:
 
 
 def course_written(course: Course | None) -> str | None:
-    """What `course_of` reads."""
+    """The text under which a course is stored; `course_of` reads it."""
     return course and json.dumps(vars(course), separators=(",", ":"))
 
 
 def unchecked_of(row: TaskRow) -> tuple[Check, ...]:
-    """What of a task that is done nobody confirmed; nothing where that is not as written."""
+    """The checks of a finished task that nobody confirmed; empty if they cannot be read."""
     try:
         return tuple(map(Check, (row.unchecked or "").split()))
     except ValueError:
@@ -178,12 +180,12 @@ def unchecked_of(row: TaskRow) -> tuple[Check, ...]:
 
 
 def unchecked_written(checks: Iterable[Check]) -> str | None:
-    """What `unchecked_of` reads."""
+    """The text under which unconfirmed checks are stored; `unchecked_of` reads it."""
     return " ".join(each.value for each in checks) or None
 
 
 def answers_of(row: TaskRow) -> tuple[TaskAnswer, ...]:
-    """What was answered while a task ran; nothing where that is not as it was written."""
+    """The answers that were given while a task ran; empty if they cannot be read."""
     try:
         return tuple(TaskAnswer(**each) for each in json.loads(row.answers or "[]"))
     except (TypeError, ValueError):
@@ -191,7 +193,7 @@ def answers_of(row: TaskRow) -> tuple[TaskAnswer, ...]:
 
 
 def table(rows: Iterable[TaskRow], *, names: bool = True) -> str:
-    """Rows as comma-separated values, after a line of their names where wanted."""
+    """Rows as comma-separated values, after a line of column names if wanted."""
     text = StringIO()
     writer = csv.writer(text, lineterminator="\n")
     if names:
@@ -205,19 +207,19 @@ class History(ABC):
 
     @abstractmethod
     def _reading(self) -> AbstractContextManager[Database | None]:
-        """What is read, for one thread at a time; None where nothing was kept yet. ArboledaError."""
+        """The database, for one thread at a time; None if nothing is stored yet. Raises ArboledaError."""
 
     @abstractmethod
     def close(self) -> None:
-        """Give it back; idempotent."""
+        """Close the history; idempotent."""
 
     def select(self, query: TaskQuery) -> list[TaskRow]:
-        """The tasks that a query asks for, the last accepted first; none where nothing was kept yet."""
+        """The tasks of a query, the last accepted first; none if nothing is stored yet."""
         with self._reading() as db:
             return [] if db is None else [to_row(row) for row in db.execute(*selection(query))]
 
     def oee(self, query: OeeQuery, cells: Sequence[str] | None = None) -> list[Oee]:
-        """The figures of these cells, or of all that had a task, up to now at the latest."""
+        """The OEE of these cells, or of all that had a task, up to now at the latest."""
         since_s, until_s = query.span(time.time())
         found = KeptFigures(works=[], runs=[], downs=[], shortest={})
         with self._reading() as db:
@@ -230,8 +232,11 @@ class History(ABC):
 
 
 class TaskHistory(History):
-    """That of a SQLite file. `plant` is its name, where that is known: then the memory of another one is
-    refused. A damaged one is, too; `is_checked`: whoever writes it looked when it was opened."""
+    """Task history in a SQLite file.
+
+    `plant` is the name of its plant, "" if unknown; the memory of another plant is refused. A damaged file is
+    refused, too, unless `is_checked`: then its writer has checked it.
+    """
 
     def __init__(self, path: Path, plant: str = "", *, is_checked: bool = False) -> None:
         self._path = path

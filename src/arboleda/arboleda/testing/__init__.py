@@ -1,6 +1,6 @@
-"""For tests of plants: the `sim` of the pytest plugin, and the whole chain with time moved by hand.
+"""Testing of plants: the `sim` of the pytest plugin, and the whole chain under time that is moved by hand.
 
-What stands here is imported when it is asked for: pytest loads this package in every run of its plugin.
+Each name here is imported when it is first used, as pytest loads this package in every run of its plugin.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""What a test names - a plant file, a robot, a fault - made into what the simulator takes."""
+"""Conversion of a test's words - a plant file, a robot, a fault - into what the simulator takes."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ PLAIN = {
 
 
 def plant(named: PlantModel | Path | str | None, folder: Path | None) -> PlantModel:
-    """The plant, each of its robots with a virtual board; Misuse with every mistake of its file."""
+    """The plant, each of its robots with a virtual board; raises Misuse with every mistake of its file."""
     try:
         if isinstance(named, PlantModel):
             return Plant(declared=named).model
@@ -33,7 +33,7 @@ def plant(named: PlantModel | Path | str | None, folder: Path | None) -> PlantMo
 
 
 def robot(name: str, model: PlantModel) -> str:
-    """The name of a robot, given so or by its name on MQTT."""
+    """The name of a robot, looked up by that name or by its name on MQTT."""
     by_mqtt = {each.mqtt: each.name for each in model.robots.values()}
     return by_mqtt.get(name) or known("a robot of this plant", name, model.robots)
 
@@ -49,7 +49,7 @@ def fault(
     word: str | None,
     seed: int,
 ) -> Fault:
-    """The fault; word and amount that are None are drawn, seconds that are None have no end."""
+    """The fault; word and amount are drawn if they are None, it has no end if seconds are None."""
     of_kind = ON_ONE_HOST[known("a kind of fault", kind, ON_ONE_HOST)]
     target = _target(of_kind, target, model)
     drawn = of_kind.draw(Dice(seed, "left out"), model, target)
@@ -68,14 +68,14 @@ def fault(
 
 
 def must_fit(fault: Fault, model: PlantModel) -> None:
-    """Misuse where there can be no such fault in this plant."""
+    """Raise Misuse if there can be no such fault in this plant."""
     objection = ON_ONE_HOST[known("a kind of fault", fault.kind, ON_ONE_HOST)].objection(fault, model)
     if objection is not None:
         raise Misuse(objection)
 
 
 def _target(kind: Kind, target: str, model: PlantModel) -> str:
-    """Whom it befalls: as the kind names it, by the other name of a robot, or the only one there is."""
+    """The target of a fault: by its own name, the robot's other name, or the only possible one."""
     allowed = list(dict.fromkeys(kind.targets(model)))
     if target in allowed:
         return target

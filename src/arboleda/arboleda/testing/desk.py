@@ -1,4 +1,4 @@
-"""Where a test asks for tasks and acts as an operator, and what the plant answers."""
+"""Desk at which a test asks for tasks and acts as an operator, with the plant's answers."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ ENDED = frozenset(
 
 
 class Handle:
-    """A task that a test asked for, as the plant has told of it; it changes while the simulation runs.
+    """A task that a test asked for, with the plant's last word on it; it changes while the simulation runs.
 
     `state` is asked, refused, queued, running, done, failed or cancelled, `history` all it was in; `id` is
     None until the plant takes the task; `reason` and `sentence` say why it failed, was refused or waits.
@@ -33,11 +33,11 @@ class Handle:
 
     @property
     def ended(self) -> bool:
-        """Whether nothing more will happen with it."""
+        """True once the task has ended or was refused."""
         return self.state in ENDED
 
     def follow(self, change: TaskChanged) -> None:
-        """Take in what the plant said of it."""
+        """Take in what the plant says of it."""
         self.id = change.task or None
         self.state = change.state.value
         self.reason = change.reason.value if change.reason else None
@@ -47,7 +47,7 @@ class Handle:
 
 
 class Desk:
-    """Asks the plant of a world, and follows what comes of it."""
+    """Asks the plant of a world for tasks, and follows what becomes of them."""
 
     def __init__(self, world: World) -> None:
         self._world = world
@@ -58,7 +58,7 @@ class Desk:
 
     @property
     def tasks(self) -> list[Handle]:
-        """Every task asked for so far."""
+        """All tasks that were asked for so far."""
         return list(self._asked.values())
 
     def submit(self, text: str) -> Handle:
@@ -71,7 +71,7 @@ class Desk:
         return handle
 
     def operate(self, verb: Verb, scope: str, *, by_hand: bool) -> str | None:
-        """Act as an operator; why the plant refused, None where it did as asked."""
+        """Act as an operator; return the plant's reason for a refusal, or None if it did as asked."""
         if by_hand:
             prepare = {Verb.HOME: self._world.put_at_reference, Verb.RELEASE: self._world.take_out}
             prepare[verb](scope)

@@ -1,4 +1,4 @@
-"""ROS domains for those that run side by side on one machine, as tests and benchmarks do."""
+"""ROS domains for processes that run side by side on one machine, as tests and benchmarks do."""
 
 from __future__ import annotations
 

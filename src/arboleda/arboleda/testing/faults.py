@@ -1,4 +1,4 @@
-"""What a network and a board can do to messages, for `Rig.lost` and `Rig.carry`; boards by MQTT name."""
+"""Effects of a network or a board on messages, for `Rig.lost` and `Rig.carry`; boards by MQTT name."""
 
 from __future__ import annotations
 
@@ -18,18 +18,18 @@ Change = Callable[[dict[str, Any]], dict[str, Any]]
 
 
 def from_board(board: str) -> Lost:
-    """Telemetry and presence of a board."""
+    """True for telemetry and presence of a board."""
     return lambda each: each.topic in (f"{board}/sensores", f"{board}/conexion")
 
 
 def to_board(board: str) -> Lost:
-    """Every command and beat to a board."""
+    """True for commands and beats to a board."""
     heard = from_board(board)
     return lambda each: each.topic.startswith(f"{board}/") and not heard(each)
 
 
 def nth(topic: str, number: int, words: bytes = b"") -> Lost:
-    """Only message `number` (from 1) of a topic, of those that contain `words`."""
+    """Match only message `number` (from 1) of a topic, of those that contain `words`."""
     count = 0
 
     def lost(publication: Publication) -> bool:
@@ -42,7 +42,7 @@ def nth(topic: str, number: int, words: bytes = b"") -> Lost:
 
 
 def altered(topic: str, change: Change) -> Carry:
-    """Every message of a topic as `change` makes it of its fields."""
+    """Replace every message of a topic by what `change` makes of its fields."""
 
     def carry(publication: Publication) -> list[Publication]:
         if publication.topic != topic:
@@ -54,7 +54,7 @@ def altered(topic: str, change: Change) -> Carry:
 
 
 def says(board: str, **fields: Any) -> Carry:
-    """Telemetry with these fields whatever is true; None leaves one out."""
+    """Set these fields in telemetry, whatever is true; None leaves one out."""
 
     def change(said: dict[str, Any]) -> dict[str, Any]:
         return {key: value for key, value in {**said, **fields}.items() if value is not None}
@@ -63,7 +63,7 @@ def says(board: str, **fields: Any) -> Carry:
 
 
 def garbled(topic: str, payload: bytes, is_hit: Callable[[int], bool] = lambda number: True) -> Carry:
-    """The messages of a topic with a number (from 1) that `is_hit` have `payload` instead of theirs."""
+    """Replace the payload of messages of a topic whose number (from 1) `is_hit`."""
     count = 0
 
     def carry(publication: Publication) -> list[Publication]:
@@ -77,7 +77,7 @@ def garbled(topic: str, payload: bytes, is_hit: Callable[[int], bool] = lambda n
 
 
 def frozen(board: str) -> Carry:
-    """The next telemetry message again and again instead of all later ones."""
+    """Repeat the next telemetry message again and again instead of all later ones."""
     first: list[Publication] = []
 
     def carry(publication: Publication) -> list[Publication]:
@@ -90,12 +90,12 @@ def frozen(board: str) -> Carry:
 
 
 def twice(publication: Publication) -> list[Publication]:
-    """Every message comes twice, as QoS 1 allows."""
+    """Deliver every message twice, as QoS 1 allows."""
     return [publication, publication]
 
 
 def swapped(board: str) -> Carry:
-    """Telemetry in pairs, the later message of each pair first."""
+    """Deliver telemetry in pairs, the later message of each pair first."""
     waiting: list[Publication] = []
 
     def carry(publication: Publication) -> list[Publication]:
@@ -111,9 +111,9 @@ def swapped(board: str) -> Carry:
 
 
 def hand(rig: Rig, board: str, *, tells_all: bool, slow_s: float = 0.15) -> Carry:
-    """The telemetry of an arm whose effector takes its time to switch, and its piece sensor to look again.
+    """Telemetry of an arm whose effector takes its time to switch, and its piece sensor to look again.
 
-    `tells_all`: the effector's value is told, late by its time; else only the piece is.
+    `tells_all`: it also has the effector's value, late by that time; else it has only the piece.
     """
     body = cast(ArmBody, rig.devices.boards[board].body)
     effector, looked_at = [(rig.now, body.effector)], [rig.now]

@@ -1,4 +1,4 @@
-"""Somebody who does nothing but the first of the advice, until a cell works."""
+"""Follower of advice: does nothing but the first of it, until a cell works."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ SOON_S, PATIENCE_S = 2.0, 60.0
 
 
 def works(rig: Rig, cell: str) -> bool:
-    """Whether a cell would start a task, or has started the next one."""
+    """True if a cell would start a task, or has started the next one."""
     run = rig.plant.cells[cell]
     return run.state is CellState.IDLE and run.not_ready is None
 
@@ -24,7 +24,7 @@ def advised(rig: Rig, cell: str) -> list[str]:
 
 
 def follow(rig: Rig, cell: str) -> list[str]:
-    """Do the first of the advice again and again until the cell works; what was done, in words."""
+    """Do the first of the advice again and again until the cell works; return what was done, in words."""
     done: list[str] = []
     while not _comes_to_work(rig, cell):
         ways = rig.plant.advice(cell)
@@ -41,7 +41,7 @@ def follow(rig: Rig, cell: str) -> list[str]:
 
 
 def _until_seen(ways: tuple[Advice, ...]) -> tuple[Advice, ...]:
-    """The first; who has seen that a zone is empty also says so, as the plant cannot know."""
+    """The advice to follow now: the first, and after a look into a zone the next, that it is empty."""
     return ways[:2] if ways[0].do is Hand.CHECK else ways[:1]
 
 
@@ -51,5 +51,5 @@ def _comes_to_work(rig: Rig, cell: str) -> bool:
 
 
 def _can_be_done(ways: tuple[Advice, ...]) -> bool:
-    """Whether the first can be done now; some only once an arm has left a zone."""
+    """True if the first of the advice can be done now; some can only once an arm has left a zone."""
     return bool(ways) and ways[0].refusal is None

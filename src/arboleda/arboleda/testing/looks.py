@@ -1,4 +1,4 @@
-"""What a test can see of a cell and of a robot: as the plant believes, and as it is."""
+"""Looks of a test at a cell and at a robot: as the plant believes them to be, and as they are."""
 
 from __future__ import annotations
 
@@ -34,11 +34,11 @@ class CellLook:
 
 @dataclass(frozen=True, kw_only=True)
 class RobotLook:
-    """Where a robot is, and where the plant last heard that it is; joints in deg, prismatic ones in mm.
+    """A robot as it is, and as the plant last heard of it; joints in deg, prismatic ones in mm.
 
     `joints`, `effector` and `holds` (a part) are None for a mobile robot, `node` for an arm; a device of a
-    declared kind has `facts`. `online`,
-    `homed` and what is believed are as the plant heard, None where it heard nothing.
+    declared kind has `facts`. `online`, `homed` and what is believed are as the plant heard, None where it
+    heard nothing.
     """
 
     name: str
@@ -55,7 +55,7 @@ class RobotLook:
 
 
 def cell(world: World, name: str) -> CellLook:
-    """The cell of that name."""
+    """The look at the cell with this name."""
     found = next(each for each in view.snapshot(world.plant)["cells"] if each["name"] == name)
     return CellLook(
         name=name,
@@ -71,7 +71,7 @@ def cell(world: World, name: str) -> CellLook:
 
 
 def robot(world: World, name: str) -> RobotLook:
-    """The robot of that name: its board's body beside the plant's belief."""
+    """The look at the robot with this name: its board's body beside the plant's belief."""
     model, belief = world.model.robots[name], world.plant.dispatcher.beliefs[name]
     heard = {"name": name, "online": belief.online, "homed": belief.homed}
     body = world.boards[model.mqtt].body
@@ -97,6 +97,6 @@ def _text(said: object) -> str | None:
 
 
 def _shown(arm: Arm, q: Joints) -> Joints:
-    """Joints as a plant file writes them."""
+    """Joints in the units of a plant file."""
     rows = zip(arm.joints, q, strict=True)
     return tuple(math.degrees(value) if joint.unit == "rad" else value * MM_PER_M for joint, value in rows)

@@ -13,14 +13,14 @@ from arboleda.recipes.storage_cell import StorageCell
 
 
 def shipped(*cells: str, **declared: Any) -> PlantModel:
-    """The shipped plant, or only these cells of it; every robot declares `declared`, as `link=Link.ROS`."""
+    """The shipped plant, or only these cells of it; every robot gets `declared`, such as `link=Link.ROS`."""
     plant = _loaded()
     by_name = {cell.name: cell for cell in plant.cells}
     return replace(plant, cells=tuple(_declaring(by_name[name], declared) for name in cells or by_name))
 
 
 def slowed(plant: PlantModel, times: float) -> PlantModel:
-    """The plant with arms so many times slower, for what must happen in the middle of a move."""
+    """The plant with arms so many times slower, for tests of what must happen in the middle of a move."""
     return replace(plant, cells=tuple(replace(cell, arm=_slower(cell.arm, times)) for cell in plant.cells))
 
 

@@ -1,4 +1,4 @@
-"""The pytest plugin, with the fixture `sim`. Every run of pytest loads it: it imports what it uses, later."""
+"""The pytest plugin, with the fixture `sim`. Every run of pytest loads it, so it imports late."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def sim(request: pytest.FixtureRequest) -> Sim:
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_runtest_makereport(item: pytest.Item, call: pytest.CallInfo[None]) -> None:
-    """A test that fails for a reason of its own shows what happened last in its simulation."""
+    """Add the last events of the simulation to a failed test that does not show them already."""
     used = item.stash.get(USED, None)
     if call.excinfo is not None and used is not None and (lines := used.last_words()):
         item.add_report_section(call.when, "simulation", "\n".join(lines))

@@ -1,4 +1,4 @@
-"""A world for tests: every act settles at once, and what happened is kept."""
+"""World for tests: each act takes effect at once, and everything that happened is kept."""
 
 from __future__ import annotations
 
@@ -31,13 +31,13 @@ class Rig(World):
         super().__init__(model, now=now, epoch=epoch, watchers=[self._keep], carriers=[self._network])
 
     def submit(self, text: str) -> TaskChanged:
-        """Ask for a task; the plant's answer."""
+        """Ask for a task; return the plant's answer."""
         before = len(self.changes)
         self.request_task(text)
         return next(change for change in self.changes[before:] if change.request == text)
 
     def operate(self, verb: Verb, scope: str = "", *, by_hand: bool = False) -> str | None:
-        """An operator's act; why it was refused, None where it was done."""
+        """Act as an operator; return the reason of a refusal, or None if it was done."""
         self.request_verb(verb, scope, by_hand=by_hand)
         refusal = self.answers[-1].refusal
         return None if refusal is None else str(refusal)
@@ -67,12 +67,12 @@ class Rig(World):
         self.settle()
 
     def inject(self, publication: Publication) -> None:
-        """Somebody publishes something."""
+        """Publish a message as a foreign client."""
         self.publish(publication)
         self.settle()
 
     def wait(self, seconds: float, until: Callable[[], bool] = lambda: False) -> bool:
-        """Let time pass, at most `seconds`; whether `until` came true."""
+        """Let at most `seconds` pass; return True as soon as `until` comes true."""
         return self.advance(seconds, until)
 
     def outcomes(self) -> dict[str, TaskChanged]:
@@ -80,7 +80,7 @@ class Rig(World):
         return {change.task: change for change in self.changes if change.task}
 
     def leaf(self, cell: str) -> str | None:
-        """The leaf that runs in a cell, with what it is part of: `main/effector on/switch`."""
+        """The leaf that runs in a cell, with the nodes that it is part of: `main/effector on/switch`."""
         tree = self.plant.cells[cell].tree
         running = [node for node in tree.iterate() if node.status is Status.RUNNING] if tree else []
         recipes = {recipe.name for recipe in self.model.cell(cell).recipes}
@@ -88,7 +88,7 @@ class Rig(World):
         return "/".join(names) or None
 
     def runs(self, cell: str, leaf: str) -> bool:
-        """Whether a leaf runs whose name, with what it is part of, ends so."""
+        """True if a leaf runs in the cell whose path of names ends in this way."""
         return f"/{self.leaf(cell)}".endswith(f"/{leaf}")
 
     def wait_for(self, cell: str, leaf: str, seconds: float = 60.0) -> None:
@@ -96,7 +96,7 @@ class Rig(World):
         assert self.wait(seconds, until=lambda: self.runs(cell, leaf)), f"{leaf} never ran in {cell}"
 
     def snapshot(self) -> dict[str, Any]:
-        """What a screen would show now."""
+        """The rows that a screen would show now."""
         return view.snapshot(self.plant)
 
     def _network(self, publication: Publication) -> Iterable[Publication]:

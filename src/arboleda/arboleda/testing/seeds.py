@@ -17,7 +17,7 @@ LEVEL = "normal"
 
 @dataclass(frozen=True, kw_only=True)
 class Seeds:
-    """What is run with each seed: so many cycles of a plant, with faults of a level."""
+    """Runs with one seed each: so many cycles of a plant, with faults of a level."""
 
     model: PlantModel
     cycles: int
@@ -26,7 +26,7 @@ class Seeds:
     invariants: tuple[Invariant, ...]
 
     def run(self, seed: int, *, keep: bool = False) -> Result:
-        """One seed from its first step to rest; `keep`: with its timeline."""
+        """Run one seed from its first step to rest; `keep`: with its timeline."""
         climate = Climate.draw(self.model, seed, self.level)
         return self._simulation(seed, climate.faults, keep=keep).run(cycles=self.cycles)
 

@@ -1,4 +1,4 @@
-"""What a test drives: a plant with virtual boards, network and faults, in which every step is judged."""
+"""Simulation for a test: a plant with virtual boards, network and faults, in which every step is judged."""
 
 from __future__ import annotations
 
@@ -33,8 +33,8 @@ __tracebackhide__ = True  # a failed test shows where it stands, not how this fi
 class Sim:
     """One plant under virtual time; it starts with the first thing that is asked of it.
 
-    A broken invariant of the simulator is an AssertionError, wherever it shows; a word that means nothing
-    is a Misuse. Plant files are looked for in `folder` first.
+    A broken invariant of the simulator raises AssertionError, wherever it shows; a word that means nothing
+    raises Misuse. Plant files are looked for in `folder` first.
     """
 
     def __init__(self, folder: Path | None = None) -> None:
@@ -67,11 +67,11 @@ class Sim:
         self._invariants = tuple(each for each in judges if each.name not in names)
 
     def submit(self, text: str) -> Handle:
-        """Ask for a task; a refused one is a handle too."""
+        """Ask for a task; a refused one gets a handle, too."""
         return self._do(lambda: self._desk.submit(text))
 
     def operate(self, verb: Verb | str, scope: str = "", *, by_hand: bool = False) -> str | None:
-        """Act as an operator; why the plant refused, None where it did it."""
+        """Act as an operator; return the plant's reason for a refusal, or None if it did as asked."""
         word = Verb(known("a verb", verb, [each.value for each in Verb]))
         return self._do(lambda: self._desk.operate(word, scope, by_hand=by_hand))
 
@@ -119,7 +119,7 @@ class Sim:
         until: Callable[[], object] | None = None,
         at_most: float = AT_MOST_S,
     ) -> None:
-        """Let so many s pass, or what it takes until `until()` is true; AssertionError after `at_most` s."""
+        """Let so many s pass, or until `until()` is true; raises AssertionError after `at_most` s."""
         if (seconds is None) == (until is None):
             raise Misuse("run(seconds) lets time pass, run(until=...) waits: one of them is needed")
         if seconds is not None and not 0 <= seconds < math.inf:
@@ -141,7 +141,7 @@ class Sim:
     ) -> None:
         """Run this plant `count` times with tasks, people and faults drawn from seeds, each to its rest.
 
-        The first seed that breaks an invariant is an AssertionError, with as few faults as still break it;
+        The first seed that breaks an invariant raises AssertionError, with as few faults as still break it;
         `faults` is a level of `arboleda.simulator.levels.LEVELS`.
         """
         level = known("a level of faults", faults, LEVELS)
@@ -158,16 +158,16 @@ class Sim:
 
     @property
     def now(self) -> float:
-        """How long the simulation has run, s."""
+        """The time since the simulation began, s."""
         return self._watched.seconds
 
     @property
     def world(self) -> World:
-        """Everything there is, for what has no word here; its names may change with any version."""
+        """The simulated world, for all that `Sim` does not offer; its names may change with any version."""
         return self._watched.world
 
     def snapshot(self) -> dict[str, Any]:
-        """What a screen would show now; positions in rad and m."""
+        """The rows that a screen would show now; positions in rad and m."""
         return view.snapshot(self.world.plant)
 
     def cell(self, name: str) -> looks.CellLook:
@@ -180,11 +180,11 @@ class Sim:
         return looks.robot(self.world, arguments.robot(name, self.world.model))
 
     def timeline(self) -> list[str]:
-        """What happened, a line each with its time in s, oldest first."""
+        """All that happened, a line each with its time in s, oldest first."""
         return self._watched.trace.lines
 
     def last_words(self) -> list[str]:
-        """The end of the timeline, for a test that failed without telling it."""
+        """The end of the timeline, for a failed test that has not shown it."""
         lines = self.timeline() if self._started and not self._told else []
         return wording.timeline(lines) if lines else []
 
@@ -219,7 +219,7 @@ class Sim:
         return came
 
     def _do(self, act: Callable[[], T]) -> T:
-        """What `act` returns; what goes wrong in the simulation meanwhile is an AssertionError."""
+        """The result of `act`; anything that goes wrong in the simulation meanwhile raises AssertionError."""
         self._asking = False
         try:
             return act()

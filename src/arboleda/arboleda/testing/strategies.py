@@ -1,4 +1,4 @@
-"""Hypothesis strategies for a plant: task texts that it takes, faults that can befall it."""
+"""Hypothesis strategies for a plant: task texts that it takes, and faults that are possible in it."""
 
 from __future__ import annotations
 
@@ -51,6 +51,6 @@ def _one_of(names: Sequence[str]) -> st.SearchStrategy[str]:
 
 
 def _between(low: float, high: float) -> st.SearchStrategy[float]:
-    """In thousandths, so that what hypothesis shows is short."""
+    """Numbers from the range, in thousandths, so that what hypothesis shows is short."""
     whole = st.integers(round(low * MS_PER_S), round(high * MS_PER_S))
     return whole.map(lambda thousandths: thousandths / MS_PER_S)

@@ -1,4 +1,4 @@
-"""What truly happened at the virtual boards of a rig, kept for tests."""
+"""Witness of the truth at the virtual boards of a rig, kept for tests."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ class Witness:
                 self.false_successes.append(f"{ended.text}: {ended.missing}")
 
     def motions_since(self, mark: int, robots: Iterable[str]) -> list[Publication]:
-        """What could have started something at these robots' boards: motion goals, effector on.
+        """Goals since `mark` that can have started something at these robots' boards: motions, effector on.
 
         `mark` is a former length of `rig.to_boards`.
         """

@@ -1,4 +1,4 @@
-"""What a failed test says: the sentence, then what happened last."""
+"""Wording of a failed test: the sentence, then what happened last."""
 
 from __future__ import annotations
 
@@ -20,14 +20,14 @@ LONG_NUMBER = re.compile(r"-?\d+\.\d{5,}(?:e-?\d+)?")
 
 
 def breach(broken: BrokenInvariant, watched: JudgedWorld) -> str:
-    """A broken invariant, the rule it stands for, and what led to it."""
+    """The text for a broken invariant: its rule, and what led to it."""
     return "\n".join(
         [_broken(broken, watched.seconds, watched.invariants), "", *timeline(watched.trace.lines)]
     )
 
 
 def seed(result: Result, seeds: Seeds, injected: int) -> str:
-    """A seed that broke an invariant: the faults that are enough for it, and what led to it."""
+    """The text for a seed that broke an invariant: the faults that are enough for it, and what led to it."""
     assert result.broken is not None
     again = f"sim.seeds(1, first={result.seed}, cycles={seeds.cycles}, faults={seeds.level!r})"
     few = len(result.faults)
@@ -46,7 +46,7 @@ def seed(result: Result, seeds: Seeds, injected: int) -> str:
 
 
 def never(seconds: float, tasks: Iterable[Handle], watched: JudgedWorld) -> str:
-    """What a test waited for did not come true: where its tasks and the cells are by now."""
+    """The text for a test that waited in vain, with the present state of its tasks and the cells."""
     first = f"what the test waits for did not come true in {seconds:g} s"
     return "\n".join([first, *standing(tasks, watched), "", *timeline(watched.trace.lines)])
 

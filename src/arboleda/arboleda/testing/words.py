@@ -1,4 +1,4 @@
-"""The words a test uses, checked against what there is."""
+"""Words of a test, checked against those that exist."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ __tracebackhide__ = True
 
 
 class Misuse(ArboledaError):
-    """A test asks for what there is not; the sentence says what there is."""
+    """Raised when a test asks for something that does not exist; the sentence says what exists."""
 
 
 def known(what: str, word: str, names: Iterable[str]) -> str:
-    """The name that `word` is, whatever its case; Misuse with all of them where there is none."""
+    """The known name that `word` is, whatever its case; raises Misuse with all names if there is none."""
     names = list(names)
     spelt = {name.lower(): name for name in names}
     if isinstance(word, str) and word.lower() in spelt:

@@ -1,1 +1,1 @@
-"""What viewers that others made are shown: their messages and files. Pure: no clock, socket or thread."""
+"""Messages and files for viewers made by others. Pure: no clock, socket or thread."""

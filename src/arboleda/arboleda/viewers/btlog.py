@@ -1,4 +1,4 @@
-"""How a tree went, as a file of BehaviorTree.CPP's FileLogger2, which viewers of it play."""
+"""Course of a tree as a file of BehaviorTree.CPP's FileLogger2, which its viewers play."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ Look = tuple[int, Sequence[Row]]  # Unix time in microseconds, and the rows of t
 
 
 def btlog(looks: Iterable[Look], *, has_succeeded: bool) -> bytes:
-    """A tree at each moment at which something of it changed, in order; the first has rows.
+    """The file for a tree's rows at each moment of a change, in order; the first moment has rows.
 
-    The file has one tree: of a task that was tried again with another one, the last.
+    The file has one tree: of a task that was tried again with another tree, the last.
     """
     every = list(looks)
     form = next(form_of(rows) for _, rows in reversed(every) if rows)

@@ -1,4 +1,4 @@
-"""What Groot2 is told of one cell: requests of its protocol -> replies. It only reads."""
+"""Groot2's protocol for one cell: requests in, replies out. It only reads."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ Pack = Callable[[Any], bytes]  # plain data as MessagePack
 
 
 class WatchedTree:
-    """The tree of a cell for those who watch it; times are Unix time in microseconds."""
+    """Tree of a cell for viewers; times are Unix time in microseconds."""
 
     def __init__(self, pack: Pack) -> None:
         self._pack = pack
@@ -29,9 +29,9 @@ class WatchedTree:
     def saw(
         self, rows: Sequence[Row], facts: Mapping[str, Any], at_us: int, *, has_succeeded: bool = False
     ) -> None:
-        """The cell as a snapshot has it: the rows of its tree, none where none runs, and other facts.
+        """Take in the cell's snapshot: the rows of its tree, none if none runs, and other facts.
 
-        `has_succeeded`: whether the task whose tree was seen last is done.
+        `has_succeeded`: the task whose tree was seen last is done.
         """
         self._rows, self._facts = rows, facts
         if rows and not self._tree.is_of(rows):
@@ -43,7 +43,7 @@ class WatchedTree:
                 self._transitions.append(Transition(at_us=at, node=node, status=status))
 
     def answer(self, parts: Sequence[bytes], now_us: int) -> list[bytes]:
-        """What a client is answered, whatever it sent."""
+        """The reply to a client, whatever it sent."""
         try:
             request = messages.request_of(parts)
             return messages.reply(request, self._tree.name, *self._told(request, now_us))
@@ -70,7 +70,7 @@ class WatchedTree:
         raise NoAnswer(READ_ONLY)
 
     def _blackboards(self, names: Sequence[str]) -> dict[str, Any] | None:
-        """Those of the trees that are named and there; None where none is."""
+        """The variables of the trees that are named and there; None if there are none."""
         values = self._tree.values(self._rows)
         values[self._tree.tree.main] = {**self._facts, **values[self._tree.tree.main]}
         return {name: values[name] for name in names if name in values} or None

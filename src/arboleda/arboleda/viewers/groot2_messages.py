@@ -23,7 +23,7 @@ TWO_PARTS = "must be 2 parts message"
 
 
 class Type(Enum):
-    """What is asked."""
+    """Type of a request."""
 
     TREE = b"T"
     STATUS = b"S"
@@ -42,7 +42,7 @@ WITH_WORDS = {Type.BLACKBOARD, Type.HOOK_INSERT, Type.HOOK_REMOVE, Type.BREAKPOI
 
 
 class NodeStatus(IntEnum):
-    """How a node stands, as numbers of BehaviorTree.CPP."""
+    """Status of a node, as BehaviorTree.CPP numbers it."""
 
     IDLE = 0
     RUNNING = 1
@@ -52,12 +52,12 @@ class NodeStatus(IntEnum):
 
 
 class NoAnswer(Exception):
-    """What was asked is not understood, or refused; its text is what the client is told."""
+    """Refusal of a request, or a request that is not understood; its text goes to the client."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Request:
-    """What a client asks; `words` is its second part."""
+    """Request of a client; `words` is its second part."""
 
     type: Type
     number: int
@@ -66,7 +66,7 @@ class Request:
 
 @dataclass(frozen=True, kw_only=True)
 class Transition:
-    """A node has changed its status; the time is that since the recording began."""
+    """Change of a node's status; the time is that since the recording began."""
 
     at_us: int
     node: int
@@ -74,8 +74,10 @@ class Transition:
 
 
 def request_of(parts: Sequence[bytes]) -> Request:
-    """The request that these parts are; NoAnswer for what is none. The protocol's number is not looked at, as
-    BehaviorTree.CPP does not."""
+    """The request in these parts; raises NoAnswer for anything else.
+
+    The protocol's number is ignored, as in BehaviorTree.CPP.
+    """
     if not parts or len(parts[0]) != HEADER.size:
         raise NoAnswer(WRONG_HEADER)
     _, letter, number = HEADER.unpack(parts[0])
@@ -90,7 +92,7 @@ def request_of(parts: Sequence[bytes]) -> Request:
 
 
 def reply(request: Request, tree: bytes, *parts: bytes) -> list[bytes]:
-    """What is answered; `tree` are the 16 bytes that name it."""
+    """The reply to a request; `tree` are the 16 bytes that name the tree."""
     return [HEADER.pack(PROTOCOL, request.type.value[0], request.number) + tree, *parts]
 
 
@@ -99,12 +101,12 @@ def refusal(error: NoAnswer) -> list[bytes]:
 
 
 def statuses(codes: Iterable[int]) -> bytes:
-    """How all nodes stand, by their numbers from 1."""
+    """The statuses of all nodes, numbered from 1."""
     return b"".join(STATUS.pack(number, code) for number, code in enumerate(codes, start=1))
 
 
 def transitions(rows: Iterable[Transition]) -> bytes:
-    """9 bytes each: the time, the node, the status."""
+    """The bytes of transitions, 9 each: the time, the node, the status."""
     return b"".join(
         min(max(row.at_us, 0), LATEST_US).to_bytes(6, "little") + STATUS.pack(row.node, row.status)
         for row in rows

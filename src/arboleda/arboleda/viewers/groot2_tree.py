@@ -1,4 +1,4 @@
-"""A cell's tree as Groot2 is shown it: rows of snapshots -> XML, and how each of its nodes stands."""
+"""Tree of a cell for Groot2: the XML made of a snapshot's rows, and the status of each node."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ class CellTree:
                 yield number, status
 
     def values(self, rows: Sequence[Row]) -> dict[str, dict[str, Any]]:
-        """What nodes were given, by the path of their tree; that of the main tree is its name."""
+        """The values that nodes were given, by the path of their tree; the main tree goes by its name."""
         found: dict[str, dict[str, Any]] = {node.tree or self.tree.main: {} for node in self.tree.nodes}
         known = {row["path"]: row for row in rows}
         for number, node in enumerate(self.tree.nodes, start=1):
@@ -66,12 +66,12 @@ class CellTree:
 
 
 def form_of(rows: Sequence[Row]) -> list[tuple[str, str, str]]:
-    """What of a tree stays while it runs."""
+    """The part of a tree that stays the same while it runs."""
     return [(row["path"], row["name"], row["kind"]) for row in rows]
 
 
 def _status(node: LiveNode, known: Mapping[str, NodeStatus]) -> NodeStatus:
-    """That of its row; of several, at work before ended, and ended only where nothing is left to do."""
+    """The status of a node by its rows: at work before ended, and ended only if no row has work left."""
     there = [known.get(path, NodeStatus.IDLE) for path in node.paths]
     if len(there) == 1:
         return there[0]
@@ -82,7 +82,7 @@ def _status(node: LiveNode, known: Mapping[str, NodeStatus]) -> NodeStatus:
 
 
 def _uuid(content: bytes) -> bytes:
-    """A UUID of version 4 in form, the same for the same content."""
+    """A UUID in the form of version 4, the same for the same content."""
     name = bytearray(hashlib.sha256(content).digest()[:16])
     name[6] = name[6] & 0x0F | 0x40
     name[8] = name[8] & 0x3F | 0x80

@@ -1,4 +1,4 @@
-"""A cell's tree as py_trees_ros tells of trees: rows of snapshots -> behaviours with their ids."""
+"""Tree of a cell for py_trees_ros: behaviours with ids, made of a snapshot's rows."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ NONE_YET: tuple[Row, ...] = (
 
 @dataclass(frozen=True, kw_only=True)
 class Behaviour:
-    """A node; the names and numbers are those of `py_trees_ros_interfaces/msg/Behaviour`."""
+    """Node; the names and numbers are those of `py_trees_ros_interfaces/msg/Behaviour`."""
 
     name: str
     class_name: str
@@ -36,7 +36,7 @@ class Behaviour:
 
 
 def behaviours(cell: str, rows: Sequence[Row]) -> list[Behaviour]:
-    """The tree of a cell, its root first. A node has the same id as long as the tree has the same nodes."""
+    """The tree of a cell, its root first; a node keeps its id as long as the tree has the same nodes."""
     below: dict[str, list[str]] = {row["path"]: [] for row in rows}
     for path in below:
         if path != "root":
@@ -48,12 +48,12 @@ def behaviours(cell: str, rows: Sequence[Row]) -> list[Behaviour]:
 
 
 def idle(rows: Sequence[Row]) -> list[Row]:
-    """The same tree where nothing of it is at work."""
+    """The same tree with no node at work."""
     return [{**row, "status": "INVALID", "feedback": ""} for row in rows]
 
 
 def variables(cell: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
-    """What a cell's snapshot says beside its tree: its state and task, and what its steps were given."""
+    """The variables of a cell beside its tree: state, task, and the parameters of its steps."""
     yield "cell/state", str(cell["state"])
     if cell["task"] is not None:
         yield "task/id", str(cell["task"]["id"])
@@ -95,7 +95,7 @@ def _current(children: Sequence[str], status: Mapping[str, str]) -> str | None:
 
 
 def _tip(path: str, below: Mapping[str, list[str]], status: Mapping[str, str]) -> str:
-    """The lowest node on the way of those at work."""
+    """The lowest node at work."""
     while (child := _current(below[path], status)) is not None:
         path = child
     return path

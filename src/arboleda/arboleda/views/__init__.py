@@ -1,1 +1,1 @@
-"""What screens, clients and pictures see of a plant, as plain data; pure, and read only."""
+"""Views of a plant for screens, clients and pictures, as plain data; pure, and read only."""

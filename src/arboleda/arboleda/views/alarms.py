@@ -1,4 +1,4 @@
-"""What somebody who does not look is told, as plain data: a task that failed, a cell that needs somebody."""
+"""Alarms for people who are not looking, as plain data: a failed task, a cell that needs somebody."""
 
 from __future__ import annotations
 
@@ -37,14 +37,14 @@ LONGEST, MOST = 300, 6
 
 @dataclass(frozen=True, kw_only=True)
 class Need:
-    """Why a cell needs somebody: the kind of its alarm, and what tells it from another one of that kind."""
+    """Reason why a cell needs somebody: the kind of its alarm, and a mark that tells such alarms apart."""
 
     kind: str
     of: str
 
 
 def need_of(run: CellRun) -> Need | None:
-    """Why a cell needs somebody now; None where it does not."""
+    """The reason why a cell needs somebody now; None if it does not."""
     if run.state in NEEDS_SOMEBODY:
         return Need(kind=CELL_HELD, of=run.state.value)
     if questions := _questions(run):
@@ -55,7 +55,7 @@ def need_of(run: CellRun) -> Need | None:
 
 
 def needs_in(snapshot: dict[str, Any]) -> dict[str, str]:
-    """By its name each cell of a snapshot that needs somebody, and in one word why."""
+    """The cells of a snapshot that need somebody: the reason in one word, by name."""
     found = {}
     for cell in snapshot["cells"]:
         stands = standing(cell)
@@ -65,14 +65,14 @@ def needs_in(snapshot: dict[str, Any]) -> dict[str, str]:
 
 
 def of_task(plant: Plant, failed: TaskChanged) -> Alarm:
-    """A task that failed, and what its cell asks for now."""
+    """The alarm for a failed task, with what its cell needs now."""
     reason = failed.reason.value if failed.reason else None
     task = _task(failed.task, failed.text)
     return _alarm(plant, failed.cell or "", TASK_FAILED, task, reason, failed.sentence)
 
 
 def of_absence(plant: Plant, away_s: float) -> Alarm:
-    """That the plant did nothing for so long, and which cells are held by that, or go on by themselves."""
+    """The alarm for an absence of the plant: its length, and the cells that it holds or that went on."""
     why = AWAY(seconds=away_s)
     held = {name: run for name, run in plant.cells.items() if run.trouble and run.trouble.sentence == why}
     stay = ", ".join(name for name, run in held.items() if not run.goes_on)
@@ -86,12 +86,12 @@ def of_absence(plant: Plant, away_s: float) -> Alarm:
 
 
 def of_memory(plant: Plant, sentence: Sentence, *, is_slow: bool) -> Alarm:
-    """That commits are slow, or fast again; it is about no cell."""
+    """The alarm for slow commits, or its end; it belongs to no cell."""
     return _alarm(plant, "", MEMORY_SLOW if is_slow else MEMORY_FAST, None, None, sentence)
 
 
 def of_cell(plant: Plant, cell: str) -> Alarm:
-    """A cell that stands and needs somebody, or needs nobody any more."""
+    """The alarm for a cell that stands and needs somebody, or its end."""
     run = plant.cells[cell]
     need, first = need_of(run), run.task or next(iter(run.queue), None)
     task = _task(first.id, first.order.text) if first else None
@@ -111,7 +111,7 @@ def _why(run: CellRun) -> Sentence:
 
 
 def _questions(run: CellRun) -> list[Question]:
-    """What people of the cell are being asked, the oldest first."""
+    """The open questions to people of the cell, the oldest first."""
     open_ = (entry.command for entry in run.context.open_commands())
     return [each for each in open_ if isinstance(each, Question)]
 

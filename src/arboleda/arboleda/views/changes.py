@@ -1,4 +1,4 @@
-"""What of flat plain data is new: of the page's faces, of the rows of a snapshot, of the fields of a row."""
+"""Difference of flat plain data: faces of the page, rows of a snapshot, fields of a row."""
 
 from __future__ import annotations
 
@@ -7,6 +7,6 @@ from typing import Any
 
 
 def changed(before: Mapping[str, Any], after: Mapping[str, Any]) -> dict[str, Any]:
-    """What of `after` who knows `before` has to be told."""
+    """The entries of `after` that are new or other than in `before`."""
     missing = object()
     return {key: value for key, value in after.items() if before.get(key, missing) != value}

@@ -1,4 +1,4 @@
-"""What happened, from snapshot to snapshot: the time line."""
+"""Time line: events found from snapshot to snapshot."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ class Chronicle:
             self._did(act["at"], act)
 
     def see(self, snapshot: Row, unix_s: float) -> None:
-        """Take in what is new in a snapshot."""
+        """Add the news of a snapshot."""
         for act in snapshot["acts"]:
             if act["number"] > self._last_act:
                 self._last_act = act["number"]
@@ -56,13 +56,13 @@ class Chronicle:
                     self._add(unix_s, cell, kind, subject, what, sentence)
 
     def _did(self, unix_s: float, act: Row) -> None:
-        """An operator did something."""
+        """Add an operator's act."""
         self._add(
             unix_s, act["cell"], "operator", act["scope"] or "plant", "did", as_sentence(act["sentence"])
         )
 
     def _ended(self, at: float, act: Row) -> None:
-        """It is known what has become of it."""
+        """Add the outcome of an operator's act."""
         subject = act["scope"] or "plant"
         self._add(at, act["cell"], "operator", subject, act["outcome"], as_sentence(act["ended"]))
 
@@ -90,7 +90,7 @@ class Chronicle:
         )
 
 
-EXPECTED = frozenset({"idle", "free", "offline"})  # nothing has happened where a thing begins so
+EXPECTED = frozenset({"idle", "free", "offline"})  # initial states, which are no events
 
 
 def _cells(snapshot: Row) -> dict[str, str]:
@@ -120,7 +120,7 @@ def _states(snapshot: Row, known: Container[tuple[str, str]]) -> Iterator[Told]:
 
 
 def is_failure(event: Event) -> bool:
-    """Whether a task failed, or a cell was held though no operator wanted it."""
+    """True if a task failed, or if a cell was held although no operator wanted it."""
     if event["kind"] == "task":
         return bool(event["what"] == "failed")
     held = event["kind"] == "cell" and event["what"] == "held"

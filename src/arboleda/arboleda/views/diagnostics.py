@@ -1,4 +1,4 @@
-"""The state of a plant as /diagnostics has it: a level, a sentence and values for each robot and cell."""
+"""State of a plant for /diagnostics: a level, a sentence and values for each robot and cell."""
 
 from __future__ import annotations
 
@@ -16,18 +16,18 @@ UNKNOWN = "?"  # a fact that nobody has said yet
 
 
 def diagnostics(snapshot: dict[str, Any]) -> Iterator[Diagnostic]:
-    """One (name, hardware id, level, message, values) per robot and cell of a snapshot."""
+    """The (name, hardware id, level, message, values) of each robot and cell of a snapshot."""
     yield from map(_robot_diagnostic, snapshot["robots"])
     yield from map(_cell_diagnostic, snapshot["cells"])
 
 
 def record(trouble: str) -> Diagnostic:
-    """The same of the flight record; `trouble` is why it has stopped, "" while it is written."""
+    """The status of the flight record; `trouble` is the reason why it stopped, "" while it is written."""
     return ("arboleda: record", "", WARN if trouble else OK, trouble or "written", {})
 
 
 def memory(trouble: Sentence | None) -> Diagnostic:
-    """The same of the plant's memory; `trouble` is that it is slow."""
+    """The status of the plant's memory; `trouble` tells that it is slow."""
     return ("arboleda: memory", "", WARN if trouble else OK, str(trouble or "commits are fast"), {})
 
 

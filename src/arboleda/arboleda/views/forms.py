@@ -1,4 +1,4 @@
-"""What cells offer as forms: each recipe with its parameters, and what these can be."""
+"""Forms of the tasks that cells offer: each recipe with its parameters and their values."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ Row = dict[str, Any]
 
 
 def offers(model: PlantModel) -> list[Row]:
-    """By cell, what can be asked of it."""
+    """The recipes of each cell, by its name."""
     return [{"cell": cell.name, "recipes": recipes(cell)} for cell in model.cells]
 
 
 def recipes(cell: Cell) -> list[Row]:
-    """Each recipe of a cell, the one first that a task means which names none."""
+    """The recipes of a cell, beginning with the one for tasks that name none."""
     return [_recipe(cell, each) for each in sorted(cell.recipes, key=lambda each: not each.is_default)]
 
 
@@ -39,7 +39,7 @@ def _parameter(cell: Cell, parameter: Parameter) -> Row:
 
 
 def _can_be(cell: Cell, parameter: Parameter) -> Row:
-    """Its type, and what that allows: the words of a choice, the limits of a number."""
+    """The type of a parameter, with the words of a choice or the limits of a number."""
     limits = parameter.limits(cell)
     if limits is None:
         return {"type": "choice", "choices": list(parameter.words(cell))}

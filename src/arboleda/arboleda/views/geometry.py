@@ -1,4 +1,4 @@
-"""Where things of a plant stand and which poses lie where, as plain data; m and rad, as the file says it."""
+"""Places of a plant: its things and the poses in its zones, as plain data; m and rad, as in the file."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def places(model: PlantModel) -> Row:
 
 
 def _spots(model: PlantModel, zone: str) -> list[Row]:
-    """What lies in a zone: poses, and moves from one pose to another; each as {robot, path of joints}."""
+    """The poses in a zone, and the moves from one pose to another; each as {robot, path of joints}."""
     spaces = [space for cell in model.cells for space in cell.workspaces.values() if _is_drawn(space)]
     return [spot for space in spaces for spot in _in_space(space, zone)]
 
@@ -52,5 +52,5 @@ def _reach(pose: Pose) -> list[Position]:
 
 
 def _numbers(position: Position, nodes: Any) -> list[float]:
-    """The joints of an arm; of a robot that stands on nodes, where that one lies on the floor."""
+    """The joints of an arm; for a robot on nodes, the place of the node on the floor."""
     return list(nodes[position]) if isinstance(position, int) else list(position)

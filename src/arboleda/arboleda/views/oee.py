@@ -1,4 +1,4 @@
-"""How much of its planned time a cell did good work: OEE by the formula of ISO 22400-2. Pure.
+"""Share of its planned time in which a cell did good work: OEE by the formula of ISO 22400-2. Pure.
 
 OEE = availability x performance x quality. What each of them counts is in docs/how-to/oee.md.
 """
@@ -13,9 +13,9 @@ from arboleda.model.messages import TaskState
 from arboleda.model.sentence import Phrase, Sentence
 
 Span = tuple[float, float]  # from, until; Unix times
-SEEN_S = 60.0  # a plant that runs says so as often
-LATE_S = 3 * SEEN_S  # one that has not said so for as long does not run
-TIMES = 3  # an order has a shortest time once it was done so often at the first attempt
+SEEN_S = 60.0  # a running plant notes so with this period
+LATE_S = 3 * SEEN_S  # without a note for so long it does not run
+TIMES = 3  # an order has a shortest time after so many successes at the first attempt
 ENOUGH = 0.5  # the share of the tasks that must have one
 
 NEVER_RAN = Phrase("oee.never_ran", "nothing was kept of that time")
@@ -29,7 +29,7 @@ FEW_TIMES = Phrase(
 
 @dataclass(frozen=True, kw_only=True)
 class Work:
-    """A task as its history has it; an open one has no end."""
+    """Task from the history; an open one has no end."""
 
     cell: str
     order: str
@@ -41,7 +41,7 @@ class Work:
 
 @dataclass(frozen=True, kw_only=True)
 class Run:
-    """One start of the plant: until when it is known to have run, and whether it was ended in peace."""
+    """Start of the plant: the last time that it is known to have run, and whether it was ended properly."""
 
     since_s: float
     seen_s: float
@@ -50,7 +50,7 @@ class Run:
 
 @dataclass(frozen=True, kw_only=True)
 class Downtime:
-    """A time in which a cell stood in a state in which it does no work; open where it lasts."""
+    """Time in which a cell stood in a state without work; without an end while it lasts."""
 
     cell: str
     since_s: float
@@ -59,7 +59,7 @@ class Downtime:
 
 @dataclass(frozen=True, kw_only=True)
 class Shortest:
-    """How often an order was done at the first attempt, and how quickly at best."""
+    """Number of times that an order was done at the first attempt, and the shortest of them, s."""
 
     times: int
     seconds: float
@@ -67,7 +67,7 @@ class Shortest:
 
 @dataclass(frozen=True, kw_only=True)
 class KeptFigures:
-    """What a plant's memory has of a time; `shortest` is by cell and order, of all that it remembers."""
+    """Rows of a plant's memory for a span of time; `shortest` is by cell and order, over all time."""
 
     works: Sequence[Work]
     runs: Sequence[Run]
@@ -77,10 +77,9 @@ class KeptFigures:
 
 @dataclass(frozen=True, kw_only=True)
 class Oee:
-    """The figures of one cell, shares from 0 to 1; None, with the reason `missing`, where nobody can say.
+    """OEE figures of one cell, shares from 0 to 1; None if they are unknown, for the reason `missing`.
 
-    `since_s` is when the time begins of which something was kept. `timed` are the tasks whose shortest time
-    is known.
+    `since_s` is the begin of the time that is recorded. `timed` are the tasks whose shortest time is known.
     """
 
     cell: str
@@ -98,12 +97,12 @@ class Oee:
     missing: Sentence | None
 
     def data(self) -> dict[str, Any]:
-        """For JSON."""
+        """The figures as plain data for JSON."""
         return {**vars(self), "missing": None if self.missing is None else str(self.missing)}
 
 
 def oee(cell: str, kept: KeptFigures, since_s: float, until_s: float) -> Oee:
-    """The figures of a cell from `since_s` to `until_s`, which is not later than now."""
+    """The OEE of a cell from `since_s` to `until_s`, which is not later than now."""
     known = min((run.since_s for run in kept.runs), default=until_s)
     begin = min(max(since_s, known), until_s)
     window = [(begin, until_s)]
@@ -159,7 +158,7 @@ def _missing(begin: float, until_s: float, planned_s: float, produced: int, time
 
 
 def _runs(runs: Sequence[Run], now_s: float) -> tuple[list[Span], list[Span]]:
-    """When the plant ran, and when it was down since it was killed, until the next start or now."""
+    """The spans in which the plant ran, and those from its being killed until the next start or now."""
     ran: list[Span] = []
     broke: list[Span] = []
     in_order = sorted(runs, key=lambda run: run.since_s)
@@ -175,7 +174,7 @@ def _runs(runs: Sequence[Run], now_s: float) -> tuple[list[Span], list[Span]]:
 
 
 def _produced(work: Work, since_s: float, until_s: float) -> bool:
-    """Whether a task was begun, and was done or failed in that time."""
+    """True if a task was begun, and was done or failed in that time."""
     over = work.started_s is not None and work.state in (TaskState.DONE, TaskState.FAILED)
     return over and work.ended_s is not None and since_s <= work.ended_s < until_s
 
@@ -189,7 +188,7 @@ def _end(end_s: float | None, now_s: float) -> float:
 
 
 def joined(spans: Iterable[Span]) -> list[Span]:
-    """The same times, in order, none of them twice; one that ends before it begins is none."""
+    """The same times in order, with overlaps merged; one that ends before it begins is dropped."""
     found: list[Span] = []
     for since, until in sorted(span for span in spans if span[1] > span[0]):
         if found and since <= found[-1][1]:
@@ -200,7 +199,7 @@ def joined(spans: Iterable[Span]) -> list[Span]:
 
 
 def common(one: Iterable[Span], other: Iterable[Span]) -> list[Span]:
-    """The times that are in both; each of them is `joined`."""
+    """The times that are in both; each list is `joined`."""
     ours, theirs, found = list(one), list(other), []
     here = there = 0
     while here < len(ours) and there < len(theirs):
@@ -213,11 +212,11 @@ def common(one: Iterable[Span], other: Iterable[Span]) -> list[Span]:
 
 
 def without(spans: Iterable[Span], gaps: Sequence[Span]) -> list[Span]:
-    """The times that are in `spans` and not in `gaps`; each of them is `joined`."""
+    """The times that are in `spans` and not in `gaps`; each list is `joined`."""
     edges = [float("-inf"), *(edge for gap in gaps for edge in gap), float("inf")]
     return common(spans, list(zip(edges[::2], edges[1::2], strict=True)))
 
 
 def length(spans: Iterable[Span]) -> float:
-    """All of it in seconds."""
+    """The total length, s."""
     return sum(until - since for since, until in spans)

@@ -1,4 +1,4 @@
-"""A tree as plain data: a row per node, what kind it is, what it was given, how long it has left."""
+"""Tree as plain data: a row for each node with its kind, its parameters, and the time left."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ UNKNOWN: Times = (None, None)
 
 
 def rows(tree: Behaviour, now: float) -> list[dict[str, Any]]:
-    """A tree in depth-first order; a node is named by its path of child numbers, e.g. `0.2.1`."""
+    """The rows of a tree in depth-first order; a node is named by its path of child numbers, e.g. `0.2.1`."""
     found: list[dict[str, Any]] = []
     _add(tree, "", now, found)
     return found
@@ -45,9 +45,9 @@ def progress_of(tree: Behaviour | None) -> float | None:
 
 
 def _steps(frame: Behaviour, *, done: bool) -> list[bool]:
-    """Of each step in a frame, and in the frames inside it, whether it is done; `done`: all of them are.
+    """True or False for each step in a frame and its inner frames: it is done; `done`: all of them are.
 
-    Of several ways only the one that is taken counts; until one is, they are one step.
+    Of several ways only the one that is taken counts; until one is, they count as one step.
     """
     nodes = frame.children
     if isinstance(frame, composites.Selector):
@@ -99,7 +99,7 @@ _KIND_OF: dict[type, str] = {}
 
 
 def kind(node: Behaviour) -> str:
-    """One word of KINDS, OWN for a node of a user's own."""
+    """The kind of a node, a word of KINDS; OWN for a node of the user's own."""
     known = _KIND_OF.get(type(node))
     if known is None:
         own = getattr(node, "sign", OWN)  # of trees from files, which say it themselves
@@ -109,13 +109,13 @@ def kind(node: Behaviour) -> str:
 
 
 def _description(node: Behaviour) -> str:
-    """The first line of a user's own docstring; what is in KINDS screens explain in their own words."""
+    """The first line of a user's node's docstring; screens describe KINDS in their own words."""
     lines = (type(node).__doc__ or "").strip().splitlines() if kind(node) == OWN else []
     return lines[0].strip() if lines else ""
 
 
 def _parameters(node: Behaviour) -> dict[str, Any]:
-    """What a node was given; of a command only what it was sent with."""
+    """The parameters of a node; of a command only those that it was sent with."""
     told = TOLD.get(kind(node))
     if told is not None:
         return told(node)
@@ -163,12 +163,12 @@ def _command_times(node: Act, now: float) -> Times:
 
 
 def _feedback(node: Behaviour) -> Sentence | str:
-    """What it says of itself; "" where that is nothing."""
+    """The feedback of a node; "" if it gives none."""
     return getattr(node, "told", NOTHING) or node.feedback_message
 
 
 def _failure(node: Behaviour) -> Sentence | str | None:
-    """The sentence of its last failure."""
+    """The sentence of the node's last failure."""
     if node.status is Status.FAILURE and (said := _feedback(node)):
         return said
     return getattr(node, "last_failure", None)

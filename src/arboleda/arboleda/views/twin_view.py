@@ -1,4 +1,4 @@
-"""What a plant looks like from outside, as plain data: where robots and parts are, and where they go."""
+"""Appearance of a plant, as plain data: positions of robots and parts, and the goals of motions."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ UNDER_WAY = frozenset({State.SENT, State.RUNNING})
 
 
 def positions(plant: Plant) -> Row:
-    """All that may change what is drawn, as of the last step; rad, m, s of the plant's clock."""
+    """All values that a drawing of the plant depends on, as of the last step; rad, m, s (plant's clock)."""
     parts = in_parts(plant)
     while True:
         try:
@@ -43,7 +43,7 @@ def in_parts(plant: Plant) -> Generator[None, None, Row]:
 
 
 def goal(entry: Entry | None) -> Row | None:
-    """Where a robot's open motion command leads: {"q"} or {"nodes"}."""
+    """The goal of a robot's open motion command: {"q"} or {"nodes"}; None if there is none."""
     way = _way(entry) if entry is not None and entry.state in UNDER_WAY else ()
     if not way:
         return None
@@ -52,7 +52,8 @@ def goal(entry: Entry | None) -> Row | None:
 
 
 def part(run: CellRun) -> Row | None:
-    """Where the part of the cell's work is: {"at": "arm", "sure"}, {"at": "mobile"} or {"at": "pose", "q"}.
+    """The place of the part that a cell works on: {"at": "arm", "sure"}, {"at": "mobile"} or {"at": "pose",
+    "q"}.
 
     Only what an effector holds is known by itself; where a part waits, and where it was put, follows from
     what the tree has done so far. None where nobody draws the work of such a cell.
@@ -75,7 +76,7 @@ def part(run: CellRun) -> Row | None:
 
 
 def _put_down(sent: list[Entry], let_go: Entry, cell: Cell) -> Row | None:
-    """Where the arm was sent to last before it let go; what lies in a station is `stored`."""
+    """The pose at which the arm let go of the part; None if it lies in a station, which shows as `stored`."""
     before = [_way(entry)[-1] for entry in sent[: sent.index(let_go)] if _way(entry)]
     places = [place for place in before if isinstance(place, tuple)]
     if not places or any(places[-1] == station.q for station in cell.stations):
@@ -92,7 +93,7 @@ def _grips(entry: Entry) -> bool | None:
 
 
 def _sent(tree: Behaviour) -> list[Entry]:
-    """The commands that a tree gave, in their order."""
+    """The commands that a tree has given, in order."""
     entries = [node.entry for node in tree.iterate() if isinstance(node, Act) and node.entry is not None]
     return sorted(entries, key=lambda entry: entry.sent_at)
 
@@ -116,13 +117,13 @@ def _robot(plant: Plant, belief: Belief) -> Row:
 
 
 def _positioned(plant: Plant, belief: Belief) -> bool:
-    """Whether a robot that need not say where it is has said so lately."""
+    """True if a robot that need not report its position has done so lately."""
     known = belief.position is not None
     return known and plant.now - belief.position_at <= plant.model.timing.stale_after_s
 
 
 def _reached(plant: Plant, belief: Belief, last: Entry | None) -> Row | None:
-    """Where its last motion ended, as far as that was proven: {"q"} or {"node"}."""
+    """The proven end of a robot's last motion: {"q"} or {"node"}; None if there is none."""
     place = plant.dispatcher.reached.get(belief.robot.name)
     if isinstance(place, tuple):
         return {"q": list(place)}

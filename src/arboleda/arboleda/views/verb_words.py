@@ -1,4 +1,4 @@
-"""What is said of each of the operators' verbs, wherever it is said: command line, HTTP API, documents."""
+"""Words for each of the operators' verbs, for the command line, the HTTP API and the documentation."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from arboleda.model.messages import Verb
 
 @dataclass(frozen=True, kw_only=True)
 class VerbWords:
-    """`brief` is one line; `does` and `refused` say all of it, in Markdown."""
+    """Words on a verb: `brief` is one line; `does` and `refused` are the full text, in Markdown."""
 
     scopes: tuple[str, ...]
     brief: str

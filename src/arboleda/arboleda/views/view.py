@@ -78,7 +78,7 @@ def in_parts(plant: Plant) -> Generator[None, None, dict[str, Any]]:
 
 
 def layout(model: PlantModel) -> dict[str, Any]:
-    """What never changes while a plant runs, as its file says it."""
+    """The part of a view that never changes while a plant runs, from its file."""
     return {
         "plant": model.name,
         "zones": list(model.zones),
@@ -109,9 +109,10 @@ def _devices(cell: Cell) -> list[dict[str, Any]]:
 
 
 def _device(role: str, robot: Robot) -> dict[str, Any]:
-    """`position`: the key of its row that has it; `holds`: the fact that says whether it holds a part.
+    """The row of a device in its cell.
 
-    `asked`: whether it is somebody who answers on the plant's own screens.
+    `position`: the key of its own row that has the position; `holds`: the fact that tells whether it holds a
+    part; `asked`: True for a person, who answers on the plant's own screens.
     """
     return {
         "role": role,
@@ -124,7 +125,7 @@ def _device(role: str, robot: Robot) -> dict[str, Any]:
 
 
 def devices_once(cells: Iterable[dict[str, Any]]) -> Iterator[tuple[str, dict[str, Any]]]:
-    """Each device of some cells, with its cell; one that cells share with the first of them."""
+    """Each device of these cells, with its cell; a shared one with the first of them."""
     seen: set[str] = set()
     for cell in cells:
         for device in cell["devices"]:
@@ -134,8 +135,10 @@ def devices_once(cells: Iterable[dict[str, Any]]) -> Iterator[tuple[str, dict[st
 
 
 def promises(plant: Plant, text: str) -> list[dict[str, Any]]:
-    """What each cell that a task text names promises now: in how many s it would have done it, what is in the
-    way of that, whether its queue is full. TextError or QueueFull."""
+    """The promise of each cell that a task text names; raises TextError or QueueFull.
+
+    `seconds` until it would have done it, `hindrance` to beginning now, and `full` if its queue is full.
+    """
     return [
         {
             "cell": each.order.cell,
@@ -149,13 +152,13 @@ def promises(plant: Plant, text: str) -> list[dict[str, Any]]:
 
 
 def task_by_id(plant: Plant, id: str) -> dict[str, Any] | None:
-    """One task by its id, None where the plant knows none."""
+    """One task by its id; None if the plant does not know it."""
     known = plant.intake.tasks.get(id)
     return _task(known, plant.now) if known else None
 
 
 def change(changed: TaskChanged) -> dict[str, Any]:
-    """One line of `/task_status`."""
+    """The data of one line of `/task_status`."""
     return {
         "id": changed.task,
         "text": changed.text,
@@ -169,7 +172,7 @@ def change(changed: TaskChanged) -> dict[str, Any]:
 
 
 def _recent(plant: Plant) -> list[Task]:
-    """Every open task, and the RECENT ones that ended last to be accepted."""
+    """The open tasks, and RECENT ended ones that were accepted last."""
     tasks = list(plant.intake.tasks.values())
     ended = [task for task in tasks if task.ended_at is not None]
     forgotten = {task.id for task in ended[:-RECENT]}
@@ -177,9 +180,9 @@ def _recent(plant: Plant) -> list[Task]:
 
 
 def _tasks(plant: Plant, open_tasks: dict[str, dict[str, Any]]) -> list[dict[str, Any]]:
-    """In the order of their acceptance, those as they were that were open when their cell was seen.
+    """The tasks in the order of their acceptance; those open when their cell was seen, as they were then.
 
-    One that was accepted since then is left out, as its cell does not show it either.
+    A task accepted since then is left out, as its cell does not show it either.
     """
     ended = {task.id: _task(task, plant.now) for task in _recent(plant) if task.ended_at is not None}
     rows = ended | open_tasks
@@ -210,7 +213,7 @@ def _cell(plant: Plant, cell: CellRun) -> dict[str, Any]:
 
 
 def _not_ready(cell: CellRun, ways: tuple[Advice, ...]) -> Sentence | None:
-    """Why an idle cell would start no task, and what to do; a queue that is paused says so itself."""
+    """The reason why an idle cell would start no task, and the remedy; a paused queue tells that itself."""
     why = cell.not_ready
     if why is None or why == cell.why_paused or not ways:
         return why
@@ -218,7 +221,7 @@ def _not_ready(cell: CellRun, ways: tuple[Advice, ...]) -> Sentence | None:
 
 
 def _blocked_by(plant: Plant, cell: CellRun) -> str | None:
-    """The robot whose obstacle is why an idle cell would start no task."""
+    """The robot that keeps an idle cell from starting a task; None if there is none."""
     why = cell.not_ready
     for robot in cell.cell.robots if why is not None else ():
         obstacle = plant.dispatcher.obstacle(robot.name)
@@ -243,7 +246,7 @@ def _advice(advice: Advice) -> dict[str, Any]:
 
 
 def _refused(plant: Plant, scope: str, verbs: tuple[Verb, ...]) -> dict[str, Sentence]:
-    """The verbs that would be refused there now, and why; by hand they are `home_by_hand`, ..."""
+    """The verbs that would be refused, with the reasons; those by hand as `home_by_hand` and so on."""
     asked = {verb.value: OperatorRequest(at=plant.now, verb=verb, scope=scope) for verb in verbs}
     for verb in filter(BY_HAND.__contains__, verbs):
         asked[f"{verb.value}_by_hand"] = replace(asked[verb.value], by_hand=True)
@@ -252,7 +255,7 @@ def _refused(plant: Plant, scope: str, verbs: tuple[Verb, ...]) -> dict[str, Sen
 
 
 def standing(cell: dict[str, Any]) -> str:
-    """How a cell of a snapshot stands: its state; where it only looks idle, `blocked` or `paused`."""
+    """The state of a cell in a snapshot; an idle one that cannot begin is `blocked` or `paused`."""
     if cell["state"] != CellState.IDLE or cell["not_ready"] is None:
         return str(cell["state"])
     only_paused = [each["do"] for each in cell["advice"]] == [Verb.RESUME]
@@ -260,13 +263,13 @@ def standing(cell: dict[str, Any]) -> str:
 
 
 def standing_said(cell: dict[str, Any]) -> str:
-    """The word of a cell's state, and behind it why one that is idle cannot work: `idle, blocked`."""
+    """The word for a cell's state, and for an idle cell that cannot work: `idle, blocked`."""
     state, stands = str(cell["state"]), standing(cell)
     return state if stands == state else f"{state}, {stands}"
 
 
 def waited_for(snapshot: dict[str, Any]) -> dict[str, list[str]]:
-    """By its name each cell of a snapshot that waits for people, and for whom."""
+    """The cells of a snapshot that wait for people: whom they wait for, by name."""
     asked = {robot["name"]: robot["holder"] for robot in snapshot["robots"] if robot["question"] is not None}
     cells = {cell["name"]: [device["name"] for device in cell["devices"]] for cell in snapshot["cells"]}
     waits = {
@@ -335,7 +338,7 @@ def _robot(plant: Plant, belief: Belief) -> dict[str, Any]:
 
 
 def _question(entry: Entry | None, now: float) -> dict[str, Any] | None:
-    """What a person is being asked, what can be answered, and for how long."""
+    """The open question to a person, its answers, and the seconds left; None if there is none."""
     if entry is None or not isinstance(entry.command, Question):
         return None
     asked = entry.command
@@ -348,7 +351,7 @@ def _question(entry: Entry | None, now: float) -> dict[str, Any] | None:
 
 
 def _facts(belief: Belief) -> dict[str, Value | None]:
-    """What its kind reports and whether it holds a part, None for what was not said; and all else it said."""
+    """The facts of a device, None for those not reported: those of its kind, a held part, and any others."""
     robot = belief.robot
     found = {name: belief.fact(name) for name in robot.fact_names}
     if robot.held_fact is not None:
@@ -367,13 +370,13 @@ def _command(entry: Entry | None, now: float) -> dict[str, Any] | None:
 
 
 def _rejected(known: tuple[int, Sentence | None] | None) -> dict[str, Any]:
-    """How many commands a robot refused, and why the last one."""
+    """The number of commands that a robot refused, and the reason of the last one."""
     count, last = known or (0, None)
     return {"count": count, "last": last}
 
 
 def _act(act: OperatorAct) -> dict[str, Any]:
-    """What an operator did and what became of it; `number` grows by one with every act.
+    """An operator's act and its outcome; `number` grows by one with every act.
 
     `ended` says its end, at `ended_at`, where it did not come with the act.
     """
@@ -392,5 +395,5 @@ def _act(act: OperatorAct) -> dict[str, Any]:
 
 
 def act_by_number(plant: Plant, number: int) -> dict[str, Any] | None:
-    """One of the last acts of operators, None where the plant knows it no more."""
+    """One of the operators' last acts; None if the plant has forgotten it."""
     return next((_act(act) for act in plant.acts if act.number == number), None)

@@ -1,4 +1,4 @@
-"""Which faults of a virtual controller are on; they are switched from any thread, while it runs."""
+"""Switches for the faults of a virtual controller; they are set from any thread while it runs."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from collections.abc import Collection, Iterable, Iterator, Mapping
 
 
 class Faults(Collection[str]):
-    """The faults that are on, of those that there are: `known` has a sentence for each."""
+    """Faults that are on; `known` has a sentence for each that there is."""
 
     def __init__(self, known: Mapping[str, str], on: Iterable[str] = ()) -> None:
         self.known = dict(known)
@@ -15,7 +15,7 @@ class Faults(Collection[str]):
             self.switch(name, on=True)
 
     def switch(self, name: str, *, on: bool) -> None:
-        """Switch one on or off; ValueError, which names all, where there is no such fault."""
+        """Switch a fault on or off; raises ValueError, which lists all, for an unknown one."""
         if name not in self.known:
             raise ValueError(f"no fault {name!r}; there are {', '.join(self.known)}")
         self._on = self._on | {name} if on else self._on - {name}

@@ -1,4 +1,4 @@
-"""The ports that virtual controllers listen on."""
+"""Ports that virtual controllers listen on."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from arboleda.model.errors import StartError
 
 
 def listen(host: str, port: int) -> socket.socket:
-    """Listen there; StartError, which names the port, where that cannot be."""
+    """Listen on a port; raises StartError, which names it, if that is impossible."""
     try:
         return socket.create_server((host, port))
     except OSError as error:

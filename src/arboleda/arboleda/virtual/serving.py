@@ -1,4 +1,4 @@
-"""What the commands of all virtual controllers share: their options, and how one runs until Ctrl-C."""
+"""Options of the commands of virtual controllers, and the loop that runs one until Ctrl-C."""
 
 from __future__ import annotations
 
@@ -24,11 +24,11 @@ FaultPort = Annotated[
 
 
 class Controller(Protocol):
-    """A virtual controller that listens from `start` to `stop`."""
+    """Virtual controller that listens from `start` to `stop`."""
 
     @property
     def says(self) -> str:
-        """One line: what it is, and where it listens."""
+        """Description in one line, with its address."""
 
     def start(self) -> None: ...
     def stop(self) -> None: ...

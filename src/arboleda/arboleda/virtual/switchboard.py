@@ -22,7 +22,7 @@ ROOT = "/faults"
 
 
 class Switchboard:
-    """Listens on 127.0.0.1; port 0 takes a free one."""
+    """HTTP server on 127.0.0.1; port 0 takes a free one."""
 
     def __init__(self, faults: Faults, port: int) -> None:
         listener = listen("127.0.0.1", port)
@@ -62,7 +62,7 @@ class _Handler(BaseHTTPRequestHandler):
         self._switch(on=False)
 
     def log_message(self, format: str, *args: Any) -> None:
-        """Nobody reads it."""
+        """Does nothing: nobody reads such a log."""
 
     def _switch(self, *, on: bool) -> None:
         folder, _, name = self.path.rpartition("/")

@@ -1,1 +1,1 @@
-"""HTTP and websockets of a running plant: its API, who may use it, and the server under both."""
+"""HTTP and websockets of a running plant: its API, access control, and the server under both."""

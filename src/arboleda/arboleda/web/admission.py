@@ -1,4 +1,4 @@
-"""Who stays when there are too many connections: a crowd must never keep out somebody who wants to stop."""
+"""Choice of the connection to close when there are too many; a crowd must never keep out a stop."""
 
 from __future__ import annotations
 
@@ -18,15 +18,15 @@ class Guest(Protocol):
 
     @property
     def waits(self) -> bool:
-        """Whether it is the client's turn: to ask, to send the rest of a body, or to read an answer."""
+        """True while the client has to act: to ask, to send the rest of a body, or to read an answer."""
 
     @property
     def looks(self) -> bool:
-        """Whether it has asked for something to read, and has no answer yet."""
+        """True while the client waits for the answer to a request that only reads."""
 
     @property
     def known(self) -> bool:
-        """Whether it showed a login with its last request."""
+        """True if the client showed a login with its last request."""
 
 
 class Admission:
@@ -43,11 +43,14 @@ class Admission:
         self._numbers = count()
 
     def next_number(self) -> int:
-        """The number of the next one that comes."""
+        """The number of the next connection."""
         return next(self._numbers)
 
     def surplus(self, guests: Collection[Guest], others: int, newcomer: Guest) -> Guest | None:
-        """Who must go for the newcomer, which is one of the `guests`; `others` cannot be cut, and count."""
+        """The guest to disconnect for the newcomer, which is among `guests`; None if there is room.
+
+        `others` is the number of connections that count but cannot be cut.
+        """
         mine = [guest for guest in guests if guest.peer == newcomer.peer]
         if len(mine) > self.per_peer:
             return _oldest(mine, newcomer)

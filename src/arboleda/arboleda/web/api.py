@@ -110,7 +110,7 @@ def make_app(
 
 
 def routes(side: PlantApi) -> APIRouter:
-    """Look, submit, operate."""
+    """Register the routes that look, submit and operate."""
     api = APIRouter(prefix="/api")
     _look(api, side)
     _submit(api, side)
@@ -127,7 +127,7 @@ def _look(api: APIRouter, side: PlantApi) -> None:
 
     @api.get("/tasks", response_model=list[Task])
     async def tasks() -> JSONResponse:
-        """Every open task and those that ended last, in the order of their acceptance."""
+        """The open tasks and those that ended last, in the order of their acceptance."""
         seen = await run_in_threadpool(side.latest)
         return PlainJson([explained(task) for task in seen["tasks"]])
 
@@ -141,7 +141,7 @@ def _look(api: APIRouter, side: PlantApi) -> None:
 
     @api.get("/history.csv", response_class=PlainTextResponse, **wanted)
     async def history_as_table(request: Request) -> PlainTextResponse:
-        """The same as a table for other programs, with a line of names."""
+        """Tasks of all starts as a table for other programs, with a line of names."""
         rows = await run_in_threadpool(side.history, asked(request, TaskFilter).query())
         return PlainTextResponse(table(rows), media_type="text/csv; charset=utf-8")
 
@@ -155,17 +155,17 @@ def _look(api: APIRouter, side: PlantApi) -> None:
 
     @api.get("/recipes", response_model=list[Offer])
     async def recipes() -> JSONResponse:
-        """What each cell can be asked for: its recipes, their parameters, and what these can be."""
+        """The recipes of each cell, their parameters, and the values that these can have."""
         return PlainJson(side.offers())
 
     @api.get("/promises", response_model=list[Promise], responses=WRONG, openapi_extra=_query(PromiseFilter))
     async def promises(request: Request) -> JSONResponse:
-        """When each cell that a task text names would have done it; nothing is asked of them."""
+        """The time at which each cell named by a task text would have done it; queues no task."""
         return PlainJson(side.promises(asked(request, PromiseFilter).text))
 
     @api.get("/tasks/{task_id}", response_model=Task, responses=UNKNOWN)
     async def task(task_id: str) -> JSONResponse:
-        """One task."""
+        """One task by its id."""
         known = await run_in_threadpool(side.find, task_id)
         if known is None:
             raise HTTPException(404, f"The plant knows no task {quoted(task_id, 80)}.")
@@ -175,7 +175,7 @@ def _look(api: APIRouter, side: PlantApi) -> None:
 def _follow(api: APIRouter, side: PlantApi) -> None:
     @api.get("/acts/{number}", response_model=Act, responses=NO_ACT)
     async def act(number: int) -> JSONResponse:
-        """What has become of an operator's act by now; the last 20 are known."""
+        """The present state of an operator's act; the last 20 acts are known."""
         known = side.act(number)
         if known is None:
             raise HTTPException(404, f"The plant knows no act {number} of an operator, or no more.")
@@ -198,7 +198,7 @@ def _submit(api: APIRouter, side: PlantApi) -> None:
         is_ours = request.headers.get("user-agent", "").startswith(COMMAND_LINE)
         why = asked.why if isinstance(asked, TaskText) else ""
         asked_by = COMMAND if is_ours else HTTP
-        # The history may be asked for its id, and a stop must not wait behind that.
+        # Its id may be looked up in the history, and a stop must not wait for that.
         task = await in_time(await run_in_threadpool(side.submit, text, asked_by, why))
         return PlainJson(explained(task), status_code=422 if task["state"] == "refused" else 202)
 
@@ -212,12 +212,12 @@ def _operate(api: APIRouter, side: PlantApi) -> None:
 
     @api.post("/plant/{verb}", **verb_route)
     async def operate_plant(verb: str, request: Request) -> JSONResponse:
-        """Have the whole plant do a Verb: in each cell where it can be done, refused where that is none."""
+        """Carry out a verb in each cell where it is possible; refused if there is none."""
         return await operated(verb, "", request)
 
     @api.post("/cells/{scope}/{verb}", **verb_route)
     async def operate_one(scope: str, verb: str, request: Request) -> JSONResponse:
-        """Have one cell, robot, zone or task do a Verb; which is for what says its table."""
+        """Carry out a verb on one cell, robot, zone or task; the table of verbs names the scope of each."""
         return await operated(verb, scope, request)
 
     async def operated(word: str, scope: str, request: Request) -> JSONResponse:
@@ -233,7 +233,7 @@ def _operate(api: APIRouter, side: PlantApi) -> None:
 
 
 async def in_time(answer: Future[Answer]) -> Answer:
-    """What the plant answers; ArboledaError where it takes longer than ANSWER_S."""
+    """The plant's answer; raises ArboledaError if it takes longer than ANSWER_S."""
     try:
         # the plant still sets its future after that, which a cancelled one does not allow
         return await asyncio.wait_for(asyncio.shield(asyncio.wrap_future(answer)), ANSWER_S)
@@ -244,7 +244,7 @@ async def in_time(answer: Future[Answer]) -> Answer:
 
 
 def verb_of(word: str) -> Verb:
-    """The operator's verb of that name; PayloadError where there is none."""
+    """The operator's verb of that name; raises PayloadError if there is none."""
     try:
         return Verb(word)
     except ValueError:
@@ -253,7 +253,7 @@ def verb_of(word: str) -> Verb:
 
 
 def said_by_hand(body: bytes) -> bool:
-    """The value in `{"by_hand": true}`, False where there is no body; PayloadError for anything else."""
+    """The value in `{"by_hand": true}`, False without a body; raises PayloadError for anything else."""
     try:
         return ByHand.model_validate_json(body or b"{}").by_hand
     except ValidationError:
@@ -263,7 +263,7 @@ def said_by_hand(body: bytes) -> bool:
 
 
 def task_asked(body: bytes) -> TaskText | TaskForm:
-    """`{"text": "..."}`, or cell, recipe and values; PayloadError for anything else."""
+    """The task in a body, `{"text": "..."}` or cell, recipe and values; PayloadError for anything else."""
     for form in (TaskText, TaskForm):
         with suppress(ValidationError):
             return form.model_validate_json(body)
@@ -275,7 +275,7 @@ def task_asked(body: bytes) -> TaskText | TaskForm:
 
 
 def asked(request: Request, model: type[Query]) -> Query:
-    """What the query says; PayloadError names the first thing that is wrong in it."""
+    """The query parameters as `model`; raises PayloadError, which names the first wrong one."""
     try:
         return model.model_validate(dict(request.query_params))
     except ValidationError as error:
@@ -289,7 +289,7 @@ def asked(request: Request, model: type[Query]) -> Query:
 
 
 async def refuse(_request: Request, error: Exception) -> JSONResponse:
-    """A refusal as status and sentence; with the headers that belong to it, such as Allow."""
+    """The answer to a refusal: status, sentence, and headers that belong to it, such as Allow."""
     if isinstance(error, HTTPException):
         return JSONResponse({"sentence": error.detail}, status_code=error.status_code, headers=error.headers)
     headers = {"retry-after": LATER_S} if isinstance(error, QueueFull) else None
@@ -298,20 +298,20 @@ async def refuse(_request: Request, error: Exception) -> JSONResponse:
 
 
 async def own_up(request: Request, error: Exception) -> JSONResponse:
-    """An error of ours: the log names it, the caller gets a sentence."""
+    """The answer to an internal error: its details go to the log, a sentence to the caller."""
     log.error("%s %s failed: %s", plain(request.method), plain(quote(request.url.path)), plain(repr(error)))
     return JSONResponse({"sentence": "The plant could not answer: internal error."}, status_code=500)
 
 
 def _body(*models: type[BaseModel], required: bool = True) -> dict[str, Any]:
-    """What is sent: one of these."""
+    """The OpenAPI description of a request body that is one of these models."""
     schemas = [model.model_json_schema() for model in models]
     schema = schemas[0] if len(schemas) == 1 else {"anyOf": schemas}
     return {"requestBody": {"content": {"application/json": {"schema": schema}}, "required": required}}
 
 
 def _query(model: type[BaseModel]) -> dict[str, Any]:
-    """What may stand in the query."""
+    """The OpenAPI description of the query parameters of `model`."""
     properties = model.model_json_schema()["properties"]
     return {
         "parameters": [{"name": name, "in": "query", "schema": each} for name, each in properties.items()]
@@ -323,5 +323,5 @@ def _kept(row: TaskRow) -> dict[str, Any]:
     data = asdict(row) | {"sentence": row.sentence or "", "answers": answers, "choice": choice_of(row)}
     data["unchecked"] = unchecked_of(row)
     said = json.loads(data.pop("said") or "{}")
-    del data["course"]  # for the plant, which expects by it how long the next one takes
+    del data["course"]  # the plant estimates the duration of the next one from it
     return {**data, **said} if row.sentence else data

@@ -1,4 +1,4 @@
-"""Who somebody is: two roles, a token for each, and sessions behind a cookie."""
+"""Logins: two roles, a token for each, and sessions behind a cookie."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ SESSIONS = 256  # only holders of a token make one; the oldest makes room
 
 
 class Role(str, Enum):
-    """What a client may do: a viewer looks and stops, an operator does everything."""
+    """Role of a client: a viewer looks and stops, an operator may do everything."""
 
     VIEWER = "viewer"
     OPERATOR = "operator"
@@ -33,23 +33,23 @@ Tokens = Callable[[], "dict[Role, str]"]
 
 
 class Forbidden(ArboledaError):
-    """The role is not enough; the sentence says which one is."""
+    """Error: the role is not enough; the sentence names the one needed."""
 
 
 def allowed(role: Role | None, act: str) -> bool:
-    """Whether a role may do `act`, a verb's word or SUBMIT; stop is for everybody who is logged in."""
+    """True if a role may do `act`, a verb's word or SUBMIT; everybody who is logged in may stop."""
     return role is Role.OPERATOR or (role is Role.VIEWER and act in EVERYBODY_MAY)
 
 
 def require(role: Role | None, act: str) -> None:
-    """Forbidden where `allowed` says no."""
+    """Raises Forbidden if `allowed` is False."""
     if not allowed(role, act):
         raise Forbidden(f"A viewer may look and stop; {act} needs the operator's token.")
 
 
 @dataclass(frozen=True, kw_only=True)
 class Login:
-    """Somebody who was let in; `key` tells clients apart, `alive()` turns false at logout or a new token."""
+    """Client that is logged in; `key` tells clients apart, `alive()` turns False at logout or a new token."""
 
     role: Role
     key: str
@@ -67,7 +67,7 @@ class _Session:
 
 
 class Door:
-    """Knows tokens and sessions. `tokens()` gives the valid ones; without it everybody is the operator."""
+    """Check of tokens and sessions. `tokens()` gives the valid ones; without it everybody is the operator."""
 
     def __init__(self, tokens: Tokens | None, clock: Callable[[], float] = time.monotonic) -> None:
         self._tokens = tokens
@@ -77,11 +77,11 @@ class Door:
 
     @property
     def open(self) -> bool:
-        """Whether nobody needs a token."""
+        """True if no token is needed."""
         return self._tokens is None
 
     def by_token(self, token: bytes) -> Login | None:
-        """Who shows this token; every known one is compared, each in constant time."""
+        """The login that this token belongs to, None if unknown; compares every token in constant time."""
         found = None
         for role, known in self._valid().items():
             if secrets.compare_digest(token, known.encode()):
@@ -89,7 +89,7 @@ class Door:
         return found
 
     def by_cookie(self, session: str) -> Login | None:
-        """Who logged in under this session; None after logout, a week, or a new token for the role."""
+        """The login of a session; None after logout, after a week, or once its role has a new token."""
         key = _digest(session)
         known = self._sessions.get(key)
         if known is None or not self._alive(key):
@@ -97,7 +97,7 @@ class Door:
         return Login(role=known.role, key=f"session {key}", alive=lambda: self._alive(key))
 
     def log_in(self, token: bytes) -> str | None:
-        """A new session, None for a wrong token."""
+        """A new session; None for a wrong token."""
         login = self.by_token(token)
         if login is None:
             return None
@@ -135,5 +135,5 @@ class Door:
 
 
 def _digest(session: str) -> str:
-    """What a session is kept under: looking it up tells nothing about the cookie by its timing."""
+    """The hash under which a session is stored, so that lookup times reveal nothing of the cookie."""
     return hashlib.sha256(session.encode(errors="replace")).hexdigest()

@@ -1,4 +1,4 @@
-"""A body is read as a whole before anybody acts on it."""
+"""Body of a request, read as a whole before anybody acts on it."""
 
 from __future__ import annotations
 

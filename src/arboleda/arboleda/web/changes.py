@@ -1,4 +1,4 @@
-"""What changed between two snapshots, told to readers of whom none can hold up the plant."""
+"""Changes between two snapshots, sent to readers of whom none can hold up the plant."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from .plant_api import PlantApi, Snapshot
 HISTORY, WAITING, PENDING = 200, 256, 64
 Row = dict[str, Any]
 
-# list in a snapshot: (kind of event, what names a row, what counts as a change of it)
+# list in a snapshot: (kind of event, key that names a row, keys whose change counts)
 ROWS = {
     "cells": (
         "cell",
@@ -49,7 +49,7 @@ PLANT = ("plant", "epoch", "ending")
 
 @dataclass(frozen=True, kw_only=True)
 class Event:
-    """One server-sent event; `text` is made once for all readers."""
+    """Server-sent event; `text` is made once for all readers."""
 
     id: str
     text: str
@@ -60,7 +60,7 @@ def event(id: str, kind: str, row: Row) -> Event:
 
 
 def changed(before: Snapshot, after: Snapshot) -> list[tuple[str, Row]]:
-    """(kind, row) of everything that is new or not as it was; ages and positions do not count."""
+    """The (kind, row) of each new or changed row; ages and positions do not count."""
     plant = {key: after[key] for key in PLANT}
     found = [] if plant == {key: before[key] for key in PLANT} else [("plant", plant)]
     for where, (kind, name, keys) in ROWS.items():
@@ -71,13 +71,13 @@ def changed(before: Snapshot, after: Snapshot) -> list[tuple[str, Row]]:
 
 
 def _facts(row: Row, keys: tuple[str, ...]) -> Row:
-    """Those keys of a row; of a task inside it, the id."""
+    """The row with these keys only; for a task in it, its id."""
     facts = {key: row[key] for key in keys}
     return {key: value["id"] if key == "task" and value else value for key, value in facts.items()}
 
 
 class Reader:
-    """One client's queue: what does not fit ends it."""
+    """Queue of events for one client; an overflow ends it."""
 
     def __init__(self) -> None:
         self._queue: deque[Event] = deque()
@@ -104,7 +104,7 @@ class Reader:
 
 
 class Changes:
-    """Turns snapshots into numbered events. Everything but `_saw` runs in the server's thread."""
+    """Numbered events made of snapshots. All but `_saw` runs in the server's thread."""
 
     def __init__(self, side: PlantApi) -> None:
         self._side = side
@@ -120,7 +120,7 @@ class Changes:
         return len(self._readers)
 
     def listen(self, last: str = "") -> Reader:
-        """A reader that goes on after the event `last`; where that is not known any more, with a snapshot."""
+        """A reader that continues after the event `last`; with a snapshot first if that one is forgotten."""
         if self._loop is None:
             self._loop = asyncio.get_running_loop()
             self._side.watch(self._saw)
@@ -132,7 +132,7 @@ class Changes:
         return reader
 
     def leave(self, reader: Reader) -> None:
-        """Idempotent."""
+        """Remove a reader; idempotent."""
         self._readers.discard(reader)
 
     def _missed(self, last: str) -> list[Event]:
@@ -142,7 +142,7 @@ class Changes:
         return [event(self._id(), "snapshot", self._side.snapshot())]
 
     def _saw(self, snapshot: Snapshot) -> None:
-        """In the plant's thread: leave the snapshot there and go."""
+        """Take a snapshot in the plant's thread, for the server's thread."""
         self._fresh.append(snapshot)
         if not self._woken and self._loop is not None:
             self._woken = True
@@ -166,5 +166,5 @@ class Changes:
             reader.put(news)
 
     def _id(self) -> str:
-        """Numbers start anew with each start of the plant, epochs do not."""
+        """The id of an event: a number, which starts anew with the plant, and the epoch of that start."""
         return f"{self._latest['epoch']}-{self._number}"

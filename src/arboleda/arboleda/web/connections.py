@@ -1,4 +1,4 @@
-"""Connections that cost nothing to open: a limited number, and none that waits for ever."""
+"""Connections of the HTTP server: a limited number, and none that waits for ever."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ NOTHING_LINGERS = struct.pack("ii", 1, 0)
 
 
 class Timer:
-    """Calls back once, unless it is off by then."""
+    """Timer that calls back once, unless it is switched off first."""
 
     def __init__(self, seconds: float, callback: Any) -> None:
         self._seconds = seconds
@@ -40,7 +40,7 @@ class Timer:
 
 
 class _MustRead:
-    """Cuts a client off that leaves what it is sent unread."""
+    """Mixin that cuts off a client which does not read its answers."""
 
     def connection_made(self, transport: Any) -> None:
         super().connection_made(transport)  # type: ignore[misc]
@@ -60,11 +60,11 @@ class _MustRead:
 
 
 class Socket(_MustRead, WebSocketsSansIOProtocol):
-    """A websocket."""
+    """Websocket connection."""
 
 
 class Connection(_MustRead, H11Protocol):
-    """An http connection; `admission` says which one goes where there are too many."""
+    """HTTP connection; `admission` chooses the one to close if there are too many."""
 
     def __init__(self, *args: Any, admission: Admission, **options: Any) -> None:
         super().__init__(*args, **options)
@@ -92,14 +92,14 @@ class Connection(_MustRead, H11Protocol):
         super().on_response_complete()
         head, _ = self.conn.trailing_data
         if head and self.idles and not self.transport.is_closing():
-            self._request.on()  # it began to come before the last answer was whole
+            self._request.on()  # its begin came before the last answer was whole
 
     def handle_websocket_upgrade(self, event: h11.Request) -> None:
         self._request.off()
         super().handle_websocket_upgrade(event)
 
     def shutdown(self) -> None:
-        """Called when the server ends: an answer that has no end (a stream) ends now."""
+        """Called when the server ends: ends an answer without an end (a stream)."""
         super().shutdown()
         if not self.idles and self.cycle.response_started:
             self.transport.abort()
@@ -129,11 +129,11 @@ class Connection(_MustRead, H11Protocol):
         guests = [other for other in self.connections if isinstance(other, Connection)]
         surplus = self._admission.surplus(guests, len(self.connections) - len(guests), self)
         if surplus is not None:
-            self.connections.discard(surplus)  # at once: the next one that comes must not count it
+            self.connections.discard(surplus)  # at once, so that the next connection does not count it
             cut(surplus.transport)
 
 
 def cut(transport: Any) -> None:
-    """End a connection at once; what the client has not read yet is not kept for it."""
+    """End a connection at once, without keeping unread data for the client."""
     transport.get_extra_info("socket").setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, NOTHING_LINGERS)
     transport.abort()

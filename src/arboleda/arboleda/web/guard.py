@@ -1,4 +1,4 @@
-"""Who may use the server, and how much of it: pure ASGI, for http and websockets alike."""
+"""Access control and rate limits of the server: pure ASGI, for HTTP and websockets alike."""
 
 from __future__ import annotations
 
@@ -109,7 +109,7 @@ class Guard:
         if asked.from_elsewhere:
             raise HttpError(403, NOT_OURS)
         if login is None and not asked.logs_in:
-            return  # turned away in any case, and told that a token is missing
+            return  # refused in any case, as a token is missing
         by_token = asked.bearer is not None and login is not None
         if not (asked.reads or by_token or (self._door.open and asked.for_api)):
             raise HttpError(
@@ -117,7 +117,7 @@ class Guard:
             )
 
     def _login(self, asked: RequestHead, peer: str) -> Login | None:
-        """Who asks, None for nobody known; Turned for a wrong token."""
+        """The login of a request, None if it has none; raises Turned for a wrong token."""
         if self._door.open:
             return LOCAL
         if asked.bearer is not None:

@@ -1,4 +1,4 @@
-"""What browsers are told with every answer: no framing, no guessing of types, scripts from here only."""
+"""Security headers of every answer: no framing, no guessing of types, scripts from this server only."""
 
 from __future__ import annotations
 

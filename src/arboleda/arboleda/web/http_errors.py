@@ -1,4 +1,4 @@
-"""How somebody is turned away."""
+"""Refusals of the HTTP server, as exceptions."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from starlette.responses import JSONResponse, Response
 
 
 class HttpError(Exception):
-    """Turned away with this answer: a status, one sentence, and headers such as `retry_after="1"`."""
+    """Error: the request is refused with a status, a sentence, and headers such as `retry_after="1"`."""
 
     def __init__(self, status: int, sentence: str, **headers: str) -> None:
         super().__init__(sentence)
@@ -17,4 +17,4 @@ class HttpError(Exception):
 
 
 class ClientGone(Exception):
-    """The client went away before it had asked; there is nobody to answer."""
+    """Error: the client left before its request was complete; there is nobody to answer."""

@@ -1,4 +1,4 @@
-"""How much is let in: sizes, rates, and how many at a time."""
+"""Limits of the HTTP server: sizes, rates, and numbers of connections."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ PAGE_BODY_BYTES = 65536
 HEADER_BYTES = 16384
 MESSAGE_BYTES = 65536  # of a websocket
 BODY_S = 10.0
-LATER_S = "10"  # Retry-After of what is full
+LATER_S = "10"  # Retry-After of answers to full limits
 
 READ = (50.0, 400)  # per second, at once
 PAGE = (300.0, 6000)  # one page is a hundred small files, and twenty browsers may sit behind one address
@@ -27,7 +27,7 @@ BEAT_S = 15.0  # after so long without a change a stream says that it is still t
 
 
 def lasting(most: int, connections: int) -> int:
-    """How many of a kind that stays open there may be: `most`, and at most a quarter of all connections."""
+    """The limit for connections of a kind that stay open: `most`, and at most a quarter of `connections`."""
     return max(1, min(most, connections // 4))
 
 
@@ -43,7 +43,7 @@ class Buckets:
         self._levels: OrderedDict[str, tuple[float, float]] = OrderedDict()
 
     def take(self, key: str) -> bool:
-        """Whether the client may; counts it if so."""
+        """Count one request of the client; False if it has none left."""
         level = self._level(key)
         if level < 1:
             return False
@@ -51,11 +51,11 @@ class Buckets:
         return True
 
     def empty(self, key: str) -> bool:
-        """Whether `take` would say no."""
+        """True if `take` would return False."""
         return self._level(key) < 1
 
     def delay_s(self, key: str) -> float:
-        """Count one, and say how long to wait until it is within the rate."""
+        """Count one request, and return the seconds to wait until it is within the rate."""
         level = self._level(key) - 1
         self._put(key, level)
         return max(0.0, -level / self._per_s)

@@ -1,4 +1,4 @@
-"""Log in with a token in a form; from then on a cookie that scripts do not see."""
+"""Login by a token in a form; afterwards by a cookie that scripts cannot read."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ WORDS = {
 
 
 def routes() -> APIRouter:
-    """The form, and the two acts."""
+    """Register the form, login and logout."""
     pages = APIRouter(include_in_schema=False)
 
     @pages.get(LOGIN)
@@ -69,7 +69,7 @@ def _cookie(request: Request) -> dict[str, object]:
 
 
 def _token(body: bytes) -> bytes:
-    """The field `token` of a form, b"" where there is none."""
+    """The field `token` of a form; b"" if there is none."""
     try:
         fields = dict(parse_qsl(body.decode("ascii"), max_num_fields=4))
     except ValueError:

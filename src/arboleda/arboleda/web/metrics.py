@@ -14,7 +14,7 @@ TEXT = "text/plain; version=0.0.4; charset=utf-8"
 
 
 def routes(text: Callable[[], bytes]) -> APIRouter:
-    """The route; `text` may wait for the plant."""
+    """Register the route; `text` may wait for the plant."""
     api = APIRouter()
 
     @api.get(METRICS, response_class=PlainTextResponse)

@@ -1,4 +1,4 @@
-"""Which names this server answers to (Host), and whose pages may use it (Origin)."""
+"""Names that this server answers to (Host), and origins whose pages may use it (Origin)."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ LOOPBACK = {LOCAL, "localhost", "[::1]"}
 EVERY_NETWORK = {
     "0.0.0.0": LOCAL,
     "::": "::1",
-}  # what stands for all addresses, and where this machine finds it
+}  # the wildcard addresses, and the address of each for this machine
 DEFAULT_PORTS = {"http": ":80", "https": ":443"}
 
 
@@ -31,13 +31,17 @@ class Names:
     scheme: str = "http"
 
     def knows_host(self, host: str) -> bool:
-        """Whether a Host header is ours. On a network any address is: nobody can make it lead elsewhere."""
+        """True if a Host header names this server; on a network any IP address does, as none can be
+        redirected."""
         name = host_name(host)
         return name in self.hosts or (self.any_address and is_address(name))
 
     def knows_origin(self, origin: str, host: str) -> bool:
-        """Whether an Origin header names a page that came from here. A page of the public name counts under
-        its public scheme only: in the clear, anybody on the way may have made it."""
+        """True if an Origin header names a page that this server sent.
+
+        A page of the public name counts under its public scheme only: without TLS anybody on the way may have
+        made it.
+        """
         origin = origin.lower()
         direct = host_name(host) != self._public_name
         return origin == self.public or (direct and origin == f"{self.scheme}://{host.lower()}")
@@ -48,8 +52,10 @@ class Names:
 
 
 def names_for(host: str, public_url: str | None, *, scheme: str = "http") -> Names:
-    """The names of a server that is bound to `host` and speaks `scheme`; StartError for an address or URL
-    that cannot be used."""
+    """The names of a server that is bound to `host` and speaks `scheme`.
+
+    Raises StartError for an address or URL that cannot be used.
+    """
     public = public_origin(public_url) if public_url else None
     hosts = LOOPBACK | {url_host(host)} | ({host_name(public.partition("//")[2])} if public else set())
     if not is_loopback(host):
@@ -58,7 +64,7 @@ def names_for(host: str, public_url: str | None, *, scheme: str = "http") -> Nam
 
 
 def own_names() -> set[str]:
-    """What this machine calls itself, and what others of its network may call it."""
+    """The names of this machine, as it and others of its network call it."""
     own = socket.gethostname().lower()
     return {own, own.partition(".")[0], f"{own.partition('.')[0]}.local"}
 
@@ -79,12 +85,12 @@ def url_host(host: str) -> str:
 
 
 def is_loopback(host: str) -> bool:
-    """Whether only this machine reaches `host`; StartError where it is no address."""
+    """True if only this machine can reach `host`; raises StartError if it is no address."""
     return _address(host).is_loopback
 
 
 def is_near_only(origin: str) -> bool:
-    """Whether only the machine of a server reaches it at this origin."""
+    """True if a server at this origin can be reached from its own machine only."""
     name = host_name(origin.partition("//")[2])
     return name == "localhost" or (is_address(name) and is_loopback(name))
 
@@ -104,7 +110,7 @@ def _no_address(host: str) -> StartError:
 
 
 def public_origin(url: str) -> str:
-    """`https://plant.example` of such a URL; StartError for anything with more in it."""
+    """The origin of a URL, such as `https://plant.example`; StartError if the URL has more than that."""
     found = re.fullmatch(r"(https?)://([a-z0-9.-]+|\[[0-9a-f:]+\])(:[0-9]{1,5})?/?", url.lower())
     if found is None:
         raise StartError(f"'{url}' is not the address of a plant; write one like https://plant.example")
@@ -119,7 +125,7 @@ def host_name(host: str) -> str:
 
 
 def is_address(name: str) -> bool:
-    """Whether a name of a Host header is an IP address in its one usual spelling."""
+    """True if a name in a Host header is an IP address in its one usual spelling."""
     bare = name[1:-1] if name.startswith("[") and name.endswith("]") else name
     try:
         usual = str(ipaddress.ip_address(bare)) == bare and "%" not in bare

@@ -1,4 +1,4 @@
-"""What is asked of the API and is not there: 405 with the methods that are, or 404."""
+"""Answer to requests that no route takes: 405 with the methods that there are, or 404."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The API described: `/api/openapi.json` for tools, `/api/docs` for people, all of it from here."""
+"""Description of the API: `/api/openapi.json` for tools, `/api/docs` for people; no file from elsewhere."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ VERB = Verb.__name__
 
 
 def routes(app: FastAPI) -> APIRouter:
-    """The two pages on the routes of `app`."""
+    """Register the two pages with `app`."""
     pages = APIRouter(prefix="/api", include_in_schema=False)
 
     @pages.get("/openapi.json")
@@ -35,7 +35,7 @@ def routes(app: FastAPI) -> APIRouter:
 
 
 def render(api: Schema) -> str:
-    """The description as HTML: every route, what it takes, what it gives, then the shapes."""
+    """The description as HTML: every route with its parameters and answers, then the shapes."""
     info = api["info"]
     parts = [f"<h1>{escape(info['title'])} {escape(info['version'])}: HTTP API</h1>"]
     parts += [f"<p>{escape(info['description'])}</p>"]
@@ -52,7 +52,7 @@ def render(api: Schema) -> str:
 
 
 def _verbs() -> str:
-    """What each of the operators' verbs is for, what it does, and when it is refused."""
+    """The table of operators' verbs as HTML: scope, effect, and the cases in which each is refused."""
     head = "<tr><th>verb</th><th>scope</th><th>what it does</th><th>refused</th></tr>"
     rows = (
         (verb.value, ", ".join(words.scopes), _marked(words.does), _marked(words.refused))

@@ -1,4 +1,4 @@
-"""The IPv4 addresses of this machine, as Linux tells them."""
+"""IPv4 addresses of this machine, as Linux reports them."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ ADDRESS_AT = slice(20, 24)  # in its struct ifreq
 
 
 def other_address() -> str:
-    """One by which others may reach this machine, "" where it has none."""
+    """An address by which others may reach this machine; "" if there is none."""
     return next((each for each in own_addresses() if each != LOCAL), "")
 
 
 def own_addresses() -> list[str]:
-    """One of each interface that has any, 127.0.0.1 first."""
+    """An address of each interface that has any, 127.0.0.1 first."""
     found = []
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as asks:
         for _, interface in socket.if_nameindex():

@@ -12,7 +12,7 @@ from arboleda.model.sentence import OWN, Sentence, in_json
 
 
 class PlainJson(JSONResponse):
-    """As FastAPI's, with the text of a sentence where one stands."""
+    """JSON answer as FastAPI's, with a Sentence written as its text."""
 
     def render(self, content: Any) -> bytes:
         text = json.dumps(
@@ -22,7 +22,7 @@ class PlainJson(JSONResponse):
 
 
 def explained(row: Mapping[str, Any]) -> dict[str, Any]:
-    """A row with what its `sentence` is made of: `key` and `values`; as it is where that is text only."""
+    """A row with the parts of its `sentence`, `key` and `values`; unchanged if that is text only."""
     said = row["sentence"]
     by_key = isinstance(said, Sentence) and said and said.phrase is not OWN
     return {**row, **said.data()} if by_key else {**row}

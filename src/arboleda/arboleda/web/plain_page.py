@@ -24,7 +24,7 @@ POLICY = (
 
 
 def page(title: str, body: str, *, language: str = "en", status: int = 200) -> HTMLResponse:
-    """A page of `body`, which is HTML already."""
+    """A whole page around `body`, which is HTML already."""
     head = f"<title>{escape(title)}</title><style>{STYLE}</style>"
     text = f'<!doctype html><html lang="{language}"><head>{META}{head}</head><body>{body}</body></html>'
     return HTMLResponse(text, status_code=status, headers={"content-security-policy": POLICY})

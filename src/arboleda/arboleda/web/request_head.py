@@ -1,4 +1,4 @@
-"""A request before anybody answers it: its headers, whose it is, what it wants."""
+"""Request before it is answered: its headers, login and purpose."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from starlette.types import Scope
 from .names import is_loopback
 
 API, LOGIN, LOGOUT, METRICS = "/api/", "/login", "/logout", "/metrics"
-PLANT = "arboleda-plant"  # a header: who asks names the plant that is meant
+PLANT = "arboleda-plant"  # header by which a client names the plant it means
 STOP = re.compile(r"/api/(plant|cells/[^/]+|plants(/[^/]+)?)/stop")
 READS = {"GET", "HEAD"}
 ONLY_ONE = {"host", "origin", "authorization", "cookie", "content-length", "transfer-encoding"}
@@ -18,12 +18,12 @@ FORWARDED = {"forwarded", "via", "x-forwarded-for", "x-forwarded-host", "x-forwa
 
 
 def is_api(path: str) -> bool:
-    """Whether an address is one of the API's, be there something or not."""
+    """True if a path belongs to the API, even if there is no such route."""
     return path in (API.rstrip("/"), METRICS) or path.startswith(API)
 
 
 class RequestHead:
-    """One http request or websocket handshake; header values are latin-1, "" where there is none."""
+    """HTTP request or websocket handshake; header values are latin-1, "" if missing."""
 
     def __init__(self, scope: Scope) -> None:
         self.scope = scope
@@ -45,7 +45,7 @@ class RequestHead:
 
     @property
     def ambiguous(self) -> bool:
-        """Whether two readers of it could disagree: on who asks, or on where its body ends."""
+        """True if two readers could disagree on this request: on who asks, or on where its body ends."""
         names = [name for name, _ in self._headers if name in ONLY_ONE]
         return len(names) > len(set(names)) or (self.has("content-length") and self.has("transfer-encoding"))
 
@@ -58,13 +58,13 @@ class RequestHead:
         return str(self.scope["path"])
 
     def at(self, path: str) -> str:
-        """The same query at a path of ours: where somebody wanted to go survives a login."""
+        """The same query at a path of this server, so that a login leads to the page asked for."""
         query = self.scope["query_string"].decode("latin-1")
         return f"{path}?{query}" if query else path
 
     @property
     def reads(self) -> bool:
-        """Whether it only looks. A websocket may do anything."""
+        """True if the request only reads. A websocket never counts as such."""
         return not self.socket and self.scope["method"] in READS
 
     @property
@@ -81,7 +81,7 @@ class RequestHead:
 
     @property
     def opens_page(self) -> bool:
-        """Whether a page is to be built: the files of pages have addresses of their own."""
+        """True if the request is for a page itself, not for one of the files of pages."""
         return not self.socket and self.path == "/"
 
     @property
@@ -94,7 +94,7 @@ class RequestHead:
 
     @property
     def from_elsewhere(self) -> bool:
-        """Whether a browser says that a page of another origin embeds or fetches this."""
+        """True if a browser says that a page of another origin embeds or fetches this."""
         site, mode = self.header("sec-fetch-site"), self.header("sec-fetch-mode")
         return site in ("cross-site", "same-site") and mode != "navigate"
 
@@ -109,7 +109,7 @@ class RequestHead:
 
     @property
     def session(self) -> str | None:
-        """What the login cookie holds."""
+        """The value of the login cookie; None if there is none."""
         try:
             cookie = SimpleCookie(self.header("cookie")).get(cookie_name(self.scope))
         except CookieError:
@@ -117,8 +117,10 @@ class RequestHead:
         return cookie.value if cookie is not None else None
 
     def peer(self, *, proxied: bool) -> str:
-        """The address it comes from, an IPv6 one by its network; behind a proxy of this machine, the one
-        that the proxy saw."""
+        """The address that the request comes from; behind a proxy of this machine, that which the proxy saw.
+
+        IPv6 addresses count by their network.
+        """
         address = (self.scope.get("client") or ("",))[0]
         if proxied and address and is_loopback(address) and self.has("x-forwarded-for"):
             address = [value for name, value in self._headers if name == "x-forwarded-for"][-1]
@@ -128,5 +130,5 @@ class RequestHead:
 
 
 def cookie_name(scope: Scope) -> str:
-    """Browsers send the cookies of every port of a machine; two plants on one keep theirs apart."""
+    """The name of the login cookie, with the port: browsers send the cookies of all ports of a machine."""
     return f"arboleda_{(scope.get('server') or ('', 0))[1]}"

@@ -1,4 +1,4 @@
-"""What the API takes and gives, for its description; screens get more keys than are listed."""
+"""Requests and answers of the API, for its description; snapshots have more keys than are listed."""
 
 from __future__ import annotations
 
@@ -14,19 +14,19 @@ from arboleda.store.task_rows import TaskQuery
 
 
 class _RequestModel(BaseModel):
-    """What a client sends: these keys and no others, of exactly these types."""
+    """Body of a request: these keys and no others, of exactly these types."""
 
     model_config = ConfigDict(extra="forbid", strict=True)
 
 
 class _ResponseModel(BaseModel):
-    """What a client gets; more keys may come."""
+    """Answer of the API; more keys may be added to it."""
 
     model_config = ConfigDict(extra="allow")
 
 
 class TaskFilter(BaseModel):
-    """Which tasks of the history: all of what is asked; nothing asks for the last `limit`."""
+    """Filter for tasks of the history; without any key the last `limit` tasks."""
 
     model_config = ConfigDict(extra="forbid")
 
@@ -40,7 +40,7 @@ class TaskFilter(BaseModel):
     limit: int = Field(default=100, ge=1, le=1000)
 
     def query(self) -> TaskQuery:
-        """What it asks of the plant's memory."""
+        """This filter as a query to the plant's memory."""
         return TaskQuery(
             cell=self.cell,
             state=self.state,
@@ -54,7 +54,7 @@ class TaskFilter(BaseModel):
 
 
 class OeeFilter(BaseModel):
-    """Of which time the figures are; nothing asks for the last 24 hours of all cells."""
+    """Filter for OEE: a cell and a span; by default the last 24 hours of all cells."""
 
     model_config = ConfigDict(extra="forbid")
 
@@ -63,12 +63,12 @@ class OeeFilter(BaseModel):
     until: FiniteFloat | None = Field(default=None, description="Not later than now.")
 
     def query(self) -> OeeQuery:
-        """What it asks of the plant's memory."""
+        """This request as a query to the plant's memory."""
         return OeeQuery(cell=self.cell, since_s=self.since, until_s=self.until)
 
 
 class PromiseFilter(BaseModel):
-    """Of which task."""
+    """Task for which promises are asked."""
 
     model_config = ConfigDict(extra="forbid")
 
@@ -104,7 +104,7 @@ class TaskForm(_RequestModel):
         return self
 
     def named(self) -> dict[str, Any]:
-        """What `spelled` takes."""
+        """The arguments for `spelled`."""
         named = self.model_dump(exclude={"any_of"})
         return named | {"cell": self.cell or BETWEEN_CELLS.join(self.any_of)}
 
@@ -118,7 +118,7 @@ class ByHand(_RequestModel):
 
 
 class Sentence(_ResponseModel):
-    """What went wrong, for a person and as data."""
+    """Reason of a refusal or failure, as a sentence for a person and as data."""
 
     sentence: str = Field(examples=["'sis_z' is not a cell of this plant; there are sis_a, sis_b, sis_c"])
     key: str | None = Field(
@@ -128,7 +128,7 @@ class Sentence(_ResponseModel):
 
 
 class TaskAnswer(_ResponseModel):
-    """What a device or a person answered while a task ran."""
+    """Answer that a device or a person gave while a task ran."""
 
     by: str
     asked: str = Field(description="The question, or the verb and its values.")
@@ -158,7 +158,7 @@ class Task(_ResponseModel):
 
 
 class Promise(_ResponseModel):
-    """What a cell promises of a task that it was not given."""
+    """Promise of a cell for a task that it has not been given."""
 
     cell: str
     text: str = Field(description="The task for this cell.")
@@ -211,7 +211,7 @@ class CellOee(_ResponseModel):
 
 
 class Parameter(_ResponseModel):
-    """What a recipe wants to know; more types may come."""
+    """Parameter of a recipe; more types may be added."""
 
     name: str
     called: str = Field(description="Its name for people.")
@@ -236,7 +236,7 @@ class Offer(_ResponseModel):
 
 
 class Done(_ResponseModel):
-    """A verb that is not refused; where it is `under_way`, `GET /api/acts/<act>` tells its end."""
+    """Outcome of a verb that is not refused; while `under_way`, `GET /api/acts/<act>` tells its end."""
 
     verb: Verb
     scope: str = Field(description="A cell, robot, zone or task id; empty for the whole plant.")
@@ -246,7 +246,7 @@ class Done(_ResponseModel):
 
 
 class Act(_ResponseModel):
-    """What an operator did, and what has become of it."""
+    """Act of an operator, with its present outcome."""
 
     number: int = Field(description="Grows by one with each act; of this start of the plant.")
     at: float = Field(description="On the plant's clock.")
@@ -261,7 +261,7 @@ class Act(_ResponseModel):
 
 
 class Advice(_ResponseModel):
-    """One thing to do that leads a cell out of its state."""
+    """Step that leads a cell out of its state."""
 
     do: str = Field(description="A verb; or, where `hand`: bring_back, repair, reference, check or free.")
     hand: bool = Field(description="Only a person at the machine can do it.")
@@ -306,7 +306,7 @@ class Cell(_ResponseModel):
 
 
 class Asking(_ResponseModel):
-    """What a person is being asked; `POST /api/cells/<person> <answer>/answer` answers it."""
+    """Open question to a person; `POST /api/cells/<person> <answer>/answer` answers it."""
 
     id: str
     text: str

@@ -1,4 +1,4 @@
-"""A loop and a thread of their own for all but stops, so that no page in the making delays one."""
+"""Second event loop and thread for all requests but stops, so that a page in the making delays no stop."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from .request_head import RequestHead
 Result = TypeVar("Result")
 Call = Callable[..., Awaitable[Result]]
 
-END_S = 3.0  # for an application to end what it does, and for what is left in the loop
+END_S = 3.0  # time for an application to end, and for the tasks left in the loop
 OVER: Message = {"type": "lifespan.shutdown.complete"}
 LOG = logging.getLogger(__name__)
 
@@ -94,7 +94,7 @@ class _SecondLoop:
         self._running.result()
 
     async def end(self) -> None:
-        """Cancel what still runs there, and wait END_S at most for it."""
+        """Cancel the tasks that still run there, and wait for END_S at most."""
         self.loop.call_soon_threadsafe(self._over.set)
         await asyncio.to_thread(self._thread.join, END_S)
         if self._thread.is_alive():
@@ -109,7 +109,7 @@ class _SecondLoop:
 
 
 async def _in(loop: asyncio.AbstractEventLoop, call: Call[Result], *args: Any) -> Result:
-    """The result of `call` in that loop; cancelled here, it is cancelled there."""
+    """The result of `call` in that loop; cancelling this cancels it there."""
     if loop.is_closed():  # the server has ended, and nobody waits for this any more
         raise asyncio.CancelledError
     return await asyncio.wrap_future(asyncio.run_coroutine_threadsafe(_awaited(call, *args), loop))

@@ -1,4 +1,4 @@
-"""Answers that take long to make are made one by one: between two of them everybody else gets a turn."""
+"""Queue for answers that take long to make: one is made at a time, and others get a turn in between."""
 
 from __future__ import annotations
 
@@ -8,16 +8,17 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 
 class SerialRequests:
-    """Runs requests of `app` so that only one is being worked on. Sending an answer is no work: a client
-    that reads slowly keeps nobody waiting."""
+    """Runner of `app` that works on one request at a time.
+
+    Sending an answer does not count as work: a client that reads slowly keeps nobody waiting.
+    """
 
     def __init__(self, app: ASGIApp) -> None:
         self._app = app
         self._free = asyncio.Lock()
 
     async def run(self, scope: Scope, receive: Receive, send: Send, hears: Receive) -> None:
-        """One request, once those before it are made; nothing where its client is gone by then, as the
-        server's own receive, `hears`, says."""
+        """Run one request after those before it; nothing if `hears` shows that its client has left."""
         await self._free.acquire()
         working = True
 
@@ -37,7 +38,7 @@ class SerialRequests:
 
 
 async def _gone(hears: Receive) -> bool:
-    """Whether the client has left; nothing else can come from it, as its body is read."""
+    """True if the client has disconnected; after the body nothing else can come from it."""
     coming = asyncio.ensure_future(hears())
     await asyncio.sleep(0)
     if coming.done():

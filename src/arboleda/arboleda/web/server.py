@@ -22,7 +22,7 @@ from .admission import Admission
 from .connections import HEAD_BYTES, Connection, Socket
 from .names import DEFAULT_PORT
 
-if TYPE_CHECKING:  # it takes a while to load, and only who speaks TLS needs it
+if TYPE_CHECKING:  # slow to load, and needed for TLS only
     from arboleda.adapters.server_tls import ServerTls
 
 START_S = 20.0
@@ -78,7 +78,7 @@ class Server:
         self._thread: threading.Thread | None = None
 
     def start(self) -> int:
-        """Listen and serve; the port, or StartError with one sentence."""
+        """Listen and serve; returns the port, or raises StartError."""
         listener = listen(self._host, self._port, self._usual_port)
         # In a thread that is not the main one uvicorn leaves the signals alone.
         self._thread = threading.Thread(
@@ -103,7 +103,7 @@ class Server:
 
 
 def _protocol(admission: Admission, tls: ServerTls | None) -> Callable[..., asyncio.Protocol]:
-    """What makes the protocol of each connection."""
+    """The factory that makes the protocol object of each connection."""
     if tls is None:
         return partial(Connection, admission=admission)
     from arboleda.adapters.tls_layer import TlsLayer
@@ -115,7 +115,7 @@ def _protocol(admission: Admission, tls: ServerTls | None) -> Callable[..., asyn
 
 
 class _Uvicorn(uvicorn.Server):
-    """Says when it serves, or that it never will."""
+    """uvicorn that tells when it serves, or that it never will."""
 
     def __init__(self, config: uvicorn.Config) -> None:
         super().__init__(config)
@@ -124,7 +124,7 @@ class _Uvicorn(uvicorn.Server):
     def run_until_stopped(self, listener: socket.socket) -> None:
         try:
             self.run(sockets=[listener])
-        except SystemExit:  # how it says that the application did not start
+        except SystemExit:  # uvicorn raises it if the application did not start
             LOG.error("the application behind HTTP did not start")
         finally:
             self.ready.set()
@@ -146,7 +146,7 @@ def listen(host: str, port: int | None, usual_port: int = DEFAULT_PORT) -> socke
 
 
 def _bound(host: str, port: int) -> socket.socket:
-    # asked for where there is no IPv6, it raises ValueError
+    # without IPv6 it raises ValueError
     both = host == "::" and socket.has_dualstack_ipv6()
     options: dict[str, Any] = {"dualstack_ipv6": True} if both else {}
     listener = descriptors.listener(host, port, **options)

@@ -34,7 +34,7 @@ class Sockets:
         self._open = 0
 
     async def run(self, scope: Scope, receive: Receive, send: Send, login: Login) -> None:
-        """One websocket until its end; Turned where too many are open."""
+        """Run one websocket until its end; raises Turned if too many are open."""
         if self._open >= self._most:
             many = f"No more than {self._most} may be open at a time; close a page."
             raise HttpError(503, many, retry_after=limits.LATER_S)
@@ -74,7 +74,7 @@ class _Socket:
             await self._send(message)
 
     async def _known(self) -> bool:
-        """Whether the login still holds; closes the socket where it does not."""
+        """True if the login is still valid; closes the socket if not."""
         if not self._over and not self._login.alive():
             await self.send(LOGGED_OUT)
         return not self._over

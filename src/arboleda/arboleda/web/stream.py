@@ -1,4 +1,4 @@
-"""What changes in the plant, as server-sent events."""
+"""Changes of the plant, as server-sent events."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def routes(side: PlantApi, most: int) -> APIRouter:
 
 
 async def tell(changes: Changes, last: str, alive: Callable[[], bool]) -> AsyncIterator[str]:
-    """Events, and a comment when there is none for a while, until the reader is too slow or logged out."""
+    """Events as text, and a comment after a while without any, until the reader is too slow or logged out."""
     reader = changes.listen(last)
     try:
         while alive():

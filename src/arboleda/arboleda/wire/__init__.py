@@ -1,1 +1,1 @@
-"""Bytes without sockets: topics, payloads, units at the device edge, and the bridge's state machine."""
+"""MQTT contract without sockets: topics, payloads, units, and the state machine of the bridge."""

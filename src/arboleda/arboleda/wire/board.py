@@ -1,4 +1,4 @@
-"""One robot as the bridge sees it: commands to its board, what its board says, its stop latch."""
+"""Robot as the bridge sees it: commands to its board, its telemetry, its stop latch."""
 
 from __future__ import annotations
 
@@ -30,12 +30,12 @@ from .units import from_wire
 Message = Publication | Report | Rejection | ForeignCommand
 UNREADABLE = Phrase("message.unreadable", "{topic}: {why}")
 ABSENT = Phrase("message.absent", "telemetry of a board whose conexion is 0")
-AGAIN_S = 0.1  # of a burst of commands of others no report is made between two of the board's own
+AGAIN_S = 0.1  # in a burst of others' commands, no report between two of the board's own
 
 
 @dataclass(frozen=True, kw_only=True)
 class Counters:
-    """Messages that were not used: refused whole, or overtaken; `last` is the last refusal's sentence."""
+    """Counts of messages not used: refused whole, or overtaken; `last` has the last refusal's sentence."""
 
     refused: int = 0
     old: int = 0
@@ -44,7 +44,7 @@ class Counters:
 
 @dataclass(frozen=True, kw_only=True)
 class ForeignCommandCount:
-    """How many commands of others were refused and obeyed while a plant commands; the last in a sentence."""
+    """Count of commands from others while a plant commands, refused and obeyed; `last` is a sentence."""
 
     refused: int = 0
     obeyed: int = 0
@@ -52,7 +52,8 @@ class ForeignCommandCount:
 
 
 class Board:
-    """Commands in, reports out; a command leaves only while the link is up and no latch forbids it."""
+    """State machine of one board: commands in, reports out; a command needs a link, and no latch against
+    it."""
 
     def __init__(self, robot: Robot, *, epoch: int, stale_after_s: float) -> None:
         supervised = robot.evidence is not Evidence.STATE
@@ -71,11 +72,11 @@ class Board:
         self._axes = self._form.joints
         self._motion: OpenMotion | None = None
         self._latched = False
-        self._warned: Sentence | None = None  # of the last command, that its board will not do it
+        self._warned: Sentence | None = None  # the last reported reason why the board ignores a command
 
     @property
     def in_motion(self) -> bool:
-        """Whether a motion or a process is open."""
+        """True while a motion or a process is open."""
         return self._motion is not None
 
     def connection(self, at: float, up: bool) -> list[Message]:
@@ -83,7 +84,7 @@ class Board:
         return [] if up else self.lose(at)
 
     def lose(self, at: float) -> list[Message]:
-        """The link is gone, and with it whatever was open; nothing is sent again."""
+        """Lose the link, and all open work; nothing is sent again."""
         self._motion = None
         self.rivals.lose()
         return [self.no_link(at)] if self.link.lose() else []
@@ -92,7 +93,7 @@ class Board:
         return self._report(at, state=MotionState.NO_LINK)
 
     def command(self, at: float, command: Command, sender: str = "") -> list[Message]:
-        """Send it, or report the word that refuses it; an id that came before is ignored."""
+        """Send a command, or report the word that refuses it; a repeated id is ignored."""
         if self.labels.repeated(command.id):
             return []
         if isinstance(command, Stop) and command.mode is not StopMode.HALT:
@@ -105,7 +106,7 @@ class Board:
         return [*self._passed_over(at, command), *self._send(at, command, sender)]
 
     def _passed_over(self, at: float, command: Command) -> list[Message]:
-        """What is said, once, of a command that a board without ids will not do, and tells nobody."""
+        """The notice of a command that a board without ids silently ignores; once for each reason."""
         way, last = self._form.way(type(command)), self._last
         if (
             way is None
@@ -127,7 +128,7 @@ class Board:
         ]
 
     def refuse(self, at: float, command: Command, word: str, sender: str = "") -> list[Message]:
-        """Do not send it, and say so with the word for the reason."""
+        """Refuse a command with a word, and report it."""
         rejection = self._rejection(at, command, word, sender, by_board=False)
         self._count(rejection.sentence)
         self.labels.refuse(command.id, word)
@@ -135,7 +136,7 @@ class Board:
         return [rejection, self._word(at)] if command.id else [rejection]
 
     def told_of(self, at: float, sentence: Sentence, *, refused: bool) -> list[Message]:
-        """Somebody else commands the robot of a plant, which is told at once."""
+        """Report a command of somebody else to the plant that commands the robot."""
         self._count_foreign(sentence, refused=refused)
         told = [] if refused else [ForeignCommand(at=at, robot=self.robot.name, sentence=sentence)]
         if at < self._foreign_told_at + AGAIN_S:
@@ -150,13 +151,13 @@ class Board:
         )
 
     def halt(self, at: float) -> list[Message]:
-        """End the motion that is open, unless it was told to end."""
+        """End the open motion, unless it is ending already."""
         if self._motion is None or self._motion.stopping or not self.robot.has_stop:
             return []
         return self._send(at, Stop(id="", robot=self.robot.name, mode=StopMode.HALT))
 
     def hear_plant(self, at: float, epoch: int) -> list[Message]:
-        """A heartbeat: others are answered, a plant that is new is told so, with what the board said last."""
+        """Take a heartbeat of the plant: answer rivals, and give a new plant the board's last report."""
         answer = self._answer_rivals(at)
         if epoch == self._plant:
             return answer
@@ -165,23 +166,23 @@ class Board:
         return [*answer, self._last] if self._last and self.link.up else answer
 
     def _answer_rivals(self, at: float) -> list[Message]:
-        """Whatever moves at the word of somebody else is halted, under a number above theirs."""
+        """Halt a motion that somebody else began, under a number above theirs."""
         if not self.link.up or not self.rivals.answer(at, self.labels, in_motion=self.in_motion):
             return []
         halt = Stop(id="", robot=self.robot.name, mode=StopMode.HALT)
         return self._send(at, halt) if self.robot.has_stop else []
 
     def beat(self) -> Publication:
-        """`latido`: who commands this board is alive."""
+        """The heartbeat `latido` for the board."""
         return _beat(self.robot.mqtt, self.labels.beat())
 
     def fence(self) -> list[Message]:
-        """A beat for a board that would still take commands of who commanded before this bridge."""
+        """A heartbeat for a board that would still take commands of the bridge before this one."""
         numbered = self.robot.evidence is Evidence.IDS and not self.rivals.yielded
         return [self.beat()] if numbered and self.link.up and not self.labels.fenced else []
 
     def deliver(self, delivery: Delivery, channel: Channel) -> list[Message]:
-        """A message from the board; what breaks the contract is counted and changes nothing."""
+        """Take a message of the board; one that breaks the contract is counted and has no effect."""
         ending = self._motion is not None and self._motion.ending
         if channel is Channel.TELEMETRY and not ending and (again := self._again(delivery)):
             return [again]
@@ -196,7 +197,7 @@ class Board:
         return self._telemetry(delivery, said) if isinstance(said, Telemetry) else []
 
     def _again(self, delivery: Delivery) -> Report | None:
-        """The last report once more, where the board says what it said before and that means the same."""
+        """The last report once more, if the message has the same meaning; else None."""
         if self._words is None or self._last is None or delivery.retain:
             return None
         number = self._words.number(delivery.payload)
@@ -208,7 +209,7 @@ class Board:
         return self._last
 
     def _turned(self, delivery: Delivery, words: Words, last: Report) -> Report | None:
-        """The same with other joints, where nothing else is new of a moving arm."""
+        """The last report with new joints, if a moving arm's message brings nothing else; else None."""
         read = read_angles(delivery.payload, len(self._axes))
         if read is None:
             return None
@@ -257,7 +258,7 @@ class Board:
         return [*out, self._last, *([] if heard is LinkUpdate.NEWS else self._stop_again(at))]
 
     def _objections(self, at: float) -> list[Message]:
-        """What telemetry has newly told of refused commands, and of commands that are not from here."""
+        """The messages for what telemetry newly shows: refused commands, and commands from others."""
         out: list[Message] = []
         if self.labels.objection is not None:
             issued, word = self.labels.objection
@@ -279,7 +280,7 @@ class Board:
         return rejections.beaten(self.robot, self.labels.beaten_by, yielded=news is News.YIELDED)
 
     def _given_up_before(self, at: float) -> list[Message]:
-        """A report of each command that the board has newly given up, but for the last, which all tell."""
+        """A report of each newly abandoned command but the last, which is part of the usual report."""
         return [
             replace(self._word(at), failed=command_id, failure=word)
             for command_id, word in self.labels.failed_before
@@ -296,7 +297,7 @@ class Board:
         )
 
     def _word(self, at: float) -> Report:
-        """A report of what concerns commands only."""
+        """A report on commands only."""
         return self._report(at, state=None if self.link.up else MotionState.NO_LINK)
 
     def _refusal(self, command: Command) -> str | None:
@@ -324,7 +325,7 @@ class Board:
         return [publication]
 
     def _stamp(self, command: Command, seq: int) -> dict[str, int | None]:
-        """The numbers of a command, and that of the telemetry which whoever gives it had heard."""
+        """The numbers of a command, and of the telemetry that its sender had heard."""
         if self.robot.evidence is not Evidence.IDS:
             return {"seq": None, "epoch": None}
         stamp: dict[str, int | None] = {"seq": seq, "epoch": self.labels.epoch}
@@ -333,7 +334,7 @@ class Board:
         return stamp
 
     def _stop_again(self, at: float) -> list[Message]:
-        """A board that comes back may have forgotten its latch; the operator has not."""
+        """Send the stop again to a board that comes back, as it may have forgotten its latch."""
         if not self._latched or not self.robot.has_stop:
             return []
         return self._send(at, Stop(id="", robot=self.robot.name, mode=StopMode.LATCH))

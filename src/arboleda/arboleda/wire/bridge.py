@@ -1,4 +1,4 @@
-"""The bridge: commands of the plant to MQTT, telemetry of the boards to reports.
+"""Bridge: commands of the plant to MQTT, telemetry of the boards to reports. A pure state machine.
 
 A pure machine; one `Board` per robot does the work, this file routes and keeps what all share:
 the plant's epoch and the heartbeat.
@@ -33,16 +33,16 @@ _ID = re.compile(r"(\d{1,10})-\d{1,10}", re.ASCII)
 
 @dataclass(frozen=True, kw_only=True)
 class Leaving:
-    """The bridge is about to end; nobody will hear what its boards report."""
+    """Event: the bridge is about to end, and no further report will be heard."""
 
     at: float
 
 
 @dataclass(frozen=True, kw_only=True)
 class UnconfirmedCopy:
-    """A command without an id that is told of at `due`, if it has not turned out to be a copy by then.
+    """Command without an id, reported as foreign at `due` unless it has proved to be a copy by then.
 
-    `told`: there is nothing to tell, or it was told at once.
+    `told`: it was reported at once, or need not be.
     """
 
     due: float
@@ -68,7 +68,7 @@ class Bridge:
         self._boards = {
             robot.name: Board(robot, epoch=epoch, stale_after_s=stale_after_s) for robot in robots
         }
-        self._stale_at = dict.fromkeys(self._boards, math.inf)  # when silence will have lasted too long
+        self._stale_at = dict.fromkeys(self._boards, math.inf)  # deadline for the next message of each board
         self._routes = {
             topics.topic(board.robot.mqtt, channel): (name, board, channel)
             for name, board in self._boards.items()
@@ -91,19 +91,19 @@ class Bridge:
 
     @property
     def counters(self) -> dict[str, Counters]:
-        """What was refused or dropped, by robot; "" counts topics that belong to none."""
+        """The counts of refused and dropped messages by robot; "" has topics that belong to no robot."""
         return {"": self._strays, **{name: board.counters for name, board in self._boards.items()}}
 
     @property
     def next_deadline(self) -> float | None:
-        """When `step` must be called even without events; None: never."""
+        """The time (s) at which `step` is due even without events; None if it never is."""
         due = min(self._started_at, self._beat_at, *self._stale_at.values())
         if self._unsure:
             due = min(due, *(each.due for each in self._unsure if not each.told), math.inf)
         return due if due < math.inf else None
 
     def step(self, now: float, events: Sequence[Event]) -> list[Message]:
-        """Publications for MQTT and reports for the plant, in the order they must leave."""
+        """Take events, and return publications for MQTT and reports for the plant, in order."""
         self.now = now
         out = self._start(now)
         for event in events:
@@ -166,7 +166,7 @@ class Bridge:
         return board.refuse(event.at, command, word) if word else board.command(event.at, command)
 
     def _expect_copy(self, event: FromPlant, command: Command, board: Board) -> None:
-        """The plant says whether it copies; a copy that came before its original is nobody else's."""
+        """Expect a copy of a command, or match one that came before; note whether the plant copies."""
         if loses_its_id(command):
             board.copies.flow = event.copied
         if not event.copied:
@@ -179,7 +179,7 @@ class Bridge:
             self._unsure.remove(early)
 
     def _unlabelled(self, event: FromPlant, command: Command, board: Board) -> list[Message]:
-        """A copy of what the plant said, or a command of somebody else."""
+        """Take a command without an id: a copy of one of the plant's, or somebody else's."""
         at, sender = event.at, event.sender
         if board.copies.take(at, command):
             return []
@@ -197,7 +197,7 @@ class Bridge:
         return out
 
     def _is_commanded(self, at: float) -> bool:
-        """Whether a plant is heard, whose robots nobody else commands."""
+        """True while a plant is heard: then nobody else commands its robots."""
         return at < self._plant_heard_at + PLANT_GONE_S
 
     def _no_copies(self, now: float) -> list[Message]:
@@ -229,7 +229,7 @@ class Bridge:
         ]
 
     def _fence(self, command: Command) -> str | None:
-        """The word that refuses any plant but the one that beats; never a stop."""
+        """The word that refuses a command of any plant but the one heard; never a stop."""
         match = _ID.fullmatch(command.id)
         if match is None:
             return "formato"
@@ -238,7 +238,7 @@ class Bridge:
         return None if int(match[1]) == self._plant_epoch else "old_epoch"
 
     def _late(self, at: float, command: Command) -> str | None:
-        """The word that refuses what lay here while this process did nothing; a stop is never too late."""
+        """The word that refuses a command that waited while this process was stopped; never a stop."""
         late = self.now - at > self._stale_after_s
         return "no_link" if late and not isinstance(command, Stop) else None
 
@@ -252,14 +252,14 @@ class Bridge:
         return [*news, *self._beat_all(), *self._fence_all()]
 
     def _fence_all(self) -> list[Message]:
-        """Until each board says that it takes nothing older: what came before may still be on the wire."""
+        """A heartbeat for each resting board that accepts older commands, which may be on their way."""
         return [beat for board in self._boards.values() if not board.in_motion for beat in board.fence()]
 
     def _beat_all(self) -> list[Message]:
         return [board.beat() for board in self._boards.values() if board.in_motion]
 
     def _own_beats(self, now: float) -> list[Message]:
-        """For an orchestrator that knows no heartbeat: the bridge answers for it while it is there itself."""
+        """Heartbeats of the bridge itself, for an orchestrator that sends none."""
         if self._plant_beats or not any(board.in_motion for board in self._boards.values()):
             self._beat_at = math.inf
             return []
@@ -270,7 +270,7 @@ class Bridge:
 
 
 def _strange(topic: str) -> str:
-    """Why a topic is not one of a board of this plant."""
+    """The reason why a topic is not one of a board of this plant."""
     try:
         name, _ = topics.parse(topic)
     except PayloadError as error:

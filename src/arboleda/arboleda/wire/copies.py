@@ -1,4 +1,4 @@
-"""Which of the commands without an id are only copies of what the plant has said with one."""
+"""Copies, without an id, of commands that the plant has sent with one."""
 
 from __future__ import annotations
 
@@ -10,19 +10,19 @@ COPY_S = 5.0  # after its original a copy comes at once, or as late as a lossy n
 
 
 class Copies:
-    """Those of one robot; `expected` are still to come. `flow`: whether the plant makes any now."""
+    """Copies of commands for one robot; `expected` are still to come. `flow`: the plant makes copies now."""
 
     def __init__(self) -> None:
         self.flow = False
         self._expected: list[tuple[float, Command]] = []
 
     def expect(self, at: float, command: Command) -> None:
-        """The plant has given this command, and a copy of it is to come."""
+        """Expect a copy of a command that the plant has given."""
         self._forget(at)
         self._expected.append((at, without_id(command)))
 
     def take(self, at: float, command: Command) -> bool:
-        """Whether a command without an id is one of those to come, which it then is no more."""
+        """True if a command without an id is an expected copy; it is expected no more then."""
         self._forget(at)
         for each in self._expected:
             if each[1] == command:

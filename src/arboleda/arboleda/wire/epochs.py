@@ -1,4 +1,4 @@
-"""Which start of a plant can be: its number is the Unix time of that start, or one above the last number."""
+"""Valid numbers of a plant's start: the Unix time of the start, or one above the last number."""
 
 from __future__ import annotations
 
@@ -7,12 +7,12 @@ HORIZON = 4_102_444_800  # the year 2100: no plant of this protocol starts later
 
 
 def can_follow(epoch: int, known: int | None) -> bool:
-    """Whether a board without a clock believes a beat of `epoch`; `known` is the newest it has heard."""
+    """True if a board without a clock accepts `epoch`; `known` is the newest it has heard, None for none."""
     return epoch <= (HORIZON if known is None else min(known + AHEAD_S, HORIZON))
 
 
 def objection(epoch: int, unix_s: int | None) -> str | None:
-    """Why no plant can have started at `epoch`, by a clock that says `unix_s`; None where one can.
+    """The reason why no plant can have started at `epoch`, by a clock that shows `unix_s`; None if one can.
 
     Without a clock only the horizon counts: a plant on a machine that forgot the time still has its bridge.
     """

@@ -1,4 +1,4 @@
-"""How robots of each type are spoken to over MQTT, and what their telemetry can hold."""
+"""Forms of commands and telemetry over MQTT for each type of robot."""
 
 from __future__ import annotations
 
@@ -35,22 +35,22 @@ UNDONE = Phrase("why.undone", "it has not ended its last work, or is in fault")
 
 @dataclass(frozen=True, kw_only=True)
 class CommandForm:
-    """One class of commands on its way to a board: its channel, its payload, and the word that refuses it."""
+    """Form of one class of commands: channel, payload, and the word that refuses a command."""
 
     channel: Channel
     goal: type[Goal]
     body: Callable[[Any, Any], dict[str, object]]
     refusal: Callable[[Any, Any], str | None] = lambda robot, command: None
-    # What a board that tells of no refusal will not do, by where its robot rests.
+    # Reasons why a board without refusals ignores a command, by its robot's place at rest.
     passed_over: Callable[[Any, Any, Report], Sentence | None] = lambda robot, command, said: None
 
 
 @dataclass(frozen=True, kw_only=True)
 class Form:
-    """What one robot is told, and what it tells.
+    """Form of one robot's messages: the commands it takes, and the fields of its telemetry.
 
-    `missing` has the words that refuse what it knows no way for; any other is `formato`. `why` says more
-    of a refusal than its word does, where there is more.
+    `missing` has the words that refuse commands without a way; the default is `formato`. `why` gives the
+    sentence on a refusal, if there is more to say than its word.
     """
 
     ways: Mapping[type[Command], CommandForm]
@@ -62,11 +62,11 @@ class Form:
     why: Callable[[Any, Any, str, bool], Sentence | None] = lambda robot, command, word, by_board: None
 
     def way(self, kind: type[Command]) -> CommandForm | None:
-        """How commands of this class go, or of its nearest base that has a way."""
+        """The form of commands of this class, or of its nearest base that has one; None if there is none."""
         return nearest(self.ways, kind)
 
     def told(self, facts: Facts | None) -> Facts | None:
-        """The facts of its telemetry as its kind declares them; PayloadError for one that it cannot say."""
+        """The facts of telemetry in the types of the kind; raises PayloadError for an invalid one."""
         return None if facts is None else tuple(self._fact(name, value) for name, value in facts)
 
     def _fact(self, name: str, value: object) -> tuple[str, Any]:
@@ -81,7 +81,7 @@ class Form:
 
 
 def form_of(robot: Robot) -> Form:
-    """That of the nearest type of robot that has one."""
+    """The form of the robot's type, or of the nearest base that has one."""
     form = nearest(FORMS, type(robot))
     if form is None:
         raise TypeError(f"{robot.name} is reached over no wire: nothing says how a {robot.kind_name} is told")
@@ -128,7 +128,7 @@ def _wire_joints(arm: Arm, command: MoveJoints) -> dict[str, object]:
 
 
 def _beyond(arm: Arm, command: MoveJoints) -> Sentence | None:
-    """The first joint beyond its limits; None where none is."""
+    """The first joint beyond its limits; None if there is none."""
     for number, (joint, value) in enumerate(zip(arm.joints, command.q, strict=True), start=1):
         if not joint.lower - FLOAT32_SLACK <= value <= joint.upper + FLOAT32_SLACK:
             lower, upper = joint.lower, joint.upper

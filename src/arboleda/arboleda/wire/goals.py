@@ -1,4 +1,4 @@
-"""A core command as a board understands it: checked against the robot, quantised, in wire units."""
+"""Goal of a command in a board's terms: checked against the robot, quantised, in wire units."""
 
 from __future__ import annotations
 
@@ -11,16 +11,16 @@ from .topics import Channel
 
 
 def refusal(robot: Robot, command: Command) -> str | None:
-    """The word that refuses a command the robot can never carry out; None where it can."""
+    """The word that refuses a command which the robot can never carry out; None if it can."""
     form = form_of(robot)
     way = form.way(type(command))
     return form.missing.get(type(command), "formato") if way is None else way.refusal(robot, command)
 
 
 def goal(robot: Robot, command: Command, **stamp: int | None) -> tuple[Channel, Goal]:
-    """The channel and the payload of a command that `refusal` let through.
+    """The channel and payload of a command that `refusal` accepted; `stamp` has its `seq` and `epoch`.
 
-    `stamp` has its `seq`, `epoch` and, of all but a stop, `heard`.
+    For all commands but a stop, `stamp` also has `heard`.
     """
     way = form_of(robot).way(type(command))
     assert way is not None

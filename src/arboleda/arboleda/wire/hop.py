@@ -1,4 +1,4 @@
-"""The hop between plant and bridge: on which topics commands go, and how much of them arrives there.
+"""Hop between plant and bridge: the topics of commands, and the data of a command that they carry.
 
 A robot's topic `command` carries all its commands, each with its id, so that none overtakes another.
 Beside it stand the plain topics, one per kind, for nodes that know no ids: UInt8 has no place for one.
@@ -32,7 +32,7 @@ PLAIN: dict[type[Command], str] = {
 
 @dataclass(frozen=True, kw_only=True)
 class FromPlant:
-    """What reaches the bridge over the hop; a command without an id is that of somebody else.
+    """Message that reaches the bridge over the hop; a command without an id is from somebody else.
 
     `copied`: the same command also comes on its plain topic, without its id. `sender` names the nodes that
     may have published it, "" where nobody knows. `unix_s`: the time by the clock of this machine, where
@@ -47,12 +47,12 @@ class FromPlant:
 
 
 def command_topic(command: Command) -> str:
-    """Where a command goes with its id."""
+    """The topic of a command with its id."""
     return f"{command.robot}/{COMMAND}"
 
 
 def plain_topic(command: Command) -> str:
-    """Where it goes for nodes that know no ids."""
+    """The topic of a command for nodes that know no ids."""
     return f"{command.robot}/{PLAIN[kind_of(command)]}"
 
 
@@ -62,22 +62,22 @@ def kind_of(command: Command) -> type[Command]:
 
 
 def is_stop(command: Command | Heartbeat) -> bool:
-    """Whether it ends a motion: such a command is obeyed whoever gives it."""
+    """True if a command ends a motion; such a command is obeyed whoever gives it."""
     return isinstance(command, Stop) and command.mode is not StopMode.CLEAR
 
 
 def loses_its_id(command: Command) -> bool:
-    """Whether the plain topic of the command has no place for an id."""
+    """True if the plain topic of the command has no place for an id."""
     return isinstance(command, SetEffector | Stop | Home)
 
 
 def without_id(command: Command) -> Command:
-    """The command as a plain topic of UInt8 carries it."""
+    """The command without the data that a plain topic of UInt8 cannot carry."""
     return replace(command, id="", heard=None)
 
 
 def shown(command: Command) -> str:
-    """The command as people publish it: `stop_cmd 2`, `joint_goals_q`, `order run program=1001`."""
+    """The command as people would publish it: `stop_cmd 2`, `joint_goals_q`, `order run program=1001`."""
     if isinstance(command, VerbCall):
         values = (f"{name}={shown_value(value)}" for name, value in command.values)
         return " ".join((ORDER, command.verb, *values))

@@ -1,4 +1,4 @@
-"""Command id <-> (epoca, seq) of one board: what it accepted, finished and rejected, by name."""
+"""Numbers of one board: command id <-> (epoca, seq), and the commands accepted, finished and rejected."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ REMEMBERED = 256  # commands per board; an open one is never that old
 
 @dataclass(frozen=True, kw_only=True)
 class Issued:
-    """A command that was given a number under `epoch`; `sender` names who gave it where it has no id."""
+    """Command that was given a number under `epoch`; `sender` names its sender if it has no id."""
 
     command: Command
     epoch: int
@@ -28,14 +28,15 @@ class Issued:
 
 
 class Labels:
-    """The one seq counter of a board, and the commands behind its numbers.
+    """Numbers of commands to one board, and the commands behind them.
 
-    `rejected` is the last rejected command and its word, whether the board or the bridge rejected it.
-    `objection` is what the board has refused in its last telemetry and not before, with the word.
-    `answered` is the last query that a device answered, with the answer; `failed` the last command that it
-    gave up, with its word, and `failed_before` those that it names newly beside that one.
-    `foreign` is the (epoca, seq) that it has accepted in it from nobody that we know, and not before.
-    `epoch` is under which commands are given now, `start` that of this bridge's begin, which stays.
+    - `rejected` is the last rejected command and its word, from the board or the bridge.
+    - `objection` is the command that the board newly refused in its last telemetry, with the word.
+    - `answered` is the last answered query of a device, with the answer.
+    - `failed` is the last command that it gave up, with its word; `failed_before` those that it newly names
+      beside that one.
+    - `foreign` is the (epoca, seq) of an unknown sender that it has newly accepted.
+    - `epoch` is the one under which commands are given now, `start` that of this bridge's begin.
     """
 
     def __init__(self, epoch: int) -> None:
@@ -53,33 +54,33 @@ class Labels:
         self._seq = 0
         self._issued: OrderedDict[int, Issued] = OrderedDict()
         self._known: OrderedDict[str, None] = OrderedDict()
-        self._spoken = False  # whether the board may have heard of this bridge
-        self._led = False  # whether the board has said that this bridge is the newest that it hears
+        self._spoken = False  # True once the board may have heard of this bridge
+        self._led = False  # True if the board says this bridge is the newest it hears
         self._heard_refusal: tuple[int | None, int | None, str | None] | None = None
         self._heard_failures: tuple[tuple[int, str], ...] = ()
 
     @property
     def fenced(self) -> bool:
-        """Whether the board has said that it takes nothing older than what comes from here."""
+        """True once the board has said that it takes no commands older than this bridge's epoch."""
         return self._least >= self.epoch
 
     @property
     def leads(self) -> bool:
-        """Whether the board has said that this bridge is the newest that it hears, and says so still."""
+        """True while the board says that this bridge is the newest that it hears."""
         return self._led and self._least <= self.epoch
 
     @property
     def beaten_by(self) -> int | None:
-        """The epoch of another one that has come to the board after this bridge, which is refused since."""
+        """The epoch of a bridge that came after this one, and is refused since; None if there is none."""
         known = self._led or self._spoken
         return self._least if known and self._least > self.epoch else None
 
     def rise(self) -> None:
-        """Give what comes next a number above all that the board has heard."""
+        """Use an epoch above all that the board has heard from now on."""
         self.epoch = min(max(self._least, self.epoch) + 1, UINT32)
 
     def repeated(self, command_id: str) -> bool:
-        """Whether this id came before; it counts as known from now on. Unlabelled ones never repeat."""
+        """True if a command of this id came before; remembers the id. Commands without an id never repeat."""
         if command_id in self._known:
             return True
         if command_id:
@@ -87,7 +88,7 @@ class Labels:
         return False
 
     def beat(self) -> int:
-        """The epoch of a beat that leaves."""
+        """The epoch for a heartbeat."""
         self._spoken = True
         return self.epoch
 
@@ -99,19 +100,19 @@ class Labels:
         return self._seq
 
     def refuse(self, command_id: str, word: str) -> None:
-        """The bridge itself rejects a command."""
+        """Note a command that the bridge itself rejects."""
         if command_id:
             self.rejected = (command_id, word)
 
     def reboot(self) -> None:
-        """The board forgot everything; what it says from now on is new."""
+        """Forget the board's last words: after a boot all are new."""
         self.accepted = self.done = self.rejected = self.answered = self.failed = None
         self._heard_refusal = None
         self._heard_failures = ()
         self._least = -1
 
     def hear(self, said: Telemetry) -> frozenset[int]:
-        """Take over what telemetry says about our commands; the seqs that it reports ended."""
+        """Take over the state of our commands from telemetry; returns the seqs that it reports as ended."""
         acknowledged = -1 if said.ack_epoch is None else said.ack_epoch
         self._least = max(acknowledged, -1 if said.least_epoch is None else said.least_epoch)
         begins = not self._spoken and not self._led  # later it is another one that has come after this bridge
@@ -134,7 +135,7 @@ class Labels:
         self.answered = None if query is None or said.answer is None else (query, said.answer)
 
     def _given_up(self, said: Telemetry) -> list[int]:
-        """The seqs of the commands that the board gave up; it repeats the last few in every message."""
+        """The seqs of the commands that the board abandoned; it repeats the last few in every message."""
         failures = tuple(each for each in said.failures or () if self._is_ours(said, each[0]))
         names = [(self._name(said, seq), word) for seq, word in failures]
         known = [(name, word) for name, word in names if name is not None]
@@ -146,9 +147,10 @@ class Labels:
         return [seq for seq, _ in failures]
 
     def _strange(self, said: Telemetry) -> tuple[int, int] | None:
-        """A number above ours that the board newly accepted: another MQTT client has commanded it.
+        """A newly accepted number above ours, which another MQTT client must have sent; None if there is
+        none.
 
-        Before it has heard of us, it may be one of the bridge before us, whose clock was ahead.
+        Before the board has heard of us, it may be one of the bridge before us, whose clock was ahead.
         """
         accepted = (said.ack_epoch, said.ack)
         before, self._accepted = self._accepted, accepted
@@ -185,7 +187,7 @@ class Labels:
         return said.ack is not None and refused_seq < said.ack
 
     def _is_ours(self, said: Telemetry, seq: int | None) -> bool:
-        """Whether a number that the board says is one that it was given from here."""
+        """True if a number from the board was given to it by this bridge."""
         issued = self._issued.get(seq) if seq is not None else None
         return issued is not None and issued.epoch == said.ack_epoch
 

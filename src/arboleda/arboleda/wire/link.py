@@ -1,4 +1,4 @@
-"""Is there a board at the other end? Broker, presence, fresh telemetry, and which boot it is."""
+"""Link to a board: broker, presence, fresh telemetry, and detection of reboots."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from .payloads import Telemetry
 
 
 class LinkUpdate(Enum):
-    """What a telemetry message means for the link."""
+    """Meaning of a telemetry message for the link."""
 
     LATE = "late"  # it left the broker before the connection was lost
     ABSENT = "absent"  # the board's presence says that nobody is there
@@ -20,9 +20,10 @@ class LinkUpdate(Enum):
 
 
 class BoardLink:
-    """Up = broker reached, presence not "0", telemetry heard within `stale_after_s` (None: any time ago).
+    """State of the link: up with the broker reached, presence not "0", and telemetry within `stale_after_s`.
 
-    `stale_at` is when silence will have lasted too long: never while down, and where silence means nothing.
+    With `stale_after_s` None telemetry of any age counts. `stale_at` is the time at which silence will have
+    lasted too long; inf while down, and if silence means nothing.
     """
 
     def __init__(self, stale_after_s: float | None) -> None:
@@ -31,9 +32,7 @@ class BoardLink:
         self.boot_id: int | None = None
         self._stale_after_s = math.inf if stale_after_s is None else stale_after_s
         self._connected = False
-        self.returns = (
-            0  # how often a board that was absent came back: for one without ids, as good as a boot
-        )
+        self.returns = 0  # returns of an absent board; without ids each counts as a boot
         self._absent = False
         self.number: int | None = None  # of the last telemetry, counted since boot
         self._below: tuple[float, int] | None = None  # since when old numbers rise, and the last of them
@@ -43,17 +42,17 @@ class BoardLink:
         self._absent = False  # the broker tells the retained presence again at the next subscription
 
     def presence(self, online: bool) -> None:
-        """A board that never says so counts as present."""
+        """Take the presence of a board; one that never sends any counts as present."""
         self.returns += self._absent and online
         self._absent = not online
 
     def lose(self) -> bool:
-        """There is no way to the board; whether that is new."""
+        """Lose the way to the board; True if that is new."""
         was_up, self.up, self.stale_at, self._below = self.up, False, math.inf, None
         return was_up
 
     def hear(self, at: float, said: Telemetry) -> LinkUpdate:
-        """Take over one telemetry message."""
+        """Take a telemetry message, and return its meaning for the link."""
         if not self._connected:
             return LinkUpdate.LATE
         if self._absent:
@@ -70,7 +69,7 @@ class BoardLink:
         return LinkUpdate.ARRIVAL if arrived else LinkUpdate.NEWS
 
     def hear_again(self, at: float, seq: int) -> bool:
-        """Take over telemetry that repeats the last one; whether it is surely news, else `hear` decides."""
+        """Take telemetry that repeats the last one; True if it is surely news, else `hear` decides."""
         if not self.up:
             return False
         if self.number is not None:
@@ -86,7 +85,7 @@ class BoardLink:
         return said.seq is not None and self.number is not None and said.seq <= self.number
 
     def _counts_anew(self, at: float, seq: int | None) -> bool:
-        """Whether a lost board's old numbers have risen for as long as made it lost: the high one was wrong.
+        """True if a lost board's lower numbers have risen for `stale_after_s`: then the higher one was wrong.
 
         After a damaged number, or where a counter begins anew without a boot, nobody would hear it for long.
         """

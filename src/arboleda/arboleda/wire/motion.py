@@ -1,4 +1,4 @@
-"""An open motion or process: when does what a board says end it?
+"""Open motion or process, and the decision whether a board's telemetry ends it.
 
 The judge of the core decides what was achieved; this only decides how long the board needs beats.
 """
@@ -13,15 +13,15 @@ from arboleda.model.plant_model import Evidence, MotionState, Robot
 
 from .payloads import Telemetry
 
-LINGER_S = 1.0  # as long as a board drives on without beats; what it says may be of before this command
+LINGER_S = 1.0  # a board drives on for so long without heartbeats; its report may be from before this command
 
 
 @dataclass(kw_only=True)
 class OpenMotion:
     """Work that was sent as `seq`; `stopping` once a halt or a stop followed it.
 
-    A board that names no command may say that it stands still because an earlier move has ended, or before
-    this one has reached it. So it gets beats until it has said so for LINGER_S: `ending` meanwhile.
+    A board that names no command may report rest because an earlier move has ended, or before this one has
+    reached it. So it gets heartbeats until it has reported rest for LINGER_S; `ending` is True meanwhile.
     """
 
     robot: Robot
@@ -33,7 +33,7 @@ class OpenMotion:
 
     @property
     def ending(self) -> bool:
-        """Whether the next telemetry may end it though it repeats the last."""
+        """True if the next telemetry may end the motion even if it repeats the last."""
         return self._still_since is not None
 
     def ended(
@@ -44,8 +44,11 @@ class OpenMotion:
         seqs: frozenset[int],
         facts: Facts | None = None,
     ) -> bool:
-        """Whether telemetry heard `at` ends this work: joints `q` in SI, the `facts` of a device, and the
-        command `seqs` that it ends."""
+        """True if telemetry heard `at` ends this work.
+
+        `q`: joints in SI units. `seqs`: numbers of the commands that the telemetry ends. `facts`: those of a
+        device.
+        """
         if self.seq in seqs:
             return True
         if said.state is MotionState.MOVING:

@@ -1,4 +1,4 @@
-"""Whether a kind of device can be spoken to over MQTT at all: its names, and the longest of its messages."""
+"""Checks that a kind of device can be used over MQTT: its names, and the longest of its messages."""
 
 from __future__ import annotations
 
@@ -24,14 +24,14 @@ Place = tuple[str | int, ...]
 
 @dataclass(frozen=True, kw_only=True)
 class Objection:
-    """What of a kind keeps it from MQTT, and why."""
+    """Reason against a kind of device over MQTT, and the place in the kind that it is about."""
 
     place: Place
     sentence: str
 
 
 def objections(kind: DeviceKind) -> list[Objection]:
-    """All that keeps a kind of device from MQTT."""
+    """All objections to a kind of device over MQTT."""
     found = [*_names(kind), *_silent(kind)]
     return found or [*_lengths(kind)]
 
@@ -79,7 +79,7 @@ def _lengths(kind: DeviceKind) -> Iterator[Objection]:
 
 
 def _telemetry(kind: DeviceKind) -> Telemetry:
-    """The longest message with all that a device of this kind can say."""
+    """The longest telemetry that a device of this kind can send."""
     answers = [answer for verb in kind.verbs.values() for answer in _answers(verb)]
     return Telemetry(
         q=None,

@@ -18,7 +18,7 @@ from .status import command_id
 
 
 def write(command: Command, *, copied: bool = False) -> str:
-    """The text of a command; `copied`: whether a copy without its id comes on its plain topic."""
+    """The text of a command; `copied`: a copy without its id comes on its plain topic."""
     said: dict[str, object] = {"id": command.id} if command.id else {}
     if isinstance(command, VerbCall):
         said |= {"verb": command.verb, "values": dict(command.values)}
@@ -33,7 +33,7 @@ def write(command: Command, *, copied: bool = False) -> str:
 
 
 def read(device: Device, text: str) -> tuple[Command, bool]:
-    """The command in a text, its id "" where it has none, and whether a copy comes; else PayloadError."""
+    """The command in a text, its id "" if it has none, and True if a copy comes; raises PayloadError."""
     fields = strict.read(text.encode())
     id = fields.matching("id", command_id) if "id" in fields else ""
     copied = fields.flag("copied") is True

@@ -1,4 +1,4 @@
-"""Bytes <-> values of MQTT: strict both ways, a message is taken whole or refused whole."""
+"""Conversion of MQTT payloads and values, strict both ways: a message is taken whole or refused whole."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ __all__ = [
 REFUSALS = frozenset({"viejo", "retenido", "tarde", "formato", "limite", "sin_ref", "paro", "ocupado"})
 """The words a board may give as `rechazo`."""
 DEVICE_REFUSALS = frozenset({"viejo", "retenido", "tarde", "formato", "paro", "ocupado", "condicion"})
-"""Those that a device of a declared kind may give."""
+"""The words that a device of a declared kind may give as `rechazo`."""
 DEVICE = 0  # `axes` of a device of a declared kind: it has facts instead
 FAILURES_KEPT = 3  # of a device; as many may end unseen before telemetry arrives again
 
@@ -79,7 +79,7 @@ def decode(channel: Channel, raw: bytes, *, axes: int | None) -> Payload:
 
 
 def encode(payload: Payload) -> bytes:
-    """Compact JSON of at most 512 bytes, angles with 4 decimals; PayloadError for what cannot be said."""
+    """Compact JSON of at most 512 bytes, angles with 4 decimals; PayloadError if that is impossible."""
     if isinstance(payload, Presence):
         return b"1" if payload.online else b"0"
     body = _WRITERS[type(payload)](payload)
@@ -87,13 +87,13 @@ def encode(payload: Payload) -> bytes:
 
 
 def angles(q: tuple[float, ...]) -> bytes:
-    """How telemetry of an arm begins, up to its last joint."""
+    """The beginning of an arm's telemetry, up to its last joint."""
     rows = zip(_joint_keys(len(q), "_mov"), q, strict=True)
     return ("{" + ",".join([f'"{key}":{_angle(key, value)}' for key, value in rows])).encode()
 
 
 def read_angles(raw: bytes, axes: int) -> tuple[tuple[float, ...], int] | None:
-    """The joints that telemetry begins with and how many bytes they take; None unless `angles` writes so."""
+    """The joints at the begin of telemetry, and their bytes; None unless `angles` writes the same."""
     begin = _angles_pattern(axes).match(raw)
     if begin is None:
         return None
@@ -163,7 +163,7 @@ def _order(fields: strict.Fields, axes: int | None) -> OrderGoal:
 
 @lru_cache(maxsize=64)
 def _beat(raw: bytes) -> Beat:
-    """Whoever beats says the same four times a second."""
+    """Parses a heartbeat, which each sender repeats four times a second."""
     return Beat(epoch=strict.read(raw).integer("epoca"))
 
 

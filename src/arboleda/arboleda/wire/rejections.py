@@ -1,4 +1,4 @@
-"""Commands that were refused, and those of others that were not: what is said of them, and to whom."""
+"""Sentences on commands that were refused, and on foreign commands that were carried out."""
 
 from __future__ import annotations
 
@@ -55,14 +55,14 @@ WHY = {
         "why.tarde", "it came too late: who gave it had not heard the board for 2 s by the time it arrived"
     ),
 }
-"""What the words of bridge and boards mean."""
+"""Meanings of the words with which bridge and boards refuse commands."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Rejection:
-    """A command that was refused, by the bridge or by the board.
+    """Command refused by the bridge or by the board.
 
-    `command` is the plain topic and, where it is one number, the value; `id` is "" where it had none.
+    `command` is the plain topic and, if it is a single number, the value; `id` is "" if it had none.
     """
 
     at: float
@@ -75,7 +75,7 @@ class Rejection:
 
 @dataclass(frozen=True, kw_only=True)
 class ForeignCommand:
-    """A command of somebody else that was carried out while a plant commands the robot."""
+    """Command of somebody else that was carried out while a plant commands the robot."""
 
     at: float
     robot: str
@@ -83,7 +83,7 @@ class ForeignCommand:
 
 
 def refused(robot: Robot, command: Command, word: str, sender: str, *, by_board: bool) -> Sentence:
-    """What is said of a command that was refused with a word."""
+    """The sentence for a command that was refused with `word`."""
     why = _why(robot, command, word, by_board=by_board)
     if sender:
         return REJECTED_OF(robot=robot.name, command=shown(command), sender=sender, word=word, why=why)
@@ -91,32 +91,32 @@ def refused(robot: Robot, command: Command, word: str, sender: str, *, by_board:
 
 
 def passed_over(robot: Robot, command: Command, why: Sentence) -> Sentence:
-    """What is said of a command that a board does not do, and tells nobody."""
+    """The sentence for a command that a board silently ignores."""
     return PASSED_OVER(robot=robot.name, command=shown(command), why=why)
 
 
 def unreadable(robot: Robot, topic: str, why: Sentence) -> Sentence:
-    """What is said of a message on a robot's topic that is no command."""
+    """The sentence for a message on a robot's topic that is no command."""
     return REJECTED(robot=robot.name, command=topic, word="formato", why=why)
 
 
 def obeyed(robot: Robot, command: Command, sender: str) -> Sentence:
-    """What is said of a command of somebody else that was carried out."""
+    """The sentence for a command of somebody else that was carried out."""
     return OBEYED(robot=robot.name, command=shown(command), sender=sender or SOMEBODY())
 
 
 def overheard(command: Command, sender: str) -> Sentence:
-    """What is said of a command of somebody else to a robot that hears everybody."""
+    """The sentence for a command of somebody else to a robot that hears everybody."""
     return OVERHEARD(robot=command.robot, command=shown(command), sender=sender or SOMEBODY())
 
 
 def taken(robot: Robot, epoch: int, seq: int) -> Sentence:
-    """What is said of a command that the board has from nobody but another MQTT client."""
+    """The sentence for a command that the board got from another MQTT client."""
     return TAKEN(robot=robot.name, epoch=epoch, seq=seq)
 
 
 def beaten(robot: Robot, epoch: int, *, yielded: bool) -> Sentence:
-    """What is said of another bridge that beats the same board."""
+    """The sentence for another bridge that sends heartbeats to the same board."""
     return (YIELDED if yielded else BEATEN)(robot=robot.name, epoch=epoch)
 
 
@@ -148,4 +148,4 @@ SAID_OF_OTHERS = {
         *WHY.values(),
     )
 }
-"""All that a bridge may say of commands of others, by key."""
+"""The phrases of a bridge on commands of others, by key."""

@@ -1,4 +1,4 @@
-"""Telemetry that repeats the one before under another number: known by its bytes, without reading it.
+"""Detector of telemetry that repeats the one before under another number, by its bytes, without parsing.
 
 That of a moving arm may have other joints.
 """
@@ -19,9 +19,9 @@ LONGEST = len(str(UINT32))
 
 @dataclass(frozen=True, slots=True)
 class Words:
-    """An accepted message: up to its number, and after it; `after` is None where it has no number.
+    """Accepted message, split at its number; `after` is None if it has no number.
 
-    `joints` is how many bytes of it are joints that may be others next time; 0 where they may not.
+    `joints` is the number of bytes that hold joints, which may change; 0 if none may.
     """
 
     before: bytes
@@ -30,7 +30,7 @@ class Words:
 
     @classmethod
     def of(cls, raw: bytes, said: Telemetry) -> Words | None:
-        """None where the bytes alone do not show which number is the message's own."""
+        """The split of a message; None if its bytes alone do not show which number is the message's own."""
         joints = _joints(raw, said)
         if said.seq is None:
             return cls(raw, None, joints)
@@ -42,11 +42,11 @@ class Words:
         return cls(before + KEY, after, joints) if sure else None
 
     def turned(self, raw: bytes, joints: int) -> Words:
-        """What a message says that begins with other `joints`, and goes on like this one."""
+        """The words of a message that begins with other `joints` and goes on like this one."""
         return Words(raw[:joints] + self.before[self.joints :], self.after, joints)
 
     def number(self, raw: bytes) -> int | None:
-        """The number of a message that says the same, 0 where such have none; None for any other message."""
+        """The number of a message with the same meaning, 0 if such have none; None for any other message."""
         before, after = self.before, self.after
         if len(raw) > LIMIT_BYTES:
             return None
@@ -61,12 +61,12 @@ class Words:
         return number if number <= UINT32 and b"%d" % number == digits else None  # else it is not JSON
 
     def news(self, number: int) -> dict[str, int]:
-        """What a message of that `number` says anew: nothing, where such have none."""
+        """The fields that a message of this number adds to a repeated one; none if it has no number."""
         return {} if self.after is None else {"number": number}
 
 
 def _joints(raw: bytes, said: Telemetry) -> int:
-    """Only of an arm that moves: joints of one that says it stands still may mean that a motion ended."""
+    """The number of bytes that hold joints; 0 unless the arm moves, as joints at rest may end a motion."""
     if said.q is None or said.state is not MotionState.MOVING:
         return 0
     read = read_angles(raw, len(said.q))

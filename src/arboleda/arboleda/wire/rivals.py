@@ -11,35 +11,35 @@ from enum import Enum
 
 from .labels import Labels
 
-NEW_S = 10.0  # a bridge that has led its board for less is the one that came later
-MOST, WITHIN_S = 3, 60.0  # rises: a board that says what is not so would have it rise without end
+NEW_S = 10.0  # a bridge that has led its board for less time came later
+MOST, WITHIN_S = 3, 60.0  # limit of rises: a board with false reports would cause them without end
 
 
 class News(Enum):
-    """What a board has newly shown of others."""
+    """Trouble with others that a board's telemetry newly shows."""
 
     BEATEN = "beaten"  # another bridge beats with a higher number
-    YIELDED = "yielded"  # it was there before this one, which commands the board no more
-    TAKEN = "taken"  # it took a command that nobody gave from here
+    YIELDED = "yielded"  # it was there first, so this one yields the board
+    TAKEN = "taken"  # it accepted a command that this bridge did not give
 
 
 class Rivals:
-    """`yielded`: this bridge leaves the board to another one, until it is started again."""
+    """Detector of others; `yielded`: this bridge leaves the board to another one until it restarts."""
 
     def __init__(self) -> None:
         self.yielded = False
         self._led_since: float | None = None
         self._noticed_at: float | None = None  # until it is answered
         self._beaten_by: int | None = None
-        self._moves = False  # whether the board may be doing what somebody else commanded
+        self._moves = False  # True if the board may be carrying out somebody else's command
         self._risen: deque[float] = deque(maxlen=MOST)
 
     def lose(self) -> None:
-        """Who was away does not know who was there first."""
+        """Forget when this bridge began to lead: after an absence it does not know who came first."""
         self._led_since = None
 
     def hear(self, at: float, labels: Labels) -> News | None:
-        """What telemetry that `labels` has taken over shows newly."""
+        """The news that this telemetry brings of others, None for none; `labels` has taken it in already."""
         known, self._beaten_by = self._beaten_by, labels.beaten_by
         if labels.leads and self._led_since is None:
             self._led_since = at
@@ -53,10 +53,10 @@ class Rivals:
         return News.YIELDED if self.yielded else News.BEATEN
 
     def answer(self, at: float, labels: Labels, *, in_motion: bool) -> bool:
-        """Rise, where a word of the plant, no older than what was noticed, shows that it still commands;
-        whether the board is to be halted then.
+        """Rise above the others, if a later word of the plant shows that it still commands; True if the board
+        is to be halted.
 
-        Not while a motion goes on that the board would end without beats of its own epoch.
+        Not while a motion goes on that the board would end without heartbeats of its own epoch.
         """
         noticed, moves = self._noticed_at, self._moves
         if noticed is None or at < noticed or self.yielded or (in_motion and not moves):

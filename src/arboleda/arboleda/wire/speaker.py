@@ -1,4 +1,4 @@
-"""Who speaks for a robot on ROS 2: while several nodes publish what it reports, nothing of that is believed.
+"""Check of the nodes that speak for a robot on ROS 2: while several publish its reports, none is believed.
 
 rclpy tells neither whose a message is nor proves it, only who publishes on a topic.
 """
@@ -10,7 +10,7 @@ from collections.abc import Sequence
 
 from arboleda.model.sentence import Phrase, Sentence
 
-HOLD_S = 0.5  # what a node that is gone has left in the queues
+HOLD_S = 0.5  # time for messages of a gone node to leave the queues
 NAMELESS_S = 1.0  # discovery may show a publisher before it knows the node
 GONE = Phrase("speaker.gone", "a node that is gone")
 NAMELESS = Phrase("speaker.nameless", "a node without a name")
@@ -23,7 +23,7 @@ AND = Phrase("speaker.and", "{first} and {second}")
 
 
 class Contest:
-    """Several nodes on one topic, `since` when, and which of them people were told of."""
+    """Contest of several nodes on one topic, with its begin, and those nodes that were reported."""
 
     def __init__(self, since: float) -> None:
         self.since = since
@@ -31,7 +31,8 @@ class Contest:
 
 
 class Speaker:
-    """That of one robot. Nodes of one name are one: it was started again, and DDS still keeps the last."""
+    """Check of one robot's speakers; nodes of one name count as one: DDS keeps a restarted one for a
+    while."""
 
     def __init__(self, robot: str) -> None:
         self._robot = robot
@@ -39,11 +40,11 @@ class Speaker:
         self._until = -math.inf
 
     def believed(self, at: float) -> bool:
-        """Whether what is heard now counts."""
+        """True while the robot's reports count."""
         return not self._contests and at >= self._until
 
     def publishers(self, at: float, topic: str, nodes: Sequence[str | None]) -> Sentence | None:
-        """Take over who publishes on a topic, None for a node without a name (yet); what is new of others."""
+        """Take the publishers of a topic, None for one still without a name; returns the news of others."""
         names = frozenset(nodes)
         if len(names) <= 1 and nodes.count(None) <= 1:
             return self._settled(at, topic, alone=len(nodes) <= 1)
@@ -54,7 +55,7 @@ class Speaker:
         return self._sentence(topic, names)
 
     def came_and_went(self, at: float, topic: str) -> Sentence | None:
-        """A node has published that is there no more; the sentence on it, where nothing was told."""
+        """The sentence on a node that published and has gone already; None if it was reported."""
         was_believed, self._until = self.believed(at), at + HOLD_S
         return self._contested(topic, GONE()) if was_believed else None
 

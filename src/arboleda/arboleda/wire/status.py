@@ -27,7 +27,7 @@ from .strict import UINT32
 OK, WARN, ERROR, STALE = range(4)  # levels of diagnostic_msgs/DiagnosticStatus
 _LABEL = "id="
 _HEARD = "heard="
-NUMBER = "number"  # the key that a status ends with, but for what is said of commands of others
+NUMBER = "number"  # the last key of a status, but for those on commands of others
 NUMBER_DIGITS = len(str(UINT32))
 _FLOAT = re.compile(r"-?\d+(\.\d+)?([eE][-+]?\d+)?", re.ASCII)
 _ID = re.compile(r"[A-Za-z0-9_.-]{1,64}", re.ASCII)
@@ -47,7 +47,7 @@ _SAID = {
 
 @dataclass(frozen=True, kw_only=True)
 class Status:
-    """The plain content of a DiagnosticStatus; `level` is one of OK, WARN, ERROR, STALE."""
+    """Plain content of a DiagnosticStatus; `level` is one of OK, WARN, ERROR, STALE."""
 
     name: str
     hardware_id: str
@@ -57,7 +57,7 @@ class Status:
 
 
 def to_status(robot: Robot, report: Report) -> Status:
-    """What the bridge publishes for one report; one without a state tells of refused or foreign commands."""
+    """The status to publish for a report; one without a state tells of refused or foreign commands."""
     level, message = (WARN, "command refused") if report.state is None else _SAID[report.state]
     values = {
         key: write(getattr(report, name)) for key, (name, _, write) in _ROWS.items() if _said(report, name)
@@ -68,7 +68,7 @@ def to_status(robot: Robot, report: Report) -> Status:
 
 
 def from_status(at: float, robot: Robot, status: Status) -> Report:
-    """The report behind a status that came in at `at`; PayloadError names the key that is wrong."""
+    """The report in a status received `at`; raises PayloadError, which names the wrong key."""
     if status.name != _name(robot):
         raise PayloadError(f"status name is {quoted(status.name)}; allowed: {quoted(_name(robot), 80)}")
     said = {
@@ -80,25 +80,24 @@ def from_status(at: float, robot: Robot, status: Status) -> Report:
 
 
 def to_label(command_id: str) -> str:
-    """`layout.dim[0].label` of a command: `id=<command id>`."""
+    """The label of a command, `layout.dim[0].label`: `id=<command id>`."""
     return _LABEL + command_id
 
 
 def from_label(label: str) -> str:
-    """The command id of a label; "" for a label that is not ours, PayloadError for a broken id."""
+    """The command id of a label; "" for another label, PayloadError for an invalid id."""
     if not label.startswith(_LABEL):
         return ""
     return command_id("label", label[len(_LABEL) :])
 
 
 def to_heard_label(number: int) -> str:
-    """A further label of a command: `heard=<number>`, of the last telemetry that the plant had heard."""
+    """The label of the last telemetry that the plant had heard: `heard=<number>`."""
     return f"{_HEARD}{number}"
 
 
 def from_heard_labels(labels: Iterable[str]) -> int | None:
-    """The number in that one of the further labels of a command; None where none is, PayloadError for a
-    broken one."""
+    """The number in the `heard` label among further ones; None without, PayloadError for an invalid one."""
     said = next((label for label in labels if label.startswith(_HEARD)), None)
     return None if said is None else _count("heard", said[len(_HEARD) :])
 
@@ -123,7 +122,7 @@ def _fits(robot: Robot, report: Report) -> None:
 
 
 def command_id(key: str, text: str) -> str:
-    """An id as it may be written; PayloadError for any other text."""
+    """The id, if it is valid; raises PayloadError otherwise."""
     if not _ID.fullmatch(text):
         raise PayloadError(f"{key} is {quoted(text)}; 1 to 64 of A-Z a-z 0-9 _ . - are needed")
     return text
@@ -136,12 +135,12 @@ def _sentence(key: str, text: str) -> str:
 
 
 def _written(sentence: Sentence) -> dict[str, str]:
-    """A sentence as text for whoever reads it, and as what it is made of."""
+    """The values for a sentence: its text for people, and its parts."""
     return {FOREIGN: str(sentence), FOREIGN_SAID: json.dumps(sentence.data())}
 
 
 def _foreign(values: Mapping[str, str]) -> Sentence | None:
-    """The sentence on commands of others; its text alone where what it is made of does not say the same."""
+    """The sentence on commands of others; only its text if its parts give another one."""
     if FOREIGN not in values:
         return None
     text, said = _sentence(FOREIGN, values[FOREIGN]), values.get(FOREIGN_SAID, "")
@@ -194,7 +193,7 @@ def _facts(key: str, text: str) -> Facts:
 
 
 def _in_json(key: str, text: str) -> object:
-    """What a value holds that is JSON, no longer than a message of a device."""
+    """The value of a JSON text, which is limited to the length of a device's message."""
     try:
         return strict.parse(text.encode())
     except PayloadError as error:
@@ -215,7 +214,7 @@ def _write_facts(facts: Facts) -> str:
 
 
 def written_number(number: int) -> str:
-    """The number of telemetry, always as long as the longest: statuses at rest differ in nothing else."""
+    """The number of telemetry, padded to full length, so that statuses at rest differ in nothing else."""
     return f"{number:0{NUMBER_DIGITS}d}"
 
 

@@ -1,4 +1,4 @@
-"""Strict JSON: one small object, every value of exactly the declared kind, or PayloadError."""
+"""Strict JSON: one small object, every value of exactly the declared kind; else PayloadError."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ LIMIT_BYTES = 512
 UINT32 = 2**32 - 1
 LARGEST = 1e9  # of a fact that is a number
 LONGEST = 32  # characters of a name, and bytes of a text
-LONGEST_WORD = 16  # of a word for why
+LONGEST_WORD = 16  # length of a word for a reason
 TEXT_RULE = (
     f"at most {LONGEST} bytes of printable characters without double quotes and backslashes are allowed, "
     "where an accented letter takes 2 bytes, and one of other scripts up to 4"
@@ -26,7 +26,7 @@ _TEXT = re.compile(r"[ !#-\[\]-~\u00a1-\ud7ff\ue000-\U0010ffff]*")  # each is as
 
 
 def read(raw: bytes) -> Fields:
-    """The object that `raw` holds; PayloadError says what is wrong with the bytes."""
+    """The object in `raw`; raises PayloadError, which tells what is wrong with the bytes."""
     value = parse(raw)
     if not isinstance(value, dict):
         raise PayloadError('the message is not a JSON object, e.g. {"estado": 0}')
@@ -34,7 +34,7 @@ def read(raw: bytes) -> Fields:
 
 
 def parse(raw: bytes) -> object:
-    """The value that `raw` holds, of at most as many bytes as a message has; else PayloadError."""
+    """The value in `raw`, which is limited to a message's length; raises PayloadError."""
     if len(raw) > LIMIT_BYTES:
         raise PayloadError(f"the message has {len(raw)} bytes; at most {LIMIT_BYTES} are allowed")
     try:
@@ -51,7 +51,7 @@ def parse(raw: bytes) -> object:
 
 
 def write(values: dict[str, object]) -> bytes:
-    """Compact JSON; PayloadError when it would exceed the limit that `read` allows."""
+    """Compact JSON; raises PayloadError beyond the length that `read` allows."""
     raw = to_json(values).encode()
     if len(raw) > LIMIT_BYTES:
         raise PayloadError(f"the message would have {len(raw)} bytes; at most {LIMIT_BYTES} are allowed")
@@ -59,7 +59,7 @@ def write(values: dict[str, object]) -> bytes:
 
 
 def integer(key: str, value: object, top: int = UINT32, bottom: int = 0) -> int:
-    """`value` if it is an int within bottom..top; a bool is none."""
+    """`value` if it is an int within bottom..top; a bool is none. Raises PayloadError otherwise."""
     if type(value) is not int:
         raise PayloadError(f"{key} is {_shown(value)}; an integer is needed")
     if not bottom <= value <= top:
@@ -68,7 +68,7 @@ def integer(key: str, value: object, top: int = UINT32, bottom: int = 0) -> int:
 
 
 def number(key: str, value: object, bound: float) -> float:
-    """`value` as a finite float within +-bound; neither a bool nor a string is a number."""
+    """`value` as a finite float within +-bound; a bool or a string is none. Raises PayloadError otherwise."""
     if type(value) not in (int, float):
         raise PayloadError(f"{key} is {_shown(value)}; a number is needed")
     # compared before it becomes a float: an int of 500 digits does not fit one
@@ -78,7 +78,7 @@ def number(key: str, value: object, bound: float) -> float:
 
 
 def name(key: str, value: object, longest: int = LONGEST) -> str:
-    """A name of a verb, a fact or a fault, as somebody who makes a board chose it."""
+    """A name of a verb, fact or fault, chosen by the maker of a board."""
     if not isinstance(value, str) or len(value) > longest or not _NAME.fullmatch(value):
         raise PayloadError(f"{key} is {_shown(value)}; 1 to {longest} of A-Z a-z 0-9 _ . - are needed")
     return value
@@ -101,7 +101,7 @@ def fact(key: str, value: object) -> Value:
 
 
 def shown_fact(key: str, value: object) -> Value:
-    """A value that a device says: people see it, so its text is printable; and in NFC, as those of kinds."""
+    """A value that a device reports and people see: its text is printable, and in NFC like that of kinds."""
     value = fact(key, value)
     if not isinstance(value, str):
         return value
@@ -112,14 +112,14 @@ def shown_fact(key: str, value: object) -> Value:
 
 
 def facts(key: str, values: object, value: Callable[[str, object], Value] = fact) -> Facts:
-    """An object of named values, each of which is read by `value`."""
+    """An object of named values, each of which `value` reads."""
     if not isinstance(values, dict):
         raise PayloadError(f"{key} is {_shown(values)}; an object is needed")
     return tuple((name(f"a name in {key}", each), value(f"{key}.{each}", values[each])) for each in values)
 
 
 class Fields:
-    """The keys of one object; a getter returns a checked value or raises PayloadError naming the key."""
+    """Keys of one object; a getter returns a checked value, or raises PayloadError naming the key."""
 
     def __init__(self, values: dict[str, object]) -> None:
         self._values = values
@@ -147,14 +147,14 @@ class Fields:
         return value
 
     def optional(self, key: str, top: int = UINT32) -> int | None:
-        """An integer that may be absent; `null` is not absent."""
+        """An integer that may be absent; `null` does not count as absent."""
         value = self._values.get(key)
         if type(value) is int and 0 <= value <= top:
             return value
         return integer(key, value, top) if key in self._values else None
 
     def flag(self, key: str) -> bool | None:
-        """0 or 1 that may be absent."""
+        """A flag of 0 or 1 that may be absent."""
         value = self.optional(key, 1)
         return None if value is None else value == 1
 
@@ -162,14 +162,14 @@ class Fields:
         return name(key, self._get(key))
 
     def matching(self, key: str, check: Callable[[str, str], str]) -> str:
-        """A text that `check`, called with key and text, lets through."""
+        """A text that `check`, called with key and text, accepts."""
         value = self._get(key)
         if not isinstance(value, str):
             raise PayloadError(f"{key} is {_shown(value)}; a text is needed")
         return check(key, value)
 
     def shown_fact(self, key: str) -> Value | None:
-        """A value that a device says, which may be absent."""
+        """A value that a device reports, which may be absent."""
         return shown_fact(key, self._values[key]) if key in self._values else None
 
     def facts(self, key: str, value: Callable[[str, object], Value] = fact) -> Facts | None:
@@ -186,13 +186,13 @@ class Fields:
         return tuple(_pair(f"{key}[{index}]", row) for index, row in enumerate(rows))
 
     def together(self, first: str, second: str) -> None:
-        """Two keys that only make sense as a pair."""
+        """Raises PayloadError if only one of two keys is there."""
         if (first in self._values) != (second in self._values):
             here, there = (first, second) if first in self._values else (second, first)
             raise PayloadError(f"{there} is missing: it goes with {here}")
 
     def refuse(self, whose: str, *keys: str) -> None:
-        """PayloadError for a key that `whose` messages cannot have."""
+        """Raises PayloadError for a key that `whose` messages cannot have."""
         for key in keys:
             if key in self._values:
                 raise PayloadError(f"{key} is {_shown(self._values[key])}; {whose} has none")
@@ -224,10 +224,10 @@ def _no_constant(name: str) -> object:
 
 
 def _shown(value: object) -> str:
-    """The value as a sentence names it; a number that no float holds is "too large"."""
+    """The value as a sentence names it; a number too large for a float is "too large"."""
     return "too large" if isinstance(value, float) and not math.isfinite(value) else quoted(value)
 
 
 _from_json = json.JSONDecoder(object_pairs_hook=_unique, parse_constant=_no_constant).decode
 to_json = json.JSONEncoder(separators=(",", ":"), allow_nan=False, ensure_ascii=False).encode
-"""Compact JSON, its letters as they are: escapes would make it longer than a message may be."""
+"""Encoder of compact JSON without escapes, which could make it longer than a message may be."""

@@ -26,12 +26,12 @@ class Channel(str, Enum):
 
 
 def topic(mqtt_name: str, channel: Channel) -> str:
-    """`ra_1/juntas`."""
+    """The topic of a board's channel: `ra_1/juntas`."""
     return f"{mqtt_name}/{channel.value}"
 
 
 def parse(topic: str) -> tuple[str, Channel]:
-    """The board and the channel of a topic; PayloadError for any other topic."""
+    """The board and the channel of a topic; raises PayloadError for any other topic."""
     board, _, name = topic.partition("/")
     if not _BOARD.fullmatch(board):
         raise PayloadError(f"topic {quoted(topic, 80)}: the board's name is 1 to 64 of A-Z a-z 0-9 _ -")

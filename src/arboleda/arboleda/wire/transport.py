@@ -1,4 +1,4 @@
-"""What an MQTT client carries: publications out, deliveries and its own connection in."""
+"""Events and orders of an MQTT client: publications out, deliveries and its own connection in."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, kw_only=True)
 class Publication:
-    """One message to publish."""
+    """Message to publish."""
 
     topic: str
     payload: bytes
@@ -17,7 +17,7 @@ class Publication:
 
 @dataclass(frozen=True, kw_only=True)
 class Delivery:
-    """One message that a subscription received; `retain` as the broker flagged it."""
+    """Message that a subscription received; `retain` as the broker flagged it."""
 
     at: float
     topic: str
@@ -27,7 +27,7 @@ class Delivery:
 
 @dataclass(frozen=True, kw_only=True)
 class Connection:
-    """A client reached or lost its broker; `client` is its MQTT client id."""
+    """Event: a client reached or lost its broker; `client` is its MQTT client id."""
 
     at: float
     client: str

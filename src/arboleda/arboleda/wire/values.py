@@ -1,4 +1,4 @@
-"""What goes over MQTT: one frozen value per message, angles in degrees as on the wire.
+"""Messages over MQTT: one frozen value for each, angles in degrees as on the wire.
 
 `seq` and `epoch` of a command are both present, or both None for boards that know neither. `heard` is the
 number of the board's last telemetry that whoever commands had heard, None where that is not said; a stop
@@ -16,7 +16,7 @@ from arboleda.model.plant_model import MotionState
 
 @dataclass(frozen=True, kw_only=True)
 class JointsGoal:
-    """`juntas`: absolute joint targets."""
+    """Command `juntas`: absolute joint targets."""
 
     q: tuple[float, ...]
     seq: int | None
@@ -26,7 +26,7 @@ class JointsGoal:
 
 @dataclass(frozen=True, kw_only=True)
 class PathGoal:
-    """`camino`: grid nodes in driving order."""
+    """Command `camino`: grid nodes in driving order."""
 
     nodes: tuple[int, ...]
     seq: int | None
@@ -36,7 +36,7 @@ class PathGoal:
 
 @dataclass(frozen=True, kw_only=True)
 class EffectorGoal:
-    """`efector`."""
+    """Command `efector`: switch the effector."""
 
     on: bool
     seq: int | None
@@ -46,7 +46,7 @@ class EffectorGoal:
 
 @dataclass(frozen=True, kw_only=True)
 class StopGoal:
-    """`paro`."""
+    """Command `paro`: stop."""
 
     mode: StopMode
     seq: int | None
@@ -55,7 +55,7 @@ class StopGoal:
 
 @dataclass(frozen=True, kw_only=True)
 class HomeGoal:
-    """`referencia`: run the homing routine."""
+    """Command `referencia`: run the homing routine."""
 
     seq: int | None
     epoch: int | None
@@ -64,7 +64,7 @@ class HomeGoal:
 
 @dataclass(frozen=True, kw_only=True)
 class OrderGoal:
-    """`orden`: a verb of a declared kind of device, with its values."""
+    """Command `orden`: a verb of a declared kind of device, with its values."""
 
     verb: str
     values: Facts
@@ -75,20 +75,20 @@ class OrderGoal:
 
 @dataclass(frozen=True, kw_only=True)
 class Beat:
-    """`latido`: who commands is alive."""
+    """Heartbeat `latido` of the sender of commands."""
 
     epoch: int
 
 
 @dataclass(frozen=True, kw_only=True)
 class Telemetry:
-    """`sensores`: `q` of an arm, `node` of a mobile or `facts` of a device; the rest None where the board
-    does not say it.
+    """Message `sensores`: `q` of an arm, `node` of a mobile or `facts` of a device; the rest None if not
+    reported.
 
-    `seq` counts telemetry since boot; `least_epoch`, said where it is above `ack_epoch`, is the oldest epoch
-    whose commands count; `ack`, `done` and `refused_seq` are command seqs of `ack_epoch`, as are
-    `answered_seq`, the last query that a device answered, and those of `failures`, the last few commands that
-    it gave up, oldest first.
+    `seq` counts telemetry since boot. `least_epoch`, sent if it is above `ack_epoch`, is the oldest epoch
+    whose commands count. `ack`, `done` and `refused_seq` are command seqs of `ack_epoch`; so are
+    `answered_seq`, of the last query that a device answered, and those in `failures`, the last few commands
+    that it gave up, oldest first.
     """
 
     state: MotionState
@@ -113,7 +113,7 @@ class Telemetry:
 
 @dataclass(frozen=True, kw_only=True)
 class Presence:
-    """`conexion`, retained; False is the board's last will."""
+    """Message `conexion`, retained; False is the board's last will."""
 
     online: bool
 

@@ -1,1 +1,1 @@
-"""What the orchestrator offers where arboleda_interfaces is built; only this package imports it."""
+"""Typed services, actions and topics of the orchestrator; only this package imports arboleda_interfaces."""

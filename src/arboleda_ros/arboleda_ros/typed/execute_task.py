@@ -48,24 +48,24 @@ class ExecuteTaskAction:
         )
 
     def changed(self, change: TaskChanged) -> None:
-        """A task has changed."""
+        """Take a change of a task."""
         if self._goals:
             self._tell(partial(self._follow, change))
 
     def show(self, view: Mapping[str, Any]) -> None:
-        """What the cells do now."""
+        """Send feedback on the goals whose tasks the cells do now."""
         if self._goals:
             busy = [cell for cell in view["cells"] if cell["task"]]
             doing = {cell["task"]["id"]: (cell["step"], cell["progress"]) for cell in busy}
             self._tell(partial(self._feed_back, doing))
 
     def close(self) -> None:
-        """The plant has ended: no new goal is taken, and those that are open are aborted."""
+        """End with the plant: new goals are refused, and open ones are aborted."""
         self._closed = True
         self._tell(self._give_up)
 
     def destroy(self) -> None:
-        """Take the action from the graph; rclpy leaves it there when its node is destroyed."""
+        """Remove the action from the graph, where rclpy leaves it when its node is destroyed."""
         self._server.destroy()
 
     def _tell(self, news: Callable[[], None]) -> None:
@@ -79,7 +79,7 @@ class ExecuteTaskAction:
             self._news.popleft()()
 
     def _accepted(self, handle: ServerGoalHandle) -> None:
-        """A goal is a request for its task; a refusal is its result, as a rejected goal has no sentence."""
+        """Submit the task of a goal; a refusal becomes its result, as a rejected goal carries no sentence."""
         token = _token(handle)
         self._goals[token] = Goal(handle=handle)
         self._asker.submit_later(values.text_of(handle.request), token)

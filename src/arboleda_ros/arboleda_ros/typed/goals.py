@@ -1,4 +1,4 @@
-"""One goal of `plant/execute_task`, and a server that leaves the work to the plant."""
+"""Goal of `plant/execute_task`, and a server that leaves the work to the plant."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from arboleda.model.messages import TaskChanged, TaskState
 
 @dataclass(kw_only=True)
 class Goal:
-    """A goal that has not ended; `task` is None until the plant has answered."""
+    """Goal that has not ended; `task` is None until the plant has answered."""
 
     handle: ServerGoalHandle
     task: str | None = None
@@ -25,12 +25,12 @@ class Goal:
     progress: float = 0.0
 
     def begin(self) -> None:
-        """Its task runs; a second call does nothing."""
+        """Note that its task runs; a second call does nothing."""
         if self.handle.status == GoalStatus.STATUS_ACCEPTED:
             self.handle.execute()
 
     def feed_back(self, step: str | None, progress: float | None) -> None:
-        """Tell the client what is new; without a progress it stays where it was."""
+        """Send news to the client; without a progress the last one stays."""
         told = (str(step or ""), self.progress if progress is None else progress)
         if told != (self.step, self.progress):
             self.step, self.progress = told
@@ -38,10 +38,10 @@ class Goal:
 
 
 class GoalServer(ActionServer):
-    """An action server whose goals are executed elsewhere: `execute()` alone only marks one as executing."""
+    """Action server whose goals are executed elsewhere; `execute()` itself only marks a goal as executing."""
 
     def end(self, goal: Goal, change: TaskChanged) -> None:
-        """End a goal as its task did; on the executor's thread."""
+        """End a goal in the way its task ended; on the executor's thread."""
         goal.begin()  # no goal ends that was never executing
         self.notify_execute(goal.handle, partial(_ended, change))
 
@@ -52,7 +52,7 @@ class GoalServer(ActionServer):
 
 
 def _ended(change: TaskChanged, handle: ServerGoalHandle) -> ExecuteTask.Result:
-    """End the goal as its task did; `canceled` is only what a client asked for."""
+    """End the goal as its task did; `canceled` only if a client asked for it."""
     if change.state is TaskState.DONE:
         handle.succeed()
     elif change.state is TaskState.CANCELLED and handle.is_cancel_requested:

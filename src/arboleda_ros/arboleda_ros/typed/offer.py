@@ -1,4 +1,4 @@
-"""All that the orchestrator offers in the types of arboleda_interfaces, as one."""
+"""All services, actions and topics of the orchestrator in the types of arboleda_interfaces, as one object."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from .topics import Speak, Topics
 
 
 class Offer:
-    """Told what the plant does, by the plant's thread; `close` and `destroy` as a port's."""
+    """Services, actions and topics together, told the news by the plant's thread; ends like a port."""
 
     def __init__(self, node: Node, speak: Speak, cells: Iterable[str], asker: Asker) -> None:
         self._action = ExecuteTaskAction(node, asker)

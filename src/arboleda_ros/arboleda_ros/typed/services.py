@@ -21,7 +21,7 @@ _VERBS = {verb.value: verb for verb in Verb}
 
 
 class Services:
-    """Each call is answered within asking.ANSWER_S, with a sentence where it is refused."""
+    """Services; each call is answered within asking.ANSWER_S, a refusal with a sentence."""
 
     def __init__(self, node: Node, asker: Asker) -> None:
         self._asker = asker

@@ -1,4 +1,4 @@
-"""Topics `plant/tasks` and `{cell}/state`: what the view shows, published when it changes."""
+"""Topics `plant/tasks` and `{cell}/state`: parts of the view, published when they change."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ Speak = Callable[..., Publisher]
 
 
 class Topics:
-    """`show` a snapshot of the plant; from one thread."""
+    """Publishers; call `show` with each snapshot, from one thread."""
 
     def __init__(self, node: Node, speak: Speak, cells: Iterable[str]) -> None:
         self._node = node
@@ -25,7 +25,7 @@ class Topics:
         self._told: dict[Publisher, Any] = {}
 
     def show(self, view: Mapping[str, Any]) -> None:
-        """Publish what is not as it was."""
+        """Publish the parts that have changed."""
         tasks = [{**task, "elapsed_s": None} for task in view["tasks"]]
         self._publish(self._tasks, tasks, _task_list)
         for cell in view["cells"]:

@@ -1,4 +1,4 @@
-"""Between the plant's plain data and the messages of arboleda_interfaces."""
+"""Conversion between the plant's plain data and the messages of arboleda_interfaces."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ _ASKED = ("text", "cell", "recipe", "path", "station", "id")
 
 
 def task_message(plain: Mapping[str, Any]) -> Task:
-    """A task as the view shows it, or a change of one; what is not known is empty."""
+    """The message of a task as the view has it, or of a change; unknown fields are empty."""
     return Task(**{key: str(plain[key] or "") for key in _TASK})
 
 
 def text_of(asked: Any) -> str:
-    """The task text that a goal or a request spells."""
+    """The task text in a goal or a request."""
     return text.compose(**{key: getattr(asked, key) for key in _ASKED})

@@ -42,7 +42,7 @@ def _goal(goal: Any) -> Grip:
 
 
 def _parallel_goal(goal: Any) -> Grip:
-    """One without a position is refused, as no number is."""
+    """The goal in a message; one without a position becomes NaN, which is refused."""
     positions, efforts = goal.command.position, goal.command.effort
     return Grip(position=positions[0] if positions else float("nan"), effort=efforts[0] if efforts else 0.0)
 

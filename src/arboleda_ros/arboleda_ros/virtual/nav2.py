@@ -52,7 +52,7 @@ def _waypoints(goal: Any) -> Drive:
 
 
 def _nothing(result: Any, end: GoalResult) -> None:
-    """A result of NavigateToPose without an error is empty."""
+    """Leaves the result empty: one of NavigateToPose without an error has no content."""
 
 
 def _missed(result: Any, end: GoalResult) -> None:

@@ -22,7 +22,7 @@ OFF_S = 0.05
 
 @dataclass(frozen=True, kw_only=True)
 class Protocol:
-    """What one action has of its own.
+    """Parts of the server that differ from action to action.
 
     `goal` reads one, `result` fills one in, and `sensors` makes what publishes measurements by a node.
     """
@@ -35,7 +35,7 @@ class Protocol:
 
 
 class ActionController:
-    """A virtual controller over ROS 2, from `start` to `stop`; all of it is done in one thread."""
+    """Virtual controller over ROS 2, from `start` to `stop`; everything runs in one thread."""
 
     def __init__(
         self, machine: VirtualServer, protocol: Protocol, *, action: str, what: str, lan: bool
@@ -51,7 +51,7 @@ class ActionController:
         return f"{self._what} serves the action {self._action}"
 
     def start(self) -> None:
-        """StartError where its messages are missing."""
+        """Start; raises StartError if its messages are missing."""
         import os
 
         from ..link import limit_discovery
@@ -77,7 +77,7 @@ class ActionController:
 
 
 class Life:
-    """The server from one start to its end."""
+    """Server from one start to its end."""
 
     def __init__(self, machine: VirtualServer, protocol: Protocol, type: Any, action: str) -> None:
         from rclpy.context import Context
@@ -100,7 +100,7 @@ class Life:
         self._executor.add_node(self._node)
 
     def run(self, ending: threading.Event) -> None:
-        """Until it is over, or switched off."""
+        """Run until it is stopped or switched off."""
         while not ending.is_set() and not self._machine.is_off:
             now = time.monotonic()
             self._step()
@@ -125,7 +125,7 @@ class Life:
             goal_callback=self._ask,
             handle_accepted_callback=self._begin,
             cancel_callback=self._cancel,
-            callback_group=ReentrantCallbackGroup(),  # what waits for its end holds up nothing else
+            callback_group=ReentrantCallbackGroup(),  # a call that waits for its end holds up no other
         )
 
     def _double(self) -> None:
@@ -167,7 +167,7 @@ class Life:
         self._protocol.result(result, end)
         ways = {Status.SUCCEEDED: handle.succeed, Status.CANCELED: handle.canceled}
         if end.status is Status.CANCELED and not handle.is_cancel_requested:
-            handle.abort()  # an action server cannot end a goal as cancelled that nobody has cancelled
+            handle.abort()  # an action server cannot end an uncancelled goal as cancelled
         else:
             ways.get(end.status, handle.abort)()
         return result
@@ -187,7 +187,7 @@ class Life:
 
 
 def joint_sensors(topic: str) -> Callable[[Any], Callable[[Measurement], None]]:
-    """What publishes joint states there."""
+    """The factory of a publisher of joint states on `topic`."""
     return partial(_joint_sensors, topic)
 
 

@@ -1,1 +1,1 @@
-"""The plant's own MQTT broker: packets, who may do what, limits, and the clients of one event loop."""
+"""The plant's own MQTT broker: packets, permissions, limits, and the clients of one event loop."""

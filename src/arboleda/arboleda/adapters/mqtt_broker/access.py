@@ -1,4 +1,4 @@
-"""Who may come in, and what they may write and read."""
+"""Logins of the broker, and the topics that each role may write and read."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ BOARDS_WRITE = (Channel.TELEMETRY, Channel.PRESENCE)
 
 
 class Role(Enum):
-    """What a client is to the plant."""
+    """Role of a client: the plant itself, a board, somebody who only reads, or a guest."""
 
     PLANT = "plant"
     BOARD = "board"
@@ -53,7 +53,11 @@ class Access:
     certified: bool = False
 
     def login(self, user: str | None, password: bytes | None, shown: str = "") -> ClientIdentity | None:
-        """Who that is, with a certificate in the name of `shown`; None for a stranger."""
+        """The user behind these credentials; None for a stranger.
+
+        `shown` is the name in the client's certificate; where `certified` is set, it must be the name of the
+        user.
+        """
         given = password or b""
         if user == self.plant[0] and hmac.compare_digest(self.plant[1].encode(), given):
             return ClientIdentity(role=Role.PLANT, user=user)
@@ -67,11 +71,11 @@ class Access:
         return ClientIdentity(role=Role.BOARD if user in self.boards else Role.READER, user=user)
 
     def may_write(self, who: ClientIdentity, name: str) -> bool:
-        """Whether `who` may publish to the topic `name`, be it as a last will."""
+        """True if `who` may publish to the topic `name`; the same holds for a last will."""
         if who.role is Role.BOARD:
             return name in {topic(who.user, channel) for channel in BOARDS_WRITE}
         return who.role is not Role.READER
 
     def may_read(self, who: ClientIdentity, pattern: str) -> bool:
-        """Whether `who` may subscribe to the filter `pattern`."""
+        """True if `who` may subscribe to the filter `pattern`."""
         return who.role is not Role.BOARD or pattern.split("/")[0] == who.user

@@ -1,4 +1,4 @@
-"""One connection to the broker, from its first byte to its end."""
+"""Connection to the broker, from its first byte to its end."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ from .topics import is_filter, is_wild
 
 LOG = logging.getLogger(__name__)
 LAST_ID = 65535
-FLUSH_BYTES = 32 * 1024  # of its own answers, so that one who does not read them is not heard for a while
-SEND_BUFFER_BYTES = 128 * 1024  # in the kernel, where a connection could otherwise have megabytes
+FLUSH_BYTES = 32 * 1024  # bytes of unread answers, beyond which a client's packets have to wait
+SEND_BUFFER_BYTES = 128 * 1024  # buffer in the kernel, where a connection could otherwise have megabytes
 
 
 class Client(asyncio.BufferedProtocol):
@@ -88,12 +88,12 @@ class Client(asyncio.BufferedProtocol):
     # --- called by sessions and router ---
 
     def send(self, message: Message) -> None:
-        """Have it sent; a client that leaves too much unread is cut off."""
+        """Queue a message for the client; one that leaves too much unread is cut off."""
         number = self._next_id() if message.qos else 0
         self._write(packets.publish(message, number))
 
     def flush(self) -> None:
-        """Hand over to the system what was gathered."""
+        """Hand over the queued bytes to the system."""
         out, self._out, self._out_bytes = b"".join(self._out), [], 0
         if out and not self._over:
             self._transport.write(out)
@@ -108,7 +108,7 @@ class Client(asyncio.BufferedProtocol):
     # --- its packets ---
 
     def _work(self) -> None:
-        """Handle what is there, for no longer than a turn."""
+        """Handle the packets received, for no longer than a turn."""
         until = self._loop.time() + limits.TURN_S
         try:
             while not (self._over or self._rest or self._reads_slowly):
@@ -160,10 +160,10 @@ class Client(asyncio.BufferedProtocol):
         self._watch_silence()
 
     def _refuse(self, answer: Answer) -> None:
-        """Say no, after a moment; until then it waits with those that have not logged in."""
+        """Refuse the login after a pause, in which the client waits with those not logged in yet."""
         self._silence_s = limits.REFUSED_S
         self._watch_silence(lambda: self._say_no(answer))
-        self._rest_s = limits.HELLO_S  # nothing more of it counts
+        self._rest_s = limits.HELLO_S  # further packets are ignored
 
     def _say_no(self, answer: Answer) -> None:
         self._transport.write(packets.connack(answer))
@@ -233,7 +233,7 @@ class Client(asyncio.BufferedProtocol):
         self._will = None
         self.flush()
         self._end()
-        if self._transport.get_write_buffer_size():  # closing would wait until it is read
+        if self._transport.get_write_buffer_size():  # closing would wait until all is read
             self._transport.abort()
         else:
             self._transport.close()
@@ -242,7 +242,7 @@ class Client(asyncio.BufferedProtocol):
 
     @property
     def _shown(self) -> str:
-        """The name in the certificate that it has shown; "" where it has shown none."""
+        """The name in the client's certificate; "" if it has shown none."""
         subject = (self._transport.get_extra_info("peercert") or {}).get("subject", ())
         return next((value for part in subject for name, value in part if name == "commonName"), "")
 
@@ -272,7 +272,7 @@ class Client(asyncio.BufferedProtocol):
         return self._last_id
 
     def _watch_silence(self, then: Callable[[], None] | None = None) -> None:
-        """Do `then`, else cut it off, once it was silent for its time."""
+        """Call `then`, or without it cut the client off, once it has been silent for its time."""
         if self._clock is not None:
             self._clock.cancel()
             self._clock = None

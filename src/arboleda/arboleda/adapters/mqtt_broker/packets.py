@@ -32,7 +32,7 @@ class Kind(IntEnum):
     DISCONNECT = 14
 
 
-FLAGS = {Kind.PUBREL: 2, Kind.SUBSCRIBE: 2, Kind.UNSUBSCRIBE: 2}  # of PUBLISH they mean something, else 0
+FLAGS = {Kind.PUBREL: 2, Kind.SUBSCRIBE: 2, Kind.UNSUBSCRIBE: 2}  # used by PUBLISH only, else 0
 
 
 class Answer(IntEnum):
@@ -46,11 +46,11 @@ class Answer(IntEnum):
 
 
 class ProtocolError(Exception):
-    """A client said what MQTT or the limits do not allow; it is cut off."""
+    """Error: a client sent something that MQTT or the limits do not allow; it is cut off."""
 
 
 class ConnectRefused(Exception):
-    """A CONNECT that is answered with `answer`."""
+    """Error: a CONNECT is refused with `answer`."""
 
     def __init__(self, answer: Answer) -> None:
         super().__init__(answer.name)
@@ -59,7 +59,7 @@ class ConnectRefused(Exception):
 
 @dataclass(frozen=True, kw_only=True)
 class Packet:
-    """One packet as it came: its type, the flags beside it, and all that follows."""
+    """Packet as it came: its type, its flags, and the body."""
 
     kind: Kind
     flags: int
@@ -68,7 +68,7 @@ class Packet:
 
 @dataclass(frozen=True, kw_only=True)
 class Message:
-    """What is published; `qos` is 0 to 2."""
+    """Published message; `qos` is 0 to 2."""
 
     topic: str
     payload: bytes
@@ -78,7 +78,7 @@ class Message:
 
 @dataclass(frozen=True, kw_only=True)
 class Connect:
-    """What a client says of itself; `keep_alive_s` 0: no limit to its silence."""
+    """Fields of a CONNECT packet; with `keep_alive_s` 0 the client may be silent for as long as it likes."""
 
     client_id: str
     clean: bool
@@ -98,7 +98,7 @@ class Stream:
         self._bytes += data
 
     def next(self) -> Packet | None:
-        """The next whole packet, None until it is there; ProtocolError once it is seen to be too long."""
+        """The next whole packet; None until it is there. Raises ProtocolError if it is too long."""
         head = self._head()
         if head is None:
             return None
@@ -110,7 +110,7 @@ class Stream:
         return _packet(kind, flags, body)
 
     def _head(self) -> tuple[int, int] | None:
-        """Where the body of the next packet begins and ends."""
+        """Begin and end of the next packet's body in the buffer; None until its length has arrived."""
         length = 0
         for place in range(LENGTH_BYTES):
             if len(self._bytes) < place + 2:
@@ -135,7 +135,7 @@ def _packet(kind: int, flags: int, body: bytes) -> Packet:
 
 
 class Fields:
-    """Reads the fields of a body one after the other; ProtocolError where it ends before them."""
+    """Reader of the fields of a body, one by one; raises ProtocolError if the body ends too early."""
 
     def __init__(self, body: bytes) -> None:
         self._body = body
@@ -178,7 +178,7 @@ class Fields:
 
 
 def read_connect(body: bytes) -> Connect:
-    """What CONNECT says (3.1); Refused for another version of MQTT."""
+    """Parses the body of CONNECT (3.1); raises Refused for another version of MQTT."""
     fields = Fields(body)
     name, level = fields.text(), fields.byte()
     if (name, level) != ("MQTT", LEVEL):
@@ -214,7 +214,7 @@ def _will(fields: Fields, flags: int) -> Message | None:
 
 
 def read_publish(packet: Packet) -> tuple[Message, int]:
-    """The message and its packet id, 0 at QoS 0 (3.3)."""
+    """Parses PUBLISH (3.3): the message and its packet id, 0 at QoS 0."""
     fields, qos = Fields(packet.body), _checked_qos(packet.flags >> 1 & 3)
     topic = _topic(fields)
     number = _id(fields) if qos else 0
@@ -222,7 +222,7 @@ def read_publish(packet: Packet) -> tuple[Message, int]:
 
 
 def read_subscribe(body: bytes) -> tuple[int, list[tuple[str, int]]]:
-    """The packet id, and filters with the QoS that is asked for (3.8)."""
+    """Parses SUBSCRIBE (3.8): the packet id, and filters with the QoS that is asked for."""
     fields = Fields(body)
     number, wanted = _id(fields), []
     while fields.left or not wanted:
@@ -231,7 +231,7 @@ def read_subscribe(body: bytes) -> tuple[int, list[tuple[str, int]]]:
 
 
 def read_unsubscribe(body: bytes) -> tuple[int, list[str]]:
-    """The packet id and the filters (3.10)."""
+    """Parses UNSUBSCRIBE (3.10): the packet id and the filters."""
     fields = Fields(body)
     number, filters = _id(fields), []
     while fields.left or not filters:
@@ -240,7 +240,7 @@ def read_unsubscribe(body: bytes) -> tuple[int, list[str]]:
 
 
 def read_id(body: bytes) -> int:
-    """The packet id, which is all that PUBACK, PUBREC, PUBREL and PUBCOMP have."""
+    """The packet id, which is the whole body of PUBACK, PUBREC, PUBREL and PUBCOMP."""
     fields = Fields(body)
     number = _id(fields)
     fields.end()
@@ -270,22 +270,22 @@ def _checked_qos(qos: int) -> int:
 
 
 def connack(answer: Answer) -> bytes:
-    """CONNACK; no session is ever kept from before."""
+    """The bytes of CONNACK, without a session from before."""
     return bytes((Kind.CONNACK << 4, 2, 0, answer))
 
 
 def acknowledge(kind: Kind, number: int) -> bytes:
-    """PUBACK, PUBREC, PUBREL, PUBCOMP or UNSUBACK of a packet id."""
+    """The bytes of PUBACK, PUBREC, PUBREL, PUBCOMP or UNSUBACK of a packet id."""
     return struct.pack("!BBH", kind << 4 | FLAGS.get(kind, 0), 2, number)
 
 
 def suback(number: int, granted: list[int]) -> bytes:
-    """SUBACK; each of `granted` is a QoS or FAILED."""
+    """The bytes of SUBACK; each of `granted` is a QoS or FAILED."""
     return _with_length(Kind.SUBACK << 4, struct.pack("!H", number) + bytes(granted))
 
 
 def publish(message: Message, number: int) -> bytes:
-    """PUBLISH, with a packet id where its QoS is not 0."""
+    """The bytes of PUBLISH, with a packet id if its QoS is not 0."""
     topic = message.topic.encode()
     head = struct.pack("!H", len(topic)) + topic
     if message.qos:
@@ -294,7 +294,7 @@ def publish(message: Message, number: int) -> bytes:
 
 
 def pingresp() -> bytes:
-    """PINGRESP."""
+    """The bytes of PINGRESP."""
     return bytes((Kind.PINGRESP << 4, 0))
 
 

@@ -1,4 +1,4 @@
-"""From who publishes to who has subscribed."""
+"""Router of messages from publishers to subscribers."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ LOG = logging.getLogger(__name__)
 
 
 class Receiver(Protocol):
-    """What this file knows of a client."""
+    """Client, as far as the router needs to know it."""
 
     def send(self, message: Message) -> None: ...
     def flush(self) -> None: ...
 
 
 class Router:
-    """The subscriptions and retained messages of one broker. What receivers are sent leaves at `flush`."""
+    """Subscriptions and retained messages of one broker. Messages to receivers leave at `flush`."""
 
     def __init__(self, access: Access) -> None:
         self._access = access
@@ -37,7 +37,7 @@ class Router:
         self._wills: deque[tuple[ClientIdentity, Message]] = deque()
 
     def publish(self, who: ClientIdentity, message: Message) -> None:
-        """Send it to whoever subscribed; dropped where `who` may not write there."""
+        """Send a message to all subscribers; it is dropped if `who` may not write there."""
         if not self._access.may_write(who, message.topic):
             LOG.debug("%r may not write to %.80a", who.user, message.topic)
             return
@@ -52,11 +52,11 @@ class Router:
         self._subscriptions.add(receiver, pattern, qos)
 
     def has_room(self, pattern: str) -> bool:
-        """Whether all users together may have one more subscription like this."""
+        """True if one more subscription to `pattern` stays within the limit of all users together."""
         return self._subscriptions.room(pattern)
 
     def send_retained(self, receiver: Receiver, pattern: str, qos: int) -> None:
-        """What a new subscription is sent."""
+        """Send a new subscription the retained messages that match it."""
         for message in self._retained.of(pattern):
             receiver.send(replace(message, qos=min(qos, message.qos)))
 
@@ -64,12 +64,12 @@ class Router:
         self._subscriptions.remove(receiver, patterns)
 
     def forget(self, receiver: Receiver, patterns: Iterable[str]) -> None:
-        """It is gone, and what it was to be sent with it."""
+        """Forget a receiver that is gone, and the messages queued for it."""
         self._subscriptions.remove(receiver, patterns)
         self._unsent.pop(receiver, None)
 
     def publish_will(self, who: ClientIdentity, will: Message) -> None:
-        """The last will of one that is gone."""
+        """Publish the last will of a client that is gone."""
         self._wills.append((who, will))
         if len(self._wills) == 1:  # else this was called from the loop below: a will can end another client
             while self._wills:
@@ -77,6 +77,6 @@ class Router:
                 self._wills.popleft()
 
     def flush(self) -> None:
-        """Let what was sent leave."""
+        """Send the queued messages."""
         while self._unsent:
             self._unsent.popitem()[0].flush()

@@ -1,4 +1,4 @@
-"""Who is connected to the broker, and who has to go where there are too many."""
+"""Connections of the broker, and the choice of the one to close where there are too many."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ Key = tuple[str, str]  # user and client id
 
 
 class Connection(Protocol):
-    """What this file knows of a client."""
+    """Client connection, as far as the sessions need to know it."""
 
     @property
     def who(self) -> ClientIdentity | None: ...
@@ -25,7 +25,7 @@ class Connection(Protocol):
 
 
 class Sessions:
-    """The connections of one broker, the oldest first, `most` of them. `cut` of one must call `went`."""
+    """Connections of one broker, the oldest first, at most `most`. Cutting one must call `went`."""
 
     def __init__(self, access: Access, most: int) -> None:
         self.access = access
@@ -40,7 +40,7 @@ class Sessions:
         self._ending = False
 
     def came(self, client: Connection) -> None:
-        """A new connection; where too many wait to log in, the one that has waited longest goes."""
+        """Note a new connection; if too many wait to log in, cut the one that has waited longest."""
         self._waiting[client] = None
         if self._ending:
             client.cut("the broker ends")
@@ -53,7 +53,7 @@ class Sessions:
         who = self.access.login(said.user, said.password, shown)
         if who is None or (said.will is not None and not self.access.may_write(who, said.will.topic)):
             raise ConnectRefused(Answer.NOT_AUTHORIZED)
-        # No client can send an id like the one that stands for none.
+        # No client can send an id equal to this one for clients without an id.
         key = who.user, said.client_id or f"\0{next(self._nameless)}"
         if key in self._clients:
             self._clients[key].cut("a later connection has its client id")
@@ -64,19 +64,19 @@ class Sessions:
         return who
 
     def went(self, client: Connection) -> None:
-        """It is gone; idempotent."""
+        """Forget a connection that is gone; idempotent."""
         self._waiting.pop(client, None)
         if client in self._keys:
             del self._clients[self._keys.pop(client)]
 
     def end(self) -> None:
-        """Cut everybody off, now and from now on."""
+        """Cut off all connections, and any that still comes."""
         self._ending = True
         for client in (*self._waiting, *self._clients.values()):
             client.cut("the broker ends")
 
     def bucket(self, who: ClientIdentity) -> Bucket | None:
-        """What counts the messages of this user; each guest has one of its own, the plant itself none."""
+        """The rate limit of this user's messages: one for each guest, None for the plant itself."""
         allowed = ALLOWED.get(who.role)
         if allowed is None:
             return None
@@ -84,8 +84,11 @@ class Sessions:
         return fresh if who.role is Role.GUEST else self._buckets.setdefault(who.user, fresh)
 
     def _make_room(self, who: ClientIdentity) -> None:
-        """Refused where this user, or all together, have as many connections as they may and none is idle.
-        For the plant itself somebody else goes, idle or not."""
+        """Make room for a user, if need be by cutting off an idle connection.
+
+        Raises Refused if this user, or all together, have as many as they may and none is idle. For the plant
+        itself another one is cut off, idle or not.
+        """
         allowed = ALLOWED.get(who.role)
         others = [client for client in self._clients.values() if client.who and client.who.role in ALLOWED]
         mine = [client for client in others if client.who and client.who.user == who.user]
@@ -96,7 +99,7 @@ class Sessions:
 
 
 def _cut_oldest(clients: list[Connection], *, or_any: bool) -> None:
-    """Cut off the oldest idle one, else the oldest where `or_any`; Refused where nobody goes."""
+    """Cut off the oldest idle connection, else the oldest if `or_any`; raises Refused if there is none."""
     idle = [client for client in clients if client.idle]
     leaving = idle or (clients if or_any else [])
     if leaving:

@@ -1,4 +1,4 @@
-"""Who subscribed to what, and the messages that newcomers are sent."""
+"""Subscriptions, and the retained messages that new subscribers are sent."""
 
 from __future__ import annotations
 
@@ -14,19 +14,19 @@ SMALL_BYTES = 64  # of a payload: presence has less
 
 
 def is_filter(pattern: str) -> bool:
-    """Whether it is a topic filter: `+` and `#` alone in their level, `#` in the last one; not too long."""
+    """True for a valid topic filter: `+` and `#` alone in their level, `#` in the last one, not too long."""
     levels = pattern.split("/")
     good = all(level in ("+", "#") or not {"+", "#"} & set(level) for level in levels)
     return good and bool(pattern) and "#" not in levels[:-1] and len(pattern.encode()) <= TOPIC_BYTES
 
 
 def is_wild(pattern: str) -> bool:
-    """Whether a filter has wildcards."""
+    """True if a filter has wildcards."""
     return "+" in pattern or "#" in pattern
 
 
 def matches(pattern: list[str], topic: list[str]) -> bool:
-    """Whether a filter covers a topic, both by levels; wildcards in front do not reach topics with `$`."""
+    """True if a filter covers a topic, both given by levels; a leading wildcard does not match `$` topics."""
     if pattern[0] in ("+", "#") and topic[0].startswith("$"):
         return False
     for number, level in enumerate(pattern):
@@ -38,7 +38,7 @@ def matches(pattern: list[str], topic: list[str]) -> bool:
 
 
 class Subscriptions(Generic[Client]):
-    """Filters by client."""
+    """Topic filters by client."""
 
     def __init__(self) -> None:
         self._exact: dict[str, dict[Client, int]] = {}
@@ -46,7 +46,7 @@ class Subscriptions(Generic[Client]):
         self._count = 0
 
     def room(self, pattern: str) -> bool:
-        """Whether one more filter like this is within what all users may have."""
+        """True if one more filter like this stays within the limits of all users together."""
         return self._count < FILTERS and (not is_wild(pattern) or len(self._wild) < WILDCARDS)
 
     def add(self, client: Client, pattern: str, qos: int) -> None:
@@ -69,7 +69,7 @@ class Subscriptions(Generic[Client]):
                 del (self._wild if wild else self._exact)[pattern]
 
     def of(self, topic: str) -> dict[Client, int]:
-        """Who gets a message on `topic`, each once, with the highest QoS of its filters."""
+        """The clients that get a message on `topic`, each once, with the highest QoS of its filters."""
         found = dict(self._exact.get(topic, ()))
         levels = topic.split("/")
         for pattern, holders in self._wild.values():
@@ -89,7 +89,7 @@ class RetainedMessages:
         self._bytes = 0
 
     def keep(self, message: Message) -> bool:
-        """Keep it, or forget its topic's where it is empty; False where there is no room."""
+        """Keep a message, or forget that of its topic if it is empty; False if there is no room."""
         _, before = self._messages.pop(message.topic, (None, None))
         self._bytes -= self._size(before) if before else 0
         if not message.payload:
@@ -102,14 +102,14 @@ class RetainedMessages:
         return True
 
     def of(self, pattern: str) -> list[Message]:
-        """What a newcomer with this filter is sent."""
+        """The retained messages that a new subscriber to this filter is sent."""
         if not is_wild(pattern):
             return [self._messages[pattern][1]] if pattern in self._messages else []
         levels = pattern.split("/")
         return [message for topic, message in self._messages.values() if matches(levels, topic)]
 
     def _size(self, message: Message) -> int:
-        """What it takes of the room for all."""
+        """Bytes that a message counts against the room for all; 0 for a small one that is always kept."""
         if message.topic in self._always and len(message.payload) <= SMALL_BYTES:
             return 0
         return len(message.topic.encode()) + len(message.payload) + ENTRY_BYTES

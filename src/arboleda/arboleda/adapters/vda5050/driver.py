@@ -26,12 +26,11 @@ HEARD = {"state": Vehicle.state, "connection": Vehicle.connection, "factsheet": 
 
 @driver("vda5050", settings=Settings)
 class Vda5050:
-    """One vehicle, with the devices that are parts of it. A thread of the client hears it, another says again
-    what is known."""
+    """Driver of one vehicle and its devices. A client thread hears it, another repeats the known state."""
 
     def __init__(self, settings: Settings) -> None:
         self._settings = settings
-        self._lock = threading.Lock()  # around the machine, and the order of what it says
+        self._lock = threading.Lock()  # guards the machine, and the order of its messages
         self._ending = threading.Event()
         self._seldom = RateLimit()
         self._client: MqttClient | None = None
@@ -103,7 +102,7 @@ class Vda5050:
             self._vehicle.neighbour(plain(f"{maker}/{serial} ({version})", 60))
             return
         if topic == "state" and delivery.retain:
-            return  # the broker kept it, nobody knows since when
+            return  # a retained message is of unknown age
         try:
             said = from_bytes(settings.version, topic, delivery.payload)
             if (said["manufacturer"], said["serialNumber"]) != (settings.manufacturer, settings.serial):
@@ -126,7 +125,7 @@ class Vda5050:
             LOG.warning("%s", plain(what, 300))
 
     def _try(self, messages: Iterable[Message]) -> None:
-        """Do what was not asked for by a command: what cannot leave will be missed soon enough."""
+        """Send messages that no command asked for; if one cannot leave, its effect is missed soon enough."""
         try:
             self._do(messages)
         except (NotConnected, SchemaMismatch) as error:

@@ -20,22 +20,22 @@ from arboleda.model.errors import ArboledaError
 from arboleda.model.outside import plain, quoted
 
 LARGEST = 1_000_000  # bytes of a message
-DIGITS = 20  # of a whole number
+DIGITS = 20  # digits of a whole number
 FULL = {"2.0": "2.0.0", "2.1": "2.1.0", "3.0": "3.0.0"}
 
 
 class SchemaMismatch(ArboledaError):
-    """A message that does not fit the schema of its topic; the sentence says where."""
+    """Error: a message does not fit the schema of its topic; the sentence names the place."""
 
 
 def to_bytes(version: str, topic: str, message: Mapping[str, Any]) -> bytes:
-    """A message that is sent; Unfit where the standard does not allow it."""
+    """A message as bytes to send; raises Unfit if the standard does not allow it."""
     _check(version, topic, message)
     return json.dumps(message, separators=(",", ":")).encode()
 
 
 def from_bytes(version: str, topic: str, payload: bytes) -> dict[str, Any]:
-    """A message that was received; Unfit for whatever the standard does not allow."""
+    """A received message; raises Unfit for anything that the standard does not allow."""
     if len(payload) > LARGEST:
         raise SchemaMismatch(f"it has {len(payload)} bytes")
     try:
@@ -54,7 +54,7 @@ def from_bytes(version: str, topic: str, payload: bytes) -> dict[str, Any]:
 
 
 class Headers:
-    """What each message of one sender begins with; ids count by topic."""
+    """Headers of the messages of one sender; ids count separately for each topic."""
 
     def __init__(self, version: str, manufacturer: str, serial: str) -> None:
         self._names = {"version": FULL[version], "manufacturer": manufacturer, "serialNumber": serial}
@@ -100,7 +100,7 @@ def _whole(digits: str) -> int:
 
 
 def _finite(digits: str) -> float:
-    """To the schemas a number without a fraction is a whole one, however it is written."""
+    """A finite number; the schemas count one without a fraction as an integer, however it is written."""
     number = float(digits)
     if not math.isfinite(number):
         raise ValueError("a number is too large")
@@ -108,10 +108,10 @@ def _finite(digits: str) -> float:
 
 
 def _without_nulls(pairs: Sequence[tuple[str, Any]]) -> dict[str, Any]:
-    """Many vehicles write null where a field has no value: then there is no field."""
+    """The message without fields that are null, as many vehicles write a field without a value."""
     return {name: value for name, value in pairs if value is not None}
 
 
 def _shown(value: object) -> str:
-    """The value that does not fit, where it is a single one."""
+    """The value that does not fit, if it is a single one."""
     return "" if isinstance(value, Mapping | list) else f"; it is {quoted(value)}"

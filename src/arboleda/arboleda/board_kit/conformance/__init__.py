@@ -1,1 +1,1 @@
-"""Runs the contract against the board of an arm or a declared device: a pure judge, and its way over MQTT."""
+"""Trial of the board of an arm or a declared device by the contract: a pure judge, and its way over MQTT."""

@@ -1,4 +1,4 @@
-"""What an arm's board has said so far, and the goals that a check may ask for."""
+"""Bench of an arm's board: keeps its reports, and makes the goals that a check may ask for."""
 
 from __future__ import annotations
 
@@ -51,19 +51,19 @@ class ArmBench(Bench[ArmTelemetry]):
 
     @property
     def steps(self) -> tuple[int, ...]:
-        """Where it last said to be, in motor steps."""
+        """The joint angles of its last report, in motor steps."""
         rows = zip(self.last.q or (), self.step_deg, strict=False)
         return tuple(round(angle / step) for angle, step in rows)
 
     def away(self, part: float) -> tuple[int, ...]:
-        """A place so far from here on each joint, as a part of its whole way."""
+        """A place at this share of each joint's whole way from here."""
         rows = zip(self.arm.joints, self.steps or self._middle(), strict=True)
         return tuple(
             _away(joint.steps(joint.lower), joint.steps(joint.upper), here, part) for joint, here in rows
         )
 
     def at(self, steps: tuple[int, ...]) -> bool:
-        """Whether it said last that it is there."""
+        """True if its last report is of these steps."""
         return self.steps == steps
 
     def _middle(self) -> tuple[int, ...]:

@@ -1,4 +1,4 @@
-"""What several checks of an arm do: drive somewhere, set off, look for the reference."""
+"""Steps that several checks of an arm share: drive somewhere, set off, look for the reference."""
 
 from __future__ import annotations
 

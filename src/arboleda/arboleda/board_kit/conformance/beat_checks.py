@@ -1,4 +1,4 @@
-"""What boards with command numbers have to make of beats, arms and declared devices alike."""
+"""Checks of beats, for boards with command numbers: arms and declared devices alike."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a board has said so far, and what a check may ask for."""
+"""Bench of a board: keeps its reports, and makes the commands that a check may ask for."""
 
 from __future__ import annotations
 
@@ -66,7 +66,7 @@ class BoardTelemetry:
 
     @property
     def place(self) -> tuple[Any, ...] | None:
-        """Where it says to be, or how: the same in two reports between which nothing moved."""
+        """The position or the facts of this report: equal in two reports if nothing moved between them."""
         raise NotImplementedError
 
 
@@ -102,12 +102,12 @@ class Bench(ABC, Generic[SaidT]):
     @property
     @abstractmethod
     def says_where(self) -> bool:
-        """Whether its last report says more than that it moves or not."""
+        """True if its last report says more than that it moves or not."""
 
     @property
     @abstractmethod
     def place(self) -> tuple[Any, ...]:
-        """Where it said last to be, or how; equal while nothing is done."""
+        """The position or the facts of its last report; equal while nothing is done."""
 
     def hear(self, delivery: Delivery) -> None:
         """A message from the board."""
@@ -135,4 +135,4 @@ class Bench(ABC, Generic[SaidT]):
 
     @abstractmethod
     def _read(self, delivery: Delivery) -> SaidT:
-        """PayloadError where it cannot be read."""
+        """The report in a payload; PayloadError if it cannot be read."""

@@ -1,4 +1,4 @@
-"""A judge on a real broker: one client that hears and sends, and one that takes the board's place."""
+"""Trial of a board: a judge on a real broker, a client for messages, and one that takes the board's place."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ TAKE_PLACE_S = 3.0
 
 
 class Trial:
-    """Runs a judge to its end; `told` is called with it after every step, in the loop's thread."""
+    """Trial: runs a judge to its end; `told` is called with it after every step, in the loop's thread."""
 
     def __init__(
         self,
@@ -60,7 +60,7 @@ class Trial:
         )
 
     def run(self) -> None:
-        """Until all is known; StartError without a broker. Whatever ends it, the board is halted."""
+        """Run until all is known; StartError without a broker. The board is halted in any case."""
         self._client.start()
         try:
             if not self._there.wait(CONNECT_S):
@@ -94,7 +94,7 @@ class Trial:
         )
 
     def _take_place(self) -> None:
-        """Connect as the board, and go at once: the broker drops the board, which comes back."""
+        """Connect by the board's client id, and leave at once: the broker drops the board, which returns."""
         taken = threading.Event()
         rival = MqttClient(
             self._name,
@@ -108,7 +108,7 @@ class Trial:
         rival.close()
 
     def _halt(self) -> None:
-        """`paro` 2 is obeyed whatever its numbers are; without a connection the board's own watch is left."""
+        """Halt the board with `paro` 2, which needs no number; without a connection its own watch does it."""
         try:
             halt = Publication(topic=topic(self._name, Channel.STOP), payload=b'{"paro":2,"seq":1,"epoca":1}')
             self._client.publish(halt)

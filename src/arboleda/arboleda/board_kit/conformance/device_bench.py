@@ -1,4 +1,4 @@
-"""What the board of a declared kind has said so far, and the orders that a check may ask for."""
+"""Bench of the board of a declared kind: keeps its reports, and makes the orders that a check may ask for."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ class DeviceBench(Bench[DeviceTelemetry]):
         return self.send(Channel.ORDER, verbo=told.verb, **values, **numbers)
 
     def holds(self, facts: Facts) -> bool:
-        """Whether it said last that all of these are so."""
+        """True if its last report has all of these facts."""
         return all(self.facts.get(name) == value for name, value in facts)
 
     def way(self, wanted: Callable[[VerbCall], bool]) -> list[VerbCall] | None:
@@ -127,7 +127,7 @@ def commands(kind: DeviceKind, verb: DeviceVerb) -> Iterator[VerbCall]:
 
 
 def is_work(told: VerbCall) -> bool:
-    """Whether it is a motion or a process."""
+    """True if an order is a motion or a process."""
     return told.told.effect in WORK
 
 

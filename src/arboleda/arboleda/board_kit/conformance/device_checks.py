@@ -1,5 +1,4 @@
-"""What the board of a declared kind has to do at every level: report its facts, do its verbs, halt, leave
-bad orders alone."""
+"""Checks of a declared kind's board at every level: facts, verbs, halts, and orders to leave alone."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What only boards of declared kinds with command numbers can do: prove what became of each order."""
+"""Checks of declared kinds' boards with command numbers only: prove the outcome of each order."""
 
 from __future__ import annotations
 
@@ -160,7 +160,7 @@ def queries(bench: DeviceBench) -> Steps:
 
 
 def retained(bench: DeviceBench) -> Steps:
-    """What a broker kept for it is refused with retenido when it comes back."""
+    """An order that a broker has kept for the board is refused with retenido when it comes back."""
     told = yield from lead_to(bench, _any, "verb")
     yield from accepted(bench, stop(bench, 2))
     # the number of the stop: heard while it is connected, the order is a copy and does nothing

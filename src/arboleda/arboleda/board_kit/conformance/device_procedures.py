@@ -1,4 +1,4 @@
-"""What several checks of a declared device do: carry an order out, begin one that lasts."""
+"""Steps that several checks of a declared device share: carry an order out, begin one that lasts."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def outcome(bench: DeviceBench, told: VerbCall) -> Steps:
 
 
 def lead_to(bench: DeviceBench, wanted: Callable[[VerbCall], bool], what: str) -> Steps:
-    """Carry out what has to come before an order that is wanted; the order is what `yield from` is worth."""
+    """Carry out the orders that have to come before a wanted one, and return that one."""
     row = bench.way(wanted)
     if row is None:
         raise CheckSkipped(f"its kind has no {what}")
@@ -51,7 +51,7 @@ def lead_to(bench: DeviceBench, wanted: Callable[[VerbCall], bool], what: str) -
 
 
 def lasting(bench: DeviceBench, least_s: float = LEAST_S) -> Steps:
-    """Begin, beating, a motion or process that lasts and that a stop ends; worth the order."""
+    """Begin, with beats, a motion or process that lasts and that a stop ends, and return its order."""
 
     def wanted(told: VerbCall) -> bool:
         return is_work(told) and told.told.on_stop is OnStop.HALT and told.takes_s >= least_s
@@ -69,7 +69,7 @@ def lasting(bench: DeviceBench, least_s: float = LEAST_S) -> Steps:
 
 
 def at_rest(bench: DeviceBench, within_s: float, after: str) -> Steps:
-    """It has to be at rest so soon."""
+    """Demand that the device is at rest within this time."""
     rested = yield Wait(seconds=within_s, until=lambda: bench.last.state != MOVING)
     demand(rested, f"it still reports moving (1) {within_s:g} s after {after}")
 

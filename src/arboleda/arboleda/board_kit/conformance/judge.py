@@ -1,4 +1,4 @@
-"""The judge: a pure machine that makes one check after the other and keeps what came of them."""
+"""The judge: a pure machine that makes one check after the other and keeps their results."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ LEVELS = (Evidence.STATE, Evidence.JOINTS, Evidence.IDS)  # each includes those 
 
 @dataclass(frozen=True, kw_only=True)
 class Check:
-    """What is looked at, and the level that needs it; its docstring is what a board has to do."""
+    """A check and the level that needs it; the docstring of its steps says what a board has to do."""
 
     name: str
     level: Evidence
@@ -40,7 +40,7 @@ class Check:
 
 @dataclass(frozen=True, kw_only=True)
 class Finding:
-    """What came of a check: `wrong` speaks against the board, `untried` is why it was not made."""
+    """The result of a check: `wrong` speaks against the board, `untried` is why it was not made."""
 
     check: Check
     wrong: str | None = None
@@ -115,7 +115,7 @@ def _no_reference(bench: DeviceBench) -> Steps:
 
 @dataclass(frozen=True, kw_only=True)
 class Course:
-    """How boards of one class of robot are tried; `ready`: what has to be done before a check begins."""
+    """The course of checks for boards of one class of robot; `ready` prepares the board for each check."""
 
     bench: Callable[[Any, int], Bench[Any]]
     checks: tuple[Check, ...]
@@ -162,7 +162,7 @@ class Judge:
         return LEVELS[lowest - 1] if lowest > 0 else None
 
     def step(self, now: float, events: Sequence[Delivery]) -> list[Send | Jostle]:
-        """Hear, and do what is due."""
+        """Take the board's messages, and do what is due."""
         for event in events:
             self.bench.hear(event)
         self.bench.now = max(self.bench.now, now)
@@ -181,7 +181,7 @@ class Judge:
         return [Send(channel=Channel.BEAT, payload=encode(Beat(epoch=self.bench.epoch)))]
 
     def _resume(self, now: float, met: bool) -> list[Send | Jostle]:
-        """Go on to the next wait; whatever is asked for on the way."""
+        """Run the check on to its next wait, and collect what it sends on the way."""
         out: list[Send | Jostle] = []
         try:
             asked = self._course.send(met if self.current else None)  # type: ignore[arg-type]
@@ -203,7 +203,7 @@ class Judge:
                 return
 
     def _try(self, check: Check) -> Generator[Send | Jostle | Wait, Any, None]:
-        """One check, and back to where the next may begin."""
+        """Run one check, then restore the state from which the next one can begin."""
         wrong = untried = None
         try:
             yield from check.steps(self.bench)

@@ -1,4 +1,4 @@
-"""What boards of every level have to do: report in time, reach goals, halt, leave bad messages alone."""
+"""Checks of an arm's board at every level: report in time, reach goals, halt, leave bad messages alone."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What only boards with command numbers can do: prove which command they accepted, refused and finished."""
+"""Checks of arms' boards with command numbers only: prove which command was accepted, refused, finished."""
 
 from __future__ import annotations
 
@@ -93,7 +93,7 @@ def stamped(bench: ArmBench) -> Steps:
 
 
 def retained(bench: ArmBench) -> Steps:
-    """What a broker kept for it is refused with retenido when it comes back."""
+    """A goal that a broker has kept for the board is refused with retenido when it comes back."""
     yield from accepted(bench, stop(bench, 2))
     before, goal = bench.steps, bench.goal(bench.away(0.05), seq=bench.seq)
     # an old number: heard while it is connected, the goal is harmless

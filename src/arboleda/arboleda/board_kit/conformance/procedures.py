@@ -1,4 +1,4 @@
-"""What checks of any board do: send and wait for an answer, wait for rest, stop."""
+"""Steps that checks of any board share: send and wait for an answer, wait for rest, stop."""
 
 from __future__ import annotations
 
@@ -119,7 +119,7 @@ def only_in_time(bench: Bench[Any], command: Callable[[int], Send]) -> Steps:
 
 
 def refused_as_retained(bench: Bench[Any], message: Send, what: str) -> Steps:
-    """It comes back while the broker keeps a message for it, and refuses that."""
+    """Have the board come back while the broker keeps a message for it, which it has to refuse."""
     yield replace(message, retain=True)
     yield Wait(seconds=0.5)
     arrivals = bench.arrivals

@@ -1,1 +1,1 @@
-"""What the firmware's board has to know of a declared device and of its wiring, as a header of C++."""
+"""Header of C++ for the firmware's board: a declared device and its wiring."""

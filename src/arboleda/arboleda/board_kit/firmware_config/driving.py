@@ -1,4 +1,4 @@
-"""What an order drives, and what it sets: fixed values, and those that come with it."""
+"""Outputs and settings of an order: fixed values, and those that come with it."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from .values import encoded
 
 
 class Driving:
-    """Resolves them for one wiring; problems are kept in the document."""
+    """Driving: resolves outputs and settings for one wiring; problems are kept in the document."""
 
     def __init__(self, document: Document, wiring: Wiring, kind: DeviceKind) -> None:
         self._document, self._wiring, self._kind = document, wiring, kind
@@ -55,7 +55,7 @@ class Driving:
                 unknown(self._document, (*place, name), name, [*outputs, *servos], "output or servo")
 
     def _passed_on(self, place: Place, verb: DeviceVerb, parameter: str, type: FactType) -> TableValue:
-        """The value of a parameter as one of a fact."""
+        """The value of a parameter, passed on as the value of a fact."""
         names = [name for name, _ in verb.parameters]
         at, given = names.index(parameter), dict(verb.parameters)[parameter]
         if given.words:
@@ -70,7 +70,7 @@ class Driving:
     def _driven(
         self, place: Place, verb: DeviceVerb, value: object, limits: list[float] | None
     ) -> TableValue:
-        """What an output or a servo is given: fixed, a parameter, or something for each value of one."""
+        """The value for an output or a servo: fixed, a parameter, or one for each value of a parameter."""
         if isinstance(value, dict):
             if len(value) == 1 and (parameter := self._parameter(place, verb, next(iter(value)))) is not None:
                 at, type = parameter
@@ -131,7 +131,7 @@ class Driving:
 
 
 def _as(type: FactType, word: Value) -> Value:
-    """A word of a parameter as one of the fact, where whole numbers are numbers, too."""
+    """A word of a parameter as one of the fact; whole numbers count as numbers."""
     return float(word) if type.type is float and isinstance(word, int) else word
 
 

@@ -35,7 +35,7 @@ EFFECTS = {
 
 
 def header(tables: Tables) -> str:
-    """The whole file."""
+    """The whole header file."""
     return Header(tables).text()
 
 
@@ -61,7 +61,7 @@ class Header:
         return HEAD % {"name": tables.name} + "\n".join([*self._arrays, "", device]) + TAIL
 
     def _array(self, type: str, items: Iterable[str]) -> str | None:
-        """The name of an array; None for one of nothing, which C++ does not have."""
+        """The name of an array; None for an empty one, which C++ does not have."""
         rows = list(items)
         if not rows:
             return None

@@ -1,4 +1,4 @@
-"""What is said of a name that is not there."""
+"""Sentences about names that do not exist."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from arboleda.plant_file.document import Document, Place, nearest
 
 
 def unknown(document: Document, place: Place, name: str, known: Iterable[str], what: str) -> None:
-    """Keeps the problem, with what there is and what may have been meant."""
+    """Keep the problem of an unknown name, with the known ones and the one probably meant."""
     names = list(known)
     there = ", ".join(names) or "none"
     document.problem(place, f'there is no {what} "{name}"{nearest(name, names)}; there are: {there}')

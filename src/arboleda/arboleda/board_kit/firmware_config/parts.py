@@ -1,4 +1,4 @@
-"""Whether what is wired makes sense by itself: pins, limits, how much there is of it."""
+"""Checks of a wiring by itself: pins, limits, numbers of parts."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ MOST_FACTS = 16
 
 
 def check(document: Document, device: Device, wiring: Wiring) -> None:
-    """Keeps a problem for each mistake."""
+    """Keep a problem for each mistake of the wiring."""
     pins.check(document, wiring)
     _check_room(document, device, wiring)
     for name, each in wiring.inputs.items():

@@ -1,4 +1,4 @@
-"""Which pins of an ESP32 can be what."""
+"""Pins of an ESP32 and their possible uses."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ MISSING = (20, 24, 28, 29, 30, 31, 37, 38)
 
 
 def check(document: Document, wiring: Wiring) -> None:
-    """Keeps a problem for each pin that cannot be what it is used for, and for each that is used twice."""
+    """Keep a problem for each pin that cannot be what it is used for, and for each that is used twice."""
     seen: dict[int, str] = {}
     for section in ("inputs", "outputs", "servos", "analogs"):
         for name, each in getattr(wiring, section).items():

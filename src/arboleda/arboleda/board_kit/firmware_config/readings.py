@@ -1,4 +1,4 @@
-"""What facts and answers are read from."""
+"""Sources of facts and answers: the inputs of the board from which they are read."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ MOST_TRIED = 12  # inputs of one fact, all of whose states are tried
 
 
 class Readings:
-    """Resolves them for one wiring; problems are kept in the document."""
+    """Readings: resolves the sources of facts for one wiring; problems are kept in the document."""
 
     def __init__(self, document: Document, wiring: Wiring) -> None:
         self._document, self._wiring = document, wiring
@@ -78,7 +78,7 @@ class Readings:
     def _reading(
         self, place: Place, rows: Mapping[str, object], words: Mapping[str, Value], type: FactType
     ) -> Reading:
-        """Which word inputs say; every state of theirs has to have one."""
+        """The table of words for states of inputs; every state has to have one."""
         made, otherwise = [], None
         for word, when in rows.items():
             if word == OTHERWISE:
@@ -108,7 +108,7 @@ class Readings:
 
 
 def _complete(rows: list[Row]) -> bool:
-    """Whether there is a row for every state of the inputs that they name."""
+    """True if there is a row for every state of the inputs that the rows name."""
     inputs = sorted({input for row in rows for input, _ in row.when})
     if len(inputs) > MOST_TRIED:
         return False

@@ -1,4 +1,4 @@
-"""From a wiring file and the kind that it is for to tables; every mistake with its line."""
+"""Resolver of a wiring file: from it and its kind to tables; every mistake with its line."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ MOST_VALUES = 6
 
 
 def tables(device: Device, path: Path) -> Tables:
-    """ConfigError with every problem of the file."""
+    """The tables of a wiring; ConfigError with every problem of the file."""
     document = Document(str(path), read_bytes(path, LARGEST), path.parent)
     resolver = Resolver(document, device, read(document))
     made = resolver.tables()

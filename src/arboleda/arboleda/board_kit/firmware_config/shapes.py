@@ -84,7 +84,7 @@ SECTIONS: dict[str, TypeAdapter[Any] | type[Shape]] = {
 
 
 def read(document: Document) -> Wiring:
-    """ConfigError where a part has not the shape that it should have."""
+    """The wiring of a file; ConfigError if a part does not have the shape that it should have."""
     for key in document.keys(()):
         if key not in SECTIONS:
             document.unknown((key,), SECTIONS)

@@ -1,4 +1,4 @@
-"""What the header says: the wiring, resolved to places in lists; values as the core has them."""
+"""Tables of the header: the wiring, resolved to places in lists; values as the firmware's core has them."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from .shapes import Wiring
 
 @dataclass(frozen=True, kw_only=True)
 class TableValue:
-    """A value: fixed, or that of a parameter, looked up in `map` where that is not empty."""
+    """A value: fixed, or that of a parameter, looked up in `map` unless that is empty."""
 
     constant: float = 0.0
     parameter: int = -1
@@ -20,7 +20,7 @@ class TableValue:
 
 @dataclass(frozen=True, kw_only=True)
 class Row:
-    """A value, and how inputs have to be for it."""
+    """A value, and the states of inputs that stand for it."""
 
     value: float
     when: tuple[tuple[int, bool], ...]
@@ -28,7 +28,7 @@ class Row:
 
 @dataclass(frozen=True, kw_only=True)
 class Reading:
-    """What inputs say; `otherwise` where no row fits."""
+    """The values that inputs stand for; `otherwise` if no row fits."""
 
     rows: tuple[Row, ...] = ()
     otherwise: float | None = None

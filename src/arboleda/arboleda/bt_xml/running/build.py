@@ -1,4 +1,4 @@
-"""A tree of a file -> nodes that run, with their variables; what leaves do is not known here."""
+"""Builder of running nodes, with their variables, from a tree of a file; it knows nothing of leaves."""
 
 from __future__ import annotations
 
@@ -21,13 +21,13 @@ from .ports import NodePorts
 from .scripts import Script
 
 Leaf = Callable[[Written, "list[Node]", Scope], "Node | None"]
-"""Makes a node of one's own, around those below it; None where there is no such node."""
+"""Factory of a user's own node, around the nodes below it; None if there is no such node."""
 Make = Callable[[str, "list[Node]", NodePorts], Node]
 
 
 @dataclass(frozen=True)
 class Builder:
-    """Makes the nodes of the trees of a forest."""
+    """Builder of the nodes of a forest's trees."""
 
     forest: Forest
     leaf: Leaf
@@ -78,7 +78,7 @@ class Builder:
         return decorators.SubTree(node.name or name, [self.tree(name, inner)])
 
     def _writes(self, node: Written) -> set[str]:
-        """The variables that a node may give a value."""
+        """The variables that a node may set."""
         found: set[str] = set()
         scripts = [node.own[name].value for name in names.SCRIPTS if name in node.own]
         kind = nodes.built_in(node.kind) or self.kinds.get(node.kind)
@@ -95,7 +95,7 @@ class Builder:
 
 
 def _typed(value: Value) -> Value:
-    """A number where a text spells one, so that scripts can calculate with it."""
+    """A number if a text spells one, so that scripts can calculate with it; else the text."""
     text = str(value)
     if values.objection("int", text) is None:
         return int(values.number(text))

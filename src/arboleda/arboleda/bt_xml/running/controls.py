@@ -1,4 +1,4 @@
-"""Nodes of several children: in order, at once, by a condition."""
+"""Control nodes with several children: in order, at once, by a condition."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from .scripts import ScriptError
 
 
 class OrderedControl(Node):
-    """One child after the other, until one ends as `stops` says; where it was, it goes on."""
+    """Node that runs one child after the other until one ends as `stops` says; a tick continues in place."""
 
     counts = ("at", "skipped")
     stops: ClassVar[Result]
@@ -49,45 +49,45 @@ class OrderedControl(Node):
         return SKIPPED if all_skipped else self.ends
 
     def stopped(self) -> Result:
-        """A child ended so that no other one is ticked."""
+        """The result once a child has ended as `stops` says; the children begin anew."""
         self.reset_children()
         self.at = 0
         return self.stops
 
 
 class InSequence(OrderedControl):
-    """Sequence."""
+    """BehaviorTree.CPP's Sequence."""
 
     sign = "sequence"
     stops, ends = FAILURE, SUCCESS
 
 
 class InFallback(OrderedControl):
-    """Fallback."""
+    """BehaviorTree.CPP's Fallback."""
 
     sign = "selector"
     stops, ends = SUCCESS, FAILURE
 
 
 class AsyncSequence(InSequence):
-    """A Sequence that lets others look between two children."""
+    """Sequence that returns RUNNING between two children, so that others can look."""
 
     pauses = True
 
 
 class AsyncFallback(InFallback):
-    """A Fallback that lets others look between two children."""
+    """Fallback that returns RUNNING between two children, so that others can look."""
 
     pauses = True
 
 
 class SequenceWithMemory(InSequence):
-    """A Sequence that begins with the child that failed when it is ticked again, though it was halted."""
+    """Sequence that continues with the child that failed, even after being halted."""
 
     pauses = True
 
     def reset_counts(self) -> None:
-        """It keeps where it was."""
+        """Does nothing: this sequence keeps its place when it is halted."""
 
     def stopped(self) -> Result:
         for child in self.below[self.at :]:
@@ -96,7 +96,7 @@ class SequenceWithMemory(InSequence):
 
 
 class TryCatch(Node):
-    """All children but the last in order; where one fails, the last one is ticked, and this has failed."""
+    """Sequence of all children but the last; if one fails, the last one is ticked, and the node fails."""
 
     sign = "sequence"
     counts = ("at", "skipped", "catches")
@@ -132,7 +132,7 @@ class TryCatch(Node):
 
 
 class Reactive(Node):
-    """All children from the first one on at every tick, until one ends as `stops` says or runs."""
+    """Node that ticks all children from the first at every tick, until one runs or ends as `stops` says."""
 
     stops: ClassVar[Result]
     ends: ClassVar[Result]
@@ -158,21 +158,21 @@ class Reactive(Node):
 
 
 class ReactiveSequence(Reactive):
-    """ReactiveSequence."""
+    """BehaviorTree.CPP's ReactiveSequence."""
 
     sign = "sequence"
     stops, ends = FAILURE, SUCCESS
 
 
 class ReactiveFallback(Reactive):
-    """ReactiveFallback."""
+    """BehaviorTree.CPP's ReactiveFallback."""
 
     sign = "selector"
     stops, ends = SUCCESS, FAILURE
 
 
 def _threshold(given: NodePorts, port: str, number: float, many: int) -> int:
-    """How many of so many children a threshold means; a negative one counts from all of them.
+    """The number of children that a threshold means; a negative one counts down from all of them.
 
     BehaviorTree.CPP refuses one that cannot be reached, though the node might end all the same.
     """
@@ -182,7 +182,7 @@ def _threshold(given: NodePorts, port: str, number: float, many: int) -> int:
 
 
 class Parallel(Node):
-    """All children at once; done or failed once enough of them are, or can no longer be."""
+    """Node that runs all children at once; it succeeds or fails once enough of them have."""
 
     sign = "parallel"
     counts = ("ended", "done", "failed")
@@ -224,7 +224,7 @@ class Parallel(Node):
         return self.again(after_s=PAUSE_S)  # those that were skipped are asked again
 
     def _old(self, name: str, default: str) -> str:
-        """What version 3 has for it."""
+        """The value of the port by its name in version 3, or the default."""
         return self.given.said.get(
             name, self.given.said.get("threshold", default) if "succ" in name else default
         )
@@ -236,7 +236,7 @@ class Parallel(Node):
 
 
 class ParallelAll(Node):
-    """All children at once, until each has ended; failed where too many have."""
+    """Node that runs all children at once until each has ended; it fails if too many have."""
 
     sign = "parallel"
     counts = ("ended", "failed")
@@ -276,7 +276,7 @@ class ParallelAll(Node):
 
 
 class IfThenElse(Node):
-    """The first child once says which of the others is ticked."""
+    """Node whose first child decides once which of the others is ticked."""
 
     counts = ("at",)
 
@@ -307,14 +307,14 @@ class IfThenElse(Node):
 
 
 class WhileDoElse(Node):
-    """The first child at every tick says which of the others is ticked."""
+    """Node whose first child decides at every tick which of the others is ticked."""
 
     def work(self) -> Result:
         self.begin()
         condition = self.below[0].execute()
         if condition is RUNNING:
             return RUNNING
-        result = SKIPPED  # where the condition is skipped; BehaviorTree.CPP raises an error there
+        result = SKIPPED  # of a skipped condition; BehaviorTree.CPP raises an error there
         if condition is SUCCESS:
             if len(self.below) > 2:
                 self.below[2].reset()
@@ -330,7 +330,7 @@ class WhileDoElse(Node):
 
 
 class Switch(Node):
-    """The child of the case that a variable has; the last one where it has none of them."""
+    """Node that ticks the child of the case that a variable has; the last child if no case matches."""
 
     counts = ("ran",)
 
@@ -366,7 +366,7 @@ class Switch(Node):
 
 
 def same_number(one: object, other: object) -> bool:
-    """Whether both are numbers, and the same one."""
+    """True if both are numbers, and equal."""
     try:
         return float(str(one)) == float(str(other))
     except ValueError:

@@ -1,4 +1,4 @@
-"""Nodes around one other."""
+"""Decorators: nodes around one child."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ NO_RATE = Phrase("xml.no_rate", "hz of {node} must be more than 0")
 
 
 class ResultDecorator(Decorator):
-    """It ends as `ends` says for each end of its child."""
+    """Decorator that turns each end of its child into the one that `ends` names."""
 
     def __init__(self, name: str, child: Node, ends: Mapping[Result, Result]) -> None:
         super().__init__(name, [child])
@@ -42,7 +42,7 @@ ALL_FAILED = {SUCCESS: FAILURE, FAILURE: FAILURE}
 
 
 class KeepRunningUntilFailure(Decorator):
-    """Its child again and again, until it fails."""
+    """Decorator that repeats its child until it fails."""
 
     def work(self) -> Result:
         self.begin()
@@ -55,7 +55,7 @@ class KeepRunningUntilFailure(Decorator):
 
 
 class Loop(Decorator):
-    """Its child again while it ends as `goes_on` says, at most `times`; -1 means without end."""
+    """Decorator that repeats its child while it ends as `goes_on` says, at most `times`; -1: without end."""
 
     counts = ("rounds",)
 
@@ -93,7 +93,7 @@ class Loop(Decorator):
 
 
 class Timed(Decorator):
-    """A decorator with a time, which begins anew after a restart of the plant."""
+    """Decorator with a time, which begins anew after a restart of the plant."""
 
     counts = ("started",)
 
@@ -112,7 +112,7 @@ class Timed(Decorator):
             self.start()
 
     def start(self) -> None:
-        """The time begins."""
+        """Begin to count the time."""
         self.started = True
         self.begin()
         self.until = self.context.now + self.given.number(self.port, self.scope) / 1000
@@ -120,7 +120,7 @@ class Timed(Decorator):
 
 
 class Timeout(Timed):
-    """Its child, which is left and counts as failed after so many milliseconds; 0 means never."""
+    """Decorator that halts its child and fails after so many milliseconds; 0 means never."""
 
     def work(self) -> Result:
         if not self.started:
@@ -138,7 +138,7 @@ class Timeout(Timed):
 
 
 class Delay(Timed):
-    """Its child after so many milliseconds."""
+    """Decorator that begins its child after so many milliseconds."""
 
     def work(self) -> Result:
         if not self.started:
@@ -153,7 +153,7 @@ class Delay(Timed):
 
 
 class RunOnce(Decorator):
-    """Its child once; then it is skipped, or ends as it ended then."""
+    """Decorator that runs its child once; then it is skipped, or ends as its child did."""
 
     counts = ("ended_as",)
 
@@ -175,7 +175,7 @@ class RunOnce(Decorator):
 
 
 class Precondition(Decorator):
-    """Its child where a script holds when it begins."""
+    """Decorator that runs its child if a script is true when it begins."""
 
     counts = ("is_under_way",)
 
@@ -205,7 +205,7 @@ def status(word: Value) -> Result:
 
 
 class ForEach(Decorator):
-    """Its child for each value of a list; done after the last one, failed as soon as the child fails."""
+    """Decorator that runs its child for each value of a list; it fails as soon as the child fails."""
 
     counts = ("left", "number", "is_under_way")
 
@@ -251,12 +251,12 @@ class ForEach(Decorator):
 
 
 def _items(value: Value) -> list[str]:
-    """A list as text has it: with semicolons between."""
+    """The items of a list written as text, with semicolons between them."""
     return [each.strip() for each in str(value).split(";") if each.strip()]
 
 
 class RateController(Decorator):
-    """Its child again only after a time, counted from when it was done last."""
+    """Decorator that repeats its child only after a time, counted from its last end."""
 
     counts = ("has_begun",)
 
@@ -291,7 +291,7 @@ class RateController(Decorator):
 
 
 class SubTree(Decorator):
-    """A tree with variables of its own, which are kept with it."""
+    """Decorator around a tree with variables of its own, which are kept with it."""
 
     def work(self) -> Result:
         self.begin()

@@ -1,4 +1,4 @@
-"""Steps of the plant whose values come from variables, and those that give variables a value."""
+"""Steps of the plant that take values from variables, and those that set variables."""
 
 from __future__ import annotations
 
@@ -39,11 +39,11 @@ MADE_OF: Mapping[type[Behaviour], tuple[str, ...]] = {
     Require: ("obstacle",),
     Await: ("arrived", "seconds", "otherwise"),
 }
-"""What of a step depends on the values that it was made with."""
+"""The attributes of each class of step that depend on the values it was made with."""
 
 
 def value_of(kind: str, port: Port, text: str) -> Value:
-    """The value that a text is for a port of a device; ScriptError where it is none."""
+    """The value that a text means for a port of a device; raises ScriptError if it is none."""
     said = quoted(text)
     if values.objection(port.type, text) is not None:
         raise ScriptError(WANTED(port=port.name, node=kind, wanted=TYPES[port.type](), value=said))
@@ -63,25 +63,25 @@ def example_of(port: Port) -> Value:
 
 
 def can_be_renewed(step: Behaviour) -> bool:
-    """Whether a step can be given other values than those that it was made with."""
+    """True if a step can be given other values than those it was made with."""
     return isinstance(step, tuple(MADE_OF))
 
 
 def renew(step: Behaviour, fresh: Behaviour) -> None:
-    """Have a step do what another one would, which was made with other values."""
+    """Give a step the values of another step of its kind."""
     row = next(names for kind, names in MADE_OF.items() if isinstance(step, kind))
     for name in row:
         setattr(step, name, getattr(fresh, name))
 
 
 def as_variable(value: Value) -> memory.Value:
-    """A value as a variable has it: true and false are 1 and 0."""
+    """A value as a variable holds it: true and false are 1 and 0."""
     return int(value) if isinstance(value, bool) else value
 
 
 @dataclass(frozen=True, kw_only=True)
 class Order:
-    """What a device is told by a node: its values, of which some are those of variables.
+    """Order of a node to a device: constant values, and variables that are looked up.
 
     `make` makes the step with its values; ArboledaError where the device cannot be told so.
     """
@@ -93,7 +93,7 @@ class Order:
     ports: Mapping[str, Port] = field(default_factory=dict)
 
     def values(self, scope: Scope) -> dict[str, Value]:
-        """All of them as they are now."""
+        """All values of the command, with the present ones of variables."""
         return {
             name: self.written[name] if name in self.written else self._found(name, scope)
             for name in self.ports
@@ -101,7 +101,7 @@ class Order:
         }
 
     def words(self, known: Mapping[str, Value], unknown: Collection[str]) -> list[str]:
-        """Its values as a title has them, with the names of variables that have none yet."""
+        """The values for a title, with the names of variables that have no value yet."""
         return [
             f"{{{self.variables[name]}}}" if self.variables.get(name) in unknown else shown(value)
             for name, value in known.items()
@@ -116,7 +116,7 @@ class Order:
 
 
 class DeviceStep(Forgiving):
-    """A step of a device, `built` with some values. What of it are variables is looked up when it begins.
+    """Step of a device, `built` with some values; those of variables are looked up when it begins.
 
     `anew` are the values that it has been given since.
     """
@@ -158,7 +158,7 @@ class DeviceStep(Forgiving):
 
 
 class QuestionStep(DeviceStep):
-    """A question, whose answer becomes the value of a variable."""
+    """Question whose answer is stored in a variable."""
 
     def __init__(
         self,
@@ -182,7 +182,7 @@ class QuestionStep(DeviceStep):
 
 
 class FactStep(Forgiving):
-    """What a device says of itself becomes the values of variables; it fails where that said nothing."""
+    """Condition that stores a device's report in variables; it fails if the device reported nothing."""
 
     def __init__(
         self,

@@ -1,4 +1,4 @@
-"""The leaves of a tree that are told to the devices of a cell."""
+"""Leaves of a tree that command the devices of a cell."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ UNSAID = Phrase("xml.unsaid", "{robot} has said nothing of {fact}")
 
 @dataclass
 class Devices:
-    """Makes the leaves of a tree in a cell.
+    """Factory of the leaves of a tree in a cell.
 
     Where a robot goes has to be known when the tree is built, for its way is planned then: a value that
     stands in the file, or a parameter of the recipe. What else a device is told may be any variable.
@@ -63,7 +63,7 @@ class Devices:
         }
 
     def make(self, node: forest.Node, below: list[Node], scope: Scope) -> Node | None:
-        """The leaf of a node; TreeError where its device cannot be told so, None where no device makes it."""
+        """The leaf for a node; None if no device makes it. TreeError if its device has no such command."""
         kind = self.kinds.get(node.kind)
         if kind is None:
             return None
@@ -96,7 +96,7 @@ class Devices:
     def _written(
         self, node: forest.Node, kind: Kind, written: WrittenNode, below: list[Node], scope: Scope
     ) -> Node:
-        """A node in Python; what its function raises has its place there."""
+        """A node in Python; an error of its function gets the place of the node."""
         name = node.name or node.kind
         inner = [WrapperNode(each, self.context, self.causes) for each in below]
         with _placed(node):
@@ -122,7 +122,7 @@ class Devices:
         return Order(kind=node.kind, make=make, written=written, variables=variables, ports=ports)
 
     def _now(self, order: Order, scope: Scope) -> dict[str, Value]:
-        """Its values with those of variables that are known already, and examples of the others."""
+        """The node's values; unknown variables are replaced by examples."""
         found: dict[str, Value] = {}
         for name, port in order.ports.items():
             known = scope.get(order.variables[name]) if name in order.variables else None
@@ -135,7 +135,7 @@ class Devices:
         return found
 
     def _fix(self, order: Order, node: forest.Node, scope: Scope) -> None:
-        """Its variables must not change; RecipeError where one has no value yet."""
+        """Fix the variables, which must not change; raises RecipeError if one has no value yet."""
         for name, variable in order.variables.items():
             place, key = scope.place(variable)
             if place.values.get(key) is None:
@@ -160,7 +160,7 @@ class Devices:
 
 @contextmanager
 def _placed(node: forest.Node) -> Iterator[None]:
-    """What is wrong with a node as it is written has its place."""
+    """Add the place of the node to an error that its text raises."""
     try:
         yield
     except (RecipeError, ScriptError) as error:

@@ -1,4 +1,4 @@
-"""Why a tree of a file is no recipe, with the place in the file."""
+"""Errors of trees that cannot be recipes, each with its place in the file."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from arboleda.recipes.errors import RecipeError, RoleError
 
 
 class TreeError(RecipeError):
-    """A node that cannot be run as it is written."""
+    """Error: a node cannot be run as it is written."""
 
     def __init__(self, sentence: str, place: Place) -> None:
         super().__init__(sentence)
@@ -17,7 +17,7 @@ class TreeError(RecipeError):
 
 
 class NoDeviceError(RoleError):
-    """A node that no device of a cell makes."""
+    """Error: no device of the cell makes a node."""
 
     def __init__(self, sentence: str, place: Place) -> None:
         super().__init__(sentence)
@@ -25,7 +25,7 @@ class NoDeviceError(RoleError):
 
 
 class TreeMistakes(RecipeError):
-    """All that is wrong with a tree in a cell: lines, each with its place."""
+    """Error with all faults of a tree in a cell: lines, each with its place."""
 
     def __init__(self, lines: Sequence[str]) -> None:
         super().__init__("; ".join(lines))

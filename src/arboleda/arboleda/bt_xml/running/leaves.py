@@ -1,4 +1,4 @@
-"""Nodes without children: those that BehaviorTree.CPP brings along, and a step of the plant."""
+"""Nodes without children: those of BehaviorTree.CPP, and a step of the plant."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ from .scripts import Script
 
 
 class Leaf(Node):
-    """A node without children of the tree."""
+    """Node without children."""
 
     frame = False
 
 
 class ConstantLeaf(Leaf):
-    """It always ends so."""
+    """Leaf that always ends in the same way."""
 
     def __init__(self, name: str, result: Result) -> None:
         super().__init__(name)
@@ -30,7 +30,7 @@ class ConstantLeaf(Leaf):
 
 
 class RunScript(Leaf):
-    """A script that is done."""
+    """Leaf that runs a script and succeeds."""
 
     def __init__(self, name: str, text: str) -> None:
         super().__init__(name)
@@ -42,14 +42,14 @@ class RunScript(Leaf):
 
 
 class ScriptCondition(RunScript):
-    """A script that holds or does not."""
+    """Leaf that succeeds if a script is true, and fails otherwise."""
 
     def work(self) -> Result:
         return SUCCESS if self.script.holds(self.scope) else FAILURE
 
 
 class SetBlackboard(Leaf):
-    """A variable gets a value."""
+    """Leaf that sets a variable."""
 
     def __init__(self, name: str, given: NodePorts) -> None:
         super().__init__(name)
@@ -61,7 +61,7 @@ class SetBlackboard(Leaf):
 
 
 class UnsetBlackboard(Leaf):
-    """A variable loses its value."""
+    """Leaf that removes a variable."""
 
     def __init__(self, name: str, given: NodePorts) -> None:
         super().__init__(name)
@@ -73,7 +73,7 @@ class UnsetBlackboard(Leaf):
 
 
 class Sleep(Leaf):
-    """So many milliseconds, of the time that stands still while the cell is held."""
+    """Leaf that waits so many milliseconds, of a time that stands still while the cell is held."""
 
     def __init__(self, name: str, given: NodePorts) -> None:
         super().__init__(name)
@@ -93,7 +93,7 @@ class Sleep(Leaf):
 
 
 class Step(Leaf):
-    """A step of the plant: a command, a question, a check. `turn` counts how often it has begun."""
+    """Leaf around a step of the plant: a command, a question, a check. `turn` counts its begins."""
 
     counts: ClassVar[tuple[str, ...]] = ("turn",)
     RESULTS: ClassVar = {Status.SUCCESS: SUCCESS, Status.FAILURE: FAILURE, Status.RUNNING: RUNNING}
@@ -110,12 +110,12 @@ class Step(Leaf):
         return []
 
     def prepare(self) -> None:
-        """Before its step begins."""
+        """Called before the step begins."""
 
     def work(self) -> Result:
         was_running = self.status is Status.RUNNING
         self.begin()
-        if not was_running:  # what has ended may be ticked again without having been reset
+        if not was_running:  # an ended node may be ticked again without a reset
             self.turn += 1
             self.prepare()
         self.step.tick_once()
@@ -126,6 +126,6 @@ class Step(Leaf):
         super().halt()
 
     def halt_step(self) -> None:
-        """End what the plant does for it, if it does something."""
+        """Halt the step, if it runs."""
         if self.step.status is Status.RUNNING:
             self.step.stop(Status.INVALID)

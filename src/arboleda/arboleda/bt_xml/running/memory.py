@@ -1,4 +1,4 @@
-"""The variables of a tree: each subtree has its own, and finds some of them in the tree around it."""
+"""Variables of a tree: each subtree has its own, and sees some of the tree around it."""
 
 from __future__ import annotations
 
@@ -13,9 +13,11 @@ Value = float | int | str
 
 @dataclass(eq=False)
 class Scope:
-    """The variables of one tree. `names`: those that are another variable of the tree around it. `shares`: so
-    are all others, but for private ones and those that have a value here, which the tree was given.
-    `changes`: how often each was set, where a node asks for that.
+    """Variables of one tree.
+
+    `names`: variables that stand for one of the tree around it, by name. `shares`: all others do so, too,
+    except private ones and those that have a value here. `changes`: the number of times that each was set, if
+    a node asks for that.
     """
 
     around: Scope | None = None
@@ -26,7 +28,7 @@ class Scope:
     is_watched: bool = False
 
     def place(self, name: str) -> tuple[Scope, str]:
-        """Where a variable is kept, and as what."""
+        """The scope that holds a variable, and its name there."""
         scope: Scope = self
         while True:
             if name.startswith(OUTER):
@@ -44,7 +46,7 @@ class Scope:
                 return scope, name
 
     def get(self, name: str) -> Value | None:
-        """The value of a variable; None where it has none."""
+        """The value of a variable; None if it has none."""
         scope, key = self.place(name)
         return scope.values.get(key)
 
@@ -54,17 +56,17 @@ class Scope:
         scope.values[key] = value
 
     def changed(self, key: str) -> int:
-        """How often a variable of this tree was set; 0 where it has no value."""
+        """The number of times that a variable of this tree was set; 0 if it has no value."""
         return self.changes.get(key, 1) if key in self.values else 0
 
     def watch(self, name: str) -> int:
-        """The same of any variable; from now on it is kept."""
+        """The number of times that a variable was set; from now on it is counted and kept."""
         scope, key = self.place(name)
         scope.is_watched = True
         return scope.changed(key)
 
     def kept(self) -> dict[str, Any] | None:
-        """What has to be known of it at the next start."""
+        """The state to keep for the next start; None if there are no variables."""
         if not self.values:
             return None
         return {"values": self.values, **({"changes": self.changes} if self.is_watched else {})}

@@ -1,4 +1,4 @@
-"""The control nodes of Nav2."""
+"""Control nodes of Nav2."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ AT = "current_child_idx"
 
 
 class RecoveryNode(Node):
-    """The first child; where it fails, the second and then the first again, so many times at most."""
+    """Node that runs its first child; if that fails, the second and then the first again, so many times."""
 
     counts = ("recovers", "retries")
 
@@ -53,7 +53,7 @@ class RecoveryNode(Node):
 
 
 class PipelineSequence(Node):
-    """All children up to the one that runs, at every tick, those before it too though they may run."""
+    """Sequence that ticks all children up to the running one at every tick, even if earlier ones run."""
 
     sign = "parallel"
     counts = ("last",)
@@ -84,7 +84,7 @@ class PipelineSequence(Node):
 
 
 class NonblockingSequence(Node):
-    """All children at every tick, those that were done too, until all are done at one tick or one fails."""
+    """Node that ticks all children at every tick, until all succeed in the same tick or one fails."""
 
     sign = "parallel"
 
@@ -104,7 +104,7 @@ class NonblockingSequence(Node):
 
 
 class PersistentSequence(Node):
-    """A sequence that keeps in a variable where it is, also when it is halted."""
+    """Sequence that keeps its place in a variable, also when it is halted."""
 
     sign = "sequence"
 
@@ -131,7 +131,7 @@ class PersistentSequence(Node):
 
 
 class RoundRobin(Node):
-    """The next child at each tick until one is done; failed once all have."""
+    """Node that ticks the next child at each tick until one succeeds; it fails once all have failed."""
 
     counts = ("at", "failed")
 

@@ -1,4 +1,4 @@
-"""What every node does around its own tick: conditions before, scripts after, halting, and being kept.
+"""Base of every node: conditions before its tick, scripts after it, halting, and the state that is kept.
 
 A node's status is that of py_trees, where INVALID is what BehaviorTree.CPP calls IDLE. A tick also may come
 to SKIPPED, which no status shows: the parent is told, and the node stays as it is.
@@ -20,7 +20,7 @@ from .scripts import Script
 
 
 class Result(Enum):
-    """What a tick came to."""
+    """Result of a tick."""
 
     RUNNING = "RUNNING"
     SUCCESS = "SUCCESS"
@@ -32,11 +32,11 @@ RUNNING, SUCCESS, FAILURE, SKIPPED = Result
 STATUSES = {RUNNING: Status.RUNNING, SUCCESS: Status.SUCCESS, FAILURE: Status.FAILURE}
 ENDED = (SUCCESS, FAILURE)
 TICK_S = 0.01  # until the next tick, as BehaviorTree.CPP's own loops have it
-PAUSE_S = 0.1  # before what may take no time is asked once more, without end
+PAUSE_S = 0.1  # pause before an endless repetition of something that may take no time
 
 
 class Clock(Protocol):
-    """What a node knows of time: that of its cell."""
+    """Time of a node: the clock of its cell."""
 
     @property
     def now(self) -> float: ...
@@ -45,20 +45,20 @@ class Clock(Protocol):
 
 
 class NoClock:
-    """Of a node that is not built into a tree."""
+    """Clock of a node that is not part of a tree."""
 
     now = 0.0
 
     def wake_at(self, at: float) -> None:
-        """Nobody is woken."""
+        """Does nothing."""
 
 
 class Node(Keeps, Behaviour):
-    """`counts` are the names of attributes that say how far it came, which are kept for the next start."""
+    """Base of nodes; `counts` are the attributes that hold its progress, which is kept for the next start."""
 
     counts: ClassVar[tuple[str, ...]] = ()
     sign: ClassVar[str] = "step"  # the word of drawings and of the page for it
-    frame = True  # where it runs, screens name the step in it
+    frame = True  # screens name the step in it while it runs
 
     def __init__(self, name: str, children: Sequence[Node] = ()) -> None:
         super().__init__(name)
@@ -72,18 +72,18 @@ class Node(Keeps, Behaviour):
 
     @property
     def below(self) -> list[Node]:
-        """Its children."""
+        """The children."""
         return cast("list[Node]", self.children)
 
     def work(self) -> Result:
-        """Its own tick."""
+        """Carry out the node's own tick."""
         raise NotImplementedError
 
     def reset_counts(self) -> None:
-        """Forget how far it came, as it does when it is halted."""
+        """Forget the progress; called when the node is halted."""
 
     def execute(self) -> Result:
-        """Tick it, with the conditions and scripts that stand at it."""
+        """Tick the node, with its conditions and scripts."""
         result = self._by_condition()
         if result is None:
             result = self.work()
@@ -95,29 +95,29 @@ class Node(Keeps, Behaviour):
         return result
 
     def halt(self) -> None:
-        """Leave it while it runs, with all that runs below it."""
+        """Halt the node if it runs, with all nodes that run below it."""
         self.forget()
         self._run("_onHalted")
 
     def forget(self) -> None:
-        """Be as it was before it began."""
+        """Return to the state before the node began."""
         self.reset_counts()
         self.reset_children()
         self.status = Status.INVALID
 
     def reset(self) -> None:
-        """Have it begin anew when it is ticked next."""
+        """Let the node begin anew at the next tick."""
         if self.status is Status.RUNNING:
             self.halt()
         self.status = Status.INVALID
 
     def again(self, *, after_s: float = TICK_S) -> Result:
-        """It goes on with the next tick, which comes by itself."""
+        """Returns RUNNING, and asks for another tick after `after_s`."""
         self.context.wake_at(self.context.now + after_s)
         return RUNNING
 
     def begin(self) -> bool:
-        """It runs from now on; whether it did not before."""
+        """Mark the node as running; True if it was not."""
         was = self.status
         self.status = Status.RUNNING
         return was is Status.INVALID
@@ -127,14 +127,14 @@ class Node(Keeps, Behaviour):
             child.reset()
 
     def tick(self) -> Iterator[Behaviour]:
-        """As a node of py_trees: what was skipped had nothing to do."""
+        """Tick as a node of py_trees; a skipped node had nothing to do."""
         if self.execute() is SKIPPED:
             self.reset()
             self.status = Status.SUCCESS
         yield self
 
     def update(self) -> Status:
-        """As py_trees wants it; `tick` does without."""
+        """Required by py_trees; `tick` does not call it."""
         return self.status
 
     def stop(self, new_status: Status = Status.INVALID) -> None:
@@ -150,7 +150,7 @@ class Node(Keeps, Behaviour):
             setattr(self, name, value)
 
     def _by_condition(self) -> Result | None:
-        """What a condition makes of the tick; while it runs only `_while` is looked at."""
+        """The result that a condition decides; None if the node ticks. Running, only `_while` counts."""
         if self.status is Status.RUNNING:
             script = self.before.get("_while")
             if script is None or script.holds(self.scope):
@@ -172,7 +172,7 @@ class Node(Keeps, Behaviour):
 
 
 class Decorator(Node):
-    """A node around one; what has ended below it begins anew with the next tick."""
+    """Base of nodes around one child; a child that has ended begins anew at the next tick."""
 
     @property
     def child(self) -> Node:

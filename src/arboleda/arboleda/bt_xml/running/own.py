@@ -1,4 +1,4 @@
-"""Nodes that are written in Python: steps around what stands below them, and functions of values."""
+"""Nodes written in Python: steps around the nodes below them, and functions of values."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from .root import FAILED
 
 
 class WrapperNode(Node):
-    """A node of the tree below a step in Python, which finds the cause of its failure in the context."""
+    """Node below a step in Python, which finds the cause of the node's failure in the context."""
 
     frame = True
 
@@ -42,7 +42,7 @@ class WrapperNode(Node):
 
 
 class FunctionNode(Leaf):
-    """A function of values, called at each tick; whatever it raises is the tree's."""
+    """Leaf that calls a function of values at each tick; an exception in it counts as the tree's."""
 
     def __init__(self, name: str, written: WrittenNode, order: Order, outs: Mapping[str, str]) -> None:
         super().__init__(name)

@@ -1,4 +1,4 @@
-"""What a node is given: values that stand in the file, or variables that are looked up when it is ticked."""
+"""Values of a node's ports: constants of the file, or variables that are looked up at each tick."""
 
 from __future__ import annotations
 
@@ -27,18 +27,18 @@ TYPES = {
     "bool": Phrase("xml.bool", values.TYPES["bool"][0]),
     "status": Phrase("xml.status", values.TYPES["status"][0]),
 }
-"""What a port takes, by its type."""
+"""The values that a port takes, in words, by its type."""
 
 
 @dataclass(frozen=True)
 class NodePorts:
-    """The ports of one node, by name."""
+    """Ports of one node, by name."""
 
     node: str
     said: Mapping[str, str]
 
     def text(self, name: str, scope: Scope, default: str | None = None) -> Value:
-        """The value of a port; ScriptError where there is none."""
+        """The value of a port; raises ScriptError if there is none."""
         written = self.said.get(name, default)
         if written is None:
             raise ScriptError(NEEDED(node=self.node, port=name))
@@ -51,12 +51,12 @@ class NodePorts:
         return found
 
     def found(self, name: str, scope: Scope) -> Value | None:
-        """The same where a variable may have no value; None then."""
+        """The value of a port; None if its variable has none."""
         said = values.read(name, self.said.get(name, ""))
         return scope.get(said.name) if isinstance(said, Variable) else said
 
     def number(self, name: str, scope: Scope, default: str | None = None) -> float:
-        """The same of a port that takes a number."""
+        """The value of a port as a number; raises ScriptError if it is none."""
         found = self.text(name, scope, default)
         if not isinstance(found, str):
             return float(found)

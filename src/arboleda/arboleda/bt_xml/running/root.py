@@ -1,4 +1,4 @@
-"""The outermost node of a running tree: what a failure of it is to the task."""
+"""Root of a running tree: turns its failure into the task's."""
 
 from __future__ import annotations
 
@@ -22,9 +22,9 @@ FAILED = Phrase("xml.failed", "the tree {tree} has failed")
 
 
 class Forgiving(Step):
-    """A step of the plant in a tree that may have an answer to its failure.
+    """Step of the plant in a tree that may recover from its failure.
 
-    The cause is kept for when the whole tree fails; one that nothing in a recipe may answer ends the tree.
+    The cause is kept until the whole tree fails; a cause that no recipe may recover from ends the tree.
     """
 
     def __init__(self, name: str, step: Behaviour, context: Context, causes: list[Failure]) -> None:
@@ -45,7 +45,7 @@ class Forgiving(Step):
 
 
 class Main(Node):
-    """A whole tree, with the variables of its outermost scope."""
+    """Whole tree, with the variables of its outermost scope."""
 
     def __init__(self, name: str, tree: Node, context: Context, causes: list[Failure]) -> None:
         super().__init__(name, [tree])
@@ -55,7 +55,7 @@ class Main(Node):
 
     @property
     def parameters(self) -> Mapping[str, Any]:
-        """What screens show of it: its variables."""
+        """The variables of the tree, for screens."""
         return dict(self.scope.values)
 
     def work(self) -> Result:

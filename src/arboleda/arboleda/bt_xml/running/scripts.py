@@ -1,4 +1,4 @@
-"""Scripts that are evaluated: with variables, numbers and texts, and nothing else."""
+"""Evaluation of scripts, with variables, numbers and texts, and nothing else."""
 
 from __future__ import annotations
 
@@ -30,12 +30,12 @@ NOT_WHOLE = Phrase("script.not_whole", "{number} is no whole number")
 
 
 class ScriptError(ArboledaError):
-    """What a script cannot do, while the tree runs."""
+    """Error of a script while the tree runs."""
 
 
 @dataclass(frozen=True)
 class Script:
-    """A script that was read before."""
+    """Script that was parsed before."""
 
     text: str
     statements: tuple[Expression, ...]
@@ -45,7 +45,7 @@ class Script:
         return cls(text, script.parse(text))
 
     def run(self, scope: Scope) -> Value:
-        """Do all of it; the value of the last statement."""
+        """Run the script; returns the value of the last statement."""
         found: Value = 0
         for statement in self.statements:
             found = evaluate(statement, scope)
@@ -56,7 +56,7 @@ class Script:
 
 
 def is_true(value: Value) -> bool:
-    """Whether a value counts as true; a text does where it says so."""
+    """True if a value counts as true; raises ScriptError for a text that is neither true nor false."""
     if not isinstance(value, str):
         return bool(value)
     if value.lower() in ("true", "1"):
@@ -67,7 +67,7 @@ def is_true(value: Value) -> bool:
 
 
 def evaluate(expression: Expression, scope: Scope) -> Value:
-    """The value of an expression; ScriptError where it has none."""
+    """The value of an expression; raises ScriptError if it has none."""
     if isinstance(expression, script.Value):
         return expression.value
     if isinstance(expression, Name):
@@ -129,7 +129,7 @@ def _text(left: Value, right: Value) -> str:
 
 
 def spelled(number: float) -> str:
-    """A number as a text has it: a whole one without a point."""
+    """A number as text; a whole one without a point."""
     return shown(int(number)) if float(number).is_integer() else shown(number)
 
 

@@ -1,4 +1,4 @@
-"""Nodes that look at whether a variable was set since, or whether two values are the same."""
+"""Nodes that test whether a variable was set, or whether two values are equal."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from .scripts import is_true
 
 
 class WasEntryUpdated(Leaf):
-    """Done where the variable was set since the last tick of this node."""
+    """Leaf that succeeds if the variable was set since its last tick."""
 
     counts = ("seen",)
 
@@ -31,7 +31,7 @@ class WasEntryUpdated(Leaf):
 
 
 class WhenUpdated(Decorator):
-    """Its child where the variable was set since that was looked at last; `otherwise` where it was not."""
+    """Decorator that runs its child if the variable was set since its last look; else `otherwise`."""
 
     counts = ("seen", "is_under_way")
 
@@ -56,7 +56,7 @@ class WhenUpdated(Decorator):
 
 
 class BlackboardCheck(Decorator):
-    """Its child while two values are the same, as version 3 has it."""
+    """Decorator that runs its child while two values are equal, as version 3 has it."""
 
     def __init__(
         self, name: str, child: Node, given: NodePorts, same: Callable[[Value, Value], bool]
@@ -83,7 +83,7 @@ SAME: Mapping[str, Callable[[Value, Value], bool]] = {
 
 
 class SingleTrigger(Decorator):
-    """Its child until it has ended once; failed from then on, until it is reset."""
+    """Decorator that runs its child until it has ended once; it fails from then on, until it is reset."""
 
     counts = ("has_ended",)
 
@@ -105,7 +105,7 @@ class SingleTrigger(Decorator):
 
 
 class GoalUpdatedController(Decorator):
-    """Its child when it begins, and again whenever the value of `goal` or `goals` has become another one."""
+    """Decorator that runs its child when it begins, and again whenever `goal` or `goals` has changed."""
 
     counts = ("goals", "is_new")
 

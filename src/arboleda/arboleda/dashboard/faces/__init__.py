@@ -1,4 +1,4 @@
-"""What the page shows, as flat plain data: key -> value. Pure; one file per part of the page.
+"""The contents of the page as flat plain data: key -> value. Pure; one file per part of the page.
 
 | key | value | on the page |
 |---|---|---|

@@ -1,4 +1,4 @@
-"""What devices and people answered to a task."""
+"""Rows of the answers that devices and people gave to a task."""
 
 from __future__ import annotations
 

@@ -16,7 +16,7 @@ from .moment import Moment, clock, seconds
 
 SHOWN_CHANGES = 12
 SHOWN_ANSWERS = 4
-GIVEN_UP = ("command", "await")  # what ends by itself has no deadline
+GIVEN_UP = ("command", "await")  # kinds of steps that a deadline ends
 Row = dict[str, Any]
 
 
@@ -65,7 +65,7 @@ def _card(moment: Moment, cell: Row, memory: TreeMemory) -> Face:
 
 
 def _devices(moment: Moment, name: str, devices: list[Row], robots: dict[str, Row]) -> Face:
-    """A row for each device of a cell that no drawing shows: what it says, and what it was told last."""
+    """A row for each device of a cell that no drawing shows: its facts and its last command."""
     shown = [each["name"] for each in devices if each["position"] is None]
     found: Face = {f"rows/devices.{name}": shown} if shown else {}
     for device in shown:
@@ -76,7 +76,7 @@ def _devices(moment: Moment, name: str, devices: list[Row], robots: dict[str, Ro
 
 
 def _heard(moment: Moment, cell: Row, devices: list[Row]) -> Face:
-    """What was answered last to the task of a cell, where one of its devices can answer."""
+    """The last answers to the task of a cell, if one of its devices can answer."""
     if all(each["position"] for each in devices):
         return {}
     given = cell["task"]["answers"] if cell["task"] else []
@@ -84,10 +84,10 @@ def _heard(moment: Moment, cell: Row, devices: list[Row]) -> Face:
 
 
 def _cause(words: Words, cell: Row, task: Row | None, memory: TreeMemory) -> str:
-    """Why the last task failed, and in which step, or what of it nobody confirmed; until the cell is at work
-    again.
+    """The reason for which the last task failed and the step it failed in, or the result of it that nobody
+    confirmed; empty once the cell is at work again.
 
-    That of a stop is told by the cell itself.
+    The reason for a stop is left out, as the cell itself shows it.
     """
     if task is not None and task["reason"] == "stopped" and cell["state"] in ("aborting", "aborted"):
         return ""
@@ -97,12 +97,13 @@ def _cause(words: Words, cell: Row, task: Row | None, memory: TreeMemory) -> str
 
 
 def _remark(words: Words, task: Row) -> str:
-    """What of a task that is done nobody confirmed."""
+    """The sentence of a task that is done about a result that nobody confirmed."""
     return words.say(task["sentence"]) if task["state"] == "done" else ""
 
 
 def _act(moment: Moment, cell: Row) -> list[str]:
-    """What an operator had devices of the cell do last, while they do it; that it failed, until it works."""
+    """The last thing that an operator had devices of the cell do, while they do it; if it failed, until the
+    cell has worked again."""
     words = moment.words
     act = next((act for act in reversed(moment.snapshot["acts"]) if act["cell"] == cell["name"]), None)
     if act is None:
@@ -122,20 +123,20 @@ def _has_worked_since(moment: Moment, cell: Row, at: float) -> bool:
 
 
 def _report(words: Words, cell: Row, task: Row | None) -> list[str]:
-    """The way to the report of the last task, while the card says that it failed; its state is the id."""
+    """The link to the report of the last task, while the card says that it failed; its state is the id."""
     over = cell["state"] != "execute" and task is not None and task["state"] == "failed"
     return [words("report.link"), task["id"]] if over and task else ["", ""]
 
 
 def failed_in(words: Words, task: Row, rows: list[Row]) -> str:
-    """Why a task failed, and in which step of its tree."""
+    """The reason for which a task failed, and the step of its tree that it failed in."""
     step = next((row["name"] for row in rows if row["path"] == task["failed_in"]), None)
     why = words.say(task["sentence"])
     return why if step is None else words("cells.failed_in", step=words.say(step), why=why)
 
 
 def _ways(words: Words, cell: Row) -> Face:
-    """What leads the cell out: a row for each advice, in the order to do it."""
+    """The list of what leads the cell out of its trouble: a row for each advice, in the order to do it."""
     name, found = cell["name"], {}
     for number, advice in enumerate(cell["advice"]):
         before = _before(cell["advice"], number)
@@ -155,7 +156,7 @@ def _said(words: Words, advice: Row) -> str:
 
 
 def _before(ways: list[Row], number: int) -> list[Row]:
-    """What stands right before an advice: one thing to do, or all that may be done instead of each other."""
+    """The advice right before this one: a single one, or all of a group of alternatives."""
     first = number - 1
     while first > 0 and ways[first]["instead"]:
         first -= 1
@@ -163,7 +164,7 @@ def _before(ways: list[Row], number: int) -> list[Row]:
 
 
 def _note(words: Words, advice: Row, before: list[Row]) -> str:
-    """What comes first, or why not now; else what comes of it."""
+    """The note on an advice: the advice to follow first, or the reason against it now, or else its effect."""
     if advice["refusal"] and before and not advice["instead"]:
         note = words("ways.after", first=words("ways.or").join(_said(words, each) for each in before))
     elif advice["refusal"]:
@@ -208,7 +209,7 @@ def _last_task(moment: Moment, memory: TreeMemory) -> Row | None:
 
 
 def trouble(moment: Moment, cell: Row) -> str:
-    """What is in the way of a cell; "" where nothing is."""
+    """The sentence about what keeps a cell from working; "" if nothing does."""
     words = moment.words
     if cell["held_by"]:
         return words.say(cell["held_by"])
@@ -218,13 +219,13 @@ def trouble(moment: Moment, cell: Row) -> str:
 
 
 def _offered(words: Words, cell: Row, stands: str) -> str:
-    """What an idle cell that can work asks for."""
+    """The invitation to give a task to an idle cell that is ready for one."""
     free = stands == "idle" and cell["task"] is None and not cell["queue"]
     return words("cells.offer", cell=cell["name"]) if free else ""
 
 
 def _feedback(words: Words, cell: Row, leaf: Row | None) -> str:
-    """What is done now; nothing of a cell that is held."""
+    """The feedback of the step that runs now; empty for a cell that is held."""
     return words.say(leaf["feedback"]) if leaf and leaf["feedback"] and cell["state"] != "held" else ""
 
 
@@ -243,7 +244,7 @@ def _queue(moment: Moment, cell: Row) -> str:
 
 
 def progress(rows: list[Row], statuses: dict[str, str]) -> float:
-    """The share of the steps of the work that are done; of the recovery's once that runs."""
+    """The share of the steps that are done: those of the work, or of the recovery once that runs."""
     found = phases(rows)
     active = [row for row in found if statuses.get(row["path"]) == RUNNING] or found[:1]
     steps = [over for phase in active for over in _steps(rows, statuses, phase, done=False)]
@@ -251,7 +252,7 @@ def progress(rows: list[Row], statuses: dict[str, str]) -> float:
 
 
 def _steps(rows: list[Row], statuses: dict[str, str], frame: Row, *, done: bool) -> list[bool]:
-    """As `tree_view.progress_of` counts them."""
+    """A bool for each step of a frame, True once it is done; counted as in `tree_view.progress_of`."""
     nodes = [row for row in rows if parent(row["path"]) == frame["path"]]
     if frame["kind"] == "selector":
         nodes = [row for row in nodes if statuses.get(row["path"]) in (RUNNING, SUCCESS)]
@@ -271,7 +272,7 @@ def tree_face(
     rests: bool = False,
     title: str = "",
 ) -> Face:
-    """A tree under this name; `leaf` is the path of the one that runs, or `rests` in a cell that is held."""
+    """The face of a tree under this name; `leaf` is the path of the running leaf, `rests` for a held cell."""
     nodes = [
         {
             "path": row["path"],
@@ -316,7 +317,7 @@ def _value(value: Any) -> str:
 
 
 def _changes(moment: Moment, cell: str, memory: TreeMemory) -> Face:
-    """The last statuses, the newest first."""
+    """The rows of the last changes of status, the newest first."""
     last = list(memory.changes)[-SHOWN_CHANGES:][::-1]
     found: Face = {f"rows/changes.{cell}": [str(change.number) for change in last]}
     for change in last:

@@ -55,7 +55,7 @@ def _standbys(moment: Moment) -> list[str]:
 
 
 def memory(moment: Moment) -> list[str]:
-    """That commits are slow, with what that means; nothing where they are not."""
+    """The sentence about slow commits and their effect; empty while they are fast."""
     pace = moment.links.get("memory")
     if not pace or not pace["is_slow"]:
         return ["", ""]
@@ -72,7 +72,7 @@ def _strays(moment: Moment) -> list[str]:
 
 
 def _row(moment: Moment, robot: Row, cell: str, position: str | None) -> Row:
-    """`position`: the key that has it, None of what goes nowhere and needs no homing."""
+    """The row of a robot; `position` names its position, None if it goes nowhere and needs no homing."""
     words = moment.words
     presence = "online" if robot["online"] else "offline"
     return {
@@ -122,9 +122,8 @@ def _yes_or_no(moment: Moment, value: bool | None) -> str:
 
 
 def says(words: Words, robot: Row) -> str:
-    """Each of its facts by name, whether we have a word for it or not; whether it may hold a part, and which
-    cell has it of those that share it.
-    """
+    """The facts of a robot by name, also those without a word on the page; the part that it may hold; and,
+    for a shared device, the cell that has it."""
     told = robot["facts"].items()
     facts = [f"{words.of('fact', name)} {_fact(words, name, value)}" for name, value in told]
     holding = [words("links.holding")] if robot["holding"] else []
@@ -133,7 +132,7 @@ def says(words: Words, robot: Row) -> str:
 
 
 def _fact(words: Words, name: str, value: Any) -> str:
-    """A fact in words of its own where there are some: `on` of an effector."""
+    """A fact in its own words if there are some, such as `on` of an effector."""
     if value is None:
         return words("links.unsaid")
     return words.flat.get(f"fact_said.{name}.{shown(value)}") or value_said(words, value)
@@ -147,7 +146,7 @@ def value_said(words: Words, value: Any) -> str:
 
 
 def command(moment: Moment, robot: Row) -> str:
-    """What it was told last, what became of it and, where that was a question, its answer."""
+    """The last command to a robot with its state and, if it was a question, its answer."""
     told = robot["command"]
     if told is None:
         return ""
@@ -158,7 +157,7 @@ def command(moment: Moment, robot: Row) -> str:
 
 
 def _refused(moment: Moment, robot: Row) -> str:
-    """Commands that the robot refused, and messages of its board that nobody could read."""
+    """The number of commands that a robot refused, and of unreadable messages of its board."""
     messages = moment.links["refused"].get(robot["name"], {"count": 0, "last": None})
     count = robot["rejected"]["count"] + messages["count"]
     last = messages["last"] or robot["rejected"]["last"]

@@ -1,4 +1,4 @@
-"""All that a face is made of at one moment."""
+"""The moment that faces are made of: a snapshot and the memory of earlier ones."""
 
 from __future__ import annotations
 
@@ -35,13 +35,13 @@ def clock(unix_s: float) -> str:
 
 
 def dated(unix_s: float, now: float) -> str:
-    """The `clock`, after its date where that is not the day of `now`."""
+    """The `clock`, after its date if the day is not that of `now`."""
     date, today = (time.strftime("%Y-%m-%d", time.localtime(at)) for at in (unix_s, now))
     return clock(unix_s) if date == today else f"{date} {clock(unix_s)}"
 
 
 def seconds(value: float | None) -> str:
-    """A span for people: `8 s`, `2:05 min`, `3:07 h`; "" where there is none."""
+    """A duration for people: `8 s`, `2:05 min`, `3:07 h`; "" for None."""
     if value is None:
         return ""
     whole = max(0, round(value))

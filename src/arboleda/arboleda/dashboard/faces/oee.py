@@ -1,4 +1,4 @@
-"""The OEE of the cells: a row each, with what nobody can say and why."""
+"""The OEE of the cells: a row each, with the figures that are unknown and the reason."""
 
 from __future__ import annotations
 

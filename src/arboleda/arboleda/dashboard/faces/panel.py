@@ -36,7 +36,7 @@ def face(moment: Moment) -> Face:
 
 
 def _for_all(moment: Moment, verbs: list[str]) -> Face:
-    """What several cells want at once, offered beside the cards for the whole plant."""
+    """The verbs that several cells want at once, offered beside the cards for the whole plant."""
     words = moment.words
     found: Face = {"rows/for_all": verbs}
     for verb in verbs:
@@ -50,7 +50,7 @@ FOR_ALL = ("clear", "reset", "resume")
 
 
 def suggested(cell: Row) -> tuple[str, ...]:
-    """The verb that a person would want next; none where a hand comes first, or another robot."""
+    """The verb that a person would want next; none if handwork, or another robot, comes first."""
     first = cell["advice"][0] if cell["advice"] else None
     if first is None or first["hand"] or first["refusal"]:
         return ()
@@ -60,13 +60,14 @@ def suggested(cell: Row) -> tuple[str, ...]:
 
 
 def refused_everywhere(cells: list[Row]) -> dict[str, str]:
-    """What the whole plant would be refused: what can be done in none of its cells."""
+    """The verbs that every cell refuses and that the whole plant refuses therefore, each with its reason."""
     first = cells[0]["refused"] if cells else {}
     return {verb: why for verb, why in first.items() if all(verb in cell["refused"] for cell in cells)}
 
 
 def _refused(moment: Moment, refused: dict[str, str], wanted: Collection[str] = ()) -> str:
-    """Why each verb would be refused; of those that follow one of the `wanted`, that it comes first."""
+    """The reason for which each verb would be refused; a verb that follows one of the `wanted` says that this
+    one comes first."""
     words = moment.words
     reasons = {verb: words.say(why) for verb, why in sorted(refused.items())}
     first = next((verb for verb in FOR_ALL if verb in wanted), None)

@@ -1,4 +1,4 @@
-"""What people are asked: the question, how long it waits, and a button for each answer."""
+"""Questions to people: the text, the time that is left, and a button for each answer."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def _of(words: Words, person: str, question: Row | None) -> Face:
 
 
 def _offer(words: Words, person: str, question: Row, answer: str) -> Row:
-    """The act of a button; a click on a page that is behind is for the question that stood there."""
+    """The act of an answer's button; it names its question, so that a late click answers no later one."""
     does = words("asked.does", answer=answer, question=question["text"])
     of = f"{person} #{question['id']} {answer}"
     return {"act": Verb.ANSWER.value, "of": of, "label": answer, "does": does}

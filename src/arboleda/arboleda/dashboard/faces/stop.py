@@ -1,4 +1,4 @@
-"""What became of a stop (software), as far as the robots themselves have confirmed it."""
+"""The state of a stop (software), as far as the robots themselves have confirmed it."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Any
 from . import Face
 from .moment import Moment
 
-NAMED = 8  # robots below the button; of more, how many
+NAMED = 8  # robots named below the button; of more only the number
 LATCHED = 4  # MotionState.STOP_LATCHED
 
 
@@ -34,7 +34,7 @@ class StopState:
 
 
 def stopped(snapshot: dict[str, Any], no_stop: frozenset[str]) -> StopState:
-    """`no_stop`: robots whose board knows no latch; of them, standing still has to do."""
+    """The robots of a stop by state; those of `no_stop` know no latch: standing still confirms theirs."""
     groups: dict[str, list[str]] = {"confirmed": [], "waiting": [], "silent": [], "free": []}
     for robot in snapshot["robots"]:
         groups[_group(robot, no_stop)].append(robot["name"])

@@ -17,7 +17,7 @@ Row = dict[str, Any]
 
 
 def face(moment: Moment, id: str, tree: EndedTree | None, kept: TaskRow | None = None) -> Face:
-    """Of a task that no screen shows any more what was kept of it; of one that nobody knows only its name."""
+    """The page of a task: a kept one if no screen shows it any more; an unknown one has only its name."""
     task = next((task for task in moment.snapshot["tasks"] if task["id"] == id), None)
     is_past = task is None and kept is not None
     if task is None and kept is not None:
@@ -43,7 +43,7 @@ def face(moment: Moment, id: str, tree: EndedTree | None, kept: TaskRow | None =
 
 
 def _ended_here(task: Row | None, *, kept: bool) -> bool:
-    """Whether the record of this start has its end."""
+    """True if a task ended in this start and its record is therefore complete."""
     return task is not None and not kept and task["ended_at"] is not None
 
 
@@ -82,13 +82,13 @@ def _cause(moment: Moment, task: Row, tree: EndedTree | None) -> str:
 
 
 def _choice(moment: Moment, task: Row | None) -> str:
-    """Why it is done in its cell; records of older versions do not say it."""
+    """The reason for which this cell was chosen for the task; empty in records of older versions."""
     choice = task.get("choice") if task is not None else None
     return moment.words("task.choice", why=moment.words.say(choice)) if choice else ""
 
 
 def _note(moment: Moment, task: Row | None, tree: EndedTree | None) -> str:
-    """Why there is no tree to look at."""
+    """The note that stands in place of a tree that cannot be shown."""
     if task is None:
         return moment.words("task.unknown")
     if tree is not None:

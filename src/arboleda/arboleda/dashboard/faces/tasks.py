@@ -22,7 +22,7 @@ def face(moment: Moment) -> Face:
 
 
 def sorted_tasks(tasks: list[Row]) -> list[Row]:
-    """What runs, then what waits in its order, then what ended, the last one first."""
+    """The tasks in the order of the list: running ones, waiting ones, then ended ones, the last first."""
     open_ones = [task for task in tasks if task["state"] in ORDER]
     ended = [task for task in tasks if task["state"] not in ORDER]
     return [
@@ -53,7 +53,7 @@ def _row(moment: Moment, task: Row) -> Row:
 
 
 def why(moment: Moment, task: Row) -> str:
-    """Why it failed or waits, the reason in the page's language, or what of it nobody confirmed."""
+    """The reason for which a task failed or waits, or the result of it that nobody confirmed."""
     words = moment.words
     if task["reason"]:
         return f"{words.of('reason', task['reason'])}: {words.say(task['sentence'])}"

@@ -7,12 +7,12 @@ from typing import Any
 from . import Face
 from .moment import Moment, dated
 
-SHOWN = 200  # of what is kept; the download has all
+SHOWN = 200  # events; the download has all that are kept
 Event = dict[str, Any]
 
 
 def face(moment: Moment) -> Face:
-    """The newest event first."""
+    """The rows of the time line, the newest event first."""
     last = list(moment.events)[-SHOWN:][::-1]
     found: Face = {"rows/events": [str(event["number"]) for event in last]}
     for event in last:

@@ -37,7 +37,8 @@ def face(moment: Moment) -> Face:
 
 
 def _sum(moment: Moment) -> list[str]:
-    """Who is waited for, whether commits are slow or the plant ends; the worst state of a cell colours it."""
+    """The line above the page: people who are waited for, slow commits, the end of the plant; coloured by the
+    worst state of a cell."""
     states = [standing(cell) for cell in moment.snapshot["cells"]]
     ending = [moment.words("page.ending")] if moment.snapshot["ending"] else []
     people = [name for names in waited_for(moment.snapshot).values() for name in names]
@@ -47,7 +48,8 @@ def _sum(moment: Moment) -> list[str]:
 
 
 def _trouble_first(moment: Moment) -> list[str]:
-    """Those that need somebody, the worst first; all others as the plant file has them."""
+    """The cells in the order of the page: those that need somebody first, the worst at the top; the others as
+    in the plant file."""
     waited = waited_for(moment.snapshot)
 
     def rank(cell: Row) -> tuple[int, bool]:
@@ -58,7 +60,7 @@ def _trouble_first(moment: Moment) -> list[str]:
 
 
 def _counts(moment: Moment) -> Face:
-    """How many cells are in which state, each with the way to the first of them."""
+    """The number of cells in each state, each with a link to the first of them."""
     first: dict[str, str] = {}
     for cell in moment.snapshot["cells"]:
         first.setdefault(standing(cell), cell["name"])
@@ -85,7 +87,7 @@ def _needs(moment: Moment) -> list[str]:
 
 
 def _title(moment: Moment) -> list[str]:
-    """What a browser's tab says: the plant, and before it the cells that wait for somebody."""
+    """The title of the browser's tab: the plant, and before it the cells that wait for somebody."""
     states = {cell["name"]: standing(cell) for cell in moment.snapshot["cells"]}
     bad = {name: moment.words.cell(state) for name, state in states.items() if state not in WELL}
     waits = {name: _waits(moment, people) for name, people in waited_for(moment.snapshot).items()}

@@ -1,4 +1,4 @@
-"""The bar of a record: when this is, a slider over all of it, and the ways to other moments."""
+"""The bar of a record: its time, a slider over all of it, and the ways to other moments."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ def _speed(words: Words) -> None:
 
 
 def _of(layout: Layout, words: Words) -> None:
-    """Whose events the buttons go through."""
+    """Draw the choice of the cell through whose events the buttons step."""
     with tag("select", id="record-cell", classes="tool", aria_label=words("record.of")):
         tag("option", words("page.all"), value="")
         for cell in layout["cells"]:

@@ -17,7 +17,7 @@ from .side import PastSide
 from .stills import Stills
 from .visitor import Arrival, Visitor
 
-KEY, OF_TASK, START = "at", "task", "record"  # of the page's address: which moment of which record
+KEY, OF_TASK, START = "at", "task", "record"  # keys of the page's address
 EPOCH = re.compile(r"[0-9]{1,10}", re.ASCII)
 PARTS: Parts = {
     "cells": trees.build,
@@ -29,12 +29,12 @@ PARTS: Parts = {
 
 
 def asked(request: Request) -> bool:
-    """Whether the address is one of a record."""
+    """True if the address is one of a record."""
     return KEY in request.query_params
 
 
 def mount(server: FastAPI, side: PastSide) -> None:
-    """Put the page on a record at `/` of this app, for whom no plant runs; StartError where this process
+    """Put the page on a record at `/` of this app, which serves no running plant; StartError if this process
     shows a page already."""
     stills, turns = Stills(), FrameQueue()
 
@@ -73,8 +73,8 @@ def open_page(
 
 
 def arrival(request: Request) -> Arrival:
-    """Where the address leads: `at=1795324375.912` is Unix time, `at=task` the end of the task that it names,
-    anything else the last failure."""
+    """The place in the record that the address names: `at=1795324375.912` is Unix time, `at=task` the end of
+    the task that it names, anything else the last failure."""
     query = request.query_params
     asked = query.get(KEY, "")
     try:

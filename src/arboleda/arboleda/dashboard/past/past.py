@@ -1,4 +1,4 @@
-"""A record as the page asks for it: which moments there are, and all that is shown at one of them."""
+"""A record as the page reads it: its moments, and the contents of the page at each of them."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ class Past:
         self._take_in()
 
     def grow(self) -> None:
-        """Take in what was written since."""
+        """Take in the part of the record that was written since."""
         with self._one:
             if moment_of(self._views.ended_ns / 1e9) != self.ended:
                 self._take_in()
@@ -73,7 +73,7 @@ class Past:
         return found[-1] if found else None
 
     def end_of(self, id: str) -> int | None:
-        """When a task ended, or what is known last of it; None where the record has no such task."""
+        """The moment of the last event of a task, as a rule its end; None if the record has no such task."""
         mine = (each for each in reversed(self._events) if each["kind"] == "task" and each["subject"] == id)
         last = next(mine, None)
         return None if last is None else moment_of(last["at"])
@@ -83,7 +83,7 @@ class Past:
         return min(max(moment, self.began), self.ended)
 
     def face(self, moment: int, language: str, id: str | None = None) -> Face:
-        """What the page shows at a moment, with the page of a task where one is open."""
+        """The contents of the page at a moment, with the page of a task if one is open."""
         with self._one:
             at_ns = until_ns(moment)
             then = self._then(at_ns, language)
@@ -92,7 +92,7 @@ class Past:
             return found if id is None else found | still.without_acts(self._task(then, at_ns, id))
 
     def positions(self, moment: int) -> Row:
-        """What the twin shows at a moment, as `PageApi.positions` has it."""
+        """The positions that the twin shows at a moment, as `PageApi.positions` has it."""
         with self._one:
             return self._views.positions(until_ns(moment))
 

@@ -1,11 +1,11 @@
-"""What the page on a record may know of the plant that was recorded."""
+"""The plant of a record as the page on it sees it."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Protocol
 
-if TYPE_CHECKING:  # a page of a plant without a record does without the libraries that read one
+if TYPE_CHECKING:  # without a record, the libraries that read one are not needed
     from .past import Past
 
 
@@ -13,8 +13,8 @@ if TYPE_CHECKING:  # a page of a plant without a record does without the librari
 class Start:
     """A start of a plant of which there is a record: `began` at that ms of Unix time.
 
-    `is_own`: the page is of it where nothing else is chosen; `is_same`: it had the same plant file, so that
-    the page can show it.
+    `is_own`: the page shows it unless another is chosen; `is_same`: it had the same plant file, so that the
+    page can show it.
     """
 
     epoch: int
@@ -27,14 +27,14 @@ class PastSide(Protocol):
     """A plant of which there is a record; nothing can be asked of it."""
 
     def layout(self) -> dict[str, Any]:
-        """`views.view.layout` of it."""
+        """The plant's `views.view.layout`."""
 
     def urdf(self, robot: str) -> str:
         """A robot's drawing; an ArboledaError says why there is none. Takes a while."""
 
     def past(self, epoch: int | None = None) -> Past:
-        """The record that the page is of, or that of another start, as of now; it waits for the disk, so not
-        in the event loop. An ArboledaError says why there is none."""
+        """The record of the page, or of another start, as of now; it waits for the disk, so do not call it in
+        the event loop. An ArboledaError says why there is none."""
 
     def starts(self) -> list[Start]:
-        """Those to choose from, the last first; it waits for the disk, too."""
+        """The starts to choose from, the last first; it waits for the disk, too."""

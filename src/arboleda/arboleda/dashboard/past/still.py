@@ -1,4 +1,4 @@
-"""Faces of the past: what was offered then is told, as nothing of it can be done any more."""
+"""Faces of the past: the offers of that time as text, as nothing of them can be done any more."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ Row = dict[str, Any]
 
 
 def without_acts(face: Face) -> Face:
-    """The same face with no button; what one was called stands in its row where nothing else would."""
+    """The same face without buttons; a button's label stands in its row if nothing else would."""
     found = {key: _told(each) if key.startswith("row/") else each for key, each in face.items()}
     none: Face = {"rows/for_all": []} if "rows/for_all" in found else {}
     return found | none | {key: ["", ""] for key in found if key.endswith(".offer")}
@@ -29,7 +29,7 @@ def _told(row: Row) -> Row:
 
 
 def of_record(then: Moment, moment: int) -> Face:
-    """Where in the record this is: the moment, what happened last by then, and the browser's title."""
+    """The place in the record: the moment, the last event by then, and the browser's title."""
     event = then.events[-1] if then.events else None
     title, state = then.words("record.title", plant=then.snapshot["plant"]), "well"
     return {
@@ -51,6 +51,6 @@ def with_links(face: Face, events: Sequence[Row]) -> Face:
 
 
 def said(then: Moment, event: Row) -> str:
-    """An event in one line."""
+    """The text of an event in one line."""
     _, cell, what, sentence = timeline.row(then, event)["texts"]
     return " · ".join(part for part in (cell, what, sentence) if part)

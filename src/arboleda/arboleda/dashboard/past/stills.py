@@ -6,12 +6,12 @@ from typing import TYPE_CHECKING, Any
 
 from ..twin.twin import Twin
 
-if TYPE_CHECKING:  # a page of a plant without a record does without the libraries that read one
+if TYPE_CHECKING:  # without a record, the libraries that read one are not needed
     from .past import Past
 
 
 class Stills:
-    """`open` it with the twin, once somebody wanted to see that; then it has a frame of each moment."""
+    """Stills: draws the twin at each moment, once somebody has wanted to see it and it was opened."""
 
     def __init__(self) -> None:
         self._twin: Twin | None = None
@@ -21,9 +21,9 @@ class Stills:
         return self._twin is not None
 
     def open(self, twin: Twin) -> None:
-        """What there is to draw; from any thread."""
+        """Take the twin that is drawn from now on; from any thread."""
         self._twin = twin
 
     def at(self, past: Past, moment: int) -> dict[str, Any]:
-        """What is drawn then; nothing before it was opened."""
+        """The drawing of a moment; empty before a twin was opened."""
         return {} if self._twin is None else self._twin.still(past.positions(moment))

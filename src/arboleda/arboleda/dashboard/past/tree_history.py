@@ -12,7 +12,7 @@ from arboleda.recorder.cell_history import CellMoment
 from ..tree_memory import EndedTree, TreeMemory
 from .moments import BESIDE_NS, nanoseconds
 
-JUST_NS = 2 * BESIDE_NS  # before its beginning, so that this is seen as a change
+JUST_NS = 2 * BESIDE_NS  # before a run's beginning, so that the beginning counts as a change
 KEPT = 30  # tasks whose changes are kept, those that were asked for last
 
 Row = dict[str, Any]
@@ -35,7 +35,7 @@ class Run:
 
 @dataclass
 class TreeState:
-    """A tree that has seen the first `count` changes of a run, the last of them at `at_ns`."""
+    """A tree that has followed the first `count` changes of a run, the last of them at `at_ns`."""
 
     run: Run
     memory: TreeMemory
@@ -43,14 +43,14 @@ class TreeState:
     at_ns: int = 0
 
     def see(self, looked: Iterable[CellMoment]) -> None:
-        """All changes up to a moment, those that it has seen too."""
+        """Follow the changes up to a moment; those that it has followed already are skipped."""
         for each in [*looked][self.count :]:
             self.memory.see(each.cell, each.tasks, each.unix_ns / 1e9)
             self.count, self.at_ns = self.count + 1, each.unix_ns
 
 
 class TreeHistory:
-    """What each node had come to follows from all that its task did, so that is followed up to the moment.
+    """TreesThen: follows all that a task did up to a moment, as the state of each node depends on it.
 
     `follow(cell, after_ns, until_ns)` has each change of a cell in that time; `events` are the time line.
     """
@@ -69,7 +69,7 @@ class TreeHistory:
         return memory
 
     def _come(self, cell: str, at_ns: int) -> TreeState:
-        """A tree that has come to a moment: on from where it was, where that is on the way."""
+        """The tree of a cell at a moment, followed on from its last moment if that lies on the way."""
         run, come = self._run(cell, at_ns), self._coming.get(cell)
         if come is None or come.run is not run or come.at_ns > at_ns:
             come = self._coming[cell] = TreeState(run, TreeMemory())
@@ -87,12 +87,12 @@ class TreeHistory:
         return None
 
     def _run(self, cell: str, at_ns: int) -> Run:
-        """The last that had begun by then."""
+        """The last run of a cell that had begun by then."""
         begun = bisect_right(self._runs[cell], at_ns, key=lambda run: run.began_ns)
         return self._runs[cell][max(0, begun - 1)]
 
     def _looked(self, run: Run, at_ns: int) -> Iterator[CellMoment]:
-        """What became of it up to a moment."""
+        """The changes of a run up to a moment, read from the record as far as they are new."""
         upto_ns = at_ns if run.next_ns is None else min(at_ns, run.next_ns)
         if upto_ns > run.until_ns:
             run.looked += self._follow(run.cell, run.until_ns, upto_ns)
@@ -108,7 +108,7 @@ class TreeHistory:
 
 
 def _runs(events: Sequence[Row], cell: str, began_ns: int) -> list[Run]:
-    """The tasks that a cell began, in order; before them what it was at when the record began."""
+    """The tasks that a cell began, in order; first the one that it was at when the record began."""
     found = [Run(cell, None, began_ns, began_ns - JUST_NS)]
     for each in events:
         if each["kind"] == "task" and each["cell"] == cell and each["what"] == "running":

@@ -20,20 +20,20 @@ from .moments import dated
 from .side import PastSide, Start
 from .stills import Stills
 
-if TYPE_CHECKING:  # a page of a plant without a record does without the libraries that read one
+if TYPE_CHECKING:  # without a record, the libraries that read one are not needed
     from .past import Past
 
 GO, STEP, FAILURE, TASK, LOOK, LEAVE, GROW = "go", "step", "failure", "task", "look", "leave", "grow"
-LONGEST = 300  # characters of what a browser may name
-LATEST = 2**53  # what its numbers can tell apart
+LONGEST = 300  # characters of a name that a browser sends
+LATEST = 2**53  # the integers that a browser's numbers can tell apart
 
 log = logging.getLogger(__name__)
 
 
 @dataclass(frozen=True, kw_only=True)
 class Arrival:
-    """Where in the record a page is opened: at a moment, at the end of the task whose page it is, else at the
-    last failure, of a cell where one is named. `epoch`: in the record of that start."""
+    """The place of the record at which a page is opened: a moment, the end of the task whose page it is, else
+    the last failure, of a cell if one is named. `epoch`: in the record of that start."""
 
     moment: int | None = None
     task: str | None = None
@@ -43,7 +43,7 @@ class Arrival:
 
 
 class Visitor:
-    """One open page. Its moment changes at once with each event, frames follow as fast as they are made."""
+    """Visitor: one open page. Its moment changes with each event at once; frames follow as they are made."""
 
     def __init__(
         self,
@@ -71,7 +71,7 @@ class Visitor:
         self._busy = self._again = False
 
     async def come(self) -> None:
-        """The page was opened, or is back: it is told everything."""
+        """Send everything to a page that was opened or is back."""
         self._shown, self._drawn = {}, {}
         if self._past is None:
             try:
@@ -86,7 +86,7 @@ class Visitor:
         return self._side.past(self._arrival.epoch), self._side.starts()
 
     async def _grow(self) -> None:
-        """Tell how far the record is by now, where it is written on."""
+        """Tell the page the end of the record as it grows, if it is still being written."""
         try:
             self._past = past = await self._turns.take(lambda: self._side.past(self._arrival.epoch))
         except ArboledaError as error:
@@ -98,7 +98,7 @@ class Visitor:
             self._tell({"past/span": span})
 
     async def hear(self, event: GenericEventArguments) -> None:
-        """One event of the page: [what, of, cell]; anything else is ignored."""
+        """Take one event of the page: [what, of, cell]; anything else is ignored."""
         asked = event.args if isinstance(event.args, list) else [event.args]
         what, of, cell = [*asked, None, None, None][:3]
         if self._past is None:
@@ -111,7 +111,7 @@ class Visitor:
             await self._show()
 
     def _takes(self, past: Past, what: Any, of: Any, cell: str | None) -> bool:
-        """Whether there is something else to show."""
+        """Take a request of the page; True if there is something else to show afterwards."""
         if what == GO and isinstance(of, int) and abs(of) < LATEST:
             self._moment = past.within(of)
         elif what in (STEP, FAILURE) and of in (1, -1):
@@ -134,7 +134,7 @@ class Visitor:
         return True
 
     def _arrive(self, past: Past) -> None:
-        """Begin where the address says."""
+        """Go to the moment that the address names."""
         asked = self._arrival
         if asked.moment is not None:
             self._moment = past.within(asked.moment)
@@ -146,8 +146,7 @@ class Visitor:
         self._moment = past.ended if found is None else found
 
     async def _show(self) -> None:
-        """Send frames until the last moment that was asked for is shown; of those before it some are left
-        out."""
+        """Send frames until the last requested moment is shown; some of those before it are left out."""
         self._again = True
         if self._busy:
             return
@@ -185,7 +184,7 @@ class Visitor:
         self._tell(patch)
 
     def _choice(self) -> list[list[Any]]:
-        """The records to choose from: which, how each is called, whether it is shown, whether it can be."""
+        """The records to choose from: the start of each, its name, and whether it is shown or can be."""
         shown = self._arrival.epoch
         rows = []
         for start in self._starts:
@@ -207,5 +206,5 @@ class Visitor:
 
 
 def _span(past: Past) -> list[Any]:
-    """How far the record reaches, and its failures."""
+    """The beginning and the end of the record, and its failures."""
     return [past.began, past.ended, past.marks()]

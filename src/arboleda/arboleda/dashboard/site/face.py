@@ -1,4 +1,4 @@
-"""What the page on many plants shows, as flat plain data: trouble first. Pure."""
+"""The contents of the page on many plants as flat plain data: trouble first. Pure."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ Row = dict[str, Any]
 
 
 def face(plants: Sequence[LastSeenPlant], words: Words) -> Face:
-    """A row for each plant, the one that needs somebody most first; and what they all come to."""
+    """A row for each plant, the one that needs somebody most at the top, and the sums over all of them."""
     in_order = sorted(plants, key=lambda plant: (ORDER.index(state_of(plant)), plant.name))
     found: Face = {"rows/plants": [plant.name for plant in in_order]}
     for plant in in_order:
@@ -29,7 +29,7 @@ def face(plants: Sequence[LastSeenPlant], words: Words) -> Face:
 
 
 def state_of(plant: LastSeenPlant) -> str:
-    """The worst of its cells', SILENT where it does not answer."""
+    """The state of a plant: the worst of its cells, SILENT if it does not answer."""
     if plant.silent is not None or plant.snapshot is None:
         return SILENT
     states = [standing(cell) for cell in plant.snapshot["cells"]]
@@ -37,7 +37,7 @@ def state_of(plant: LastSeenPlant) -> str:
 
 
 def whole_oee(rows: Iterable[Row]) -> float | None:
-    """That of several cells: each counts by the time for which it was planned; None where nobody can say."""
+    """The OEE of several cells, each weighted by its planned time; None if it is unknown."""
     known = [
         (row["oee"], row["planned_s"]) for row in rows if row["oee"] is not None and row["planned_s"] > 0
     ]
@@ -84,7 +84,7 @@ def _is_heard(plant: LastSeenPlant) -> bool:
 
 
 def _why(plant: LastSeenPlant, words: Words) -> str:
-    """Why it is silent, or what is in the way of its cells; and whether somebody stands by."""
+    """The reason for which a plant is silent or its cells do not work, and the number of its standbys."""
     parts = [words.say(plant.silent)] if plant.silent is not None else []
     for cell in plant.snapshot["cells"] if plant.snapshot and plant.silent is None else ():
         stands = standing(cell)
@@ -107,7 +107,7 @@ def _ended(plants: Iterable[LastSeenPlant]) -> dict[str, int]:
 
 
 def _sum(plants: Sequence[LastSeenPlant], words: Words) -> list[str]:
-    """How many plants are in which state, the worst of them colours it; tasks and OEE of all."""
+    """The number of plants in each state, coloured by the worst; tasks and OEE of all."""
     states = Counter(map(state_of, plants))
     there = [state for state in ORDER if state in states]
     counts = [f"{_said(state, words)}: {states[state]}" for state in there[::-1]]
@@ -124,7 +124,7 @@ def _sum(plants: Sequence[LastSeenPlant], words: Words) -> list[str]:
 
 
 def _title(plants: Sequence[LastSeenPlant], words: Words) -> list[str]:
-    """What a browser's tab says: the plants that need somebody."""
+    """The title of the browser's tab: the plants that need somebody."""
     bad = sorted(plant.name for plant in plants if state_of(plant) not in WELL)
     if not bad:
         return [words("site.title"), "well"]

@@ -62,7 +62,7 @@ def _serve(server: FastAPI, site: SiteSide) -> None:
         return JSONResponse({"sentence": sentence}, status_code=200 if answer.good else 502)
 
     async def add_task(request: Request) -> JSONResponse:
-        """A task for the best of the plants that it names, `north/sis_a,south/sis_a 0B 7`, or refused."""
+        """Give a task to the best of the plants it names, `north/sis_a,south/sis_a 0B 7`, or refuse it."""
         require(request.scope["arboleda.role"], SUBMIT)
         asked = task_asked(await request.body())
         if not isinstance(asked, TaskText):
@@ -105,14 +105,14 @@ PARTS: shell.Parts = {"plants": _plants}
 
 
 class Desk(OpenPage):
-    """The way from the events of a page to the plants."""
+    """Desk: the way from the events of a page to the plants."""
 
     def __init__(self, client: Client, site: SiteSide, frames: Frames, said: Words) -> None:
         super().__init__(client, said, frames.seen)
         self._site = site
 
     async def asked(self, act: str, of: str, more: object) -> None:
-        """A task for the plant `of`, whose text is `more`, or its stop."""
+        """Send a task to the plant `of`, whose text is `more`, or stop that plant."""
         if act not in (SUBMIT, Verb.STOP.value):
             return
         if not allowed(self.role, act):
@@ -137,7 +137,7 @@ def _keep_running(site: SiteSide, frames: Frames, opened: asyncio.Event) -> None
             except Exception:  # one frame that cannot be made does not end the page
                 LOG.exception("a frame of the page failed")
             opened.clear()
-            with suppress(asyncio.TimeoutError):  # who opens a page does not wait for the next frame
+            with suppress(asyncio.TimeoutError):  # a page that opens does not wait for the next frame
                 await asyncio.wait_for(opened.wait(), FRAME_S)
 
     background = Background(run)

@@ -1,4 +1,4 @@
-"""What the page on many plants asks of whoever watches them; all of it in the server's event loop."""
+"""The watcher of many plants as their page sees it; all of it runs in the server's event loop."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ from arboleda.model.sentence import Sentence
 class LastSeenPlant:
     """A plant as it was seen last.
 
-    `name` is that of its row, `url` its page, "" where nobody leads it. `silent` says why it does not answer
-    now, None where it does. `snapshot` is what `GET /api/plant` said last, `oee` what `GET /api/oee` did;
-    `standbys` how many processes are known to stand by for it.
+    `name` is that of its row, `url` its page, "" if nobody leads it. `silent` is the reason for which it does
+    not answer now, None if it does. `snapshot` is the last answer to `GET /api/plant`, `oee` that to `GET
+    /api/oee`; `standbys` is the number of processes that stand by for it.
     """
 
     name: str
@@ -27,19 +27,19 @@ class LastSeenPlant:
 
 @dataclass(frozen=True, kw_only=True)
 class RequestOutcome:
-    """What became of something that was asked of plants."""
+    """The result of a request to plants."""
 
     good: bool
     sentence: Sentence
 
 
 class SiteSide(Protocol):
-    """Watches the plants, and asks them."""
+    """The interface of the watcher of many plants, which also asks them for tasks and stops."""
 
     def plants(self) -> list[LastSeenPlant]: ...
     async def submit(self, plant: str, text: str) -> RequestOutcome: ...
     async def stop(self, plant: str = "") -> RequestOutcome:
-        """The software stop of one plant, or of all of them; says which did not answer."""
+        """Stop one plant by software, or all of them; the answer names those that did not answer."""
         ...
 
     def start(self) -> None: ...

@@ -1,1 +1,1 @@
-"""The digital twin: what is drawn where, and how sure that is."""
+"""The digital twin: everything that is drawn of a plant, with its place and how sure that is."""

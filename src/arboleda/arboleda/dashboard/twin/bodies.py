@@ -46,7 +46,7 @@ def links(body: Body) -> Iterator[Body]:
 
 
 def tip(body: Body) -> str:
-    """Where the tool is: the link `tool0` after its prefix, else the last of the longest chain."""
+    """The link of the tool: `tool0` after its prefix, else the last link of the longest chain."""
     tools = [link["link"] for link in links(body) if link["link"].endswith(TOOL)]
     return min(tools, key=len) if tools else max(_chains(body, 0))[1]
 

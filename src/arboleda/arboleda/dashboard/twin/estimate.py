@@ -1,4 +1,4 @@
-"""Where a robot may be by now, from its last known place and where it goes; never beyond its goal."""
+"""Estimate of a robot's position from the last known one and its goal; never beyond the goal."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ Position = Sequence[float]
 
 
 def towards(start: Position, goal: Position, speeds: Position, seconds: float) -> list[float]:
-    """Every joint on its own way at its own full speed (rad/s, m/s), for so many seconds."""
+    """The position after so many seconds, every joint on its own way at its own full speed (rad/s, m/s)."""
     rows = zip(start, goal, speeds, strict=True)
     return [_nearer(here, there, speed * max(0.0, seconds)) for here, there, speed in rows]
 
 
 def along(points: Sequence[Position], speed: float, seconds: float) -> list[float]:
-    """On a way of straight pieces at one speed, m/s, for so many seconds; ValueError without points."""
+    """The point after so many seconds on straight pieces at one speed, m/s; ValueError without points."""
     if not points:
         raise ValueError("a way has at least one point")
     left = speed * max(0.0, seconds)
@@ -29,7 +29,7 @@ def along(points: Sequence[Position], speed: float, seconds: float) -> list[floa
 
 
 def apart(a: Position, b: Position, speeds: Position, seconds: float) -> bool:
-    """Whether two positions are more than so many seconds of full speed apart, in any joint."""
+    """True if two positions are further apart, in any joint, than so many seconds at full speed."""
     rows = zip(a, b, speeds, strict=True)
     return any(abs(here - there) > speed * seconds for here, there, speed in rows)
 

@@ -32,5 +32,5 @@ def _half(points: list[Spot]) -> list[Spot]:
 
 
 def _turns_right(a: Spot, b: Spot, c: Spot) -> bool:
-    """Whether the way a, b, c does not turn left at b."""
+    """True if the way a, b, c does not turn left at b."""
     return (b[0] - a[0]) * (c[1] - a[1]) <= (b[1] - a[1]) * (c[0] - a[0])

@@ -1,4 +1,4 @@
-"""Where the links of a body are: plain 4 x 4 matrices, row by row."""
+"""Positions of the links of a body: plain 4 x 4 matrices, row by row."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ Point = tuple[float, float, float]
 
 
 def place(body: Body, q: Sequence[float], base: Matrix | None = None) -> dict[str, Matrix]:
-    """Every link's frame seen from where `base` is seen; `q` in rad and m, in the order of its joints."""
+    """The frame of every link, seen from where `base` is seen; `q` in rad and m, in the order of joints."""
     found: dict[str, Matrix] = {}
     _place(body, q, base or shift(0, 0, 0), found)
     return found
@@ -46,7 +46,7 @@ def turn(axis: Sequence[float], angle: float) -> Matrix:
 
 
 def pose(xyz: Sequence[float], rpy: Sequence[float]) -> Matrix:
-    """A URDF origin: turned about x, then y, then z of the parent, then shifted."""
+    """The frame of a URDF origin: turned about x, then y, then z of the parent, then shifted."""
     roll, pitch, yaw = rpy
     turned = times(turn((0, 0, 1), yaw), times(turn((0, 1, 0), pitch), turn((1, 0, 0), roll)))
     return times(shift(*xyz), turned)
@@ -60,18 +60,18 @@ def times(a: Matrix, b: Matrix) -> Matrix:
 
 
 def at(matrix: Matrix, point: Point = (0, 0, 0)) -> Point:
-    """A point of a frame, seen from outside."""
+    """A point of a frame, as seen from outside."""
     x, y, z = (sum(a * b for a, b in zip(row, (*point, 1), strict=True)) for row in matrix[:3])
     return (x, y, z)
 
 
 def upright(frame: Matrix, axis: Sequence[float]) -> float:
-    """How upright an axis of a frame is, from -1 to 1."""
+    """The uprightness of an axis of a frame, from -1 to 1."""
     return sum(a * b for a, b in zip(frame[2][:3], axis, strict=True))
 
 
 def flat(matrix: Matrix) -> list[float]:
-    """Its 16 numbers, row by row."""
+    """The 16 numbers of a frame, row by row."""
     return [value for row in matrix for value in row]
 
 

@@ -1,4 +1,4 @@
-"""The twin on the page: the box that the script draws into, and what it has beside the drawing."""
+"""The twin's pane on the page: the box that the script draws into, and the controls beside it."""
 
 from __future__ import annotations
 

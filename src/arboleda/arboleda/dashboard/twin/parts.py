@@ -1,4 +1,4 @@
-"""Where each cell's part is drawn; where one was put down it stays until the cell has another."""
+"""Positions at which parts are drawn; one that was put down stays until its cell has another."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ PART_RADIUS_M, PART_HEIGHT_M = (
 
 
 class Part:
-    """The part of one cell: {at: "arm" | "mobile" | "place", sure, frame}, or None where there is none.
+    """Part: the part of one cell: {at: "arm" | "mobile" | "place", sure, frame}, or None if there is none.
 
     `frame` (16 numbers, row by row) is the tool's place over a part that was put down. Only a part that an
     effector holds for sure is `sure`.
@@ -30,7 +30,9 @@ class Part:
         self._shown: Row | None = None
 
     def see(self, part: Row | None, arm: Row, stored: list[int]) -> Row | None:
-        """`part` as `views.twin_view.part` has it, `arm` as its Track draws it, the stations with a part."""
+        """Follow the part; it is as in `views.twin_view.part`, `arm` as in its Track, `stored` the full
+        stations.
+        """
         if part is not None:
             self._shown = self._placed(part["q"]) if part["at"] == "pose" else {"sure": False, **part}
         elif self._shown is not None and self._shown["at"] == "arm" and self._at_one_of(stored, arm):
@@ -41,7 +43,7 @@ class Part:
         return self._shown
 
     def _at_one_of(self, stored: list[int], arm: Row) -> bool:
-        """Whether the arm stands at a station with a part: that is the one it let go of."""
+        """True if the arm stands at a station with a part: that part is the one it has let go of."""
         here = arm["q"] or arm["estimate"]
         return here is not None and any(math.dist(here, self._stations[n]) < NEAR for n in stored)
 

@@ -1,4 +1,4 @@
-"""What stands in a plant and never changes, as one plain piece of data that a browser draws; m and rad."""
+"""The fixed things of a plant as one plain piece of data that a browser draws; m and rad."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ Row = dict[str, Any]
 MARGIN = 0.08  # m around what is known to lie in a zone
 WIDE = 0.05  # m beyond the outermost robot, grid or station
 SHELF = 0.025  # m of a rack's board around the middle of its stations
-UPRIGHT = 0.99  # how straight down a tool looks that puts parts onto a board
+UPRIGHT = 0.99  # from here on a tool points down, so that it puts parts onto a board
 STEPS = 8  # points on a move that crosses a zone
 
 
 def scene(places: Row, drawings: Mapping[str, Body]) -> Row:
-    """`places` as `views.places` has them, and a body for each robot."""
+    """The scene of a plant: its `places` as `views.places` has them, and a body for each robot."""
     robots = {robot["name"]: robot for robot in places["robots"]}
     cells = [_cell(cell, robots, drawings) for cell in places["cells"]]
     zones = [_zone(zone, robots, drawings) for zone in places["zones"] if zone["spots"]]
@@ -33,7 +33,7 @@ def scene(places: Row, drawings: Mapping[str, Body]) -> Row:
 
 
 def deck(body: Body) -> float:
-    """How high a mobile's uppermost face is, m."""
+    """The height of a mobile's uppermost face, m."""
     frames = kinematics.place(body, (0.0, 0.0))
     tops = [
         kinematics.at(frames[link["link"]])[2] + shape["xyz"][2] + shape["size"][2] / 2
@@ -104,7 +104,7 @@ def _spots(given: Row, robots: Mapping[str, Row], drawings: Mapping[str, Body]) 
 
 
 def _between(path: list[list[float]]) -> list[list[float]]:
-    """The joints at the ends of a path and between them."""
+    """The joint positions at the ends of a path and between them."""
     if len(path) == 1:
         return path
     start, end = path
@@ -113,8 +113,7 @@ def _between(path: list[list[float]]) -> list[list[float]]:
 
 
 def _bounds(places: Row, cells: list[Row], drawings: Mapping[str, Body]) -> list[list[float]]:
-    """The lowest and the highest x, y, z of all that matters; where nothing else says how far a robot goes,
-    its tool at its reference does."""
+    """The lowest and highest x, y, z of the scene; a robot without goals counts by its tool at reference."""
     points = [kinematics.at(kinematics.floor(robot["at"])) for robot in places["robots"]]
     for robot in places["robots"]:
         frame = kinematics.floor(robot["at"])

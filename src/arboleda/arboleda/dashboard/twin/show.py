@@ -1,4 +1,4 @@
-"""Has the twin drawn by every browser that looks at it, and does nothing while none does."""
+"""Show of the twin: has every browser that looks at it draw it, and does nothing while none does."""
 
 from __future__ import annotations
 
@@ -29,16 +29,16 @@ class TwinViewer(Protocol):
 
 
 class ViewerProgress:
-    """How far one looker is: how many frames were sent to it, and how many of them it has drawn."""
+    """The progress of one viewer: the number of frames sent to it, and of those that it has drawn."""
 
     def __init__(self) -> None:
-        self.whole = True  # it has to be told everything
+        self.whole = True  # the next frame has everything
         self.sent = 0
         self.drawn = 0
 
 
 class Show:
-    """`look` and `leave` for browsers, `run` in the server's event loop."""
+    """Show: `look` and `leave` for browsers, `run` in the server's event loop."""
 
     def __init__(self, plant: PageApi) -> None:
         self._plant = plant
@@ -48,11 +48,11 @@ class Show:
         self._wanted: asyncio.Event | None = None
 
     def open(self, twin: Twin) -> None:
-        """What there is to draw; from any thread."""
+        """Take the twin that is drawn from now on; from any thread."""
         self._twin = twin
 
     def look(self, looker: TwinViewer) -> None:
-        """It wants frames from now on, everything first."""
+        """Send frames to this viewer from now on, everything first."""
         self._lookers[looker] = ViewerProgress()
         if self._wanted is not None:
             self._wanted.set()
@@ -61,7 +61,7 @@ class Show:
         self._lookers.pop(looker, None)
 
     def drawn(self, looker: TwinViewer, number: int) -> None:
-        """It says which frame it has drawn."""
+        """Note the frame that a viewer says it has drawn."""
         seen = self._lookers.get(looker)
         if seen is not None and 0 <= number <= seen.sent:
             seen.drawn = max(seen.drawn, number)
@@ -80,7 +80,7 @@ class Show:
             await asyncio.sleep(1 / FRAMES_HZ)
 
     def turn(self) -> None:
-        """Send each looker what changed since the frame before, where anything did."""
+        """Send each viewer the difference to its last frame, if there is any."""
         ready = [(looker, seen) for looker, seen in self._lookers.items() if _ready(looker, seen)]
         if self._twin is None or not ready:
             return
@@ -99,7 +99,7 @@ class Show:
 
 
 def _ready(looker: TwinViewer, seen: ViewerProgress) -> bool:
-    """Whether it takes a frame; one that is away or behind is told everything later."""
+    """True if a viewer can take a frame; one that is away or behind gets everything later."""
     if looker.connected and seen.sent - seen.drawn <= BEHIND:
         return True
     seen.whole = True

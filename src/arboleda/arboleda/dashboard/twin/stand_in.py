@@ -11,7 +11,7 @@ SHORT_M = 1e-3  # no tube is drawn for less
 
 
 def shapes(ends: Iterable[Sequence[float]]) -> list[dict[str, Any]]:
-    """For a link whose joints are at `ends`, m: {kind, size, xyz, rpy} as in `bodies`."""
+    """The stand-in for a link whose joints are at `ends`, m: {kind, size, xyz, rpy} as in `bodies`."""
     tubes = [_tube(end) for end in ends if math.hypot(*end) > SHORT_M]
     radius = max((tube["size"][0] for tube in tubes), default=LEAST_M)
     ball = {"kind": "sphere", "size": [radius], "xyz": [0.0, 0.0, 0.0], "rpy": [0.0, 0.0, 0.0]}

@@ -1,4 +1,4 @@
-"""One robot over time: what of it is measured, what is only estimated, and what is old."""
+"""One robot over time: its measured, its estimated and its outdated positions."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ MEASURED, ESTIMATED, STALE, UNHOMED, UNKNOWN = KINDS = (
 
 
 class Track:
-    """What to draw of a robot, from its row of `views.twin_view.positions` and the plant's time, s.
+    """Track: turns a robot's rows of `views.twin_view.positions` and the plant's time, s, into what is drawn.
 
-    That is {kind, q, estimate, goal, age}: `q` the last report and nothing else, `estimate` where it may be
-    by now, `goal` where its open move ends, `age` whole s since the last report of a robot that is silent.
-    Each None where there is none.
+    It returns {kind, q, estimate, goal, age}: `q` is the last reported position, `estimate` the likely one by
+    now, `goal` the end of its open move, `age` the whole s since the last report of a robot that is silent.
+    Each may be None.
     """
 
     def __init__(self, robot: Row) -> None:
@@ -53,7 +53,7 @@ class Track:
         return {"kind": MEASURED, "q": q, "estimate": ahead if shown else None}
 
     def _silent(self, row: Row, now: float) -> Row:
-        """A robot that only says whether it moves."""
+        """The drawing of a robot that only says whether it moves."""
         if row["reached"] is not None:
             self._guess = self._position({"q": None, "node": None, **row["reached"]})
         if row["goal"] != self._going:
@@ -76,7 +76,8 @@ class Track:
         return estimate.along(points, self._speeds[0], seconds)
 
     def _ahead(self, row: Row, q: list[float], now: float) -> list[float] | None:
-        """Where a robot that reports may be since its last report; a mobile at most on its next node."""
+        """The estimated position of a robot that reports, some time after its last report; a mobile gets at
+        most to its next node."""
         goal, since = row["goal"], row["going_since"]
         if goal is None or since is None:
             return None
@@ -86,7 +87,7 @@ class Track:
         return estimate.along([q, *self._next(goal["nodes"])], self._speeds[0], seconds)
 
     def _next(self, way: list[int]) -> list[list[float]]:
-        """The node after the one where it stands, in a list; empty at the end and beside the way."""
+        """The node after the one where it stands, in a list; empty at the end of its way and beside it."""
         assert self._nodes is not None
         after = way[way.index(self._node) + 1 :] if self._node in way else []
         return [self._nodes[node] for node in after[:1]]

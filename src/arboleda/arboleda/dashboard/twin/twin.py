@@ -1,4 +1,4 @@
-"""The twin of one plant: what stands in it, and what is to be drawn of it at each moment. Pure."""
+"""The twin of one plant: its scene, and its drawing at each moment. Pure."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ Row = dict[str, Any]
 
 
 class Twin:
-    """`places` as `views.places` has them, and each robot's body."""
+    """Twin: draws a plant from its `places`, as `views.places` has them, and each robot's body."""
 
     def __init__(self, places: Row, drawings: Mapping[str, Body]) -> None:
         self.scene = scene(places, drawings)
@@ -23,16 +23,16 @@ class Twin:
         self._followed = TwinTracker(places, drawings)
 
     def frame(self, positions: Row, now: float) -> Row:
-        """By robot/<name>, part/<cell>, stored/<cell>, zone/<name>: what is drawn at `now` of the plant."""
+        """The drawing at `now` of the plant, by robot/<name>, part/<cell>, stored/<cell>, zone/<name>."""
         return self._followed.frame(positions, now)
 
     def still(self, positions: Row) -> Row:
-        """The same of one moment alone, whatever was drawn before; `positions` have their `now`."""
+        """The drawing of one moment alone, whatever was drawn before; `positions` have their `now`."""
         return TwinTracker(self._places, self._drawings).frame(positions, positions["now"])
 
 
 class TwinTracker:
-    """Robots and parts from frame to frame, as far as what is drawn of them depends on those before."""
+    """Robots and parts from frame to frame, as far as their drawing depends on the frames before."""
 
     def __init__(self, places: Row, drawings: Mapping[str, Body]) -> None:
         robots = {robot["name"]: robot for robot in places["robots"]}

@@ -23,7 +23,7 @@ LOOK, LEAVE, DRAWN = "look", "leave", "drawn"
 
 
 class Window:
-    """One open page; its script says when somebody looks at the twin, and how far it is."""
+    """Window: one open page; its script says when somebody looks at the twin, and what it has drawn."""
 
     def __init__(self, client: Client, show: Show) -> None:
         self._client = client
@@ -37,7 +37,7 @@ class Window:
         self._client.run_javascript(f"arboledaTwin.frame({number}, {patch})")
 
     def hear(self, event: GenericEventArguments) -> None:
-        """["look"], ["leave"] or ["drawn", number]; anything else is ignored."""
+        """Take an event of the script: ["look"], ["leave"] or ["drawn", number]; anything else is ignored."""
         asked = event.args if isinstance(event.args, list) else [event.args]
         what, number = [*asked, None, None][:2]
         if what == LOOK:
@@ -62,20 +62,20 @@ def bring_three() -> None:
 
 
 class DrawablePlant(Protocol):
-    """A plant that can be drawn."""
+    """The interface of a plant that can be drawn."""
 
     def layout(self) -> dict[str, Any]: ...
     def urdf(self, robot: str) -> str: ...
 
 
 class TwinOpening(Protocol):
-    """What begins once there is a twin to draw; told from any thread."""
+    """Something that begins once there is a twin to draw; called from any thread."""
 
     def open(self, twin: Twin) -> None: ...
 
 
 def serve(server: FastAPI, plant: DrawablePlant, *shows: TwinOpening) -> None:
-    """Have the browser's `SCENE` answered, and the shows opened by the first who asks."""
+    """Answer the browser's `SCENE`, and open the shows once the first browser asks."""
     store = _Store(plant, shows)
     server.add_api_route(SCENE, store.answer, include_in_schema=False)
 

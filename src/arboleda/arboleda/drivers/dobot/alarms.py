@@ -1,4 +1,4 @@
-"""What the alarms of a controller mean, those that an operator meets most; the maker lists some thousand."""
+"""Meanings of the controller alarms that an operator meets most; the maker lists some thousand."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ ALARMS = {
 
 
 def named(alarms: Sequence[int]) -> str:
-    """The alarms by number, with what they mean where that is known here."""
+    """The alarms by number, with their meanings as far as known here."""
     return ", ".join(
         f"alarm {each}: {ALARMS[each]}" if each in ALARMS else f"alarm {each}" for each in alarms
     )

@@ -19,7 +19,7 @@ FARTHEST_DEG = 1000.0  # no joint of any CR arm turns that far
 
 
 class Mode(IntEnum):
-    """What the controller calls RobotMode."""
+    """Operating mode of the controller, its RobotMode."""
 
     INIT = 1
     BRAKE_OPEN = 2
@@ -36,7 +36,7 @@ class Mode(IntEnum):
 
 @dataclass(frozen=True, kw_only=True)
 class Feedback:
-    """One frame; `command` is its CurrentCommandId, joints are in degrees, times in ms."""
+    """Feedback frame; `command` is its CurrentCommandId, joints are in degrees, times in ms."""
 
     mode: Mode
     command: int
@@ -46,7 +46,7 @@ class Feedback:
     outputs: int = 0
 
     def packed(self) -> bytes:
-        """The frame as a controller sends it; what is not known here is 0."""
+        """The frame as a controller sends it; unused fields are 0."""
         frame = bytearray(SIZE)
         frame[:2] = LENGTH
         numbers = {OUTPUTS_AT: self.outputs, MODE_AT: self.mode, TIME_AT: self.time_ms, RUN_AT: self.run_ms}
@@ -58,7 +58,7 @@ class Feedback:
 
 
 def unpacked(frame: bytes) -> Feedback | None:
-    """What a frame says; None where it cannot be one."""
+    """Parses a feedback frame; None if it cannot be one."""
     if len(frame) != SIZE or frame[:2] != LENGTH or _count(frame, TEST_AT) != TEST_VALUE:
         return None
     mode, joints = _count(frame, MODE_AT), JOINTS.unpack_from(frame, ACTUAL_AT)
@@ -75,17 +75,17 @@ def unpacked(frame: bytes) -> Feedback | None:
 
 
 class FrameReader:
-    """Cuts what arrives into frames; what is none is passed over up to where the next one may begin."""
+    """Splitter of the feedback stream into frames; bytes that form none are skipped up to the next frame."""
 
     def __init__(self) -> None:
         self._rest = b""
-        self.refused = 0  # bytes that were passed over
+        self.refused = 0  # skipped bytes
 
     def feed(self, data: bytes) -> list[Feedback]:
-        """The frames that are whole by now, in their order."""
+        """The frames that are complete now, in order."""
         rest, found = self._rest + data, []
         while len(rest) >= SIZE:
-            # Where bytes are missing, the next frame's first ones complete this one, and no frame follows.
+            # After lost bytes the next frame's begin completes this one, and no frame follows it.
             follows = rest[SIZE : SIZE + 2]
             frame = unpacked(rest[:SIZE]) if LENGTH.startswith(follows) else None
             if frame is not None:

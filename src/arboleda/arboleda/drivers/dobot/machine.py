@@ -1,4 +1,4 @@
-"""What the driver makes of a controller: one arm, its link, its work and its stops, without sockets."""
+"""State machine of the driver `dobot`: one arm, its link, work and stops, without sockets."""
 
 from __future__ import annotations
 
@@ -23,10 +23,10 @@ AGAIN_S = 0.5  # between two tries to connect
 REPLY_S = 2.0  # a controller answers in milliseconds
 SILENT_S = 1.0  # it sends a frame every 8 ms
 REPORT_S = 0.1  # a report at least so often
-ASK_S = 1.0  # how often the output is asked for
-CLOCK_S = 2  # more than the controller's clock may be put right between two connections
+ASK_S = 1.0  # period of queries of the output
+CLOCK_S = 2  # the controller's clock may be corrected by less between two connections
 REST_DEG = 0.01  # less than this is no motion
-UNABLE = (0, -2, -3, -4)  # what a stop is answered that was taken, or has nothing left to stop
+UNABLE = (0, -2, -3, -4)  # replies to a stop that was accepted, or has nothing to stop
 STATES = {
     Mode.INIT: MotionState.NOT_HOMED,
     Mode.BRAKE_OPEN: MotionState.NOT_HOMED,
@@ -37,64 +37,64 @@ STATES = {
     Mode.RUNNING: MotionState.MOVING,
     Mode.JOG: MotionState.MOVING,
     Mode.ERROR: MotionState.FAULT,
-    Mode.PAUSED: MotionState.MOVING,  # whoever paused it may let it go on at any moment
+    Mode.PAUSED: MotionState.MOVING,  # it may be resumed at any moment by whoever paused it
     Mode.COLLISION: MotionState.FAULT,
 }
 
 
 @dataclass(frozen=True, kw_only=True)
 class ConnectionsOpened:
-    """Both connections are there."""
+    """Event: both connections are open."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Closed:
-    """One of them is not, or cannot be made; the other has been closed as well."""
+    """Event: one connection broke, or could not be made; the other one has been closed as well."""
 
     why: str
 
 
 @dataclass(frozen=True, kw_only=True)
 class DashboardReply:
-    """The dashboard sent this."""
+    """Event: bytes from the dashboard."""
 
     data: bytes
 
 
 @dataclass(frozen=True, kw_only=True)
 class FeedbackData:
-    """The feedback port sent this."""
+    """Event: bytes from the feedback port."""
 
     data: bytes
 
 
 @dataclass(frozen=True, kw_only=True)
 class CommandRequest:
-    """The plant commands the arm."""
+    """Event: the plant commands the arm."""
 
     command: Command
 
 
 @dataclass(frozen=True, kw_only=True)
 class Open:
-    """Connect to both ports."""
+    """Message: connect to both ports."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Close:
-    """Close both connections."""
+    """Message: close both connections."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class SendLine:
-    """Send this to the dashboard."""
+    """Message: send this text to the dashboard."""
 
     text: str
 
 
 @dataclass(frozen=True, kw_only=True)
 class CommandNotSent:
-    """The command that was asked for cannot leave."""
+    """Message: the command that the plant gave cannot leave."""
 
     why: str
 
@@ -106,7 +106,7 @@ Take = Callable[[float, Reply], None]
 
 @dataclass(frozen=True, kw_only=True)
 class Pending:
-    """A line that the controller has not answered."""
+    """Line to which the controller has not replied yet."""
 
     name: str
     at: float
@@ -114,10 +114,10 @@ class Pending:
 
 
 class Machine:
-    """One arm behind one controller. `step` takes what happened, and says what to do and to report."""
+    """State machine of one arm behind one controller; `step` takes events and returns actions and reports."""
 
     def __init__(self, devices: Sequence[Robot], settings: Settings) -> None:
-        """ValueError where that is anything but one arm of six joints."""
+        """Raises ValueError unless the device is one arm of six joints."""
         if len(devices) != 1 or not isinstance(devices[0], Arm) or len(devices[0].joints) != 6:
             raise ValueError("a Dobot of the CR series is one arm of six joints")
         self._arm = devices[0]
@@ -125,7 +125,7 @@ class Machine:
         self._out: list[Message] = []
         self._open = False
         self._open_at = -math.inf
-        self._boot: tuple[int, int] | None = None  # when it was switched on, s; how long it runs, ms
+        self._boot: tuple[int, int] | None = None  # time of switching on, s; time it has run, ms
         self._latched = False
         self._left_at_work = False
         self._news = False
@@ -135,14 +135,14 @@ class Machine:
 
     @property
     def next_deadline(self) -> float:
-        """When `step` must be called even if nothing happens."""
+        """The time (s) at which `step` is due even without events."""
         if not self._open:
             return self._open_at
         answer = self._pending[0].at + REPLY_S if self._pending else math.inf
         return min(answer, self._heard_at + SILENT_S, self._asked_at + ASK_S)
 
     def step(self, now: float, events: Sequence[Event]) -> list[Message]:
-        """What is to be done; at most one report of the arm, after all that happened."""
+        """Take events and the time, and return messages to act on; at most one is a report of the arm."""
         for event in events:
             self._take(now, event)
         self._pass_time(now)
@@ -183,9 +183,7 @@ class Machine:
         self._forget_link(now)
         self._open = True
         if self._settings.request_control:
-            self._say(
-                now, "RequestControl()", _nothing
-            )  # an older controller does not know it, and needs it not
+            self._say(now, "RequestControl()", _nothing)  # an older controller neither knows nor needs it
         if self._left_at_work:  # nobody waits for that work any more
             self._stop(now)
         self._left_at_work = False
@@ -271,7 +269,7 @@ class Machine:
 
         def take(now: float, reply: Reply) -> None:
             if reply.error == 0:
-                self._ask_output(now, command)  # it is accepted once it is read back
+                self._ask_output(now, command)  # accepted once it has been read back
             else:
                 self._reject(command.id, reply.word)
 
@@ -338,7 +336,7 @@ class Machine:
         if known is None:
             return
         booted = feedback.run_ms < known[1]
-        if self._feedback is None:  # it was not heard for a while, and may run for longer by now than before
+        if self._feedback is None:  # after a silence it may have run longer than before
             booted = booted or abs(switched_on - known[0]) > CLOCK_S
         if booted:
             self._forget_work()
@@ -369,7 +367,7 @@ class Machine:
             self._say(now, look.say, _nothing)
 
     def _fail(self, now: float, work: Work, word: str) -> None:
-        """What is left of it is stopped; the alarms of the controller belong to the reason."""
+        """Fail the work: stop the arm, ask for the controller's alarms, and report them with the reason."""
         self._failing = word
         self._stop(now)
 
@@ -409,7 +407,7 @@ class Machine:
         assert self._feedback is not None and self._boot is not None
         self._news, self._reported_at = False, now
         state = self._state(self._feedback)
-        # What proves that an arm was made ready is that it was not, and then is.
+        # Readiness is proved by an arm that was not ready and then is.
         is_ready = STATES[self._feedback.mode] is not MotionState.NOT_HOMED and not isinstance(
             self._work, Readying
         )
@@ -426,7 +424,7 @@ class Machine:
 
 
 def _nothing(now: float, reply: Reply) -> None:
-    """The next frames show what became of it."""
+    """Does nothing with a reply: the next frames show its effect."""
 
 
 def _radians(feedback: Feedback) -> tuple[float, ...]:

@@ -1,4 +1,4 @@
-"""The dashboard of a controller: a command is a line of text, its reply `ErrorID,{values},Command(...);`."""
+"""Lines of a controller's dashboard: a command is text, its reply `ErrorID,{values},Command(...);`."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ REFUSALS = {
     -10000: "unknown_command",
     -20000: "wrong_number_of_values",
 }
-"""What the controller means by an ErrorID, in a word for the plant."""
+"""The word for the plant of each ErrorID of the controller."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Reply:
-    """What the controller answers to one command; `error` 0 means that it has taken it."""
+    """Reply of the controller to one command; `error` 0 means that it took it."""
 
     error: int
     values: str
@@ -34,38 +34,38 @@ class Reply:
 
     @property
     def word(self) -> str:
-        """Why it was refused."""
+        """The word for the reason of a refusal."""
         if self is NOT_TCP:
             return "not_in_tcp_mode"
         return REFUSALS.get(self.error, f"error {self.error}")
 
     @property
     def number(self) -> int | None:
-        """The id that it gave a queued command, or the one number that it answers."""
+        """The id given to a queued command, or the one number of an answer."""
         return int(self.values) if re.fullmatch(r"\d{1,18}", self.values) else None
 
     @property
     def alarms(self) -> tuple[int, ...]:
-        """The ids of the alarms that GetErrorID names, without the zeros that stand for none."""
+        """The ids of the alarms in a reply to GetErrorID, without the zeros for none."""
         return tuple(number for each in ALARMS.findall(self.values) if (number := int(each)) != 0)
 
 
 NOT_TCP = Reply(error=-1, values="", command="")
-"""The controller is not in its TCP mode; it says so without the form of a reply."""
+"""Stands for the text, in no form of a reply, by which the controller says that it is not in its TCP mode."""
 
 
 class NotAReply(ValueError):
-    """What came is no reply, and nobody knows to which command the next one belongs."""
+    """Line that is no reply; after it nobody knows to which command the next reply belongs."""
 
 
 class ReplyReader:
-    """Cuts what arrives into replies."""
+    """Splitter of the dashboard's stream into replies."""
 
     def __init__(self) -> None:
         self._rest = ""
 
     def feed(self, data: bytes) -> list[Reply]:
-        """The replies that are whole by now; Nonsense where one cannot be read."""
+        """The replies that are complete now; raises Nonsense for one that cannot be read."""
         text = self._rest + data.decode("ascii", "replace")
         while OTHER_MODE in text:
             before, _, text = text.partition(OTHER_MODE)

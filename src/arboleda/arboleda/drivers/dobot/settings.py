@@ -8,7 +8,10 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, kw_only=True)
 class Settings:
-    """Where the controller is, how fast the arm moves (percent of what is set there), and its tool output."""
+    """Settings of the driver `dobot`: address of the controller, speed of the arm, its tool output.
+
+    Speed and acceleration are percent of the values set in the controller.
+    """
 
     host: str
     port: int = 29999
@@ -26,7 +29,7 @@ class Settings:
         _within("tool_output", self.tool_output, 1, 4)
 
     def joint_move(self, q: tuple[float, ...]) -> str:
-        """The line that moves the joints there, rad."""
+        """The line that moves the joints to `q`, rad."""
         joints = ",".join(f"{math.degrees(each):.4f}" for each in q)
         ratios = {"a": self.acceleration_percent, "v": self.speed_percent}
         asked = "".join(f",{name}={ratio}" for name, ratio in ratios.items() if ratio is not None)

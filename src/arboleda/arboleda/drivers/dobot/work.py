@@ -1,4 +1,4 @@
-"""What the arm is at: a move, or the steps that make it ready; each looks at every frame for its end."""
+"""Work of the arm: a move, or the steps that make it ready; each finds its own end in the feedback frames."""
 
 from __future__ import annotations
 
@@ -8,9 +8,9 @@ from dataclasses import dataclass
 
 from .frames import Feedback, Mode
 
-SETTLE_S = 0.3  # an arm that idles for so long, beside its goal, is not on its way any more
-BEGIN_S = 2.0  # a controller that idles begins with a queued command sooner
-STEP_S = 15.0  # what one step of getting ready may take; power needs some 10 s, the maker says
+SETTLE_S = 0.3  # an arm idle for so long away from its goal has stopped
+BEGIN_S = 2.0  # an idle controller begins a queued command within this time
+STEP_S = 15.0  # limit of one step to readiness; power takes some 10 s, says the maker
 
 ALARM = "alarm"
 BROKEN = {
@@ -22,7 +22,7 @@ BROKEN = {
     Mode.DRAG: "dragged_by_hand",
     Mode.INIT: "starting",
 }
-"""The modes in which no work goes on, in a word for the plant."""
+"""Modes in which work has broken off, each with the word for the plant."""
 
 STEPS = {
     Mode.ERROR: "ClearError()",
@@ -30,12 +30,12 @@ STEPS = {
     Mode.POWER_OFF: "PowerOn()",
     Mode.DISABLED: "EnableRobot()",
 }
-"""What is said in a mode to leave it, on the way to one in which the arm can move."""
+"""The command that leaves a mode, on the way to one in which the arm can move."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Look:
-    """What a frame shows of a work: that it is over, or what to tell the controller next."""
+    """Progress of a work by one frame: over, or the next line to send to the controller."""
 
     done: bool = False
     failed: str | None = None
@@ -46,11 +46,11 @@ NOTHING = Look()
 
 
 class Move:
-    """A queued command: over when the controller names its number as the last one, and idles."""
+    """Queued motion command: it ends when the controller names its number as the last one, and idles."""
 
     def __init__(self, id: str, is_there: Callable[[Feedback], bool]) -> None:
         self.id = id
-        self.number: int | None = None  # what the controller calls it, once it has taken it
+        self.number: int | None = None  # the controller's number, once it has accepted it
         self._is_there = is_there
         self._taken_at = math.inf
         self._idle_since: float | None = None
@@ -72,12 +72,12 @@ class Move:
         idle_s = now - max(self._idle_since, self._taken_at)
         if feedback.command != self.number:
             return Look(failed="not_begun") if idle_s > BEGIN_S else NOTHING
-        # Idle beside the goal may be the moment before it begins: only an arm that stays so has ended there.
+        # Idle away from the goal may be the moment before the begin: only an arm that stays so has ended.
         return Look(done=self._is_there(feedback) or idle_s > SETTLE_S)
 
 
 class Readying:
-    """Alarms are cleared, the arm is powered and enabled, as far as its mode says that this is missing."""
+    """Steps to readiness, as its mode requires: clear alarms, power the arm, enable it."""
 
     def __init__(self, id: str, now: float) -> None:
         self.id = id

@@ -21,12 +21,12 @@ from ..ros_action.machine import Machine
 from ..ros_action.mover import NoGoal, failure
 from .settings import Settings
 
-STILL = 0.25  # of the tolerance, in the time that it takes to be seen at rest
+STILL = 0.25  # share of the tolerance, within the time that proves rest
 
 
 @dataclass(frozen=True, kw_only=True)
 class Width:
-    """How wide the fingers are to be; `from_mm`: how wide they were, `grips`: a part stops them before.
+    """Goal for the width of the fingers. `from_mm`: their width before; `grips`: a part stops them earlier.
 
     `compared`: the plant compares what it has led to. It does so for work, not for a switch, of which
     it hears no end but the fact.
@@ -42,7 +42,7 @@ class Width:
 
 
 class GripperMover:
-    """One gripper, by the joint state of its fingers."""
+    """Gripper, measured by the joint state of its fingers."""
 
     replaces = True  # letting go must not wait for a grip that never ends
 
@@ -52,8 +52,8 @@ class GripperMover:
         still = abs(settings.units_per_mm) * settings.tolerance_mm * STILL
         self._joint = Joints((settings.joint,), settings.joint_states, rest=still)
         self._told_mm: float | None = None  # the width of the last goal
-        self._gripped: bool | None = None  # None: nobody knows
-        self._held_mm = 0.0  # how wide the part is
+        self._gripped: bool | None = None  # None: unknown
+        self._held_mm = 0.0  # width of the part
 
     @property
     def width_mm(self) -> float:
@@ -91,7 +91,7 @@ class GripperMover:
         return self._joint.heard_at > at
 
     def is_at(self, goal: Width) -> bool:
-        """Fingers that close on a part are there once they rest."""
+        """True if the fingers are at the goal; ones that close on a part are there once they rest on it."""
         if goal.grips:
             return self._joint.rest.holds(self._joint.heard_at) and self._holds(goal)
         return self._near(goal.width_mm)
@@ -101,7 +101,7 @@ class GripperMover:
 
     def failure(self, end: GoalResult, goal: Width) -> str:
         if end.stalled and end.status in (Status.SUCCEEDED, Status.ABORTED):
-            return "" if goal.grips else "stalled"  # what fingers show decides whether they have a part
+            return "" if goal.grips else "stalled"  # the fingers' position shows if they have a part
         return failure(end, {})
 
     def objection(self, goal: Width) -> str:
@@ -118,7 +118,7 @@ class GripperMover:
             self._gripped = False if self._near(goal.width_mm) else None
 
     def shows(self, *, busy: bool) -> dict[str, Any]:
-        """Whether it has a part is not said while that may change."""
+        """The facts for a report; `gripped` is left out while the fingers may still move."""
         known: dict[str, Any] = {"width_mm": self._shown_mm()}
         if not busy and self._gripped is not None:
             known["gripped"] = self._gripped
@@ -129,20 +129,20 @@ class GripperMover:
         return abs(self.width_mm - width_mm) <= self._settings.tolerance_mm
 
     def _holds(self, goal: Width) -> bool:
-        """Whether the fingers have moved, and are wider than they were told, as far as a part may be."""
+        """True if the fingers have moved and then stopped at a width that a part between them may have."""
         width_mm, tolerance_mm = self.width_mm, self._settings.tolerance_mm
         between = goal.width_mm + tolerance_mm < width_mm < goal.from_mm - tolerance_mm
         return between and self._settings.narrowest_mm <= width_mm <= self._settings.widest
 
     def _shown_mm(self) -> float:
-        """Within the tolerance of what they were told, that is how wide they are."""
+        """The width for reports, mm: the one commanded if the fingers are near it, else as measured."""
         if self._told_mm is not None and self._near(self._told_mm):
             return self._told_mm
         return round(self.width_mm, 1)
 
 
 def machine(devices: Sequence[Robot], settings: Settings) -> Machine:
-    """ValueError where that is anything but one gripper."""
+    """The machine of one gripper; raises ValueError for other devices."""
     if len(devices) != 1 or not isinstance(devices[0], Device):
         raise ValueError("a gripper controller moves one gripper, a device of a declared kind")
     return Machine(GripperMover(devices[0], settings), settings.action)

@@ -16,7 +16,8 @@ KNOWN = "gripped: bool, width_mm: number, force_n: number"
 
 @dataclass(frozen=True, kw_only=True)
 class Settings:
-    """Which action and which joint are those of the gripper, and how far apart its fingers are.
+    """Settings of the driver `gripper_command`: the gripper's action and joint, and the opening of its
+    fingers.
 
     `open` is the position of its joint (m or rad) where the fingers are `width_mm` apart, `closed` where
     they touch. A part is believed only from `narrowest_mm` to `widest_mm`. `lan` lets the driver reach
@@ -55,7 +56,7 @@ class Settings:
 
     @property
     def units_per_mm(self) -> float:
-        """How far the joint goes for a mm of width."""
+        """Travel of the joint (m or rad) per mm of opening."""
         return (self.open - self.closed) / self.width_mm
 
     def position(self, width_mm: float) -> float:
@@ -65,7 +66,7 @@ class Settings:
         return (position - self.closed) / self.units_per_mm
 
     def problems(self, device: Robot) -> Iterable[tuple[tuple[str | int, ...], str]]:
-        """What of these does not fit a device."""
+        """Settings that do not fit a device, each as its keys and a sentence."""
         if device.evidence is not Evidence.IDS:
             yield (), f"{device.name} has evidence: {device.evidence.value}; an action proves ids"
         if not isinstance(device, Device):

@@ -1,4 +1,4 @@
-"""An arm behind a joint trajectory controller: what its goals are, and where its joints are."""
+"""Arm behind a joint trajectory controller: its goals, and the measured joints."""
 
 from __future__ import annotations
 
@@ -23,12 +23,12 @@ ERRORS = {
     -4: "path_tolerance_violated",
     -5: "goal_tolerance_violated",
 }
-"""What the controller means by an error_code, in a word for the plant."""
+"""The word for the plant of each error_code of the controller."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Trajectory:
-    """A goal of one point, where the arm comes to rest."""
+    """Goal of one point, at which the arm comes to rest."""
 
     joints: tuple[str, ...]
     q: tuple[float, ...]
@@ -36,7 +36,7 @@ class Trajectory:
 
 
 class ArmMover:
-    """One arm, by its joint states."""
+    """Arm, measured by its joint states."""
 
     replaces = False
 
@@ -74,14 +74,14 @@ class ArmMover:
         return ""
 
     def settle(self, goal: Trajectory | None) -> None:
-        """Nothing of it outlives its goal."""
+        """Does nothing: an arm keeps no state beyond its goal."""
 
     def shows(self, *, busy: bool) -> dict[str, Any]:
         return {"q": self._joints.q}
 
 
 def machine(devices: Sequence[Robot], settings: Settings) -> Machine:
-    """ValueError where that is anything but one arm."""
+    """The machine of one arm; raises ValueError for other devices."""
     if len(devices) != 1 or not isinstance(devices[0], Arm):
         raise ValueError("a joint trajectory controller moves one arm")
     return Machine(ArmMover(devices[0], settings), settings.action)

@@ -18,7 +18,7 @@ PEAK_ACCELERATION = 10 / math.sqrt(3)
 
 @dataclass(frozen=True, kw_only=True)
 class Settings:
-    """Which action and which joint states are those of the arm, and what its joints are called there.
+    """Settings of the driver `joint_trajectory`: action, joint states and joint names of the arm.
 
     `speed_percent` is of what the model of the arm allows; `lan` lets the driver reach other machines.
     """
@@ -39,18 +39,18 @@ class Settings:
                 raise ValueError(f"{name} is empty; it is a name of ROS 2")
 
     def joint_names(self, arm: Arm) -> tuple[str, ...]:
-        """What ros2_control calls the joints of the arm, in the arm's order."""
+        """The names of the arm's joints in ros2_control, in the arm's order."""
         return self.joints or tuple(joint.name for joint in arm.joints)
 
     def duration_s(self, arm: Arm, start: Sequence[float], goal: Sequence[float]) -> float:
-        """How long a move may take at least, so that no joint passes its share of what the model allows."""
+        """The least duration of a move, s, at which no joint exceeds its share of the model's limits."""
         share = self.speed_percent / 100
         ways = zip(arm.joints, start, goal, strict=True)
         times_s = [_least_s(joint, abs(there - here), share) for joint, here, there in ways]
         return max(SHORTEST_S, *times_s)
 
     def problems(self, device: Robot) -> Iterable[tuple[tuple[str | int, ...], str]]:
-        """What of these does not fit a device."""
+        """Settings that do not fit a device, each as its keys and a sentence."""
         if not isinstance(device, Arm):
             yield (), f"{device.name} is no arm; a joint trajectory controller moves arms"
         elif self.joints and len(self.joints) != len(device.joints):

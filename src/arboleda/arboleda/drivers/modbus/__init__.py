@@ -1,1 +1,1 @@
-"""Devices behind Modbus, without a socket: where their values are, what is written and read, what it says."""
+"""Devices behind Modbus, without a socket: addresses of values, requests, and reports."""

@@ -1,4 +1,4 @@
-"""Whether a mapping fits the kind of its device: each problem by its keys, with a sentence."""
+"""Checks that a mapping fits the kind of its device; each problem is its keys and a sentence."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from .settings import Settings, Verb
 
 
 def problems(settings: Settings, device: Robot) -> Iterator[Problem]:
-    """All that is wrong with the mapping of this device."""
+    """All problems of the mapping of this device."""
     if not isinstance(device, Device):
         yield (), f"reaches devices of declared kinds; {device.name} is of the kind {device.kind_name}"
         return
@@ -69,7 +69,7 @@ def _answers(place: Place, answer: Register | None, verb: DeviceVerb) -> Iterato
 
 
 def _fits(place: Place, register: Register, fact: FactType) -> Iterator[Problem]:
-    """Whether the values of a fact, a parameter or an answer can stand there."""
+    """Problems of values of a fact, parameter or answer that this register cannot hold."""
     if fact.type is str:
         missing = [str(word) for word in fact.words if word not in register.words]
         if not fact.words:
@@ -92,7 +92,7 @@ def _fits(place: Place, register: Register, fact: FactType) -> Iterator[Problem]
 
 
 def _ways(settings: Settings, device: Device) -> Iterator[Problem]:
-    """What the effects and the evidence of a device ask of its PLC."""
+    """Problems of a mapping that lacks something which the device's effects or evidence need from the PLC."""
     sequence, state = settings.sequence, settings.state
     yield from checks.proof(device, "the PLC", sequence=sequence is not None)
     if sequence is not None and (sequence.write.table, sequence.write.type) != ("holding", "uint16"):
@@ -108,7 +108,7 @@ def _ways(settings: Settings, device: Device) -> Iterator[Problem]:
 
 
 def _overlaps(settings: Settings) -> Iterator[Problem]:
-    """Two values may share a register only where both read it in the same way."""
+    """Problems of values that share a register but are read from it in different ways."""
     for (one, first), (two, second) in combinations(readings(settings), 2):
         if first.table != second.table:
             continue

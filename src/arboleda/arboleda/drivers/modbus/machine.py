@@ -1,4 +1,4 @@
-"""One device behind Modbus: what is written for a command, what is read, and the report that this is.
+"""Device behind Modbus: the writes for a command, the reads, and the report made of them.
 
 Each poll reads the echo first and the facts last: a PLC sets its facts before it says that it is done, so
 what is read with a number is never older than it.
@@ -25,12 +25,12 @@ from .settings import Settings
 MOST = {"coil": 2000, "discrete": 2000, "holding": 125, "input": 125}  # of one request, by the standard
 ECHOES = ("accepted", "done", "rejected", "failed")
 Raw = Mapping[tuple[str, int], int]
-"""What was read, by table and address."""
+"""The values read, by table and address."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Block:
-    """Neighbours that are read with one request."""
+    """Neighbouring registers that are read with one request."""
 
     table: str
     address: int
@@ -47,14 +47,17 @@ class WriteRequest:
 
 
 class ModbusDevice:
-    """What a device is told and says; `begin` at each new connection, with what `first_blocks` read."""
+    """Device behind Modbus: makes writes of commands and reports of values read.
+
+    Call `begin` at each new connection, with the values of `first_blocks`.
+    """
 
     def __init__(self, device: Robot, settings: Settings) -> None:
         if not isinstance(device, Device):
             raise DriverError(f"{device.name} is of no declared kind, so nothing can be mapped")
         self._device, self._settings = device, settings
         self._numbers = Numbers()
-        self._written = 0  # the number that stands where it is written: a PLC notices only another one
+        self._written = 0  # the number in its register: a PLC notices only a change
         self._asked: tuple[int, Register, type[Value]] | None = None
         self._alive = ProgramWatch(settings.alive_s)
         read = [register for _, register in readings(settings)]
@@ -63,7 +66,7 @@ class ModbusDevice:
         self.first_blocks = blocks([*read, *written])
 
     def begin(self, raw: Raw) -> None:
-        """Take note of the numbers that the PLC still has of commands that are none of ours."""
+        """Note the command numbers that the PLC still shows; they are of no command of this connection."""
         sequence = self._settings.sequence
         self._numbers.begin()
         if sequence is not None:
@@ -73,7 +76,7 @@ class ModbusDevice:
         self._alive.begin()
 
     def order(self, command: Command) -> tuple[WriteRequest, ...]:
-        """What is written for a command, in this order; NotSent where the mapping has no word for it."""
+        """The writes for a command, in order; raises NotSent if the mapping does not know it."""
         if isinstance(command, Stop):
             return self._stop(command.mode)
         if not isinstance(command, VerbCall) or command.verb not in self._settings.verbs:
@@ -90,7 +93,7 @@ class ModbusDevice:
         return joined(puts)
 
     def report(self, at: float, raw: Raw) -> Report:
-        """What was read as the plant has it; Unreadable where the mapping gives it no meaning."""
+        """The report that the values read make; raises Unreadable if the mapping has no meaning for one."""
         if self._settings.alive is not None:
             alive = self._settings.alive
             self._alive.see(at, str(alive), alive.number(taken(alive, raw)))
@@ -128,7 +131,7 @@ class ModbusDevice:
         return {name: int(each.number(taken(each, raw))) for name, each in places.items() if each is not None}
 
     def _words(self, raw: Raw) -> dict[str, str]:
-        """Why something was rejected or failed: a word, or the number where there is none."""
+        """The reason of a rejection or failure: its word, or its number if there is none."""
         registers = {name: getattr(self._settings.sequence, name, None) for name in ("reason", "failure")}
         found = {}
         for name, each in registers.items():
@@ -147,7 +150,7 @@ class ModbusDevice:
 
 
 def readings(settings: Settings) -> Iterator[tuple[tuple[str, ...], Register]]:
-    """All that is read, by its keys; what a PLC sets last is read first."""
+    """All registers to read, by their keys; those that a PLC sets last are read first."""
     sequence = settings.sequence
     if sequence is not None:
         for name in ("done", "rejected", "failed", "accepted", "reason", "failure"):
@@ -166,7 +169,7 @@ def readings(settings: Settings) -> Iterator[tuple[tuple[str, ...], Register]]:
 
 
 def blocks(registers: list[Register]) -> tuple[Block, ...]:
-    """The requests that read these: each register with its neighbours, at the place of the first of them."""
+    """The requests that read these registers, each joined with its neighbours, in order of the first."""
     out: list[Block] = []
     for register in registers:
         block = Block(table=register.table, address=register.address, length=register.length)
@@ -180,7 +183,7 @@ def blocks(registers: list[Register]) -> tuple[Block, ...]:
 
 
 def _one(one: Block, other: Block) -> Block | None:
-    """Two blocks as one request; None where there is a gap, or too much for one."""
+    """Two blocks as one request; None if there is a gap between them, or too much for one request."""
     low = min(one.address, other.address)
     high = max(one.address + one.length, other.address + other.length)
     if one.table != other.table or high - low > min(one.length + other.length, MOST[one.table]):
@@ -189,18 +192,18 @@ def _one(one: Block, other: Block) -> Block | None:
 
 
 def taken(register: Register, raw: Raw) -> list[int]:
-    """What was read of one place."""
+    """The values read for one register."""
     return [raw[register.table, register.address + at] for at in range(register.length)]
 
 
 def put(write: Write, values: Mapping[str, Value]) -> WriteRequest:
-    """A write with the values of its verb."""
+    """A write, with the values of its verb put in."""
     value = write.value if write.parameter is None else values[write.parameter]
     return WriteRequest(table=write.table, address=write.address, values=write.raw(value))
 
 
 def joined(puts: list[WriteRequest]) -> tuple[WriteRequest, ...]:
-    """The same, neighbours that follow one another in one request: their order stays."""
+    """The same writes, successive neighbours joined into one request; their order stays."""
     out: list[WriteRequest] = []
     for each in puts:
         last = out[-1] if out else None

@@ -1,4 +1,4 @@
-"""One place in a PLC: which coils or registers hold a value, and how."""
+"""Place of a value in a PLC: its coils or registers, and its encoding."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ ValueType = type[Value]
 
 @dataclass(frozen=True, kw_only=True)
 class Register:
-    """The keys of a place in the plant file: one table with its address, and how the value is held there."""
+    """Keys of a place in the plant file: table, address, and encoding of the value."""
 
     coil: int | None = None
     discrete: int | None = None
@@ -60,7 +60,7 @@ class Register:
 
     @property
     def length(self) -> int:
-        """How many coils or registers it takes."""
+        """The number of coils or registers that this value takes."""
         return 1 if self.table in BITS else struct.calcsize(FORMATS[self.type]) // 2
 
     @property
@@ -69,11 +69,11 @@ class Register:
 
     @property
     def form(self) -> tuple[object, ...]:
-        """What two values at one place must have in common."""
+        """The encoding that two values at the same address must share."""
         return (self.type, self.word_order, self.byte_order)
 
     def limits(self) -> tuple[float, float]:
-        """The least and the largest value that fits."""
+        """The least and the greatest value that fits."""
         if self.is_bit:
             return (0, 1)
         if self.type.startswith("float"):
@@ -84,7 +84,7 @@ class Register:
         return (ends[0], ends[1])
 
     def number(self, raw: Sequence[int]) -> int | float:
-        """What was read there, as the number that the PLC holds."""
+        """The number that the PLC holds there, decoded from the registers read."""
         if self.table in BITS:
             return int(raw[0])
         if self.bit is not None:
@@ -94,7 +94,7 @@ class Register:
         return value  # type: ignore[no-any-return]
 
     def read(self, raw: Sequence[int], of: ValueType) -> Value:
-        """What was read there as a value of that type; Unreadable where it is none."""
+        """The value read there, as that type; raises Unreadable if it is none."""
         number = self.number(raw)
         if self.words:
             return self._word(number)
@@ -112,7 +112,7 @@ class Register:
         return round(scaled) if of is int else float(scaled)
 
     def raw(self, value: Value) -> tuple[int, ...]:
-        """A value as it is written there; DriverError where it does not fit."""
+        """The registers for a value; raises DriverError if it does not fit."""
         number = self.words[value] if isinstance(value, str) and value in self.words else value
         if isinstance(number, str):
             known = ", ".join(self.words) or "none"
@@ -162,7 +162,7 @@ class Register:
 
 @dataclass(frozen=True, kw_only=True)
 class Write(Register):
-    """A place to write to, with the value; `$name` is the parameter of the verb."""
+    """Place to write to, with the value; `$name` is the parameter of the verb."""
 
     value: bool | int | float | str
 

@@ -1,4 +1,4 @@
-"""What a plant file says of a device behind Modbus."""
+"""Settings of a device behind Modbus in a plant file."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ SHORTEST_POLL_S = 0.005
 
 @dataclass(frozen=True, kw_only=True)
 class Verb:
-    """What is written for a verb, in this order, before its number; where its answer is found."""
+    """Writes for a verb, in order and before its number, and the register of its answer."""
 
     write: tuple[Write, ...] = ()
     answer: Register | None = None
@@ -24,7 +24,7 @@ class Verb:
 
 @dataclass(frozen=True, kw_only=True)
 class Sequence:
-    """Where the number of a command is written, last of all, and where the PLC echoes it."""
+    """Registers for the number of a command, which is written last, and those in which the PLC echoes it."""
 
     write: Register
     accepted: Register
@@ -37,7 +37,7 @@ class Sequence:
 
 @dataclass(frozen=True, kw_only=True)
 class Settings:
-    """The connection, and the mapping of one device."""
+    """Settings of the driver `modbus`: the connection, and the mapping of one device."""
 
     host: str = ""
     port: int = 502
@@ -73,11 +73,11 @@ class Settings:
 
     @property
     def peer(self) -> str:
-        """Whom it speaks to, as sentences name it."""
+        """The name of the PLC for sentences."""
         return f"{self.serial} unit {self.unit}" if self.serial else f"{self.host}:{self.port}"
 
     def problems(self, device: Robot) -> Iterator[tuple[tuple[str | int, ...], str]]:
-        """What of it does not fit a device, with the keys that lead there."""
+        """Settings that do not fit a device, each as its keys and a sentence."""
         from .checks import problems
 
         return problems(self, device)

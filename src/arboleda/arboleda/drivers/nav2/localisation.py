@@ -1,4 +1,4 @@
-"""Where a base is on its map: what localisation said last, and what odometry has counted since.
+"""Pose of a base on its map: the last one from localisation, plus the odometry counted since.
 
 Localisation such as amcl speaks only while the base drives, and up to a quarter of a meter apart. Odometry
 speaks many times a second and drifts. Both together are what the frames `map`, `odom` and `base_link` say
@@ -16,27 +16,27 @@ from ..ros_action.goal import Rest
 from .pose import Pose, wrapped
 
 SILENT_S = 1.0  # odometry comes many times a second
-TOGETHER_S = 0.5  # so far apart, two measurements are still of about the same moment
+TOGETHER_S = 0.5  # measurements within this time count as of the same moment
 KEPT = 200  # poses of odometry, some seconds of it
 STILL_M = 0.005  # or rad; less than this is noise
 
 
 @dataclass(frozen=True, kw_only=True)
 class MapPose(Measurement):
-    """Localisation says where the base is on the map."""
+    """Event: localisation measured the pose of the base on the map."""
 
     pose: Pose
 
 
 @dataclass(frozen=True, kw_only=True)
 class OdometryPose(Measurement):
-    """Odometry says how far the base has come, from wherever it began."""
+    """Event: odometry measured the way of the base from its starting point."""
 
     pose: Pose
 
 
 class Localisation:
-    """`far_m` is how far the base may go without a word of localisation, before it counts as lost."""
+    """Estimate of the pose; after `far_m` without a word from localisation the base counts as lost."""
 
     def __init__(self, *, odometry: str, localisation: str, far_m: float) -> None:
         self.heard_at = -math.inf
@@ -44,19 +44,22 @@ class Localisation:
         self._odometry, self._localisation, self._far_m = odometry, localisation, far_m
         self._counted: deque[OdometryPose] = deque(maxlen=KEPT)
         self._early: MapPose | None = None  # came before any odometry
-        self._map: Pose | None = None  # where odometry began, on the map
+        self._map: Pose | None = None  # the starting point of odometry, on the map
         self._gone_m = 0.0  # since localisation spoke
         self._turned = 0.0  # without a jump from pi to -pi
 
     @property
     def pose(self) -> Pose | None:
-        """Where it is on the map; None where nobody has said that."""
+        """The base's pose on the map; None if it is not known."""
         if self._map is None or not self._counted:
             return None
         return self._map @ self._counted[-1].pose
 
     def see(self, now: float, seen: Measurement) -> bool:
-        """Whether that is news: a pose without a number, or with the time of the one before, is none."""
+        """Take a measurement; True if it is news.
+
+        A pose with a NaN, or with the time of the one before, is ignored.
+        """
         if isinstance(seen, OdometryPose) and seen.pose.is_finite:
             return self._count(now, seen)
         if isinstance(seen, MapPose) and seen.pose.is_finite:
@@ -90,13 +93,13 @@ class Localisation:
         return self._map is not None
 
     def _localise(self, seen: MapPose) -> None:
-        """Odometry of the same time says where it began on the map."""
+        """Note where odometry began on the map, by the odometry of the same time."""
         if not self._counted:
             self._early = seen
             return
         then = min(self._counted, key=lambda each: abs(_seconds(each) - _seconds(seen)))
         if self._map is not None and abs(_seconds(then) - _seconds(seen)) > TOGETHER_S:
-            return  # odometry was silent then: nobody knows how far the base has come since
+            return  # odometry was silent then, so the way since is unknown
         self._map, self._gone_m = seen.pose @ then.pose.inverse, 0.0
 
 

@@ -1,4 +1,4 @@
-"""A base that Nav2 drives from node to node of the plant's grid."""
+"""Mobile base that Nav2 drives from node to node of the plant's grid."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from .settings import Settings
 
 @dataclass(frozen=True, kw_only=True)
 class Route:
-    """A goal: poses on the map, and the nodes that they are of."""
+    """Goal: poses on the map, and the nodes that they belong to."""
 
     frame: str
     nodes: tuple[int, ...]
@@ -33,7 +33,7 @@ Split = Callable[[Route], tuple[Route, ...]]
 
 
 class BaseMover:
-    """One mobile base, by localisation and odometry; `split` makes goals of a way."""
+    """Mobile base, measured by localisation and odometry; `split` makes goals of a way."""
 
     replaces = False
 
@@ -79,18 +79,21 @@ class BaseMover:
         return failure(end, {})
 
     def objection(self, goal: Route) -> str:
-        """Where it stands on another node, the plant sees that; where on none, its last one says nothing."""
+        """The word `stands_on_no_node` if the base stands on none, else "".
+
+        That it stands on another node than the goal, the plant sees for itself.
+        """
         return "stands_on_no_node" if self._stands_on() is None else ""
 
     def settle(self, goal: Route | None) -> None:
-        """Nothing of it outlives its goal."""
+        """Does nothing: a base keeps no state beyond its goal."""
 
     def shows(self, *, busy: bool) -> dict[str, Any]:
-        """Under way, the node that it came by last; at rest, the one that it stands on, if any."""
+        """The node for a report: under way, the last one passed; at rest, the one stood on, if any."""
         return {"node": self._node if busy else self._stands_on()}
 
     def _route(self, nodes: Sequence[int]) -> Route:
-        """The poses of nodes, each with the direction in which the base comes there."""
+        """The poses of nodes, each with the direction in which the base arrives there."""
         places = [self._place(node) for node in nodes]
         here = self._where.pose
         assert here is not None
@@ -105,7 +108,7 @@ class BaseMover:
         return Route(frame=self._settings.frame, nodes=tuple(nodes), poses=tuple(poses))
 
     def _place(self, node: int) -> Pose:
-        """Where a node is on the map."""
+        """The pose of a node on the map."""
         grid = self._mobile.grid
         origin = Pose(grid.origin.x, grid.origin.y, grid.origin.yaw)
         return self._settings.floor @ origin @ Pose(*grid.position(node))
@@ -119,7 +122,7 @@ class BaseMover:
 
 
 def each_alone(route: Route) -> tuple[Route, ...]:
-    """A goal for each node."""
+    """A goal for each node of a way."""
     rows = zip(route.nodes, route.poses, strict=True)
     return tuple(Route(frame=route.frame, nodes=(node,), poses=(pose,)) for node, pose in rows)
 
@@ -129,7 +132,7 @@ def all_at_once(route: Route) -> tuple[Route, ...]:
 
 
 def machine(devices: Sequence[Robot], settings: Settings, *, split: Split) -> Machine:
-    """ValueError where that is anything but one mobile robot."""
+    """The machine of one mobile robot; raises ValueError for other devices."""
     if len(devices) != 1 or not isinstance(devices[0], Mobile):
         raise ValueError("Nav2 drives one mobile robot")
     return Machine(BaseMover(devices[0], settings, split), settings.action)

@@ -1,23 +1,23 @@
-"""A pose on the floor."""
+"""Pose on the floor."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
 
-FAR = 1e6  # m; numbers beyond are none that a robot measures, and do not bear to be reckoned with
+FAR = 1e6  # m; no robot measures more, and larger numbers could overflow
 
 
 @dataclass(frozen=True)
 class Pose:
-    """m, m and rad, in some frame."""
+    """Pose in some frame: m, m and rad."""
 
     x: float
     y: float
     yaw: float = 0.0
 
     def __matmul__(self, other: Pose) -> Pose:
-        """What `other`, which is seen from this one, is in the frame of this one."""
+        """The pose `other`, given in the frame of this pose, in the frame that this pose is given in."""
         cos, sin = math.cos(self.yaw), math.sin(self.yaw)
         return Pose(
             self.x + cos * other.x - sin * other.y,
@@ -27,13 +27,13 @@ class Pose:
 
     @property
     def inverse(self) -> Pose:
-        """Its frame's origin, as seen from it."""
+        """The origin of the frame, as seen from this pose."""
         cos, sin = math.cos(self.yaw), math.sin(self.yaw)
         return Pose(-cos * self.x - sin * self.y, sin * self.x - cos * self.y, -self.yaw)
 
     @property
     def is_finite(self) -> bool:
-        """Whether it is on any floor."""
+        """True if the pose is finite and not absurdly far away."""
         return all(abs(each) < FAR for each in (self.x, self.y, self.yaw))
 
     def distance(self, other: Pose) -> float:

@@ -14,7 +14,7 @@ from .pose import Pose
 
 @dataclass(frozen=True, kw_only=True)
 class Settings:
-    """Which action moves the base, what says where it is, and where the plant's floor is on its map.
+    """Settings of the drivers of Nav2: the base's action, its localisation, and the plant's floor on its map.
 
     Without `localisation`, odometry has to be in the frame of the map. `tolerance_m` is how far from a node
     the base still stands on it. `lan` lets the driver reach other machines.
@@ -40,11 +40,11 @@ class Settings:
 
     @property
     def floor(self) -> Pose:
-        """Where the origin of the plant's floor is on the map."""
+        """The pose of the origin of the plant's floor on the map."""
         return Pose(*self.floor_m, math.radians(self.floor_yaw_deg))
 
     def problems(self, device: Robot) -> Iterable[tuple[tuple[str | int, ...], str]]:
-        """What of these does not fit a device."""
+        """Settings that do not fit a device, each as its keys and a sentence."""
         if device.evidence is not Evidence.IDS:
             yield (), f"{device.name} has evidence: {device.evidence.value}; an action proves ids"
         if not isinstance(device, Mobile):
@@ -59,13 +59,13 @@ class Settings:
 
 @dataclass(frozen=True, kw_only=True)
 class ToPose(Settings):
-    """Each node of a way is a goal of its own."""
+    """Settings of `navigate_to_pose`: each node of a way is a goal of its own."""
 
     action: str = "navigate_to_pose"
 
 
 @dataclass(frozen=True, kw_only=True)
 class Waypoints(Settings):
-    """All nodes of a way are one goal."""
+    """Settings of `follow_waypoints`: all nodes of a way are one goal."""
 
     action: str = "follow_waypoints"

@@ -1,1 +1,1 @@
-"""Devices behind OPC UA, without a socket: where their values are, what is called, what they say."""
+"""Devices behind OPC UA, without a socket: nodes of values, method calls, and reports."""

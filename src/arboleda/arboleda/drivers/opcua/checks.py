@@ -1,4 +1,4 @@
-"""Whether a mapping fits the kind of its device: each problem by its keys, with a sentence."""
+"""Checks that a mapping fits the kind of its device; each problem is its keys and a sentence."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from .settings import Settings
 
 
 def problems(settings: Settings, device: Robot) -> Iterator[Problem]:
-    """All that is wrong with the mapping of this device."""
+    """All problems of the mapping of this device."""
     if not isinstance(device, Device):
         yield (), f"reaches devices of declared kinds; {device.name} is of the kind {device.kind_name}"
         return
@@ -79,7 +79,7 @@ def _words(place: Place, words: Mapping[str, int], of: FactType) -> Iterator[Pro
 
 
 def _ways(settings: Settings, device: Device) -> Iterator[Problem]:
-    """What the effects and the evidence of a device ask of its server."""
+    """Problems of a mapping that lacks something which the device's effects or evidence need."""
     sequence, state = settings.sequence, settings.state
     yield from checks.proof(device, "the server", sequence=sequence is not None)
     form, hint = "state: {node: ns=2;s=Belt.State, words: {stopped: 0, moving: 1}}", "which method ends"

@@ -1,4 +1,4 @@
-"""One device behind OPC UA: what is called for a command, what is read, and the report that this is.
+"""Device behind OPC UA: the call for a command, the reads, and the report made of them.
 
 All is read with one request, the echo first and the facts last: a server sets its facts before it says that
 it is done, so what is read with a number is never older than it.
@@ -26,12 +26,12 @@ from .settings import Settings
 
 ECHOES = ("done", "rejected", "failed", "accepted")
 Read = Mapping[str, object]
-"""What was read, by node."""
+"""The values read, by node."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Call:
-    """A method to be called, with its arguments, each of a type of OPC UA."""
+    """Method to call, with its arguments, each with its type in OPC UA."""
 
     method: str
     on: str
@@ -39,7 +39,10 @@ class Call:
 
 
 class OpcUaDevice:
-    """What a device is told and says; `begin` at each new session, with what `nodes` showed."""
+    """Device behind OPC UA: makes calls of commands and reports of values read.
+
+    Call `begin` at each new session, with the values of `nodes`.
+    """
 
     def __init__(self, device: Robot, settings: Settings) -> None:
         if not isinstance(device, Device):
@@ -51,14 +54,14 @@ class OpcUaDevice:
         self.nodes = tuple(dict.fromkeys(_readings(settings)))
 
     def begin(self, read: Read) -> None:
-        """Take note of the numbers that the server still shows of commands that are none of ours."""
+        """Note the command numbers that the server still shows; they are of no command of this session."""
         self._numbers.begin()
         self._numbers.see(self._echo(read).values())
         self._alive.begin()
         self._asked = None
 
     def order(self, command: Command) -> Call | None:
-        """What is called for a command, None for a stop without a method; NotSent for what is not mapped."""
+        """The method call for a command; None for a stop without a method, NotSent for an unmapped verb."""
         if isinstance(command, Stop):
             method = self._stop(command.mode)
             return None if method is None else call(method, {})
@@ -74,7 +77,7 @@ class OpcUaDevice:
         return Call(method=made.method, on=made.on, given=(*made.given, (sequence.type, given)))
 
     def report(self, at: float, read: Read) -> Report:
-        """What was read as the plant has it; Unreadable where the mapping gives it no meaning."""
+        """The report that the values read make; raises Unreadable if the mapping has no meaning for one."""
         settings, kinds = self._settings, self._device.kind.facts
         if settings.alive is not None:
             self._alive.see(at, settings.alive, number(settings.alive, read[settings.alive]))
@@ -103,7 +106,7 @@ class OpcUaDevice:
         return {name: number(node, read[node]) for name, node in places.items() if node is not None}
 
     def _why(self, name: str, read: Read) -> str | None:
-        """Why something was rejected or failed: a word, or the number where there is none."""
+        """The reason of a rejection or failure: its word, or its number if there is none."""
         variable = getattr(self._settings.sequence, name, None)
         if variable is None:
             return None
@@ -123,7 +126,7 @@ class OpcUaDevice:
 
 
 def call(method: Method, values: Mapping[str, Value]) -> Call:
-    """A method with the values of its verb."""
+    """The call of a method, with the values of its verb put in."""
     given = tuple(
         (each.type, each.given(each.value if each.parameter is None else values[each.parameter]))
         for each in method.given
@@ -139,7 +142,7 @@ def _state(state: Variable, read: Read) -> str:
 
 
 def _readings(settings: Settings) -> Iterator[str]:
-    """The nodes of all that is read; what a server sets last is read first."""
+    """The nodes to read; those that a server sets last are read first."""
     sequence = settings.sequence
     for name in ECHOES:
         node = getattr(sequence, name, None)

@@ -1,4 +1,4 @@
-"""One variable, one argument, one method of a server, and values as they stand there."""
+"""Variables, arguments and methods of a server, and conversion of their values."""
 
 from __future__ import annotations
 
@@ -42,20 +42,20 @@ FORMS: dict[type, tuple[str, ...]] = {
 
 
 def check_node(node: str) -> None:
-    """DriverError where that is no id of a node."""
+    """Raises DriverError if a text is no id of a node."""
     if not NODE.fullmatch(node):
         raise DriverError(f"{quoted(node)} is no node; write it as ns=2;s=Belt.State or ns=2;i=1001")
 
 
 def check_words(words: dict[str, int]) -> None:
-    """DriverError where a number would be two words."""
+    """Raises DriverError if two words have the same number."""
     if len(set(words.values())) < len(words):
         raise DriverError("two words have the same number")
 
 
 @dataclass(frozen=True, kw_only=True)
 class Variable:
-    """A variable of the server; `words` are its numbers, where those stand for words."""
+    """Variable of the server; `words` are its numbers, if they stand for words."""
 
     node: str
     words: dict[str, int] = field(default_factory=dict)
@@ -65,7 +65,7 @@ class Variable:
         check_words(self.words)
 
     def word(self, shown: object) -> object:
-        """What is shown there, as a word where it has words; Unreadable for a number that is none."""
+        """The word for the value read, if this variable has words; Unreadable for a number without one."""
         if not self.words:
             return shown
         found = next((word for word, held in self.words.items() if is_whole(shown) and held == shown), None)
@@ -75,7 +75,7 @@ class Variable:
         return found
 
     def read(self, shown: object, of: FactType) -> Value:
-        """What is shown there as a value of that type; Unreadable where it is none."""
+        """The value read, as that type; raises Unreadable if it is none."""
         word = self.word(shown)
         finite = not isinstance(word, float) or math.isfinite(word)
         found = of.read(word) if finite else None
@@ -86,7 +86,7 @@ class Variable:
 
 @dataclass(frozen=True, kw_only=True)
 class Argument:
-    """What a method is given: a value, or `$name` for the parameter of the verb, as this type of OPC UA."""
+    """Argument of a method: a value, or `$name` for the verb's parameter, and its type in OPC UA."""
 
     value: bool | int | float | str
     type: Form
@@ -108,7 +108,7 @@ class Argument:
         return value[1:] if isinstance(value, str) and value.startswith("$") else None
 
     def fits(self, value: Value) -> bool:
-        """Whether a value is of the type of the argument, and within its limits."""
+        """True if a value is of the type of the argument, and within its limits."""
         if self.type in LIMITS:
             low, high = LIMITS[self.type]
             return is_whole(value) and low <= float(value) <= high
@@ -117,7 +117,7 @@ class Argument:
         return isinstance(value, bool if self.type == "bool" else str)
 
     def given(self, value: Value) -> Value:
-        """A value as it is given; DriverError where it does not fit."""
+        """The value to pass; raises DriverError if it does not fit."""
         number = self.words.get(value, value) if isinstance(value, str) else value
         if not self.fits(number):
             raise DriverError(f"{quoted(value)} is no {self.type}")
@@ -126,7 +126,7 @@ class Argument:
 
 @dataclass(frozen=True, kw_only=True)
 class Method:
-    """A method, the object that it belongs to, and what it is given, in this order."""
+    """Method, the object that it belongs to, and its arguments in order."""
 
     call: str
     on: str
@@ -138,12 +138,12 @@ class Method:
 
 
 def is_whole(value: object) -> bool:
-    """Whether that is a whole number; true and false are none."""
+    """True for a whole number; a bool is none."""
     return isinstance(value, int) and not isinstance(value, bool)
 
 
 def number(node: str, shown: object) -> int:
-    """A whole number of 0 or more that a node shows; Unreadable for anything else."""
+    """The whole number of 0 or more that a node shows; raises Unreadable for anything else."""
     if not isinstance(shown, int) or isinstance(shown, bool) or shown < 0:
         raise UnreadableValue(f"{node} is {quoted(shown)}; allowed: a whole number from 0")
     return shown

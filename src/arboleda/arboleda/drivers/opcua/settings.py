@@ -1,4 +1,4 @@
-"""What a plant file says of a device behind OPC UA."""
+"""Settings of a device behind OPC UA in a plant file."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ from .nodes import Method, Variable, check_node
 
 @dataclass(frozen=True, kw_only=True)
 class Verb(Method):
-    """The method of a verb; where the answer of a question is found."""
+    """Method of a verb, and the variable with the answer to a query."""
 
     answer: Variable | None = None
 
 
 @dataclass(frozen=True, kw_only=True)
 class Sequence:
-    """Each method of a verb takes the number of its command last; these variables echo it."""
+    """Variables that echo the number of a command, which each method of a verb takes as its last argument."""
 
     accepted: str
     done: str
@@ -40,7 +40,10 @@ class Sequence:
 
 @dataclass(frozen=True, kw_only=True)
 class Settings:
-    """The connection, and the mapping of one device; secrets are in the environment, under `secrets`."""
+    """Settings of the driver `opcua`: the connection, and the mapping of one device.
+
+    Passwords are in the environment, under the prefix `secrets`.
+    """
 
     url: str
     security: Literal["none", "sign", "sign_and_encrypt"] = "sign_and_encrypt"
@@ -80,7 +83,7 @@ class Settings:
                 check_node(node)
 
     def problems(self, device: Robot) -> Iterator[tuple[tuple[str | int, ...], str]]:
-        """What of it does not fit a device, with the keys that lead there."""
+        """Settings that do not fit a device, each as its keys and a sentence."""
         from .checks import problems
 
         return problems(self, device)

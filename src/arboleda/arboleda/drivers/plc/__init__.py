@@ -1,1 +1,1 @@
-"""What drivers of PLCs share: numbers that a PLC echoes, and reports made of what it shows."""
+"""Parts that drivers of PLCs share: numbers that a PLC echoes, and reports made of its values."""

@@ -1,4 +1,4 @@
-"""What every mapping of a PLC has to keep: names of its kind, answers to questions, states, a way to stop."""
+"""Checks of every PLC mapping: names of its kind, answers to queries, states, a way to stop."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ Problem = tuple[Place, str]
 
 
 def facts(mapped: Collection[str], device: Device, hint: str) -> Iterator[Problem]:
-    """Facts that the kind does not have, and those that are not mapped."""
+    """Problems of the mapped facts: unknown to the kind, or missing."""
     yield from _names("fact", mapped, device.kind.facts, device, hint)
 
 
 def verbs(mapped: Collection[str], device: Device, hint: str) -> Iterator[Problem]:
-    """Verbs that the kind does not have, and those that are not mapped."""
+    """Problems of the mapped verbs: unknown to the kind, or missing."""
     yield from _names("verb", mapped, device.kind.verbs, device, hint)
 
 
@@ -37,7 +37,7 @@ def _names(
 
 
 def answer(place: Place, verb: DeviceVerb, hint: str, *, mapped: bool) -> Iterator[Problem]:
-    """Whether a question has an answer, and nothing else has one."""
+    """Problems of a query without an answer, and of an answer on any other verb."""
     if verb.effect is Effect.QUERY and not mapped:
         yield place, f"{verb.name} is a query: {hint}"
     if verb.effect is not Effect.QUERY and mapped:
@@ -45,19 +45,19 @@ def answer(place: Place, verb: DeviceVerb, hint: str, *, mapped: bool) -> Iterat
 
 
 def answers(verb: DeviceVerb) -> FactType:
-    """What a question can be answered with."""
+    """The type of a query's answers."""
     first = verb.answers[0]
     return FactType(type=type(first), words=verb.answers, first=first)
 
 
 def proof(device: Device, who: str, *, sequence: bool) -> Iterator[Problem]:
-    """Whether the evidence of the device can be had without a sequence."""
+    """A problem if the device's evidence is ids and the mapping has no sequence."""
     if device.evidence is Evidence.IDS and not sequence:
         yield (), f"evidence: ids needs sequence, numbers that {who} echoes; without, say evidence: facts"
 
 
 def ways(device: Device, form: str, hint: str, *, state: bool, halt: bool) -> Iterator[Problem]:
-    """What moves has to show that it does, and has to be stopped."""
+    """Problems of a device that moves: it must show that it does, and have a way to be stopped."""
     if device.works and not state:
         yield (), f"state is missing: without it nobody knows whether the device moves; {form}"
     if device.works and device.has_stop and not halt:
@@ -65,7 +65,7 @@ def ways(device: Device, form: str, hint: str, *, state: bool, halt: bool) -> It
 
 
 def states(words: Collection[str]) -> Iterator[Problem]:
-    """Whether the words for states are states, and enough of them."""
+    """Problems of the words for states: each must be a state, and "stopped" and "moving" are needed."""
     for word in words:
         if word not in STATES:
             yield ("state", "words", word), f"there is no state {word}; {among(word, STATES)}"

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections import OrderedDict
 from collections.abc import Iterable
 
-LAST = 65535  # what one register holds; 0 says "none yet"
+LAST = 65535  # the greatest value of a register; 0 means "none yet"
 REMEMBERED = 256  # commands; an open one is never that old
 
 
 class Numbers:
-    """Gives each command the next number from 1 to 65535, and knows whose a number was."""
+    """Numbers of commands, from 1 to 65535, and the commands behind them."""
 
     def __init__(self) -> None:
         self._last = 0
@@ -18,15 +18,15 @@ class Numbers:
         self._ids: OrderedDict[int, str] = OrderedDict()
 
     def begin(self) -> None:
-        """Forget what was given: what is shown now, at a new connection, is nobody's."""
+        """Forget all numbers given: those shown at a new connection are of no command."""
         self._ids.clear()
 
     def see(self, shown: Iterable[int]) -> None:
-        """What the PLC shows: a number that is there already is given to no command."""
+        """Take the numbers that the PLC shows now; no new command gets one of them."""
         self._shown = frozenset(shown)
 
     def give(self, id: str) -> int:
-        """The number of a command."""
+        """The number for a command."""
         self._last = self._after()
         while self._last in self._shown:
             self._last = self._after()
@@ -37,7 +37,7 @@ class Numbers:
         return self._last
 
     def id_of(self, number: int | None) -> str | None:
-        """The command of a number; None for one that was not given."""
+        """The command of a number; None for a number that was not given."""
         return None if number is None else self._ids.get(number)
 
     def _after(self) -> int:

@@ -1,4 +1,4 @@
-"""What a PLC shows at one moment, and the report that this is."""
+"""Values that a PLC shows at one moment, and the report made of them."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ UNNAMED = "no reason given"
 
 
 class UnreadableValue(DriverError):
-    """What a PLC shows has no meaning in the mapping."""
+    """Value of a PLC that has no meaning in the mapping."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class PlcSnapshot:
-    """Numbers of commands, words and facts, as they were read together; 0 and None are no command."""
+    """Values of the PLC, read together: numbers of commands, words and facts; 0 and None mean no command."""
 
     state: str = "stopped"
     facts: Facts = ()
@@ -41,7 +41,7 @@ class PlcSnapshot:
 
 @dataclass(frozen=True, kw_only=True)
 class Question:
-    """The query that was asked last, by its number, and what the PLC shows as its answer."""
+    """Last query, by its number, and the answer that the PLC shows now."""
 
     number: int
     answer: Value

@@ -1,4 +1,4 @@
-"""A number that changes as long as the program of a PLC runs."""
+"""Heartbeat of a PLC: a number that changes as long as its program runs."""
 
 from __future__ import annotations
 
@@ -6,18 +6,18 @@ from .plc_snapshot import UnreadableValue
 
 
 class ProgramWatch:
-    """A PLC whose program stands still goes on to answer, with values of then: this notices it."""
+    """Check of a PLC's heartbeat: one whose program stands still goes on answering, with old values."""
 
     def __init__(self, patience_s: float) -> None:
         self._patience_s = patience_s
         self._changed: tuple[int | float, float] | None = None
 
     def begin(self) -> None:
-        """Forget what was seen: a new connection."""
+        """Forget the number seen, for a new connection."""
         self._changed = None
 
     def see(self, at: float, place: str, number: int | float) -> None:
-        """Take note of the number; Unreadable where it has not changed for too long."""
+        """Note the number; raises Unreadable if it has not changed for too long."""
         if self._changed is None or self._changed[0] != number:
             self._changed = (number, at)
         elif at - self._changed[1] > self._patience_s:

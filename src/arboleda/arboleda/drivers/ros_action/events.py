@@ -1,4 +1,4 @@
-"""What happens at an action of ROS 2, and what its client is to do."""
+"""Events of a ROS 2 action, and the messages to its client."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from arboleda.model.messages import Report
 
 
 class Status(Enum):
-    """How a goal ended."""
+    """End of a goal, as the action server gives it."""
 
     SUCCEEDED = auto()
     ABORTED = auto()
@@ -21,21 +21,21 @@ class Status(Enum):
 
 @dataclass(frozen=True, kw_only=True)
 class ServersFound:
-    """The servers of the action now, each by a number of its own; it changes where one was started anew."""
+    """Event: the present servers of the action, each by a number that is new after a restart."""
 
     servers: tuple[int, ...]
 
 
 @dataclass(frozen=True, kw_only=True)
 class Measurement:
-    """Something was measured; `stamp` is when the robot says that it was, in whatever clock."""
+    """Event: a measurement; `stamp` is its time by the robot's own clock."""
 
     stamp: tuple[int, int]
 
 
 @dataclass(frozen=True, kw_only=True)
 class GoalAnswer:
-    """The server has accepted a goal, or refused it."""
+    """Event: the server has accepted or refused a goal."""
 
     id: str
     accepted: bool
@@ -43,7 +43,7 @@ class GoalAnswer:
 
 @dataclass(frozen=True, kw_only=True)
 class GoalResult:
-    """The result of a goal has come; `stalled` and `missed` are what some actions say besides."""
+    """Event: the result of a goal; `stalled` and `missed` are fields of some actions only."""
 
     id: str
     status: Status
@@ -55,21 +55,21 @@ class GoalResult:
 
 @dataclass(frozen=True, kw_only=True)
 class CancelAnswer:
-    """The server has answered that all of its goals be cancelled."""
+    """Event: the server has answered the request to cancel all of its goals."""
 
     refused: bool
 
 
 @dataclass(frozen=True, kw_only=True)
 class CommandRequest:
-    """The plant commands the device."""
+    """Event: the plant commands the device."""
 
     command: Command
 
 
 @dataclass(frozen=True, kw_only=True)
 class SendGoal:
-    """Send the server a goal; `goal` is of the action's own kind."""
+    """Message: send the server a goal; `goal` is of the action's own kind."""
 
     id: str
     goal: Any
@@ -77,19 +77,19 @@ class SendGoal:
 
 @dataclass(frozen=True, kw_only=True)
 class CancelAll:
-    """Have the server cancel all of its goals, whoever sent them."""
+    """Message: cancel all goals of the server, whoever sent them."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class CommandNotSent:
-    """The command that was asked for cannot leave."""
+    """Message: the command that the plant gave cannot leave."""
 
     why: str
 
 
 @dataclass(frozen=True, kw_only=True)
 class UnusableMessage:
-    """The server or the device has said what the machine broke on, in a sentence."""
+    """Event: a message of the server or device caused an error, which the sentence describes."""
 
     why: str
 

@@ -1,4 +1,4 @@
-"""A goal that a server was sent, and whether what it moves is at rest."""
+"""Goal at an action server, and the detector of rest."""
 
 from __future__ import annotations
 
@@ -7,13 +7,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-SETTLE_S = 0.3  # what has not moved for so long is at rest
+SETTLE_S = 0.3  # values that stand still for this time are at rest
 REST = 0.002  # rad or m; less than this is the noise of an encoder
 
 
 @dataclass(kw_only=True)
 class Goal:
-    """What became of a command so far; `stopped`: nobody waits for its end any more, the plant wants it over.
+    """Progress of a command; with `stopped` the plant wants it over and waits for its end no more.
 
     `parts` are what the server is sent for it, one after the other; at `over_at` the plant has given it up.
     At `unknown_at` the server, which had accepted it, said that it knows of no such goal.
@@ -31,7 +31,7 @@ class Goal:
 
     @property
     def key(self) -> str:
-        """What the part that was sent last is called."""
+        """The name of the part that was sent last."""
         return f"{self.id}.{self.part}" if self.part else self.id
 
     @property
@@ -39,7 +39,7 @@ class Goal:
         return self.parts[self.part]
 
     def advance(self, now: float) -> bool:
-        """Begin the next part; False where there is none."""
+        """Begin the next part; False if there is none."""
         if self.part + 1 == len(self.parts):
             return False
         self.part, self.sent_at, self.accepted, self.succeeded_at = self.part + 1, now, False, None
@@ -47,7 +47,7 @@ class Goal:
 
 
 class Rest:
-    """Whether values stand still: they stay within `within` of where they were SETTLE_S ago."""
+    """Detector of standstill: values rest while they stay within `within` of where they were SETTLE_S ago."""
 
     def __init__(self, within: float = REST) -> None:
         self._within = within
@@ -60,5 +60,5 @@ class Rest:
             self._anchor, self._since = tuple(values), now
 
     def holds(self, now: float, since: float = 0.0) -> bool:
-        """Whether they have rested for SETTLE_S by now, all of it after `since`."""
+        """True if the values have rested for SETTLE_S up to `now`, all of it after `since` (s)."""
         return self._anchor is not None and now - max(self._since, since) >= SETTLE_S

@@ -10,19 +10,19 @@ from .events import Measurement
 from .goal import REST, Rest
 
 SILENT_S = 1.0  # joint states come many times a second
-FAR = 1e6  # m or rad; numbers beyond are none that a robot measures, and do not bear to be reckoned with
+FAR = 1e6  # m or rad; no robot measures more, and larger numbers could overflow
 
 
 @dataclass(frozen=True, kw_only=True)
 class JointStateEvent(Measurement):
-    """A joint state."""
+    """Joint state."""
 
     names: tuple[str, ...]
     positions: tuple[float, ...]
 
 
 class Joints:
-    """Where some joints are, and whether they rest; a state that lacks one, or comes again, is no news."""
+    """Positions of some joints, and their rest; a state that lacks one, or comes again, is ignored."""
 
     def __init__(self, names: Sequence[str], topic: str, *, rest: float = REST) -> None:
         self.names = tuple(names)

@@ -1,4 +1,4 @@
-"""What a driver makes of an action server and of what is measured: one device, its goal and its stops."""
+"""State machine for one device behind an action server: its goal, its stops, and its measurements."""
 
 from __future__ import annotations
 
@@ -31,34 +31,34 @@ from .mover import Mover, NoGoal
 
 ANSWER_S = 2.0  # a server answers a goal or a cancel in milliseconds
 SPARE_S = 0.5  # the plant's own deadline comes first
-GONE_S = 1.0  # a server that is started anew is away for a moment, and discovery takes another
+GONE_S = 1.0  # a restarted server is away for a moment, and discovery takes another
 REPORT_S = 0.1  # a report at least so often
 LONGEST_WORD = 120
 
 
 class Machine:
-    """One device behind one action. `step` takes what happened, and says what to do and to report."""
+    """State machine of one device behind one action; `step` takes events and returns actions and reports."""
 
     def __init__(self, mover: Mover, action: str) -> None:
         self._mover, self._action = mover, action
         self._out: list[Message] = []
         self._servers: tuple[int, ...] = ()
         self._server: int | None = None  # the last one that was there alone
-        self._alone_at = -math.inf  # when that was
-        self._why = ""  # why there is no link, as it was reported
+        self._alone_at = -math.inf  # the time at which it was
+        self._why = ""  # the reported reason for a missing link
         self._goal: Goal | None = None
         self._homing: str | None = None
-        self._cancel_at: float | None = None  # since when a cancel is not answered
-        self._cancelled_at = -math.inf  # when the last one was
+        self._cancel_at: float | None = None  # time since which a cancel is unanswered
+        self._cancelled_at = -math.inf  # time of the last cancel
         self._stop_id = ""
         self._latched = False
         self._ids: dict[str, str] = {}
-        self._seen = False  # whether anything was measured yet
+        self._seen = False  # True once there was a measurement
         self._news = False
         self._reported_at = -math.inf
 
     def step(self, now: float, events: Sequence[Event]) -> list[Message]:
-        """What is to be done; at most one report of the device, after all that happened."""
+        """Take events and the time, and return the messages to act on; at most one of them is a report."""
         for event in events:
             self._take(now, event)
         why = self._missing(now)
@@ -112,7 +112,7 @@ class Machine:
                 self._drop()
 
     def _believe(self, now: float, goal: Goal, since: float) -> None:
-        """A result is believed where what was measured after it is the goal, or shows rest elsewhere.
+        """Accept a result once a later measurement shows the goal, or rest elsewhere.
 
         The plant compares positions and facts in any case, and says that the goal was not reached.
         """
@@ -122,7 +122,7 @@ class Machine:
         if not there and not self._mover.rests(now, since):
             return
         if not there:
-            self._cancel(now)  # a server that was wrong of its end may go on with it
+            self._cancel(now)  # a server that reported a wrong end may still carry it out
         objection = self._mover.objection(goal.what)
         self._mover.settle(goal.what)
         if objection:
@@ -135,7 +135,7 @@ class Machine:
     # The link.
 
     def _missing(self, now: float) -> str:
-        """Why the device cannot be reached; "" where it can."""
+        """The reason why the device cannot be reached; "" if it can."""
         if now >= self._alone_at + GONE_S and not self._servers:
             return f"there is no action server {self._action}"
         if now >= self._alone_at + GONE_S:
@@ -154,7 +154,7 @@ class Machine:
         self._server, self._news = servers[0], True
 
     def _lose(self, now: float, why: str) -> None:
-        """What is open is nobody's; a goal that the same server goes on with is cancelled once it is back."""
+        """Lose the link, and open work; a goal that still runs is cancelled once the server is back."""
         if self._goal is not None:
             self._goal.stopped, self._goal.succeeded_at = True, None
             self._cancel_at = -math.inf  # at once, where it is back
@@ -187,7 +187,7 @@ class Machine:
         elif self._homing is not None or (self._goal is not None and not self._mover.replaces):
             self._reject(command.id, "busy")
         elif isinstance(command, Home):
-            # Its sensors know where it is: all that is proven is that they are heard.
+            # Its sensors know its position; all that has to be proved is that they are heard.
             self._homing = command.id
             self._tell(accepted=command.id)
         else:
@@ -237,7 +237,7 @@ class Machine:
             self._end(**({} if goal.stopped else {"rejected": goal.id, "refusal": "goal_refused"}))
         else:
             goal.accepted = True
-            if goal.stopped:  # the cancel may have come before it, and cannot have meant it then
+            if goal.stopped:  # a cancel that came before it cannot have included it
                 self._cancel(now)
             else:
                 self._tell(accepted=goal.id)
@@ -270,7 +270,7 @@ class Machine:
     # What the plant hears.
 
     def _drop(self, **ids: str) -> None:
-        """A goal is over, and nobody knows how far it has led."""
+        """End a goal without knowing how far it has led."""
         self._mover.settle(None)
         self._end(**ids)
 

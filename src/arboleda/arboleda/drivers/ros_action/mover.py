@@ -1,4 +1,4 @@
-"""What the goals of an action move, as the machine of all such drivers asks for it."""
+"""Interface between the machine of all drivers of ROS actions and the device that the goals move."""
 
 from __future__ import annotations
 
@@ -10,51 +10,51 @@ from .events import GoalResult, Measurement, Status
 
 
 class NoGoal(Exception):
-    """A command is none that the action has a word for."""
+    """Error: the action cannot express a command."""
 
 
 class Mover(Protocol):
-    """Where it is follows only from what is measured: no result of a server is believed by itself."""
+    """Device that goals move. Its position follows from measurements only, never from a server's result."""
 
     name: str
-    replaces: bool  # whether a new command takes the place of one that is open, rather than being refused
+    replaces: bool  # True: a new command replaces an open one; False: it is refused
 
     def see(self, now: float, seen: Measurement) -> bool:
-        """Take what was measured; whether it is news of this device."""
+        """Take a measurement; True if it is news of this device."""
 
     def missing(self, now: float) -> str:
-        """Why nothing is known of where it is; "" where that is known."""
+        """The reason why the device's position is unknown; "" if it is known."""
 
     def goals(self, command: Command) -> tuple[Any, ...]:
-        """What the server is to be sent, one after the other; NoGoal where the action has no word for it."""
+        """The goals to send for a command, in order; raises NoGoal if the action cannot express it."""
 
     def heard_since(self, at: float) -> bool:
-        """Whether anything was measured after that."""
+        """True if a measurement came after that time."""
 
     def is_at(self, goal: Any) -> bool:
-        """Whether it stands where a goal leads."""
+        """True if the device stands where `goal` leads."""
 
     def rests(self, now: float, since: float = 0.0) -> bool:
-        """Whether it has been at rest, for as long as that takes to be seen, after `since`."""
+        """True if the device has been at rest after `since`, for long enough to be sure."""
 
     def failure(self, end: GoalResult, goal: Any) -> str:
-        """Why a goal failed by the server's own result, in a word; "" where it did not."""
+        """The word for a failure by the server's own result; "" for a success."""
 
     def objection(self, goal: Any) -> str:
-        """What is wrong where it has come to rest after a result that says that all is well; "" for nothing.
+        """The fault found at rest after a result that reports success, in a word; "" for none.
 
         What work leads to needs none: the plant compares the position and the facts that are reported.
         """
 
     def settle(self, goal: Any) -> None:
-        """A goal has ended with the device at rest; None: it has ended, and nobody knows where."""
+        """Note the end of a goal with the device at rest; None: it has ended at an unknown position."""
 
     def shows(self, *, busy: bool) -> dict[str, Any]:
-        """The fields of a report that say where it is; `busy`: a goal is open."""
+        """The fields of a report that hold the position; `busy`: a goal is open."""
 
 
 def failure(end: GoalResult, errors: dict[int, str]) -> str:
-    """The word for an end that is no success; what the server adds follows it."""
+    """The word for an end without success, followed by the server's own text."""
     if end.status is Status.SUCCEEDED and end.error == 0:
         return ""
     if end.status is Status.CANCELED:

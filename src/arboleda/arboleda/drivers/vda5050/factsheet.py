@@ -1,4 +1,4 @@
-"""What a vehicle says of itself that it can do, and what of it is too little for its plant."""
+"""Factsheet of a vehicle, and what its plant needs that the factsheet does not offer."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ WHERE = {"NODE": "at a node", "EDGE": "on an edge", "INSTANT": "at once"}
 
 @dataclass(frozen=True, kw_only=True)
 class Ability:
-    """An action that a vehicle has: its scopes, and its parameters with whether it can do without each."""
+    """Action that a vehicle offers: its scopes, and its parameters, each optional or required."""
 
     scopes: frozenset[str]
     parameters: Mapping[str, bool]
@@ -25,7 +25,7 @@ class Ability:
 
 @dataclass(frozen=True, kw_only=True)
 class RequiredAction:
-    """An action that a plant may tell a vehicle: `by` is what for, in words."""
+    """Action that the plant may need of a vehicle; `by` names its purpose."""
 
     by: str
     type: str
@@ -35,7 +35,7 @@ class RequiredAction:
 
 @dataclass(frozen=True, kw_only=True)
 class Factsheet:
-    """`most_nodes` of an order and `longest_id` are None where it says no limit."""
+    """Abilities and limits of a vehicle; `most_nodes` of an order and `longest_id` are None if unlimited."""
 
     actions: Mapping[str, Ability]
     most_nodes: int | None
@@ -44,7 +44,7 @@ class Factsheet:
 
 
 def read(said: Said) -> Factsheet:
-    """A factsheet out of a message that fits the schema of its version."""
+    """The factsheet in a message that fits the schema of its version."""
     limits, features = said["protocolLimits"], said["protocolFeatures"]
     strings = limits.get("maxStringLens") or limits.get("maximumStringLengths") or {}
     arrays = limits.get("maxArrayLens") or limits.get("maximumArrayLengths") or {}
@@ -65,7 +65,7 @@ def _ability(action: Said) -> Ability:
 
 
 def wanted(devices: Iterable[Robot], settings: Settings) -> Iterator[RequiredAction]:
-    """All actions that a vehicle with these devices may be told."""
+    """All actions that a vehicle with these devices may be given."""
     for type in ("cancelOrder", "startPause", "stopPause"):
         yield RequiredAction(by="stops", type=type, scope="INSTANT")
     for edge in settings.edges:
@@ -83,7 +83,7 @@ def _wanted(by: str, verb: str, values: Iterable[str], scope: str) -> RequiredAc
 
 
 def lacks(sheet: Factsheet, wanted: Iterable[RequiredAction], ids: Iterable[str]) -> Iterator[str]:
-    """In a sentence each, what is wanted of a vehicle that it says it cannot; `ids` are the plant's."""
+    """A sentence on each action or limit that the vehicle does not meet; `ids` are the plant's."""
     for each in wanted:
         yield from _lacks_for(each, sheet)
     longest = max(ids, key=len)

@@ -1,4 +1,4 @@
-"""Whether a vehicle is there, and which of its states count."""
+"""Link to a vehicle: its connection state, and the choice of the states that count."""
 
 from __future__ import annotations
 
@@ -15,15 +15,15 @@ WRAP = 2**31  # headers count to 2**32, then from 0
 
 
 class Link:
-    """What the broker says of the vehicle's connection, and how long its states may be apart."""
+    """Connection of the vehicle by the broker's word, and the silence allowed between its states."""
 
     def __init__(self, settings: Settings) -> None:
         self._settings = settings
         self._broker = False
-        self._word: str | None = None  # what was said of the connection
+        self._word: str | None = None  # the last connection state
         self._heard_at = -math.inf
         self._silent = False
-        self._refused = ""  # why the last of its states did not count, while none has since
+        self._refused = ""  # reason why its last state did not count; "" once one did
         self._last: VehicleState | None = None
         self._first = True  # the next state begins a row of headers
         self.boots = 1
@@ -36,7 +36,7 @@ class Link:
 
     @property
     def trouble(self) -> str | None:
-        """Why there is no link, in a sentence; None where there is one."""
+        """The reason why there is no link, in a sentence; None if there is one."""
         vehicle = plain(self._settings.vehicle, 80)
         if not self._broker:
             return f"the MQTT broker at {self._settings.broker} is not there"
@@ -67,13 +67,13 @@ class Link:
         self._begin_anew()
 
     def connection(self, now: float, word: str) -> None:
-        """A vehicle that says so anew may count its headers anew."""
+        """Take the vehicle's connection state; after a new connection its headers may count anew."""
         if word != "ONLINE" or self._word != "ONLINE":
             self._begin_anew()
         self._word, self._heard_at, self._first = word, now, True
 
     def takes(self, now: float, state: VehicleState) -> bool:
-        """Whether a state is newer than the last; one whose header began anew is of another boot."""
+        """True if a state is newer than the last, and so counts; notes a reboot if its headers begin anew."""
         self.has_booted = False
         last = self._last
         if not self.is_online:
@@ -92,16 +92,16 @@ class Link:
         return True
 
     def refuse(self, why: str) -> None:
-        """A state has come that does not count."""
+        """Note a state that does not count."""
         self._refused = plain(why, LONGEST_WHY)
 
     def lose(self, why: str) -> None:
-        """No state of before counts any more."""
+        """Lose the link: no earlier state counts any more."""
         self._begin_anew()
         self.refuse(why)
 
     def falls_silent(self, now: float) -> bool:
-        """Whether it has become too long since the last state."""
+        """True at the moment at which the last state has become too old."""
         before, self._silent = self._silent, now - self._heard_at > self._settings.silent_after_s
         return self._silent and not before and self.is_online
 

@@ -1,8 +1,8 @@
-"""One vehicle and its devices as a machine: commands become orders and actions, states become reports.
+"""State machine of one vehicle and its devices: commands become orders and actions, states become reports.
 
-A vehicle tells its state when something changes, else rarely. In between the driver says again what is known,
-as long as the broker calls the vehicle online; but nothing of its motion from the moment on when it was told
-something until it has named that.
+A vehicle sends its state when something changes, and otherwise rarely. In between the driver repeats the
+known state, as long as the broker calls the vehicle online. It leaves out the motion after a new order or
+action, until a state of the vehicle names that.
 """
 
 from __future__ import annotations
@@ -30,11 +30,11 @@ from .settings import Settings
 from .state import ENDS_ORDER, FACTS, Said, VehicleState, read
 
 BEAT_S = 0.3
-AGAIN_S = 2.0  # after which a stop whose end the vehicle does not tell is said again, and a question
-FACTSHEET_TRIES = 3  # not all vehicles have one
+AGAIN_S = 2.0  # after this time an unanswered stop or request is sent again
+FACTSHEET_TRIES = 3  # factsheet requests; not all vehicles have one
 NEIGHBOURS = 20  # that a sentence may name
 LONGEST_COMMAND = "1800000000-99999"  # an id as the plant makes them, by its start and a number
-OURS = "arboleda-"  # what the ids of all orders of plants begin with
+OURS = "arboleda-"  # prefix of the ids of all orders of plants
 STOPS = {
     StopMode.HALT: ("cancelOrder",),
     StopMode.LATCH: ("startPause", "cancelOrder"),
@@ -45,7 +45,7 @@ OPPOSITE = {"startPause": "stopPause", "stopPause": "startPause"}
 
 @dataclass(frozen=True, kw_only=True)
 class Publish:
-    """A message for the vehicle; whoever sends it gives it its header."""
+    """Message for the vehicle, to which the sender adds the header."""
 
     topic: str
     body: Mapping[str, Any]
@@ -62,7 +62,7 @@ Message = Report | Publish | LogLine
 
 
 class Vehicle:
-    """`mark` makes what it is told unlike what any other start or plant tells it."""
+    """State machine of one vehicle; `mark` sets its orders apart from those of any other start or plant."""
 
     def __init__(self, devices: Sequence[Robot], settings: Settings, *, mark: str) -> None:
         mobiles = [device for device in devices if isinstance(device, Mobile)]
@@ -74,11 +74,11 @@ class Vehicle:
         self._link = Link(settings)
         self._state: VehicleState | None = None
         self._order: Order | None = None
-        self._instants: dict[str, Command] = {}  # what it does beside its order, by the actions
+        self._instants: dict[str, Command] = {}  # commands beside its order, by action
         self._stops: dict[
             str, list[str]
-        ] = {}  # their types, each with all actions of it, of which none is over
-        self._stops_at = -math.inf  # when the last one was said
+        ] = {}  # types of stops, each with all its actions, while none of them is over
+        self._stops_at = -math.inf  # time of the last stop
         self._count = 0  # of actions
         self._most_nodes: int | None = None  # of an order
         self._has_sheet, self._asked_for_sheet, self._ask_at = False, 0, -math.inf
@@ -86,21 +86,21 @@ class Vehicle:
         self.next_deadline = 0.0
 
     def step(self, now: float) -> list[Message]:
-        """Say what is known, if it is time to."""
+        """Report the known state, if that is due."""
         if now < self.next_deadline:
             return []
         self._lose_what_is_silent(now)
         return [*self._ask(now), *self._say_stops_again(now), *self._reports(now)]
 
     def connected(self, now: float, *, up: bool) -> list[Message]:
-        """The broker is there, or is not."""
+        """Note that the broker is connected, or is lost."""
         self._link.broker(up=up)
         if not up:
             self._forget()
         return list(self._reports(now))
 
     def connection(self, now: float, said: Said) -> list[Message]:
-        """What the topic `connection` says of the vehicle."""
+        """Take a message of the topic `connection`."""
         was_online = self._link.is_online
         self._link.connection(now, said["connectionState"])
         if not self._link.is_online:
@@ -110,7 +110,7 @@ class Vehicle:
         return [*self._ask(now), *self._reports(now)]
 
     def _ask(self, now: float) -> list[Message]:
-        """Ask for what it has not told: it may begin to listen a while after it has said that it is there."""
+        """Ask for messages still missing; a vehicle may begin to listen only a while after it is online."""
         if not self._link.is_online or now < self._ask_at:
             return []
         self._ask_at = now + AGAIN_S
@@ -121,12 +121,12 @@ class Vehicle:
         return [*self._request(*missing)]
 
     def neighbour(self, vehicle: str) -> None:
-        """Another vehicle, or this one by another version, is at the broker."""
+        """Note another vehicle at the broker, or this one by another version."""
         if len(self._link.neighbours) < NEIGHBOURS:
             self._link.neighbours.add(vehicle)
 
     def state(self, now: float, said: Said) -> list[Message]:
-        """A state that fits the schema; one that is older than the last, or the same, is nothing."""
+        """Take a state that fits the schema; one not newer than the last is ignored."""
         state = read(said)
         if not self._link.takes(now, state):
             return []
@@ -139,17 +139,17 @@ class Vehicle:
         return [*messages, *self._reports(now)]
 
     def refused(self, why: str) -> None:
-        """A state that does not fit the schema has come; `why` is said where none does."""
+        """Note a state that does not fit the schema; `why` is reported while no state fits."""
         self._link.refuse(why)
 
     def lose(self, now: float, why: str) -> list[Message]:
-        """It has said what broke this machine: what was open is nobody's, until it says something else."""
+        """Lose the link, and open work, after a message that caused an error; the next state restores it."""
         self._link.lose(why)
         self._forget()
         return [*self._reports(now)]
 
     def factsheet(self, now: float, said: Said) -> list[Message]:
-        """What it can do: orders are as long as it takes them, and what it lacks is told."""
+        """Take the vehicle's factsheet: limit orders to its lengths, and name what it lacks."""
         sheet, self._has_sheet = factsheet.read(said), True
         self._most_nodes = None if sheet.most_nodes is None else max(2, sheet.most_nodes)
         wanted = factsheet.wanted(self._devices.values(), self._settings)
@@ -162,7 +162,7 @@ class Vehicle:
     # --- what it is told ---
 
     def command(self, now: float, command: Command) -> list[Message]:
-        """What leaves for a command; NotSent where nothing can."""
+        """The messages that carry out a command; raises NotSent if that is impossible."""
         if (why := self._link.trouble) is not None:
             raise NotSent(why)
         if isinstance(command, Stop):
@@ -206,7 +206,7 @@ class Vehicle:
 
     @property
     def _base(self) -> int:
-        """How many nodes ahead of it are released, 0: all of them."""
+        """The number of nodes ahead of the vehicle that are released; 0: all of them."""
         limit = 0 if self._most_nodes is None else self._most_nodes - 1
         return (
             min(self._settings.base, limit) if self._settings.base and limit else self._settings.base or limit
@@ -224,7 +224,7 @@ class Vehicle:
         return Publish(topic="order", body=body)
 
     def _stop(self, now: float, *types: str) -> list[Message]:
-        """Instant actions that have to be over before the vehicle counts as standing."""
+        """Send instant actions that must end before the vehicle counts as standing."""
         messages, self._stops_at = self._request(*types), now
         for action in (each for message in messages for each in message.body["actions"]):
             self._stops.pop(OPPOSITE.get(action["actionType"], ""), None)
@@ -234,12 +234,12 @@ class Vehicle:
         return [*messages]
 
     def _say_stops_again(self, now: float) -> list[Message]:
-        """A message may be lost, a vehicle deaf for a while: what is to stop it is said until it is over."""
+        """Send stops again until they have ended: a message may be lost, or a vehicle deaf for a while."""
         due = self._stops and now - self._stops_at >= AGAIN_S and self._link.trouble is None
         return self._stop(now, *self._stops) if due else []
 
     def _request(self, *types: str) -> list[Publish]:
-        """A message for each: there are vehicles that lose the second action of one."""
+        """A message for each action: some vehicles lose the second action of a message."""
         actions = [Action(id=self._new_action(), type=type, blocking="NONE") for type in types]
         version = self._settings.version
         return [Publish(topic="instantActions", body=instant([action], version)) for action in actions]
@@ -249,7 +249,7 @@ class Vehicle:
         return f"{self._mark}-a{self._count}"
 
     def unsent(self, command: Command) -> None:
-        """What was made of a command has not left."""
+        """Forget a command whose message could not leave."""
         if self._order is not None and self._order.command is command:
             self._order = None
         self._instants = {id: each for id, each in self._instants.items() if each is not command}
@@ -281,7 +281,7 @@ class Vehicle:
         return [] if first is None else [self._sent(order, first)]
 
     def _judge_strange(self, now: float, order: Order, state: VehicleState) -> list[Message]:
-        """The vehicle has another order than ours, or none."""
+        """Judge a state that names another order than ours, or none."""
         word = next((each.word for each in state.troubles if order.id in dict(each.about).values()), None)
         if order.taken:
             self._say(order.command, "failed", "order_lost")
@@ -295,7 +295,7 @@ class Vehicle:
         return []
 
     def _end_of(self, order: Order, state: VehicleState) -> str | None:
-        """In a word, why the vehicle will not come to the end of an order that it has."""
+        """The word for the reason why the vehicle will not finish its order; None if it will."""
         if state.hindrance is not None:
             return state.hindrance
         for trouble in state.troubles:
@@ -311,7 +311,7 @@ class Vehicle:
         return self._short(order, state)
 
     def _short(self, order: Order, state: VehicleState) -> str | None:
-        """Nothing is before the vehicle: in a word, what of its order it cannot have done."""
+        """The word for the part of its order that a vehicle with nothing ahead has left; None for none."""
         if order.released < len(order.nodes):
             return "ended_at_its_base"
         if state.node == order.nodes[-1]:
@@ -320,7 +320,7 @@ class Vehicle:
         return None if known else f"at_node_{state.node}"
 
     def _is_done(self, order: Order, state: VehicleState) -> bool:
-        """Where it stands, and its facts, the plant compares with what was asked."""
+        """True if the vehicle has ended the order; the plant itself compares place and facts."""
         return (
             not state.ahead
             and not state.driving
@@ -329,7 +329,7 @@ class Vehicle:
         )
 
     def _fail(self, now: float, order: Order, word: str, state: VehicleState) -> list[Message]:
-        """It failed; what the vehicle may still do of it is cancelled."""
+        """Report a failed command, and cancel the rest of its order."""
         self._say(order.command, "failed", word)
         if state.ahead or state.driving:
             return self._stop(now, "cancelOrder")
@@ -337,9 +337,10 @@ class Vehicle:
         return []
 
     def _left_over(self, now: float, state: VehicleState) -> list[Message]:
-        """What it still does of an order of before a silence, or of an earlier start, is nobody's.
+        """Cancel an order of ours that the vehicle still drives but that no command stands behind.
 
-        So is what a cancel that failed has left: it is said again, but not with each state.
+        It is left from before a silence, from an earlier start, or after a cancel that failed. Repeated every
+        AGAIN_S, not with each state.
         """
         ours = state.order.startswith(OURS) and state.ahead
         if not ours or self._order is not None or now - self._stops_at < AGAIN_S:
@@ -401,7 +402,7 @@ class Vehicle:
         )
 
     def _motion(self, state: VehicleState) -> MotionState | None:
-        """None where what it said last says nothing of what it was told since."""
+        """The motion state; None if the last state does not reflect commands given since."""
         if state.hindrance is not None:
             return MotionState.FAULT
         if state.driving:
@@ -421,7 +422,7 @@ class Vehicle:
             self._forget()
 
     def _forget(self) -> None:
-        """Nothing that was open is anybody's; an order that it still has is cancelled when it is back."""
+        """Forget open work; an order that the vehicle still has is cancelled when it is back."""
         self._state, self._order, self._stops, self._stops_at = None, None, {}, -math.inf
         self._instants.clear()
         for said in self._said.values():
@@ -432,7 +433,7 @@ WORDS = {"rejected": "refusal", "failed": "failure", "answered": "answer"}
 
 
 def _answer(command: Query, result: str | None) -> Value:
-    """The answer that the kind knows by these words, or else the words."""
+    """The answer of the kind that these words mean, else the words."""
     known = command.told.answers if isinstance(command, VerbCall) else ()
     return next((each for each in known if shown(each) == result), result or "")
 

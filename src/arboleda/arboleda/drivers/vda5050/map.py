@@ -1,4 +1,4 @@
-"""The plant's grid as a vehicle has it: names and places of nodes."""
+"""Grid of the plant in a vehicle's terms: names and places of nodes."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from .settings import Settings
 
 
 class GridMap:
-    """Without a mobile robot it has no nodes."""
+    """Grid of a vehicle; without a mobile robot it has no nodes."""
 
     def __init__(self, mobile: Mobile | None, settings: Settings) -> None:
         self._mobile = mobile
@@ -21,7 +21,7 @@ class GridMap:
 
     @property
     def edge_ids(self) -> list[str]:
-        """Of all edges of the grid, in both directions."""
+        """The names of all edges of the grid, in both directions."""
         if self._mobile is None:
             return []
         ends = (
@@ -30,18 +30,18 @@ class GridMap:
         return [edge_id(self._names[start], self._names[end]) for start, end in ends]
 
     def number(self, name: str) -> int | None:
-        """The plant's number of a node of the vehicle."""
+        """The plant's number of a vehicle's node; None if unknown."""
         return self._numbers.get(name)
 
     def way(self, at: str, nodes: Sequence[int]) -> tuple[str, ...]:
-        """The names of a way, from where the vehicle stands on."""
+        """The vehicle's names of the nodes of a way, from where it stands."""
         assert self._mobile is not None
         here = self.number(at)
         before = () if here is None else self._mobile.grid.route(here, nodes[0])[:-1]
         return tuple(self._names[node] for node in (*before, *nodes))
 
     def position(self, name: str) -> tuple[float, float] | None:
-        """Where a node is on the floor, m."""
+        """The position of a node on the floor, m; None if the map has no such node."""
         number = self.number(name)
         if self._mobile is None or number is None:
             return None

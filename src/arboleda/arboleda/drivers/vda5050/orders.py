@@ -1,4 +1,4 @@
-"""What a vehicle is told: orders that it gets part by part, and instant actions."""
+"""Messages to a vehicle: orders, sent part by part, and instant actions."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from arboleda.model.commands import Command
 from arboleda.model.facts import Facts
 
 Place = Callable[[str], tuple[float, float] | None]
-"""Where a node is on the vehicle's map, m; None where that is not known."""
+"""The position of a node on the vehicle's map, m; None if unknown."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Action:
-    """Something that a vehicle does at a node, or at once."""
+    """Action of a vehicle at a node, or at once."""
 
     id: str
     type: str
@@ -45,7 +45,7 @@ class Order:
     actions: tuple[Action, ...] = ()  # at the last node
     passing: Mapping[int, tuple[Action, ...]] = field(default_factory=dict)  # on edges, by the node before
     update: int = 0
-    taken: bool = False  # the vehicle has said that it has it
+    taken: bool = False  # the vehicle has named it in a state
     cancelled: bool = False
 
     @property
@@ -57,7 +57,7 @@ class Order:
         return 2 * (len(self.nodes) - 1)
 
     def extend(self, node: str, sequence: int, base: int) -> int | None:
-        """Release `base` nodes ahead of one that was reached: where the update begins, None without one."""
+        """Release `base` nodes ahead of one reached; returns the begin of the update, None without one."""
         step, between = divmod(sequence, 2)
         if between or not 0 <= step < self.released or self.nodes[step] != node:
             return None
@@ -70,7 +70,7 @@ class Order:
     def message(
         self, place: Place, map: str, first: int = 0, most_nodes: int | None = None
     ) -> dict[str, Any]:
-        """The order as it is sent, from a node of the way on: an update begins where the base ended."""
+        """The message of the order from a node on; an update begins where the base ended."""
         steps = range(first, len(self.nodes))[:most_nodes]
         return {
             "orderId": self.id,
@@ -110,18 +110,18 @@ def edge_id(start: str, end: str) -> str:
 
 
 def action_of(id: str, verb: str, values: Facts, *, blocking: str) -> Action:
-    """A verb `start_charging` as the action `startCharging`, its values as parameters named likewise."""
+    """The action of a verb: `startCharging` for `start_charging`, its values as parameters so named."""
     given = tuple((as_the_standard_writes(name), value) for name, value in values)
     return Action(id=id, type=as_the_standard_writes(verb), values=given, blocking=blocking)
 
 
 def as_the_standard_writes(name: str) -> str:
-    """`start_charging` as `startCharging`."""
+    """The name as the standard writes it: `startCharging` for `start_charging`."""
     first, *others = name.split("_")
     return first + "".join(map(str.capitalize, others))
 
 
 def instant(actions: Sequence[Action], version: str) -> dict[str, Any]:
-    """Instant actions as they are sent; vehicles of 2.0 read the one key or the other."""
+    """The message of instant actions; for 2.0 under two keys, as its vehicles read one or the other."""
     messages = [action.message() for action in actions]
     return {"actions": messages, **({"instantActions": messages} if version == "2.0" else {})}

@@ -18,7 +18,7 @@ MAJOR = {"2.0": "v2", "2.1": "v2", "3.0": "v3"}
 
 @dataclass(frozen=True, kw_only=True)
 class EdgeAction:
-    """What a vehicle does on its way between two nodes, in both directions."""
+    """Action of a vehicle on its way between two nodes, in both directions."""
 
     between: tuple[str, str]
     action: str
@@ -28,7 +28,7 @@ class EdgeAction:
 
 @dataclass(frozen=True, kw_only=True)
 class Settings:
-    """Which vehicle it is, at which broker; what its map and its nodes are called, and how far it may go.
+    """Settings of the driver `vda5050`: the vehicle and its broker, its map, nodes and actions.
 
     `nodes` are its names of the nodes of the grid, in their order. `base` is how many nodes ahead of the
     vehicle are released, 0: all of them. `instant` are the verbs that it does at once, also on its way;
@@ -65,7 +65,7 @@ class Settings:
 
     @property
     def topics(self) -> str:
-        """What all topics of the vehicle begin with."""
+        """The prefix of all topics of the vehicle."""
         return f"{self.interface}/{MAJOR[self.version]}/{self.vehicle}"
 
     def node_names(self, mobile: Mobile | None) -> tuple[str, ...]:
@@ -73,7 +73,7 @@ class Settings:
         return self.nodes or tuple(str(node) for node in range(mobile.grid.size if mobile else 0))
 
     def problems(self, device: Robot) -> Iterable[tuple[tuple[str | int, ...], str]]:
-        """What of these does not fit a device."""
+        """Settings that do not fit a device, each as its keys and a sentence."""
         if device.evidence is not Evidence.IDS:
             yield (), f"{device.name} has evidence: {device.evidence.value}; a vehicle of VDA 5050 proves ids"
         if isinstance(device, Mobile):

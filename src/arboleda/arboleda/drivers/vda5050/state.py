@@ -1,4 +1,4 @@
-"""What a vehicle says of itself, the same for all versions of VDA 5050."""
+"""State of a vehicle as it reports it, the same for all versions of VDA 5050."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ DRIVES_BY_ORDER = frozenset({"AUTOMATIC", "SEMIAUTOMATIC"})
 
 @dataclass(frozen=True, kw_only=True)
 class Trouble:
-    """An error as a vehicle tells it; `about` are the values that it names, by what they are."""
+    """Error reported by a vehicle; `about` are the values that it names, by their types."""
 
     word: str
     level: str
@@ -31,7 +31,7 @@ class Trouble:
 
 @dataclass(frozen=True, kw_only=True)
 class ActionState:
-    """How far an action is; `result` is what it has found."""
+    """Progress of an action; `result` is its answer, if it has one."""
 
     status: str
     result: str | None
@@ -39,7 +39,7 @@ class ActionState:
 
 @dataclass(frozen=True, kw_only=True)
 class VehicleState:
-    """One state of a vehicle; `ahead` is how many nodes and edges of its order it has before it."""
+    """State of a vehicle; `ahead` is the number of nodes and edges of its order still before it."""
 
     header: int
     timestamp: str
@@ -61,7 +61,7 @@ class VehicleState:
 
     @property
     def hindrance(self) -> str | None:
-        """In a word, why it takes no order at all; None where it does."""
+        """The word for the reason why it takes no order at all; None if it takes orders."""
         if self.stop in HELD_BY_HAND:
             return f"stop_{self.stop}"
         if self.mode not in DRIVES_BY_ORDER:
@@ -82,7 +82,7 @@ FACTS: dict[str, Callable[[VehicleState], Value | None]] = {
 
 
 def read(said: Said) -> VehicleState:
-    """A state out of a message that fits the schema of its version."""
+    """The state in a message that fits the schema of its version."""
     power = said.get("batteryState") or said.get("powerSupply") or {}
     position = said.get("agvPosition") or said.get("mobileRobotPosition")
     safety, loads = said["safetyState"], said.get("loads")

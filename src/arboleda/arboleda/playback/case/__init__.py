@@ -1,1 +1,1 @@
-"""A record's inputs as a case of the simulator: what people did, and what befell devices."""
+"""A record's inputs as a case of the simulator: the acts of people and the troubles of devices."""

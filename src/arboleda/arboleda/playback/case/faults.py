@@ -1,4 +1,4 @@
-"""What befell the devices of a record, as faults of the simulator; times are those of the plant's clock."""
+"""The troubles of a record's devices as faults of the simulator; times are those of the plant's clock."""
 
 from __future__ import annotations
 
@@ -11,15 +11,15 @@ from arboleda.recorder.incident import Incident
 from arboleda.recorder.troubles import ALARM, BOOT, BRIDGE, Trouble
 from arboleda.simulator.faults import KINDS, Fault
 
-LATE_S = 60.0  # a board that booted without its link being lost: its last will comes later than that matters
-AROUND_S = 0.3  # so much earlier a fault begins that something at a time is to fail of
-LOST_S = 0.4  # about a command that is lost: no longer, for boards stop by themselves where no beat comes
-SHOWN_S = 0.2  # from what happens to a part until it shows
+LATE_S = 60.0  # a board that booted without losing its link: its last will comes too late to matter
+AROUND_S = 0.3  # a fault begins so long before the event that it makes fail
+LOST_S = 0.4  # around a lost command: no longer, as boards without a beat stop by themselves
+SHOWN_S = 0.2  # until a part's loss shows
 RECONNECT_S = 0.5  # from a broker that is back to the first words of its clients
 
 
 def faults_of(troubles: Iterable[Trouble], model: PlantModel) -> list[Fault]:
-    """What befell robots of this plant."""
+    """The troubles of this plant's robots as faults."""
     boards = {robot.name: robot.mqtt for robot in model.robots.values()}
     mine = [trouble for trouble in troubles if trouble.robot in boards]
     found = [_fault(trouble, mine, boards[trouble.robot]) for trouble in mine]
@@ -27,7 +27,7 @@ def faults_of(troubles: Iterable[Trouble], model: PlantModel) -> list[Fault]:
 
 
 def faults_behind(incident: Incident, cause: Cause, model: PlantModel) -> list[Fault]:
-    """What the task failed of where reports do not show it as a trouble: its cause as faults."""
+    """The cause of a failed task as faults, if the reports do not show it as a trouble."""
     make, robot = OF_CAUSE.get(cause.kind), model.robots.get(cause.robot or "")
     if cause.kind == "plant_away":
         return [stall(at, seconds) for at, seconds in incident.absences]
@@ -39,14 +39,14 @@ def faults_behind(incident: Incident, cause: Cause, model: PlantModel) -> list[F
 
 
 def _stopped_by_another(incident: Incident, robot: str) -> list[Fault]:
-    """Whatever somebody else commanded: what a task can fail of is that it stopped the robot."""
+    """The command of somebody else as a fault: only its stop can have made the task fail, whatever it was."""
     word = "stop" if incident.failure and incident.failure.reason is Reason.STOPPED else "halt"
     times = [at for at, name in incident.foreign if name == robot] or [incident.failed_at or 0.0]
     return [Fault(kind="second_orchestrator", target=robot, at=times[-1], word=word)]
 
 
 def stall(until: float, seconds: float) -> Fault:
-    """The plant did nothing for so long."""
+    """A fault in which the plant did nothing for so long."""
     return Fault(kind="plant_stall", target="plant", at=until - seconds, seconds=seconds)
 
 
@@ -79,7 +79,7 @@ def _broke_together(one: Trouble, other: Trouble) -> bool:
 
 
 def _while_switching(kind: str) -> Callable[[Evidence, str], Iterator[Fault]]:
-    """From before the last switch of the robot until the task had failed."""
+    """Maker of a fault that lasts from before the last switching of the robot until the task had failed."""
 
     def make(evidence: Evidence, board: str) -> Iterator[Fault]:
         switches = [each.at for each in evidence.sent if each.robot == evidence.robot and each.switch]
@@ -89,7 +89,7 @@ def _while_switching(kind: str) -> Callable[[Evidence, str], Iterator[Fault]]:
 
 
 def _while_told(kind: str, *, word: bool = False) -> Callable[[Evidence, str], Iterator[Fault]]:
-    """From before the last command of the robot on; with the word that it gave, where it gives one."""
+    """Maker of a fault from before the robot's last command on, with the word of the evidence if wanted."""
 
     def make(evidence: Evidence, board: str) -> Iterator[Fault]:
         sent = evidence.last
@@ -119,7 +119,7 @@ def _unheard(evidence: Evidence, board: str) -> Iterator[Fault]:
 
 
 def _either(*makes: Callable[[Evidence, str], Iterator[Fault]]) -> Callable[[Evidence, str], Iterator[Fault]]:
-    """Kinds of faults for robots of several kinds: those that cannot befall one are left out later."""
+    """Maker of faults for robots of several kinds; those impossible for this robot are left out later."""
     return lambda evidence, board: (fault for make in makes for fault in make(evidence, board))
 
 

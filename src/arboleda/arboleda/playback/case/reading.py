@@ -1,4 +1,4 @@
-"""What of a record is given to a simulation: collected while the record is executed again."""
+"""The case that a simulation gets from a record: collected while the record is executed again."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ class Case:
 
 @dataclass
 class _Collected:
-    """What was found; times of the plant's clock."""
+    """Acts, causes and stalls found so far; times of the plant's clock."""
 
     model: PlantModel
     acts: list[Act] = field(default_factory=list)
@@ -51,7 +51,7 @@ class _Collected:
     ids: set[str] = field(default_factory=set)
 
     def change(self, change: TaskChanged, now: float) -> None:
-        """Follow a task; who asks for a known one again changes nothing."""
+        """Follow a change of a task; a repeated request for a known task changes nothing."""
         id = change.task
         if id not in self.ids:
             self.ids.add(id)
@@ -65,7 +65,7 @@ class _Collected:
             self.open.pop(id, None)
 
     def act(self, event: OperatorRequest) -> None:
-        """Note what an operator said; what is on nothing of this plant was refused, and did nothing."""
+        """Note an operator's act; one whose scope is unknown to this plant was refused, and is left out."""
         scope = _scope(event)
         first = scope.partition(" ")[0]
         if not first or first in scopes(self.model) or first in {_own(id) for id in self.ids}:
@@ -86,7 +86,9 @@ class _Making:
         self._task = task
         self._found = _Collected(model.on_boards(*ELSEWHERE))
         self._troubles = Troubles(supervised(model), model.timing.stale_after_s)
-        self._from: tuple[float, list[Act]] | None = None  # when the task began, and who else was at work
+        self._from: tuple[float, list[Act]] | None = (
+            None  # the beginning of the task, and the tasks at work then
+        )
         self._until: float | None = None
         self._now = self._beginning.now
         self._unix_ns = record.first.began_ns
@@ -122,7 +124,7 @@ class _Making:
                 self._judge(found.readers.pop(id))
 
     def _mind(self, change: TaskChanged) -> None:
-        """Where the task begins and ends that the case is about."""
+        """Note the beginning and the end of the task that the case is about."""
         if change.task != self._task:
             return
         if change.state is TaskState.RUNNING and self._from is None:
@@ -131,7 +133,7 @@ class _Making:
             self._until = self._now
 
     def _at_work(self, task: str) -> list[Act]:
-        """What is open now, in the order in which it would begin once more: this task first."""
+        """The tasks that are open now, in the order in which they would begin once more: this task first."""
         found = self._found
         order = sorted(found.open, key=lambda id: (id != task, id not in found.running))
         return [found.open[id] for id in order]
@@ -140,11 +142,11 @@ class _Making:
         incident = reader.incident
         if incident.state in FAILED and incident.failure is not None and incident.failed_at is not None:
             cause = incident.cause
-            if cause.kind != "plant_away":  # that is no task's alone
+            if cause.kind != "plant_away":  # an absent plant concerns all tasks
                 self._found.causes += faults_behind(incident, cause, self._found.model)
 
     def _cut(self) -> Case:
-        """The part that was asked for, with times from its own beginning."""
+        """The part of the record that was asked for, with times from its own beginning."""
         found = self._found
         began, ends = self._beginning.now, self._now
         acts = found.acts
@@ -169,7 +171,7 @@ def _at(fault: Fault) -> float:
 
 
 def _from(faults: Iterable[Fault], began: float, ends: float) -> Iterator[Fault]:
-    """With times since then; what had begun before goes on, what has no end lasts to the end."""
+    """The faults with times from `began`; earlier ones go on, those without an end last to `ends`."""
     for fault in faults:
         at = max(0.0, fault.at - began)
         last = ends - began if fault.seconds == math.inf else fault.at + fault.seconds - began
@@ -178,12 +180,12 @@ def _from(faults: Iterable[Fault], began: float, ends: float) -> Iterator[Fault]
 
 
 def _own(id: str) -> str:
-    """The id of a task for somebody who brings it: those that a plant makes itself begin with t-."""
+    """The id of a task without the t- that a plant puts before its own, so that a person may use it."""
     return id.removeprefix("t-")
 
 
 def _scope(request: OperatorRequest) -> str:
-    """The scope in another run, in which plants make other ids for questions."""
+    """The scope of an act in another run, which gives its tasks and questions other ids."""
     if request.verb is Verb.CANCEL:
         return _own(request.scope)
     if request.verb is Verb.ANSWER:

@@ -21,12 +21,12 @@ VALUES = 7  # of a line, at most
 
 
 def as_yaml(case: Case, beginning: Beginning, name: str) -> str:
-    """The content of the file of that name."""
+    """The content of a file with this case."""
     return "\n".join([*_head(case, beginning, name), *_body(case), ""])
 
 
 def write(target: Path, content: str) -> None:
-    """Write the file; ConfigError where that cannot be, or where it is more than the simulator reads."""
+    """Write the file; ConfigError if that fails, or if it is longer than the simulator reads."""
     if len(content.encode()) > LARGEST or content.count("\n") * VALUES > MOST_VALUES:
         raise ConfigError((f"{target}: a case of so long a record is too large; choose a task with --task",))
     try:
@@ -72,10 +72,10 @@ def _fault(fault: Fault) -> str:
 
 
 def _text(text: str) -> str:
-    """In quotes, as in JSON, which YAML reads."""
+    """A text in quotes, as in JSON, which YAML reads."""
     return json.dumps(text, ensure_ascii=False)
 
 
 def _number(number: float) -> str:
-    """In thousandths, as short as that can be written."""
+    """A number with at most three decimals, without zeros at its end."""
     return f"{number:.3f}".rstrip("0").rstrip(".")

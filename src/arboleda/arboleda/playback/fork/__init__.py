@@ -1,1 +1,1 @@
-"""A record that goes on otherwise: from a time on, with virtual devices, and with what somebody changed."""
+"""Forks of a record: from a time on, the plant goes on with virtual devices, and with a person's changes."""

@@ -1,4 +1,4 @@
-"""Recipes that are others from a time on, for tasks that begin after it."""
+"""Recipes that are replaced from a time on, for tasks that begin after it."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from arboleda.model.recipe import Build, Builders
 
 
 class LateLookup(Mapping[str, Build]):
-    """What a plant looks up: nothing before `switch`, then what that was given."""
+    """Builders of recipes that a plant looks up: none before `switch`, then those given to it."""
 
     def __init__(self) -> None:
         self._builders: Builders = {}
@@ -18,7 +18,7 @@ class LateLookup(Mapping[str, Build]):
         self._builders = builders or {}
 
     def __bool__(self) -> bool:
-        """A plant that is given no builders at all would never look again."""
+        """Always true, as a plant that gets no builders at all would never look again."""
         return True
 
     def __getitem__(self, name: str) -> Build:
@@ -32,7 +32,7 @@ class LateLookup(Mapping[str, Build]):
 
 
 def builders_of(model: PlantModel) -> Builders:
-    """Those of a plant's own recipes, each as its cell has it."""
+    """The builders of a plant's own recipes, each as its cell has it."""
     names = {each.name for cell in model.cells for each in cell.recipes}
     return {name: _builder(model, name) for name in names}
 

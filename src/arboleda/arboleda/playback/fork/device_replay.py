@@ -1,4 +1,4 @@
-"""What befell the devices of a record befalls the virtual ones at the same times."""
+"""Troubles of a record, repeated on the virtual devices of a fork at the same times."""
 
 from __future__ import annotations
 
@@ -13,20 +13,20 @@ from arboleda.simulator.world import World
 from arboleda.wire.transport import Publication
 
 INPUTS = (TaskRequest, OperatorRequest, Shutdown)  # what comes from people; devices are virtual
-ONE_RESTART_S = 1.0  # a bridge that starts anew is told of by all its robots
-INSIDE_S = 0.001  # a silence is between two reports, both of which arrive
+ONE_RESTART_S = 1.0  # all robots of a bridge report its restart
+INSIDE_S = 0.001  # a silence begins after one report and ends before another
 TOO_LATE_S = 1e6  # a last will that nobody waits for
 
 
 def ask(world: World, at: float, events: Iterable[Event]) -> None:
-    """Have people ask the same at the same time."""
+    """Have people make the same requests at the same times."""
     for event in events:
         if isinstance(event, INPUTS):
             world.at(max(event.at, at), world.tell, event)
 
 
 def befall(world: World, troubles: Iterable[Trouble]) -> None:
-    """Have it happen once more, or go on where it has begun; what ends before now is over."""
+    """Repeat the troubles, or continue those that have begun; those that ended before now are left out."""
     restarted_at = -math.inf
     for trouble in troubles:
         robot = world.model.robots.get(trouble.robot)
@@ -51,7 +51,7 @@ def _later(world: World, at: float, call: object) -> None:
 
 
 def _silence(world: World, board: str, trouble: Trouble) -> None:
-    """Nothing of a board arrives; where its connection broke, the broker says so when it did."""
+    """Silence a board; if its connection broke, the broker reports that when it did."""
     line = world.broker.clients[board].up
 
     def lose(message: object) -> tuple[float, ...]:
@@ -79,7 +79,7 @@ def _boot(world: World, board: str, trouble: Trouble) -> None:
 
 
 def _off_at(trouble: Trouble) -> float:
-    """When it went off: as was told at once, else after its last word."""
+    """The time at which a board went off: the one reported at once, else shortly after its last report."""
     return trouble.lost_at if trouble.cut and trouble.lost_at is not None else trouble.at + INSIDE_S
 
 

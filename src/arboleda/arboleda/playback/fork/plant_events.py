@@ -1,4 +1,4 @@
-"""What a plant did, as a row of things that can be held beside those of another run; pure."""
+"""The acts of a plant as a row of happenings that can be compared with those of another run; pure."""
 
 from __future__ import annotations
 
@@ -12,7 +12,9 @@ from arboleda.model.commands import LABELS
 from arboleda.recorder.plain_data import TYPE
 
 Words = Callable[[Any], str]
-UNTOLD = frozenset({TYPE, "robot", *LABELS})  # of a command: its line says them, or nobody compares them
+UNTOLD = frozenset(
+    {TYPE, "robot", *LABELS}
+)  # keys of a command that its line has anyway, or that are not compared
 TASK = "task "
 NUMBERS = 4  # digits of a number
 
@@ -21,7 +23,7 @@ NUMBERS = 4  # digits of a number
 class PlantEvent:
     """Something that a plant did at a time of its clock.
 
-    `stream`: whose row it stands in, as a robot or a task, and of a task its `cell`; `what` is compared,
+    `stream` names the row that it stands in: a robot or a task; `cell` is that of a task. `what` is compared,
     `said` is for people.
     """
 
@@ -34,7 +36,7 @@ class PlantEvent:
 
 @dataclass(frozen=True, kw_only=True)
 class Pair:
-    """The same in both runs, or what only one of them did."""
+    """A happening in both runs, or in only one of them."""
 
     recorded: PlantEvent | None
     fork: PlantEvent | None
@@ -55,9 +57,9 @@ class Pair:
 
 
 def happenings(at: float, messages: Iterable[Mapping[str, Any]], words: Words) -> Iterator[PlantEvent]:
-    """What messages, as plain data, say that the plant did: commands, changes of tasks, answers to operators.
+    """The happenings in messages that are plain data: commands, changes of tasks, answers to operators.
 
-    `words` makes a sentence of one that is plain data.
+    `words` turns a sentence that is plain data into text.
     """
     for row in messages:
         if row[TYPE] == "TaskChanged" and row["task"]:
@@ -93,8 +95,8 @@ def _short(value: Any) -> str:
 def beside(recorded: Iterable[PlantEvent], fork: Iterable[PlantEvent], until: float) -> list[Pair]:
     """Both runs beside each other, in the order of their times.
 
-    In each stream they are the same up to the first that is another one; when they happened is no part of it.
-    What is only in the fork, and later than `until`, the record may have had no time for: it is left out.
+    Within a stream both runs are the same up to the first difference; times do not count. Happenings of the
+    fork alone that are later than `until` are left out, as the record may have ended before them.
     """
     ours, theirs = _streams(recorded), _streams(fork)
     pairs: list[Pair] = []

@@ -1,4 +1,4 @@
-"""Runs a fork: the record up to a time, then the same plant on virtual devices."""
+"""Run of a fork: the record up to a time, then the same plant on virtual devices."""
 
 from __future__ import annotations
 
@@ -28,16 +28,17 @@ from . import device_replay
 from .builders import LateLookup
 from .plant_events import PlantEvent, Words, happenings
 
-AFTER_S = 600.0  # after the end of the record, tasks have so long to end
+AFTER_S = 600.0  # for tasks to end after the end of the record
 
 
 @dataclass(frozen=True, kw_only=True)
 class ForkRequest:
-    """From when on (Unix time in ns) the fork goes on, and as what.
+    """The wanted fork: its time (Unix time in ns), and its plant.
 
-    `model` is the plant of the fork: the `recorded` one, or a changed one, which is given the recorded inputs
-    from the beginning. `builders` make the trees of tasks that begin after the fork. `healthy`: what befell
-    devices after it does not befall the virtual ones. `until_ns`: what is later is left out.
+    `model` is the plant of the fork: the `recorded` one, or a changed one, which gets the recorded inputs
+    from the beginning. `builders` make the trees of tasks that begin after the fork. `healthy`: recorded
+    troubles after it are not repeated on the virtual devices. `until_ns`: later parts of the record are left
+    out.
     """
 
     at_ns: int
@@ -54,7 +55,7 @@ class ForkRequest:
 
 @dataclass
 class ForkResult:
-    """What came of it. `difference`: the record cannot be executed up to the fork, and nothing is forked."""
+    """The result of a fork. `difference`: the record cannot be executed up to the fork; there is none."""
 
     at: float = 0.0  # on the plant's clock
     unix_ns: int = 0
@@ -71,7 +72,7 @@ class ForkResult:
 def forked(
     beginning: Beginning, steps: Iterable[RecordedStep], asked: ForkRequest, words: Words
 ) -> ForkResult:
-    """Execute the record up to the fork, go on from there, and collect what either did since."""
+    """Execute the record up to the fork, go on from there, and collect the happenings of both since."""
     found, builders = ForkResult(), LateLookup()
     plant = Plant(
         asked.model,
@@ -108,7 +109,7 @@ def forked(
 
 
 def _supervised(model: PlantModel) -> frozenset[str]:
-    """Whose silence means something."""
+    """The robots whose silence is a trouble, by name."""
     robots = model.robots.values()
     silent = (Link.SCREEN, Link.NONE)
     return frozenset(
@@ -119,8 +120,8 @@ def _supervised(model: PlantModel) -> frozenset[str]:
 def _execute(
     plant: Plant, steps: Iterator[RecordedStep], asked: ForkRequest, found: ForkResult, troubles: Troubles
 ) -> list[Any]:
-    """Make steps up to the fork. The first step after it; where the fork is early, that in which the plant
-    did otherwise, and its messages instead."""
+    """Execute steps up to the fork. Returns the first step after it; if the fork is early, the step in which
+    the plant did otherwise, with its messages."""
     found.at = found.until = plant.now
     for step in _until(steps, asked.until_ns):
         if step.unix_ns > asked.at_ns:
@@ -148,7 +149,7 @@ def _plain(messages: Iterable[Any]) -> list[dict[str, Any]]:
 
 
 def _leaves(messages: Iterable[dict[str, Any]]) -> list[tuple[str, str]]:
-    """Of messages what others see: what a plant keeps for itself, and its beat, may be another one."""
+    """The messages that others see; the plant's own memory and its beat may differ between runs."""
     return [(each.stream, each.what) for each in happenings(0.0, messages, lambda _: "")]
 
 

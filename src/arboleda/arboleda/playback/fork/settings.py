@@ -11,7 +11,7 @@ from arboleda.model.outside import quoted
 
 
 def with_settings(content: bytes, settings: Sequence[str]) -> bytes:
-    """The plant file with these keys set; all else in it stays as it is written. ConfigError."""
+    """The plant file with these keys set; all else stays as it is written. ConfigError for a bad one."""
     root = yaml.compose(content, Loader=yaml.SafeLoader)
     for setting in settings:
         key, equals, value = setting.partition("=")
@@ -33,7 +33,7 @@ def _value(setting: str, text: str) -> yaml.Node:
 
 
 def _set(node: yaml.Node, keys: Sequence[str], value: yaml.Node, setting: str) -> None:
-    """Set what the keys lead to from here; a mapping that is not there yet is made."""
+    """Set the value that the keys lead to from here; a missing mapping is made."""
     first, *rest = keys
     if isinstance(node, yaml.SequenceNode) and first.isdecimal() and int(first) < len(node.value):
         if rest:

@@ -1,1 +1,1 @@
-"""The report of a task that failed: one file, out of its record and of forks of it."""
+"""The report of a task that failed: one file, made of its record and of forks of it."""

@@ -18,7 +18,7 @@ SECONDS = 120.0
 
 
 def case_of(incident: Incident, cause: Cause, model: PlantModel, plant_file: str) -> str:
-    """The file of the test: the same task, and at the same times after it what befell the devices."""
+    """The file of the test: the same task, and the same troubles of devices at the same times after it."""
     lines = [f"    sim.run({BEGIN_S:g})", f'    task = sim.submit("{_text(incident)}")']
     lines += _faults(incident, cause, model)
     end = incident.ended_at or math.inf
@@ -41,7 +41,7 @@ def _text(incident: Incident) -> str:
 
 
 def _faults(incident: Incident, cause: Cause, model: PlantModel) -> Iterator[str]:
-    """What befell the devices of the cell, and what else the task failed of."""
+    """The faults of the cell's devices, and those that are the cause of the failure, as lines of the test."""
     end = incident.failed_at or math.inf
     mine = [each for each in incident.troubles if _concerns(incident, each.robot, model)]
     began = [each for each in mine if incident.asked_at <= each.at <= end]

@@ -28,7 +28,7 @@ Both = Callable[..., str]
 
 @dataclass(frozen=True, kw_only=True)
 class Report:
-    """All that a report shows; `command` executes the record again up to the end of the task."""
+    """The contents of a report; `command` executes the record again up to the end of the task."""
 
     incident: Incident
     cause: Cause
@@ -77,7 +77,7 @@ def _parts(report: Report, *, has_twin: bool) -> Iterator[str]:
 
 
 def _note(report: Report) -> str:
-    """What forks say here, or that they say nothing."""
+    """The note on the forks: what they show, or that they show nothing."""
     return "changed_note" if report.tries[0].alike else "changed_nothing"
 
 
@@ -101,7 +101,7 @@ def _span(language: str, text: str) -> str:
 
 
 def _mine(report: Report) -> list[str]:
-    """The devices of the cell, and whoever the cause names."""
+    """The devices of the cell, and the robot that the cause names."""
     cells = [cell for cell in report.model.cells if cell.name == report.incident.cell]
     names = [robot.name for cell in cells for robot in cell.robots]
     names += [report.cause.robot] if report.cause.robot and report.cause.robot not in names else []

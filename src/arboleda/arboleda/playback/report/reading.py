@@ -1,4 +1,4 @@
-"""Finds a task in the records of a plant, and reads what there is of it."""
+"""Reader of a task: finds it in the records of a plant."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ LOOK_S = 0.5  # between two looks at a record that is being written
 
 @dataclass(frozen=True, kw_only=True)
 class TaskRecord:
-    """A record, the plant of it and what it has of the task."""
+    """A record, its plant, and its incident of the task."""
 
     record: Record
     model: PlantModel
@@ -33,7 +33,7 @@ class TaskRecord:
 def read(task: str, record: Path | None, folder: Path) -> TaskRecord:
     """The task in this record, or in the newest of a folder that has it; ConfigError where none has.
 
-    What a plant that runs has not written yet is waited for, some seconds.
+    Parts of the record that a running plant has not written yet are waited for, some seconds.
     """
     until = time.monotonic() + FLUSH_S + 2.0
     while True:
@@ -59,7 +59,7 @@ def _newest(folder: Path) -> Iterator[Path]:
 
 
 def _has(path: Path, task: str) -> bool:
-    """Whether a record names the task, be it in a request."""
+    """True if a record names the task, if only in a request."""
     word = f'"task":"{task}"'.encode()
     return any(word in data for _, data in opened(path).raw())
 
@@ -69,7 +69,7 @@ def _is_written(path: Path) -> bool:
 
 
 def incident_of(task: str, record: Record) -> Incident:
-    """The record is executed again up to the task's end."""
+    """The incident of a task, from executing the record again up to the task's end."""
     beginning = record.first.beginning
     model = model_of(beginning)
     plant, reader = plant_of(beginning, model), Reader(task, model)

@@ -1,4 +1,4 @@
-"""Makes the report of a task that was read."""
+"""Maker of the report of a task."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from .tries import tries
 
 
 def made(read: TaskRecord) -> tuple[Cause, str]:
-    """Its cause, and the content of the file."""
+    """The cause of the failure, and the content of the file."""
     found, beginning = read.incident, read.record.first.beginning
     cause = found.cause
     path = shlex.quote(str(read.record.paths[0]))

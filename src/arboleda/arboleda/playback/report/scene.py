@@ -1,4 +1,4 @@
-"""Where the devices of a cell were in the last seconds, as lines on the floor; of arms as seen from above."""
+"""Positions of a cell's devices in the last seconds, as lines on the floor; of arms as seen from above."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ Line = list[list[float]]
 
 
 def scene(incident: Incident, model: PlantModel) -> Row | None:
-    """Each frame's time before the failure and the line of each robot; None where nothing is drawn."""
+    """The time of each frame before the failure, and the line of each robot; None if nothing is drawn."""
     drawn = {row["name"]: row for row in places(model)["robots"] if row["cell"] == incident.cell}
     shapes = {name: body for name, row in drawn.items() if (body := _body(model, name, row)) is not None}
     frames = []

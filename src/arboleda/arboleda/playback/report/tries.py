@@ -1,4 +1,4 @@
-"""What would have changed it: forks of the record that are really run."""
+"""Changes that might have saved a task: forks of the record that are really run."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ from ..record_text import sentence_of
 from .reading import TaskRecord
 
 LONGER = 3.0  # times a deadline
-EARLIER_NS = 100_000_000  # before it was asked for
+EARLIER_NS = 100_000_000  # the fork begins so long before the task was asked for
 MARGIN_S = 0.5
 WITHOUT, HEALTHY, STALE, DEADLINE = "without", "healthy", "stale", "deadline"
 
 
 @dataclass(frozen=True, kw_only=True)
 class ForkTrial:
-    """A fork: what of, in a word, with which value, and what became of the task; `command` runs it again.
+    """A fork: its change in a word, its value, and the end of the task; `options` run it again.
 
     `alike`: the task ended in the same state for the same reason as in the record.
     """
@@ -37,8 +37,8 @@ class ForkTrial:
 
 
 def tries(read: TaskRecord) -> list[ForkTrial]:
-    """The forks of a task from its beginning: without any change first. Where that does not end as the record
-    did, other ones would prove nothing, and are not run."""
+    """The forks of a task from its beginning: without any change first. If that one ends otherwise than the
+    record did, other ones would prove nothing, and are not run."""
     found: list[ForkTrial] = []
     for what, value, model, options in _changes(read.model, read.incident):
         found.append(_tried(read, what, value, model, options))
@@ -80,5 +80,5 @@ def _tried(read: TaskRecord, what: str, value: float, model: PlantModel, options
 
 
 def _last(row: Sequence[PlantEvent], task: str) -> PlantEvent | None:
-    """How the task ended there."""
+    """The last change of the task in a run."""
     return next((each for each in reversed(row) if each.stream == TASK + task), None)

@@ -24,12 +24,12 @@ from .commit_pace import Pace
 from .outbox import Outbox, Receiver
 from .part import BrokerAddress
 
-TAKES_S = 5.0  # a broker has so long to say that it has an alarm
+TAKES_S = 5.0  # for a broker to confirm an alarm
 Page = Callable[[str, "str | None"], "str | None"]  # where a browser sees a cell, or a task of it
 
 
 class AlarmsPart:
-    """Notices what people should hear of, in the plant's thread, and has it delivered by others."""
+    """AlarmsPart: raises the alarms of a plant, in the plant's thread, and has other threads deliver them."""
 
     def __init__(self, receivers: Sequence[Receiver], page: Page) -> None:
         self._outboxes = [Outbox(each) for each in receivers]
@@ -55,16 +55,16 @@ class AlarmsPart:
             outbox.stop()
 
     def changed(self, task: TaskChanged) -> None:
-        """Note a task that failed; who asks for it again is told of it again, which is no news."""
+        """Note a task that failed; a repeated request gets the failure once more, which is no news."""
         if task.state is TaskState.FAILED and task.request is None:
             self._failed.append(task)
 
     def paced(self, pace: Pace) -> None:
-        """Note that commits got slow, or fast again; from any thread, told with the next step."""
+        """Note that commits got slow, or fast again; from any thread, raised with the next step."""
         self._paces.append(pace)
 
     def stepped(self, plant: Plant) -> None:
-        """Tell what came of a step, after its commands have left."""
+        """Raise the alarms of a step, after its commands have left."""
         before, self._stepped_at = self._stepped_at, plant.now
         if before is not None and plant.now - before > plant.away_after_s:
             self._tell(plant, alarms.of_absence(plant, plant.now - before), None)
@@ -77,7 +77,7 @@ class AlarmsPart:
         for task in failed:
             self._tell(plant, alarms.of_task(plant, task), None)
         if plant.intake.closed or (plant.version == self._seen and not self._blocked):
-            return  # who ends a plant knows that it stands
+            return  # a person who ends a plant knows that it stands
         self._seen = plant.version
         for name in plant.cells:
             self._look(plant, name)
@@ -94,7 +94,7 @@ class AlarmsPart:
             self._tell(plant, alarms.of_cell(plant, name), known[0])
 
     def _may_pass(self, plant: Plant, name: str, need: alarms.Need | None) -> bool:
-        """Whether a cell is blocked, but not for long yet."""
+        """True while a cell has been blocked for less than BLOCKED_S, which may pass without an alarm."""
         if need is None or need.kind != alarms.CELL_BLOCKED:
             self._blocked.pop(name, None)
             return False
@@ -104,7 +104,7 @@ class AlarmsPart:
         return False
 
     def _tell(self, plant: Plant, alarm: alarms.Alarm, first: str | None) -> str:
-        """Have it delivered; the id of what stands with it: its own, or that of the `first` of a hold."""
+        """Deliver an alarm; returns the id of the standing one: its own, or that of a hold's `first`."""
         self._number += 1
         id = f"{plant.model.name}-{plant.epoch}-{self._number}"
         task = alarm["task"]["id"] if alarm["kind"] == alarms.TASK_FAILED else None
@@ -134,7 +134,7 @@ class OnTopic:
         return f"the MQTT topic {self._topic}"
 
     def post(self, what: dict[str, Any]) -> None:
-        """Return once the broker has it; else NotTaken."""
+        """Return once the broker has it; else raise NotTaken."""
         if self._client is None:  # its address is known once the broker has started
             self._client = MqttClient(
                 f"arboleda_alarms_{uuid4().hex[:8]}",
@@ -164,7 +164,7 @@ class OnTopic:
 def alarms_part(
     model: PlantModel, options: AlarmOptions, broker: BrokerAddress, page: Page
 ) -> AlarmsPart | None:
-    """The part, where anybody wants alarms."""
+    """The alarms part, if anybody wants alarms."""
     hooks: list[Receiver] = [Webhook(options.hook)] if options.hook else []
     topics: list[Receiver] = [OnTopic(model, broker, options.topic)] if options.topic else []
     return AlarmsPart([*hooks, *topics], page) if hooks or topics else None

@@ -56,8 +56,8 @@ class BridgePart:
         tell_link: Callable[[bool, str], None] | None = None,
         tell: Callable[[Rejection | ForeignCommand], None] | None = None,
     ) -> None:
-        """Who gets the reports; who is told whether the broker is reached, and its address; and who is told
-        of refused commands and of those of others."""
+        """Connect the receivers of reports, of the broker's state with its address, and of refused commands
+        and those of others."""
         self._report = report
         self._tell_link = tell_link or _nobody
         self._tell = tell or self._tell
@@ -89,7 +89,8 @@ class BridgePart:
             self._client.start()
 
     def links(self) -> tuple[bool, dict[str, dict[str, Any]]]:
-        """Whether the broker is reached, and by robot what of its board was refused: count, last sentence."""
+        """The state of the broker's connection, and for each robot the refused messages of its board: count,
+        last sentence."""
 
         def look(bridge: Bridge) -> tuple[bool, dict[str, dict[str, Any]]]:
             counted = bridge.counters.items()
@@ -101,11 +102,11 @@ class BridgePart:
         return self.loop.read(look)
 
     def leave_robots(self) -> None:
-        """Another process leads them now: nothing more is published, and `stop` halts none of them."""
+        """Publish nothing more, and let `stop` halt no robot, as another process leads them now."""
         self._leads = False
 
     def stop(self) -> None:
-        """Halt what still moves, then leave; the plant may be another process that has ended already."""
+        """Halt what still moves, then leave; the plant may be another process that has already ended."""
         if self._leads:
             self.loop.post(Leaving(at=clock.seconds()))
         self.loop.stop()

@@ -1,4 +1,4 @@
-"""When the cells of a plant did no work, and when the plant ran, kept for the OEE."""
+"""Times in which the cells did no work, and in which the plant ran, kept for the OEE."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ WORKS = frozenset({CellState.IDLE, CellState.EXECUTE})
 
 
 class CellTimes:
-    """Writes what changes into the store, in the plant's thread once a step's commands have left.
+    """CellTimes: writes changes into the store, in the plant's thread once a step's commands have left.
 
-    Where the store cannot be written, that is said once, and nothing more is kept of this start: figures must
-    not be what ends a plant.
+    If the store cannot be written, that is logged once, and nothing more is kept of this start: figures must
+    not end a plant.
     """
 
     def __init__(
@@ -41,7 +41,7 @@ class CellTimes:
         self._kept(lambda store: store.began(now_s, now_s - self._history_days * DAY_S))
 
     def stepped(self, plant: Plant) -> None:
-        """Keep which cells stand since this step, and now and then that the plant runs."""
+        """Keep the cells that stand since this step, and now and then that the plant runs."""
         if not self._keeps:
             return
         now_s = self._clock()
@@ -61,7 +61,7 @@ class CellTimes:
                 self._kept(lambda store, name=name, word=word: store.stands(name, word, now_s))
 
     def stop(self) -> None:
-        """The plant was ended, and is not down: nobody wants work of it; idempotent."""
+        """Keep that the plant was ended on purpose, so that the time after it is not planned; idempotent."""
         self._kept(lambda store: store.seen(self._clock(), ended=True))
         self._keeps = False
 

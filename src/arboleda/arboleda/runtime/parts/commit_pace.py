@@ -9,7 +9,7 @@ from statistics import median
 from arboleda.model.sentence import Phrase, Sentence
 
 RECENT = 20  # commits whose median counts: some tasks of one cell
-LEAST = 5  # fewer say nothing of a disk
+LEAST = 5  # fewer commits say nothing about a disk
 # A disk that is well takes 0.1 to 30 ms. People notice 0.1 s when they press a button, and a task waits for
 # some commits one after the other.
 SLOW_S, FAST_S = 0.1, 0.05
@@ -29,7 +29,7 @@ FAST = Phrase("memory.fast", "the plant's memory is fast again: a commit takes {
 
 @dataclass(frozen=True, kw_only=True)
 class Pace:
-    """How long a commit takes as a rule and at worst, and whether that is slow."""
+    """The time of a commit, typical and worst, and whether that is slow."""
 
     typical_s: float = 0.0
     worst_s: float = 0.0
@@ -51,7 +51,7 @@ class CommitPace:
         self._is_slow = False
 
     def committed(self, seconds: float, now: float) -> None:
-        """Count one that is over."""
+        """Count a commit that is over."""
         self._commits.append((now, seconds))
         if seconds >= STALL_S:
             self._stalled_until = now + STALL_KEPT_S

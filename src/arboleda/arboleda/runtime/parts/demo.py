@@ -24,7 +24,7 @@ NOTE = (
 
 
 class DemoPart:
-    """Demonstration: `saw` is told snapshots, `submit` and `befall` do what it wants."""
+    """DemoPart: feeds the demonstration by `saw`, and carries out its wishes by `submit` and `befall`."""
 
     notes = (NOTE,)
 
@@ -66,7 +66,7 @@ class DemoPart:
 
 
 def _look_at(answer: Future[TaskChanged]) -> None:
-    """A task that was not taken is no trouble: the next one follows."""
+    """Look at a task's answer: one that was not taken is no trouble, as the next one follows."""
     try:
         answer.result()
     except ArboledaError as error:

@@ -25,7 +25,8 @@ from .part import BrokerAddress, Crash, not_sent
 class DevicesPart:
     """The virtual boards in one loop, each with an MQTT client and a last will of its own.
 
-    `joined` is called when they go to the broker: before, nobody knows whose boards a command would reach.
+    `joined` is called when they go to the broker: before that, a command might reach the boards of another
+    plant.
     """
 
     def __init__(

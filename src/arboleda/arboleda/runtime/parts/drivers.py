@@ -55,7 +55,7 @@ class DriversPart:
         self._threads = DeadThreads(self._died)
 
     def connect(self, hear: Callable[[Report | Undelivered], None]) -> None:
-        """Who gets the reports, and is told of what could not leave."""
+        """Connect the receiver of reports and of commands that could not leave."""
         self._hear = hear
 
     def send(self, message: Command | Notice) -> None:
@@ -72,7 +72,7 @@ class DriversPart:
         self.loop.start()
 
     def leave_robots(self) -> None:
-        """Another process leads them now: drivers end, and none of them is halted any more."""
+        """End the drivers without halting a robot, as another process leads them now."""
         self.loop.post(Leaving(at=clock.seconds(), halts=False))
 
     def stop(self) -> None:
@@ -97,7 +97,7 @@ class DriversPart:
             self._workers[message.life.driver].do(message)
 
     def _died(self, error: BaseException) -> bool:
-        """A thread ended with this error; whether it was one of a driver of this plant."""
+        """Take the error that ended a thread; True if it was one of a driver of this plant."""
         at_work = [worker for worker in self._workers if worker.is_at_work_in(error)]
         owners = at_work or [worker for worker in self._workers if worker.wrote(error)]
         for worker in owners:
@@ -106,8 +106,7 @@ class DriversPart:
 
 
 class Worker:
-    """One driver in a thread of its own: whatever it raises becomes an event, whatever it does takes its
-    own time."""
+    """Worker: one driver in a thread of its own: an error becomes an event, a slow call delays no other."""
 
     def __init__(
         self, use: DriverUse, robots: tuple[Robot, ...], post: Callable[[supervisor.Event], None]
@@ -124,11 +123,11 @@ class Worker:
         self._thread.start()
 
     def do(self, job: Begin | Give | End) -> None:
-        """Have something done after what it was given before; from any thread, never blocks."""
+        """Queue a call to the driver; from any thread, never blocks."""
         self._jobs.put(job)
 
     def end(self, until: float) -> None:
-        """End after what it was given, at that monotonic time at the latest."""
+        """End after the queued calls, at that monotonic time at the latest."""
         self._jobs.put(None)
         if self._thread.ident is not None:
             self._thread.join(max(0.0, until - time.monotonic()))
@@ -136,7 +135,7 @@ class Worker:
             LOG.warning("the driver %s does not end and is left behind", self._use.name)
 
     def is_at_work_in(self, error: BaseException) -> bool:
-        """Whether its driver is in one of the calls that an error came by."""
+        """True if an error passed through a call of this driver."""
         return any(
             value is self._driver
             for frame, _ in walk_tb(error.__traceback__)
@@ -145,14 +144,14 @@ class Worker:
         )
 
     def wrote(self, error: BaseException) -> bool:
-        """Whether one of those calls is of the file that its driver is written in."""
+        """True if an error passed through the file in which this driver is written."""
         if self._driver is None:
             return False
         file = type(self._driver).start.__code__.co_filename
         return any(frame.f_code.co_filename == file for frame, _ in walk_tb(error.__traceback__))
 
     def lost_thread(self, error: BaseException) -> None:
-        """A thread of the driver died with this error; while it ends, that is nothing."""
+        """Report that a thread of the driver died with this error, unless the driver is ending."""
         if self._life is not None:
             self._broke(self._life, f"a thread of it died: {in_words(error)}", error)
 
@@ -198,7 +197,7 @@ class Worker:
         self._driver = None
 
     def _hear(self, life: Life, report: object) -> None:
-        """What the driver of this life was given as `hear`."""
+        """Post a report of the driver; each life of it gets this as `hear`."""
         self._post(DriverOutput(at=clock.seconds(), life=life, report=report))
 
     def _broke(self, life: Life, why: str, error: BaseException, *, started: bool = True) -> None:
@@ -213,7 +212,7 @@ class Worker:
 class DeadThreads:
     """Hears of threads of this process that end with an error, while it watches.
 
-    `died(error)` says whether the thread was its own; of any other one Python tells as ever.
+    `died(error)` is True for a thread of its own; errors of all others are printed by Python as usual.
     """
 
     def __init__(self, died: Callable[[BaseException], bool]) -> None:
@@ -236,7 +235,7 @@ class DeadThreads:
 
 
 def in_words(error: BaseException) -> str:
-    """An error as a sentence goes on: its class, and what it says."""
+    """An error as the end of a sentence: its class and its text."""
     try:
         text = str(error)
     except Exception:  # noqa: BLE001 - an error of the user's may have no words

@@ -1,4 +1,4 @@
-"""What shows each cell's tree to Groot2: a process of its own, which is told what screens see."""
+"""Groot2 part: shows the cells' trees to Groot2, from a process of its own that gets snapshots."""
 
 from __future__ import annotations
 
@@ -27,14 +27,14 @@ OF_TASK = ("id", "text", "state", "answers")
 
 @dataclass(frozen=True, kw_only=True)
 class Groot2Options:
-    """Where Groot2 is answered; `port` is that of the first cell, None for 1667 or whatever is free there."""
+    """The address for Groot2; `port` is that of the first cell, None for 1667 or any free one."""
 
     host: str = LOCAL
     port: int | None = None
 
 
 class Groot2Part:
-    """Keeps the process; `saw` is told of each snapshot, in the plant's thread."""
+    """Groot2Part: keeps the process; `saw` takes each snapshot, in the plant's thread."""
 
     def __init__(self, cells: Sequence[str], options: Groot2Options) -> None:
         self._cells = cells
@@ -49,12 +49,12 @@ class Groot2Part:
         self.notes: list[str] = []
 
     def saw(self, snapshot: Mapping[str, Any]) -> None:
-        """Have its trees shown; one that is older and was not shown yet is not shown any more."""
+        """Queue a snapshot's trees; an older one that was not shown yet is dropped."""
         self._latest.append((time.time_ns() // 1000, snapshot))
         self._news.set()
 
     def start(self) -> None:
-        """StartError where a port that was named is taken, or a library is missing."""
+        """Start the process; StartError if a named port is taken, or a library is missing."""
         given = [sys.path, self._options.host, list(self._cells), self._options.port]
         self._process = subprocess.Popen(
             [sys.executable, "-c", PROCESS, *map(json.dumps, given)],
@@ -82,7 +82,7 @@ class Groot2Part:
             self._process = None
 
     def _ports(self, process: subprocess.Popen[bytes]) -> dict[str, int]:
-        """The port of each cell, as the process says."""
+        """The port of each cell, as the process reports it."""
         slow = threading.Timer(START_S, process.kill)
         slow.start()
         line = process.stdout.readline()  # type: ignore[union-attr]
@@ -103,7 +103,7 @@ class Groot2Part:
         return found
 
     def _tell(self, process: subprocess.Popen[bytes]) -> None:
-        """Hand on what is new, until it is over; in a thread of its own, which may have to wait."""
+        """Send news to the process until the end; in a thread of its own, which may have to wait."""
         try:
             while not self._stopping:
                 self._news.wait()
@@ -116,7 +116,7 @@ class Groot2Part:
                 LOG.error("what shows trees to Groot2 has ended; the plant goes on without it")
 
     def _lines(self, at_us: int, snapshot: Mapping[str, Any]) -> Iterator[bytes]:
-        """A line for each cell of which there is news."""
+        """The lines for the process, one for each cell with news."""
         done = {task["id"] for task in snapshot["tasks"] if task["state"] == TaskState.DONE.value}
         for cell in snapshot["cells"]:
             if cell["task"] is not None:
@@ -130,7 +130,7 @@ class Groot2Part:
 
 
 def cell_for_viewers(cell: Mapping[str, Any]) -> dict[str, Any]:
-    """What of a cell's snapshot is shown."""
+    """The part of a cell's snapshot that viewers get."""
     task, shown = cell["task"], ("path", "name", "kind", "status", "parameters")
     facts = {"cell": cell["name"], "state": cell["state"], "step": cell["step"]}
     if task is not None:

@@ -1,4 +1,4 @@
-"""A planned change of leaders: what is at work is held by the one, and goes on with the next."""
+"""Handover: a planned change of leaders, in which one holds its cells and the next goes on with them."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ PATIENCE_S = 3.0
 
 
 def hold_all(plant: Orchestrator) -> list[str]:
-    """Hold every cell that is at work, and wait until all of them stand; their names."""
+    """Hold every cell that is at work, wait until all of them stand, and return their names."""
     working = at_work(_states(plant))
     held = [name for name in working if plant.operate(Verb.HOLD, name).result(HELD_S).refusal is None]
     patience = clock.seconds() + HELD_S

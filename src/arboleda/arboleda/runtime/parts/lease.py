@@ -1,4 +1,4 @@
-"""Goes on leading a plant whose memory several hosts reach, until another one is to lead it."""
+"""Lease on a plant whose memory several hosts reach: this process leads it until another takes over."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ PATIENCE_S = 3.0
 class LeasePart:
     """Says again and again that this process leads; the plant ends where another one does.
 
-    Ended, it gives the memory back, so that who waits begins at once: nothing that writes may end after it.
-    Where somebody wants another leader, `hand_over` is called once, in a thread of its own.
+    At its end it gives the memory back, so that a standby begins at once: no part that writes may end later.
+    If somebody wants another leader, `hand_over` is called once, in a thread of its own.
     """
 
     def __init__(

@@ -1,4 +1,4 @@
-"""Times what the plant commits, and tells where that gets slow and where it is over."""
+"""Pace of the plant's commits: times them, and reports when they get slow and fast again."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ LOG = logging.getLogger(__name__)
 class MemoryPace:
     """A context around each commit, in the plant's thread; `look` judges from any other one.
 
-    `observers` hear the seconds of each commit, `listeners` each change from slow to fast and back.
+    `observers` get the seconds of each commit, `listeners` each change from slow to fast and back.
     """
 
     def __init__(self) -> None:
@@ -31,11 +31,11 @@ class MemoryPace:
 
     @property
     def pace(self) -> Pace:
-        """As of the last look."""
+        """The pace at the last look."""
         return self._pace
 
     def look(self) -> None:
-        """Judge now, also a commit that hangs, and say what has changed."""
+        """Judge the pace now, with a commit that hangs, and report a change."""
         now = clock.seconds()
         with self._lock:
             pending_s = 0.0 if self._begun is None else now - self._begun
@@ -47,7 +47,7 @@ class MemoryPace:
             listener(self._pace)
 
     def diagnosis(self) -> diagnostics.Diagnostic:
-        """The same for /diagnostics."""
+        """The pace as a diagnosis for /diagnostics."""
         return diagnostics.memory(self._pace.sentence if self._pace.is_slow else None)
 
     def __enter__(self) -> None:

@@ -1,4 +1,4 @@
-"""What Prometheus is told of a plant: counts since its start, and how things stand when it asks."""
+"""Metrics of a plant for Prometheus: counts since its start, and its state at the moment of the request."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ COMMIT_S = (0.0002, 0.0005, 0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5
 
 
 class Metrics:
-    """Counts in the plant's thread, and is read from any other; `snapshot` and `links` are asked for then."""
+    """Metrics: counts in the plant's thread; other threads read them, which calls `snapshot` and `links`."""
 
     def __init__(self, snapshot: Callable[[], dict[str, Any]], links: Callable[[], dict[str, Any]]) -> None:
         self._snapshot = snapshot
@@ -71,7 +71,7 @@ class Metrics:
         return bytes(generate_latest(self._registry))
 
     def changed(self, task: TaskChanged) -> None:
-        """Count a task that was taken, begins or ends; who asks for a task again is told of it again."""
+        """Count a task that was taken, begins or ends; repeated requests for a task do not count."""
         cell = task.cell or ""
         if task.state is TaskState.QUEUED and task.task not in self._waiting:
             self._waiting.add(task.task)
@@ -85,11 +85,11 @@ class Metrics:
                 self._worked.labels(cell, task.state.value).observe(clock.seconds() - begun)
 
     def reacted(self, seconds: float) -> None:
-        """Count how long commands took to leave."""
+        """Count the time that commands took to leave."""
         self._reactions.observe(seconds)
 
     def committed(self, seconds: float) -> None:
-        """Count how long a commit took."""
+        """Count the time that a commit took."""
         self._commits.observe(seconds)
 
     def saw(self, snapshot: dict[str, Any]) -> None:
@@ -108,7 +108,7 @@ class Metrics:
                 self._lost.labels(name).inc()
 
     def _begin(self, snapshot: dict[str, Any]) -> None:
-        """Have counts stand at 0 before anything happens: Prometheus does not count what makes a series."""
+        """Set counts to 0 before anything happens, as Prometheus misses the step that begins a series."""
         self._known = True
         for cell in snapshot["cells"]:
             self._accepted.labels(cell["name"])
@@ -170,13 +170,13 @@ class Metrics:
 
 
 class _Now:
-    """What is asked each time that Prometheus asks."""
+    """The metrics that are collected anew for each request."""
 
     def __init__(self, collect: Callable[[], Iterator[Metric]]) -> None:
         self.collect = collect
 
     def describe(self) -> list[Metric]:
-        """Nothing, so that nobody asks a plant that does not run yet."""
+        """No metrics, so that nobody asks a plant that does not run yet."""
         return []
 
 

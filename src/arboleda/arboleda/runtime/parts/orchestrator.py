@@ -1,4 +1,4 @@
-"""The plant in its loop, and who listens to it."""
+"""The plant in its loop, and its listeners."""
 
 from __future__ import annotations
 
@@ -66,8 +66,8 @@ SETTLE_S = 0.01
 SHARE = 0.1  # of the thread's time for snapshots, at most: one of 100 busy cells takes as long as 500 steps
 DAY_S = 86_400.0
 PATIENCE_S = 6.0  # a stop is confirmed within stop_timeout_s, 5 s in the shipped plant
-READ_S = 1.0  # counted from a step: who reads it waits so long for its commits
-GLANCE_S = 0.03  # the same in the server's thread, which waits meanwhile, and with it the next stop
+READ_S = 1.0  # from a step on, for a reader to wait for its commits
+GLANCE_S = 0.03  # the same in the server's thread, where the next stop waits, too
 
 
 NOT_KEPT = Phrase(
@@ -76,9 +76,9 @@ NOT_KEPT = Phrase(
 
 
 class FlightRecorder(Protocol):
-    """What writes the flight record: told of each step, and of what screens see, in the plant's thread.
+    """The writer of the flight record: gets each step and each snapshot in the plant's thread.
 
-    `trouble` is why it stopped.
+    `trouble` is the reason for which it stopped.
     """
 
     trouble: str
@@ -100,7 +100,7 @@ class RosPort(PlantPort, Protocol):
 
 
 class StartState(NamedTuple):
-    """What a plant was made of beside its file and its epoch: its clock's time, and what was remembered."""
+    """The values that a plant was made of beside its file and its epoch: its clock's time, and its memory."""
 
     now: float
     memory: Memory
@@ -108,23 +108,23 @@ class StartState(NamedTuple):
 
 
 class KeptStateUnknown(ArboledaError):
-    """Nobody can say now what of the plant is kept."""
+    """Nobody can tell now how much of the plant is kept."""
 
     def __init__(self) -> None:
         super().__init__(NOT_KEPT())
 
 
 class CommandTooLate(ArboledaError):
-    """A command was not sent: it is older than a robot's silence may be."""
+    """A command was not sent: it is older than the longest allowed silence of a robot."""
 
 
 class Orchestrator:
     """The plant in its loop; `connect` its port before `start`.
 
-    What the plant wants remembered is in the `store` before anything after it leaves, and before anybody is
-    told of it; only stops leave before that. Where that fails, the plant ends: from then on robots are told
-    to stop, nothing else, and screens see what was kept last. Tasks that wait at the end are left for the
-    next start, unless it `drops_waiting`. Where its thread is busy when somebody asks for a stop, that leaves
+    Facts that the plant wants remembered are in the `store` before any later message leaves, and before
+    anybody is told of it; only stops leave earlier. If the store fails, the plant ends: from then on it sends
+    only stops, and screens show the last kept snapshot. Tasks that wait at the end are left for the next
+    start, unless it `drops_waiting`. If its thread is busy when somebody asks for a stop, the stop leaves
     beside it, by `stops`.
     """
 
@@ -157,7 +157,9 @@ class Orchestrator:
         self.observers: list[Callable[[Plant], None]] = []  # told after each step; they must not wait
         self.reacted: Callable[[float], None] = lambda _seconds: None
         self.recorder: FlightRecorder | None = None
-        self.diagnoses: list[Callable[[], diagnostics.Diagnostic]] = []  # of what is no robot and no cell
+        self.diagnoses: list[
+            Callable[[], diagnostics.Diagnostic]
+        ] = []  # of parts other than robots and cells
         self._store = store
         self._history = history
         self._drops_waiting = drops_waiting
@@ -178,7 +180,7 @@ class Orchestrator:
         self._at_rest = threading.Event()
 
     def hear(self, event: Event) -> None:
-        """What comes in by the port, from its thread; a report that is no news may wait for others."""
+        """Take an event of the port, in the port's thread; a report without news may wait for others."""
         if isinstance(event, OperatorRequest):
             self._take(event)
             return
@@ -187,7 +189,7 @@ class Orchestrator:
         self.loop.post(event, self._urgency.within_s(event) if isinstance(event, Report) else 0.0)
 
     def _recalled(self, request: TaskRequest) -> TaskRequest:
-        """The request, with the task of its id where that ended too long ago for the plant to know it."""
+        """The request, with the task of that id if it ended too long ago for the plant to know it."""
         id = request.text.rpartition("#")[2]
         if self._history is None or id == request.text or id in self.plant.intake.tasks:
             return request
@@ -199,13 +201,14 @@ class Orchestrator:
         self._port = port
 
     def connect_ros(self, port: RosPort) -> None:
-        """What it shows itself on; its commands go by the port of `connect`."""
+        """Connect the ROS side that shows the plant; its commands come by the port of `connect`."""
         self._ros = port
 
     def start(self) -> None:
-        """StartError where another node already commands these robots.
+        """Start the plant; StartError if another node already commands these robots.
 
-        Where a database says who leads, that is the one before, which ends or was cut off; nobody obeys it.
+        With a database that names the leader nothing is checked: the other node can only be the leader
+        before, which ends or was cut off, and nobody obeys it.
         """
         if self._ros is not None and (self._store is None or self._store.renew_s is None):
             self._ros.check_alone()
@@ -229,7 +232,7 @@ class Orchestrator:
     def submit(self, text: str, asked_by: str = COMMAND, choice: str = "") -> Future[TaskChanged]:
         """Ask for a task; the future holds the answer: queued, refused, or the known task's state.
 
-        `choice` is why it was given to its cell, where somebody chose between plants.
+        `choice` is the reason for which it goes to its cell, if somebody chose between plants.
         """
         answer, token = self._expect()
         self._asked_by[token] = asked_by
@@ -244,7 +247,7 @@ class Orchestrator:
         return answer
 
     def _take(self, request: OperatorRequest) -> None:
-        """Have the plant do what an operator asks for; a stop does not wait until its thread is free."""
+        """Give the plant an operator's request; a stop does not wait until the plant's thread is free."""
         if request.verb is not Verb.STOP:
             self.loop.post(request)
             return
@@ -255,31 +258,31 @@ class Orchestrator:
 
     @property
     def _leads_for_certain(self) -> bool:
-        """Whether a stop may leave without a question to the store, which may hang."""
+        """True if a stop may leave without asking the store, which may hang."""
         if self._store is None or self._amnesia is not None:
             return self._standing is not Standing.SUPERSEDED
         return self._store.leads_for_certain
 
     def act(self, number: int) -> dict[str, Any] | None:
-        """One of the last acts of operators, None where the plant knows it no more."""
+        """One of the last acts of operators, None if the plant no longer knows it."""
         return self.loop.read(lambda plant: view.act_by_number(plant, number))
 
     def promises(self, text: str) -> list[dict[str, Any]]:
-        """What each cell that a task text names promises now; TextError, QueueFull."""
+        """The promise of each cell that a task text names; TextError, QueueFull."""
         return self.loop.read(lambda plant: view.promises(plant, text))
 
     def offers(self) -> list[dict[str, Any]]:
-        """What each cell can be asked for."""
+        """The recipes that each cell offers."""
         return forms.offers(self.plant.model)
 
     def spelled(self, *, cell: str, recipe: str, values: Mapping[str, Value], id: str) -> str:
-        """The task text of named values; TextError for what is no task of this plant."""
+        """The task text for named values; TextError if they are no task of this plant."""
         return spelled(self.plant.model, cell=cell, recipe=recipe, values=values, id=id)
 
     def snapshot(self, within_s: float = READ_S) -> dict[str, Any]:
         """A snapshot of what is kept, made in slices between which the plant is stepped; not in its thread.
 
-        Where the plant waits for its disk for longer, it is the last one that screens got.
+        While the plant waits longer for its disk, it is the last snapshot that screens got.
         """
         slices = Slices(view.in_parts(self.plant))
         try:
@@ -290,7 +293,7 @@ class Orchestrator:
         return slices.result
 
     def _read(self, fn: Callable[[Plant], Any], within_s: float) -> Any:
-        """`fn(plant)` of a plant all of which is kept; UnderWay where it is not, or will not be any more."""
+        """`fn(plant)` once all of the plant is kept; UnderWay if it is not in time, or cannot be any more."""
 
         def look(plant: Plant) -> Any:
             if self._amnesia is not None:
@@ -301,22 +304,22 @@ class Orchestrator:
 
     @property
     def _last_kept(self) -> dict[str, Any]:
-        """The last snapshot that screens got; NotKept where there is none."""
+        """The last snapshot that screens got; NotKept if there is none."""
         if not self._kept:
             raise KeptStateUnknown
         return self._kept if self._amnesia is None else {**self._kept, "ending": True}
 
     @property
     def stepped_at(self) -> float:
-        """When the plant made its last step, on its clock; it makes one for each of its heartbeats."""
+        """The time of the plant's last step, on its clock; it makes one for each of its heartbeats."""
         return self.loop.read(lambda plant: plant.now)
 
     def positions(self) -> dict[str, Any]:
-        """What moves; `now` is on the plant's clock."""
+        """The positions of everything that moves; `now` is on the plant's clock."""
         return {"now": clock.seconds(), **self.loop.read(twin_view.positions)}
 
     def find(self, task: str) -> dict[str, Any] | None:
-        """A task as it is kept; NotKept where that cannot be said now."""
+        """A task as it is kept; NotKept if that is unknown now."""
         try:
             found: dict[str, Any] | None = self._read(lambda plant: view.task_by_id(plant, task), READ_S)
         except StepInFlight:
@@ -373,7 +376,7 @@ class Orchestrator:
                 self.stops.stop_again(message)
 
     def _send_beside(self, message: Stop | StopLeft) -> None:
-        """What the lane sends, in its thread."""
+        """Send a message of the lane, in its thread."""
         if isinstance(message, StopLeft):
             waiting = self._waiting.pop(message.request or "", None)
             if waiting is not None:
@@ -382,8 +385,8 @@ class Orchestrator:
             self._port.send(message)
 
     def _may_leave(self, message: Command | Notice) -> bool:
-        """Whether this plant may send at all: one that another process has taken over sends nothing more, not
-        even a stop; one that cannot find out stops what moves, and ends."""
+        """True if this plant may send a message: once another process has taken it over it sends nothing, not
+        even a stop; if it cannot find out, it stops what moves, and ends."""
         if self._store is not None and self._amnesia is None:
             try:
                 self._store.confirm()
@@ -401,12 +404,12 @@ class Orchestrator:
         return Standing.SUPERSEDED if isinstance(self._amnesia, Superseded) else Standing.UNSURE
 
     def _forget(self, error: Exception) -> None:
-        """Nothing can be kept any more: the plant ends."""
+        """End the plant, as nothing can be kept any more."""
         self._amnesia = error
         self._crash("orchestrator", error)
 
     def _refuse_unkept(self, message: Command | Notice, amnesia: Exception) -> None:
-        """Whoever waits for an answer hears why there is none; nobody else hears what is not kept."""
+        """Refuse the requests that wait for an answer, as nothing is kept; nobody hears of unkept changes."""
         if isinstance(message, Command):
             raise amnesia
         if isinstance(message, TaskChanged | OperatorAnswer):
@@ -425,7 +428,7 @@ class Orchestrator:
         return replace(answer, refusal=answer.refusal or as_sentence(why))
 
     def _refuse_late(self, message: Command | Notice) -> None:
-        """A process that was stopped in the middle of a step must not send what was right before."""
+        """Raise TooLate if a process was stopped in the middle of a step: its commands may now be wrong."""
         now = clock.seconds()
         if is_too_late(message, self.plant, now):
             raise CommandTooLate(SENT_TOO_LATE(seconds=now - self.plant.now))
@@ -460,7 +463,7 @@ class Orchestrator:
                     self._store.attempted(task.id, task.attempts)
 
     def _keep_task(self, change: TaskChanged) -> None:
-        """Whoever asked for a task, or waits for its end, hears of it once it is kept."""
+        """Answer the requests for a task, and those who wait for its end, once it is kept."""
         if self._store is None:
             return
         known, unix_s = self.plant.intake.tasks.get(change.task), time.time()
@@ -534,7 +537,7 @@ class Orchestrator:
 
     @property
     def _watched(self) -> bool:
-        """Whether somebody wants to see how old what he sees is."""
+        """True if somebody wants to see the age of the displayed data."""
         return bool(self.watchers) or (self._ros is not None and self._ros.watched)
 
     def _show(self, now: float) -> None:
@@ -543,7 +546,7 @@ class Orchestrator:
         self._show_on(now)
 
     def _show_on(self, now: float) -> None:
-        """Go on with what is shown: one slice, and all that is left once the plant ends."""
+        """Show the next slice of the snapshot, or all that is left of it once the plant ends."""
         assert self._showing is not None
         if now < self._showing.due and not self.plant.intake.closed:
             self.loop.wake_by(self._showing.due)
@@ -590,9 +593,9 @@ class Orchestrator:
 
 
 def _writes(messages: Sequence[Any]) -> deque[list[Remember]]:
-    """For each fact of a step what is committed when it comes.
+    """The facts to be committed with each fact of a step, when that one comes.
 
-    It is all that stand side by side when the first of them comes, and nothing with the others: nothing
+    With the first of several facts in a row all of them are committed, with the others nothing: no message
     leaves between them, and a commit waits for the disk, or for the database's host.
     """
     writes: deque[list[Remember]] = deque()
@@ -605,13 +608,13 @@ def _writes(messages: Sequence[Any]) -> deque[list[Remember]]:
 
 
 def _log_defect(where: str, error: Exception) -> None:
-    """One line for people; the whole error, with its traceback, for the log file."""
+    """Log a defect: one line for people, and the whole error with its traceback for the log file."""
     LOG.error("internal error in %s (%s: %s)", where, type(error).__name__, error)
     LOG.debug("the error in %s, whole", where, exc_info=error)
 
 
 def task_line(change: TaskChanged) -> str:
-    """One line on a change of a task."""
+    """The line on a change of a task."""
     why = f"  {change.sentence}" if change.sentence else ""
     return f"{change.state.value:<9} {change.text}{why}" + (
         f" ({change.reason.value})" if change.reason else ""
@@ -619,12 +622,12 @@ def task_line(change: TaskChanged) -> str:
 
 
 def act_line(act: Journal) -> str:
-    """One line on what an operator did, or what became of it, with the cell where no sentence names it."""
+    """The line on an operator's act or its outcome, with the cell if no sentence names it."""
     return str(act.sentence) if act.cell in (None, act.scope) else f"{act.sentence} ({act.cell})"
 
 
 def _log(message: TaskChanged | OperatorAnswer) -> None:
-    """A line for each change of a task, and for what is refused; `change` is for who shows it in colours."""
+    """Log each change of a task, and refusals; `change` is for screens that show it in colours."""
     if isinstance(message, OperatorAnswer):
         if message.refusal is not None:
             OPERATORS.info(

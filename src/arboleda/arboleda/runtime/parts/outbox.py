@@ -1,4 +1,4 @@
-"""What is handed to a receiver outside, in order, in a thread of its own; nobody waits for it."""
+"""Outbox: hands alarms to a receiver outside, in order, in a thread of its own; nobody waits for it."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ from arboleda.adapters.webhook import DeliveryRefused, NotDelivered
 LOG = logging.getLogger(__name__)
 LIMIT = 1000  # alarms that may wait
 FIRST_RETRY_S, LAST_RETRY_S = 1.0, 60.0
-END_S = 3.0  # what waits at the end of the plant has so long to arrive
+END_S = 3.0  # for waiting alarms to arrive at the end of the plant
 Alarm = dict[str, Any]
 
 
 class Receiver(Protocol):
-    """Where alarms go; `str()` says where, with nothing secret."""
+    """The receiver of alarms; `str()` names it, with nothing secret."""
 
     def post(self, what: Alarm) -> None:
         """Return once it is taken; NotTaken to be asked again, Refused for one that it never takes."""
@@ -29,8 +29,8 @@ class Receiver(Protocol):
 class Outbox:
     """Hands each alarm over until it is taken, with the number of those that were dropped before it.
 
-    Where `limit` wait, the oldest is dropped; what is dropped, and where no alarm gets through, is said in
-    the log: once when it begins, once when it is over.
+    If `limit` alarms wait, the oldest is dropped. The log says once when dropping or a failure to deliver
+    begins, and once when it is over.
     """
 
     def __init__(
@@ -55,7 +55,7 @@ class Outbox:
         self._thread.start()
 
     def put(self, alarm: Alarm) -> None:
-        """From any thread; never blocks."""
+        """Queue an alarm; from any thread, never blocks."""
         with self._news:
             if len(self._waiting) >= self._limit:
                 lost = self._waiting.popleft()["id"]
@@ -67,13 +67,13 @@ class Outbox:
             self._news.notify()
 
     def end(self) -> None:
-        """Have what waits tried once more without pauses; returns at once."""
+        """Try the waiting alarms once more without pauses; returns at once."""
         self._ending.set()
         with self._news:
             self._news.notify()
 
     def stop(self) -> None:
-        """Wait until all has arrived, at most END_S, and say what has not; idempotent."""
+        """Wait until all alarms have arrived, at most END_S, and log the others; idempotent."""
         self.end()
         if self._thread.ident is None:
             return
@@ -100,7 +100,7 @@ class Outbox:
         self._receiver.close()
 
     def _next(self) -> Alarm | None:
-        """The oldest; it stays where it is until it is taken. None at the end."""
+        """The oldest alarm, which stays in the queue until it is taken. None at the end."""
         with self._news:
             while not self._waiting:
                 if self._ending.is_set():
@@ -109,7 +109,7 @@ class Outbox:
             return self._waiting[0] | {"dropped": self._dropped}
 
     def _handed_over(self, alarm: Alarm) -> bool:
-        """Whether the receiver is done with it, be it that it refuses it."""
+        """True if the receiver is done with the alarm, even by refusing it."""
         try:
             self._receiver.post(alarm)
         except DeliveryRefused as error:
@@ -135,7 +135,7 @@ class Outbox:
         self._blocked = True
 
     def _told(self, dropped: int) -> None:
-        """An alarm has arrived, and with it how many were dropped before it."""
+        """Note that an alarm has arrived, and with it the number of those dropped before it."""
         if self._blocked:
             LOG.warning("alarms reach %s again", self._receiver)
         self._blocked = False

@@ -18,7 +18,7 @@ from arboleda.views import view
 
 from .local_plant import LocalPlant
 
-if TYPE_CHECKING:  # it takes a while to load, and only who looks at a record needs it
+if TYPE_CHECKING:  # slow to load, and only needed for a record
     from arboleda.dashboard.past.past import Past
     from arboleda.dashboard.past.side import Start
 
@@ -29,7 +29,7 @@ NOT_YET = Phrase("record.not_yet", "There is no record of this start yet; try ag
 
 @dataclass(frozen=True, kw_only=True)
 class Sources:
-    """What the page shows besides snapshots; each is asked from the server's thread."""
+    """The page's sources besides snapshots; each is called from the server's thread."""
 
     model: PlantModel
     links: Callable[[], dict[str, Any]]
@@ -41,7 +41,7 @@ class Sources:
 
 
 class PageSide:
-    """`arboleda.dashboard.page_api.PageApi`."""
+    """PageSide: a plant as `arboleda.dashboard.page_api.PageApi`."""
 
     def __init__(self, plant: LocalPlant, sources: Sources) -> None:
         self._model = sources.model
@@ -96,10 +96,10 @@ class PageSide:
 
 
 def mounting(sources: Sources) -> Callable[[FastAPI, LocalPlant], None]:
-    """What puts the page on the server's application."""
+    """The function that puts the page on the server's application."""
 
     def mount(app: FastAPI, plant: LocalPlant) -> None:
-        from arboleda.dashboard import page  # it takes most of a second: only who shows a page waits for it
+        from arboleda.dashboard import page  # it takes most of a second, and not all plants have a page
 
         page.mount(app, PageSide(plant, sources))
 

@@ -1,4 +1,4 @@
-"""What every part is, and what parts know of each other."""
+"""Interface of every part, and of those that parts know of each other."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ class Part(Protocol):
 
 
 class BrokerAddress(Protocol):
-    """Where the MQTT clients of this process go; read once the broker part is started."""
+    """The address for the MQTT clients of this process; read once the broker part is started."""
 
     address: Address
     credentials: Credentials | None
 
 
 def not_sent(message: object, error: Exception) -> None:
-    """A message that lost its connection just now; the lost connection itself is told by its client."""
+    """Log a message that was lost with its connection; the client itself reports the lost connection."""
     LOG.debug("%s was not sent: %s", message, error)

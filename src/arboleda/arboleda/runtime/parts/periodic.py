@@ -1,4 +1,4 @@
-"""Calls what looks after a plant's place, again and again, in a thread of its own."""
+"""Checks of a plant's place in the file system or database, repeated in a thread of their own."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ PATIENCE_S = 3.0  # a look may hang with its disk, and the end of the plant does
 
 
 class Periodic:
-    """The plant ends where a look raises ArboledaError, for which `crash` is called once.
+    """Periodic: ends the plant if a check raises ArboledaError; it calls `crash` once.
 
     The plant's own thread may hang in a commit, or have nothing to commit for hours.
     """
@@ -35,7 +35,7 @@ class Periodic:
             self._thread.join(PATIENCE_S)
 
     def turn(self) -> None:
-        """All looks, once; the thread calls it, tests may."""
+        """Make all checks once; the thread calls it, tests may."""
         try:
             for look in self._looks:
                 look()

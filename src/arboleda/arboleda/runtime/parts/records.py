@@ -1,4 +1,4 @@
-"""The records that a page can show: the one that it was opened for, and others of the same plant."""
+"""The records that a page can show: its own, and others of the same plant."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from arboleda.recorder.errors import NoRecord
 from arboleda.recorder.preamble import Beginning
 from arboleda.recorder.views import Views
 
-FRESH_S = 5.0  # for so long nobody looks again how far a record is
+FRESH_S = 5.0  # between two looks at the end of a record
 OPEN = 3  # records that are kept open, beside one another
 SHOWN = 50  # starts to choose from, the last ones
 NO_START = Phrase(
@@ -30,8 +30,8 @@ NO_START = Phrase(
 class Records:
     """`own` is a file of the record that is shown where none is chosen, NoRecord says why there is none.
 
-    Others can be chosen where their plant file, and whatever it uses, is the same: the page and its twin are
-    made of it. For any thread; who asks waits for the disk.
+    Other records can be chosen if their plant file, and all that it uses, is the same: the page and its twin
+    are made of it. For any thread; the caller waits for the disk.
     """
 
     def __init__(self, own: Callable[[], Path], layout: dict[str, Any]) -> None:
@@ -42,7 +42,7 @@ class Records:
         self._one = threading.Lock()
 
     def past(self, epoch: int | None = None) -> Past:
-        """The record of a start, as far as it is written; None: the own one."""
+        """The record of a start, as far as it is written; for None the page's own."""
         with self._one:
             known = self._open.get(epoch)
             if known is None:
@@ -57,7 +57,7 @@ class Records:
             return known[1]
 
     def starts(self) -> list[Start]:
-        """The starts of the plant that have a record beside the own one, the last first."""
+        """The starts of the plant that have a record beside the page's own, the last first."""
         with self._one:
             own = self._own()
             mine = files.part_at(own)
@@ -83,7 +83,7 @@ class Records:
         return None not in (ours, other) and _plant(ours[0]) == _plant(other[0])  # type: ignore[index]
 
     def _beginning(self, folder: Path, epoch: int) -> tuple[Beginning, int] | None:
-        """How a start began and when, None where that cannot be read."""
+        """The beginning of a start with its time; None if it cannot be read."""
         if epoch not in self._beginnings:
             first = next((part for part in files.parts_in(folder) if part.epoch == epoch), None)
             try:
@@ -107,6 +107,6 @@ class Records:
 
 
 def _plant(beginning: Beginning) -> tuple[Any, ...]:
-    """What the page is made of."""
+    """The parts of a beginning that determine the page: two that are equal in them can share one."""
     read = beginning.files
     return read.plant, dict(read.contents), beginning.virtual, beginning.simulated, beginning.rate

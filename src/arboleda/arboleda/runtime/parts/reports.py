@@ -44,7 +44,7 @@ class ReportsPart:
     """Has reports of tasks that failed written by others: those that somebody asks for, and with `changed`,
     which never raises, one of each task that fails.
 
-    `command` makes what is run of the task, the plant's state directory and the file to write.
+    `command` makes the command line from the task, the plant's state directory and the file to write.
     """
 
     def __init__(
@@ -72,7 +72,7 @@ class ReportsPart:
         self._thread.start()
 
     def stop(self) -> None:
-        """End the report that is being written; what waits is left to `arboleda report`. Idempotent."""
+        """End the report that is being written; waiting ones are left to `arboleda report`. Idempotent."""
         with self._starting:
             self._ending.set()
             if self._run is not None:
@@ -82,7 +82,7 @@ class ReportsPart:
             self._thread.join()
 
     def changed(self, task: TaskChanged) -> None:
-        """Note a task that failed; who asks for it again is told of it again, which is no news."""
+        """Note a task that failed; a repeated request gets the failure once more, which is no news."""
         if task.state is not TaskState.FAILED or task.request is not None:
             return
         if not self._wait(task.task, self._after_s):
@@ -110,7 +110,7 @@ class ReportsPart:
         return self._folder / f"{task}.html"
 
     def _wait(self, task: str, seconds: float) -> bool:
-        """Have it written after so long, or sooner where that was wanted already; whether there is room."""
+        """Queue the report for this delay, or sooner if that is wanted already; True if there is room."""
         due = time.monotonic() + seconds
         with self._turns:
             if task not in self._waiting and len(self._waiting) >= MOST_WAITING:
@@ -138,7 +138,7 @@ class ReportsPart:
                 LOG.warning("no report of %s: %s", task, objection)
 
     def _next(self) -> str | None:
-        """The task whose turn it is, once it has come; None where something is new meanwhile."""
+        """The task whose turn it is, once it has come; None if there is news meanwhile."""
         with self._turns:
             task = min(self._waiting, key=self._waiting.__getitem__, default=None)
             due = self._waiting.get(task or "", math.inf)
@@ -151,7 +151,7 @@ class ReportsPart:
         return task
 
     def _write(self, task: str) -> str | None:
-        """Write it; why there is none."""
+        """Write the report of a task; returns the reason if there is none."""
         self._folder.mkdir(mode=0o700, exist_ok=True)
         _prune(self._folder)
         made = self._folder / f"{task}.part"  # nobody is shown half of one
@@ -176,7 +176,7 @@ class ReportsPart:
 
 
 def _said(run: subprocess.Popen[str]) -> str:
-    """What it said until its end; it is ended where it takes too long."""
+    """The output of the process until its end; it is killed if it takes too long."""
     try:
         return run.communicate(timeout=AT_MOST_S)[0]
     except subprocess.TimeoutExpired:
@@ -185,7 +185,7 @@ def _said(run: subprocess.Popen[str]) -> str:
 
 
 def _prune(folder: Path) -> None:
-    """Leave room for one more: the oldest goes."""
+    """Delete the oldest report if there is no room for one more."""
     kept = sorted(folder.glob("*.html"), key=lambda path: path.stat().st_mtime)
     for path in kept[: max(0, len(kept) - MOST_KEPT + 1)]:
         path.unlink(missing_ok=True)

@@ -1,4 +1,4 @@
-"""The plant's port: each command goes to whatever reaches its robot."""
+"""Router: the plant's port, which sends each command to the part that reaches its robot."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class Router:
         self._each = list({id(port): port for port in ports.values()}.values())
 
     def send(self, message: Command | Notice) -> None:
-        """Hand it on; raises where a command cannot leave."""
+        """Send a command or a notice; raises if a command cannot leave."""
         if isinstance(message, Command):
             self._port_of(message.robot).send(message)
             return

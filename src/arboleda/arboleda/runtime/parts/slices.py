@@ -14,7 +14,7 @@ Result = TypeVar("Result")
 
 
 class Slices(Generic[Result]):
-    """Has `parts` done slice by slice; `result` is theirs once all are done."""
+    """Slices: runs `parts` slice by slice; `result` is their result once all are done."""
 
     result: Result
 
@@ -25,7 +25,7 @@ class Slices(Generic[Result]):
         self.due = -math.inf  # when the next slice may come, on the clock of `now`
 
     def cut(self, now: float) -> bool:
-        """Do one slice; whether all is done. Where a part raises, nothing more is done."""
+        """Run one slice; True if all is done. If a part raises, nothing more is done."""
         began = time.thread_time()
         spent_s = 0.0
         try:

@@ -34,7 +34,7 @@ class StopsAway(NamedTuple):
 class Stops:
     """Requests for stops that the plant has not stepped yet; `send` gets what leaves beside it, in a thread.
 
-    A command that the plant made before such a request, and that waits to leave, is overtaken by it.
+    Such a request overtakes a command that the plant made before it and that still waits to leave.
     """
 
     def __init__(self, model: PlantModel, epoch: int, send: Callable[[Stop | StopLeft], None]) -> None:
@@ -44,7 +44,7 @@ class Stops:
         self._replacing = threading.Lock()
 
     def open(self, request: OperatorRequest) -> OperatorRequest:
-        """Take in a request before the plant does, which gets what is returned; from any thread."""
+        """Take a request before the plant does; the plant gets the returned one. From any thread."""
         token = request.request or uuid4().hex
         request = replace(request, request=token)
         self.loop.post(Opened(request=request))
@@ -66,22 +66,22 @@ class Stops:
         return StopsAway(mine) if mine else None
 
     def departed(self, stops: StopsAway) -> None:
-        """The plant has sent these stops itself."""
+        """Note that the plant itself has sent these stops."""
         for token in stops.tokens:
             self.loop.post(Departed(token=token))
 
     def closed(self, answer: OperatorAnswer) -> None:
-        """Somebody is answered."""
+        """Note that a request has its answer."""
         if answer.verb is Verb.STOP:
             self.loop.post(Closed(token=answer.request or ""))
 
     def refuse_overtaken(self, message: Command | Notice) -> None:
-        """Overtaken for a command that must not leave any more."""
+        """Raise Overtaken for a command that must not leave any more."""
         if self._overtake(message):
             raise CommandOvertaken(message)
 
     def stop_again(self, message: Command | Notice) -> None:
-        """Stop a robot once more that was sent this command while a stop was leaving beside it."""
+        """Stop a robot once more if it was sent this command while a stop was leaving beside the plant."""
         if self._overtake(message):
             self.loop.post(Overrun(robot=message.robot))
 
@@ -92,4 +92,4 @@ class Stops:
 
 
 def _leave_it_to_the_plant(_message: object, _error: Exception) -> None:
-    """The plant sends its own stop as soon as it can, and tells what becomes of that."""
+    """Leave a stop to the plant, which sends its own as soon as it can, and reports the outcome."""

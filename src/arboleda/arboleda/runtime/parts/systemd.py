@@ -1,4 +1,4 @@
-"""Tells systemd that the plant is ready, that it is alive, and that it ends: the protocol of sd_notify(3)."""
+"""Notices to systemd that the plant is ready, alive, or ending: the protocol of sd_notify(3)."""
 
 from __future__ import annotations
 
@@ -17,7 +17,8 @@ PATIENCE_S = 1.0
 class SystemdPart:
     """The last part of a plant that systemd started; `stepped_at` says when the plant made its last step.
 
-    A plant that hangs makes no steps, or does not say when: systemd hears nothing then, and starts it anew.
+    A plant that hangs makes no steps, or does not report them: systemd gets no notice then, and starts it
+    anew.
     """
 
     def __init__(self, address: str, watchdog_s: float | None, stepped_at: Callable[[], float]) -> None:
@@ -33,7 +34,7 @@ class SystemdPart:
             self._watch.start()
 
     def stop(self) -> None:
-        """Say that it ends; a plant that hangs in a step is not waited for."""
+        """Tell systemd that the plant ends, without waiting for one that hangs in a step."""
         self._ending.set()
         self._tell("STOPPING=1")
         if self._watch.ident is not None and self._watch is not threading.current_thread():
@@ -54,8 +55,8 @@ class SystemdPart:
 def systemd_part(
     environment: MutableMapping[str, str], stepped_at: Callable[[], float]
 ) -> SystemdPart | None:
-    """The part, where systemd has started this process and wants to be told; its variables are taken out, so
-    that no child of this process speaks for it."""
+    """The systemd part, if systemd has started this process and wants notices. Takes the variables out of the
+    environment, so that no child of this process speaks for it."""
     address = environment.pop(SOCKET, "")
     watched = environment.pop(WATCHDOG_PID, str(os.getpid())) == str(os.getpid())
     period_us = environment.pop(WATCHDOG_US, "")

@@ -1,4 +1,4 @@
-"""Which reports the plant must look at now, and which may wait a moment for others."""
+"""Urgency of reports: some the plant must look at now, others may wait a moment for more."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ _NOTHING = _words(Report(at=0.0, robot=""))
 
 
 class Urgency:
-    """How long a report may wait; asked from the one thread that brings reports, beside the plant's.
+    """Urgency: decides how long a report may wait, in the one thread that brings reports, beside the plant's.
 
-    A robot that has nothing new to say says so ten times a second. Where a position alone proves nothing
-    such a report may wait: not while its robot stands still under an open command, whose end a position may
-    be, nor while a tree awaits the piece sensor. At evidence `joints` position and state come one by one.
-    Where nothing goes on in its cell, what repeats the last report in every word may wait longer.
+    A robot without news says so ten times a second. If a position alone proves nothing, such a report may
+    wait: but not while its robot stands still under an open command, which a position may end, nor while a
+    tree awaits the piece sensor. At evidence `joints`, position and state come one by one. While nothing goes
+    on in its cell, a report that repeats the last one in every word may wait longer.
     """
 
     def __init__(self, plant: Plant) -> None:
@@ -40,7 +40,7 @@ class Urgency:
         }
 
     def within_s(self, report: Report) -> float:
-        """0 for news."""
+        """The time that a report may wait, s; 0 for news."""
         robot = report.robot
         if report.state is not None:
             self._state[robot] = report.state
@@ -57,7 +57,7 @@ class Urgency:
         return RESTING_S if repeats and run.tree is None and not run.queue else COMPANY_S
 
     def _is_news(self, report: Report) -> bool:
-        """Whether it says more than where the robot is, and something else than the one before."""
+        """True if a report says more than the robot's position, and something else than the one before."""
         said = _words(report)
         if said == _NOTHING or said == self._said.get(report.robot):
             return False

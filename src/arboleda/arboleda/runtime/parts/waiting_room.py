@@ -1,4 +1,4 @@
-"""What a standby shows while it waits: a page and an API that say so, behind the same door as the plant's."""
+"""Waiting room of a standby: a page and an API that say that it waits, with the same login as the plant's."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from .web import Announce
 
 SOON_S = "1"  # Retry-After: within seconds somebody leads
 METHODS = ["GET", "POST", "PUT", "PATCH", "DELETE"]
-IN_AN_ADDRESS = ":/%#?=@[]!$&'()*+,;"  # what stays as it was sent
+IN_AN_ADDRESS = ":/%#?=@[]!$&'()*+,;"  # characters that are not quoted
 # It looks again and again, and is loaded anew where something else is said: then also where the plant's own
 # page is there in its place. A page that was loaded anew by the clock would be lost in the second in between.
 PAGE = """<!doctype html>
@@ -67,7 +67,7 @@ FAR = (
 
 
 class WaitingRoom:
-    """A server for the time of waiting; it shows what it was told last."""
+    """WaitingRoom: a server for the time of waiting; it shows the last sentence given to `show`."""
 
     def __init__(self, plant: str, state: Path, options: WebOptions) -> None:
         self._plant, self._state, self._options = plant, state, options
@@ -92,11 +92,11 @@ class WaitingRoom:
 
     @property
     def url(self) -> str:
-        """Its origin, for this machine."""
+        """The server's origin, for this machine."""
         return f"{self._options.scheme}://{self._options.near}:{self.port}"
 
     def show(self, sentence: str, led: LeaderInfo | None) -> None:
-        """What it waits for, and who leads, None where that is not known."""
+        """Show the reason for waiting and the leader, None if that one is unknown."""
         self._sentence, self._led = sentence, led
 
     def start(self, announce: Announce) -> None:
@@ -122,8 +122,8 @@ class WaitingRoom:
         return HTMLResponse(PAGE.format(plant=plant, sentence=sentence, way=_way(self._led)))
 
     async def _send_on(self, request: Request) -> Response:
-        """A request of the API goes to who leads, as it was made; any other, and where nobody can be reached
-        at another address, may come again."""
+        """The answer to a request: a redirect to the leader for one of the API; 503 for any other one, or if
+        the leader has no other address: it may be repeated."""
         sentence = f"this process stands by and does nothing itself: it {self._sentence}"
         said = self._known | {"sentence": sentence}
         way = self._led.way if self._led else ""
@@ -134,14 +134,14 @@ class WaitingRoom:
 
 
 def _target(request: Request) -> str:
-    """Path and query, as they were sent."""
+    """The path and query of a request, as they were sent."""
     query = request.scope["query_string"]
     sent = request.scope["raw_path"] + (b"?" + query if query else b"")
     return quote(sent.decode("latin-1"), safe=IN_AN_ADDRESS)
 
 
 def _way(led: LeaderInfo | None) -> str:
-    """The way to the plant's page."""
+    """The link to the plant's page."""
     if led is None or not led.url:
         return ""
     return FAR.format(host=escape(led.host)) if led.is_far else LINK.format(url=escape(led.url))

@@ -26,7 +26,7 @@ CLEAR = "No TLS: the token travels in clear on {host}; see docs/how-to/network.m
 
 
 class Announce(Protocol):
-    """Tells other processes of this machine where the server is reached."""
+    """The function that tells other processes of this machine the server's address."""
 
     def __call__(self, port: int, *, host: str, guarded: bool, certificate: str) -> None: ...
 
@@ -69,7 +69,7 @@ class WebPart:
 
     @property
     def notes(self) -> list[str]:
-        """What a person should know, a line each."""
+        """The lines that a person should read about the server."""
         address = self._here
         notes = [f"HTTP API: {address}/api/plant"]
         if self._options.port is None and self._port != DEFAULT_PORT:
@@ -83,7 +83,7 @@ class WebPart:
         return notes
 
     def address_of(self, cell: str, task: str | None) -> str | None:
-        """Where a browser sees a cell, or a task of it; None where there is no page."""
+        """The address at which a browser shows a cell, or a task of it; None if there is no page."""
         if not self._shows_page:
             return None
         place = {"tab": "cells", "cell": cell} if task is None else {"tab": "tasks", "task": task}
@@ -92,7 +92,7 @@ class WebPart:
 
     @property
     def _here(self) -> str:
-        """Its origin, for this machine."""
+        """The server's origin, for this machine."""
         return f"{self._options.scheme}://{self._options.near}:{self._port}"
 
     def start(self) -> None:

@@ -1,4 +1,4 @@
-"""Everything that can go wrong, by kind; a file for each family."""
+"""Faults of every kind that can go wrong; a file for each family."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ FAMILIES = (
     orchestrators,
     operators,
     foreigners,
-    crashes,  # those at the end change nothing of what seeds draw of the others
+    crashes,  # added at the end, so that seeds draw the same faults of the others as before
     hosts,
 )
 KINDS: dict[str, Kind] = {kind.name: kind for family in FAMILIES for kind in family.KINDS}

@@ -1,4 +1,4 @@
-"""What befalls a board: power, its processor, its drivers, its motors."""
+"""Faults of a board: its power, its processor, its drivers, its motors."""
 
 from __future__ import annotations
 

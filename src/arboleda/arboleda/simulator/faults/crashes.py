@@ -1,4 +1,4 @@
-"""The plant dies within a step: alone, with its machine, or on a full disk; it starts on what is left."""
+"""Faults in which the plant dies within a step: alone, with its machine, or on a full disk."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What befalls a device of a declared kind: it does not do, or does not say, what it should."""
+"""Faults of a device of a declared kind: it does not do, or does not report, as it should."""
 
 from __future__ import annotations
 
@@ -99,7 +99,7 @@ def lying_fact(world: World, fault: Fault) -> End:
 
 
 def _another(type: FactType, now: Value, dice: Dice) -> Value:
-    """Something else that a fact can be."""
+    """Another value that a fact can have."""
     if type.words:
         others = [word for word in type.words if word != now]
         return dice.pick(others or list(type.words))
@@ -117,7 +117,7 @@ def _lie(world: World, fault: Fault, value: Value) -> End:
 
 
 def _behave(world: World, fault: Fault, how: str, does: Any) -> End:
-    """A device behaves so, each fault of this kind in its own way, until the last of them ends."""
+    """Have a device behave so; several faults add up, until the last of them ends."""
     body = targets.machine_body(world, fault.target)
     usual = getattr(type(body)(body.kind), how)
     setattr(body, how, does)

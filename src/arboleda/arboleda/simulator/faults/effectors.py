@@ -1,4 +1,4 @@
-"""What befalls an effector and the part it handles."""
+"""Faults of an effector and of the part that it handles."""
 
 from __future__ import annotations
 

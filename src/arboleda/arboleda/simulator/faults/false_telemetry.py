@@ -1,4 +1,4 @@
-"""Boards that say something else than they mean: telemetry altered on its way, lies kept account of."""
+"""Altered telemetry of boards, with a book of which reports are lies."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ Change = Callable[[Fields], Fields]
 
 
 def alter(world: World, board: str, change: Callable[[bytes], bytes]) -> End:
-    """Every telemetry message of a board has the payload that `change` makes of it."""
+    """Replace the payload of each telemetry message of a board by what `change` makes of it."""
     address = topic(board, Channel.TELEMETRY)
 
     def carry(publication: Publication) -> Iterable[Publication]:
@@ -33,7 +33,7 @@ def alter(world: World, board: str, change: Callable[[bytes], bytes]) -> End:
 
 
 def deceive(world: World, board: str, whats: Sequence[str], change: Change) -> End:
-    """Alter the fields of a board's telemetry, which are lies about `whats`."""
+    """Alter fields of a board's telemetry, and note them as lies about `whats`."""
     truth = begin_to_deceive(world, board, whats)
     end = alter(world, board, lambda payload: retold(payload, change))
 
@@ -45,7 +45,7 @@ def deceive(world: World, board: str, whats: Sequence[str], change: Change) -> E
 
 
 def retold(payload: bytes, change: Change) -> bytes:
-    """The message with other fields; what is no JSON object stays as it is."""
+    """The message with other fields; a payload that is no JSON object stays as it is."""
     try:
         said = json.loads(payload)
     except ValueError:

@@ -122,7 +122,7 @@ STRAYS: dict[str, Callable[[str], Publication]] = {
 
 
 def _goals(model: PlantModel, target: str) -> tuple[str, ...]:
-    """What can be ordered of a robot; a stop counts whoever says it and is a kind of its own."""
+    """The goals that can be ordered of a robot, without stops, which are a kind of fault of their own."""
     robot = targets.robot_of(model, target)
     if robot.has_joints:
         return ("move", "effector on", "effector off", "home", "clear")
@@ -174,7 +174,7 @@ def _old(world: World, fault: Fault) -> Publication | None:
 
 
 def _older(world: World, fault: Fault) -> tuple[int, int] | None:
-    """epoca and seq of nobody who still commands the board; None where it has carried out nothing."""
+    """The epoca and seq of a giver that the board obeys no more; None if it has carried out nothing."""
     last = world.obeyed.get(fault.target)
     if last is None or last.epoch is None or last.seq is None or last.epoch < 1:
         return None

@@ -1,4 +1,4 @@
-"""What befalls two hosts of a plant, and their way to the store: only where a standby is simulated."""
+"""Faults of the two hosts of a plant and of their connection to the store; only with a simulated standby."""
 
 from __future__ import annotations
 

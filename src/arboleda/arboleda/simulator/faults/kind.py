@@ -1,4 +1,4 @@
-"""What a fault is: plain data, and a kind that knows whom it befalls, how it begins and how it ends."""
+"""Faults as plain data, and kinds of faults: each has its targets, its beginning and its end."""
 
 from __future__ import annotations
 
@@ -18,8 +18,8 @@ End = Callable[[], None]
 class Fault:
     """Something that goes wrong `at` s after the run began, for `seconds` (0: an instant).
 
-    `kind` is a name in KINDS, `target` what it befalls, `amount` how much of it, `word` which of several;
-    `seed` is for the chances it takes itself.
+    `kind` is a name in KINDS, `target` the board, line or process that it befalls, `amount` its size, `word`
+    the choice among several forms; `seed` is for what the fault draws itself.
     """
 
     kind: str
@@ -44,11 +44,11 @@ def no_words(model: PlantModel, target: str) -> Sequence[str]:
 
 @dataclass(frozen=True, kw_only=True)
 class Kind:
-    """One kind of fault: `begin` brings it about and returns how it ends, None where it is an instant.
+    """One kind of fault: `begin` brings it about and returns the call that ends it, None for an instant.
 
-    `targets` are whom it can befall in a plant (nobody: it cannot happen there), `words` what it can be then;
-    a word that stands there more often is drawn more often. `seconds` and `amount` are from where to where
-    they are drawn; `weight` is how often the kind is drawn beside others, 0: never.
+    `targets` gives the possible targets in a plant (none: it cannot happen there), `words` the forms it can
+    take then; a word that stands there more often is drawn more often. `seconds` and `amount` are the ranges
+    from which these are drawn; `weight` is how often the kind is drawn beside others, 0: never.
     """
 
     name: str
@@ -71,7 +71,7 @@ class Kind:
         }
 
     def objection(self, fault: Fault, model: PlantModel) -> str | None:
-        """What such a fault cannot be in this plant, and what is allowed; None where it is right."""
+        """The reason why such a fault cannot be in this plant, with what is allowed; None if it can."""
         targets = self.targets(model)
         if fault.target not in targets:
             return f"{self.name} cannot befall {fault.target!r}; allowed: {_listed(targets)}"
@@ -109,12 +109,12 @@ def kind(
 
 
 def words(*allowed: str) -> Words:
-    """The same words whatever the plant and the target."""
+    """The same words for every plant and target."""
     return lambda model, target: allowed
 
 
 def _drawn(dice: Dice, span: Range) -> float:
-    """From where to where, in thousandths; short and small as often as long and big where 0 is not in it."""
+    """A number from the range, in thousandths; in a range without 0 small and large ones are as likely."""
     low, high = span
     if low == high:
         return low

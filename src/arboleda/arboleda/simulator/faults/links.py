@@ -1,5 +1,5 @@
-"""What befalls the lines between processes: each direction of a connection to the broker, and the hop
-between plant and bridge.
+"""Faults of the lines between processes: each direction of a connection to the broker, and the hop between
+plant and bridge.
 
 Only delay and a held partition touch presence: MQTT never loses or overtakes it while a connection lasts.
 """

@@ -38,7 +38,7 @@ def _zones(model: PlantModel) -> tuple[str, ...]:
 
 
 def _homings(model: PlantModel, target: str) -> tuple[str, ...]:
-    """By hand only where a robot cannot report a homing: nobody is asked to put another at its reference."""
+    """Verbs for homing; by hand only for robots that cannot report a homing, as people are asked then."""
     robot = model.robots.get(target)
     return ("",) if robot is None or robot.says_homed else ("", BY_HAND)
 
@@ -48,7 +48,7 @@ def _cancellings(model: PlantModel, target: str) -> tuple[str, ...]:
 
 
 def _unloadings(model: PlantModel, target: str) -> tuple[str, ...]:
-    """A whole rack, one of its stations, and one that there is not."""
+    """Scopes for unloading: a whole rack, one of its stations, and one that does not exist."""
     stations = len(model.cell(target).stations) if target in targets.cells(model) else 0
     return ("", *map(str, range(stations + 1))) if stations else ("",)
 
@@ -67,7 +67,7 @@ def _operate(verb: Verb) -> Callable[[World, Fault], None]:
 
 
 def _task(world: World, fault: Fault) -> str:
-    """The id of one of a cell's tasks; one that there never was where it has none of them."""
+    """The id of one of a cell's tasks; an id that never existed if the cell has none."""
     ids = [task.id for task in _tasks_of(world, fault.target) if task.state in OF_THE_CELL[fault.word]]
     return Dice(fault.seed, "task").pick(ids) if ids else "t-0-0"
 
@@ -126,7 +126,7 @@ def _another_text(world: World, fault: Fault) -> str:
 
 
 def _known_id(world: World, fault: Fault) -> list[str]:
-    """One of the cell's tasks that had an id, in whatever state it is now; a new one where there is none."""
+    """The id of one of the cell's tasks, in whatever state that is now; a new id if there is none."""
     known = [f"{task.order.text} #{task.id}" for task in _tasks_of(world, fault.target) if task.order.id]
     return [Dice(fault.seed, "known").pick(known)] if known else _same_id(world, fault)
 

@@ -57,7 +57,7 @@ def _strange(model: PlantModel, target: str) -> tuple[str, ...]:
 
 
 def _own(model: PlantModel, target: str) -> tuple[str, ...]:
-    """What is ordered of a robot of its kind alone, as often as that is drawn."""
+    """The orders for robots of this kind alone; a repeated one is drawn more often."""
     robot = model.robots[target]
     if robot.has_joints:
         return ("move", "effector on", "effector off") * 4
@@ -71,7 +71,7 @@ def _knows(model: PlantModel, target: str, word: str) -> bool:
 @kind(targets=targets.robots, words=_strange)
 def foreign_command(world: World, fault: Fault) -> None:
     """A node of somebody else commands a robot on its plain topic; only its stops count."""
-    # where the bridge hears no plant it would obey, as it does those who have no other orchestrator
+    # a bridge that hears no plant would obey the stranger as its only orchestrator
     if not world.is_on(BRIDGE) or world.now >= world.beat_reached_bridge_at + PLANT_GONE_S:
         return
     order = ORDERS[fault.word](world.model, fault.target, "", Dice(fault.seed, "foreign"))

@@ -1,4 +1,4 @@
-"""What befalls the processes beside the boards: broker, bridge and plant."""
+"""Faults of the processes beside the boards: broker, bridge and plant."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What befalls a piece sensor; only boards that say what it sees can say it wrong."""
+"""Faults of a piece sensor; only for boards that report it."""
 
 from __future__ import annotations
 

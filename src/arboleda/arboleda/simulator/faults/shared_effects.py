@@ -8,7 +8,7 @@ from .kind import End
 
 
 def hold(world: World, what: str, whom: str, end: End) -> End:
-    """One more fault keeps `what` up at `whom`; `end` is called when none does any more."""
+    """Keep `what` up at `whom` for one more fault; `end` is called when the last such fault ends."""
     world.holds[what, whom] += 1
 
     def release() -> None:
@@ -26,6 +26,6 @@ def stall(world: World, process: str, seconds: float) -> End:
 
 
 def trouble(line: Line, makes: Trouble) -> End:
-    """A line treats its messages so until the end."""
+    """Have a line treat its messages in this way until the fault ends."""
     line.troubles.append(makes)
     return lambda: line.troubles.remove(makes)

@@ -1,4 +1,4 @@
-"""Whom faults befall, by name: boards, lines and processes as the world names them, robots and cells."""
+"""Targets of faults, by name: boards, lines and processes as the world names them, robots and cells."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def machines(model: PlantModel) -> tuple[str, ...]:
 
 
 def askable(model: PlantModel) -> tuple[str, ...]:
-    """The boards of devices that can be asked something."""
+    """The boards of devices that can be queried."""
     devices = (robot for robot in _reached(model) if robot.verb_names)
     return tuple(robot.mqtt for robot in devices if robot.query_names)
 
@@ -45,18 +45,18 @@ def holders(model: PlantModel) -> tuple[str, ...]:
 
 
 def goers(model: PlantModel) -> tuple[str, ...]:
-    """The boards of robots that go from place to place."""
+    """The boards of robots that drive from place to place."""
     return tuple(robot.mqtt for robot in _reached(model) if robot.goes)
 
 
 def feelers(model: PlantModel) -> tuple[str, ...]:
-    """The boards of arms that tell what their piece sensor sees."""
+    """The boards of arms that report what their piece sensor sees."""
     heard = (robot for robot in _reached(model) if robot.evidence is Evidence.IDS)
     return tuple(robot.mqtt for robot in heard if robot.has_joints)
 
 
 def clients(model: PlantModel) -> tuple[str, ...]:
-    """Whoever has a connection to the broker."""
+    """Every process that has a connection to the broker."""
     return (*boards(model), BRIDGE)
 
 
@@ -96,7 +96,7 @@ def arm_body(world: World, board: str) -> ArmBody:
 
 
 def machine_body(world: World, board: str) -> MachineBody:
-    """What a declared device does."""
+    """The virtual body of the board of a declared device."""
     return cast(MachineBody, world.boards[board].body)
 
 

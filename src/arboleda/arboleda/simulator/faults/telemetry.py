@@ -1,4 +1,4 @@
-"""What befalls a board's telemetry: a field that sticks, a field that lies, bytes that make no sense."""
+"""Faults in a board's telemetry: a field that sticks, a field that lies, bytes that make no sense."""
 
 from __future__ import annotations
 
@@ -126,7 +126,7 @@ def _other_node(world: World, fault: Fault) -> Lie:
 
 
 def _other_number(world: World, fault: Fault) -> Lie:
-    """A number near that of the last command, which it may be for `hecho`: done before it is done."""
+    """A number near that of the last command, or that number itself: `hecho` then says done too early."""
     own = fault.word == "ack"
     beside = Dice(fault.seed, "beside").pick((-1, 1, 1000) if own else (-1, 0, 0, 1, 1000))
     return lambda said: max(0, said.get("ack", 0) + beside)

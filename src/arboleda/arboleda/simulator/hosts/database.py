@@ -1,7 +1,7 @@
-"""The store of a plant that two hosts reach: the row that says who leads, and what is kept behind it.
+"""Store of a plant that two hosts reach: the row that names the leader, and what is kept behind it.
 
-The row does as the statements of `store/postgres` do on a server; `tests/contract/test_leader_row.py`
-holds the one against the other.
+The row behaves as the statements of `store/postgres` do on a server; `tests/contract/test_leader_row.py`
+compares the two.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from .process import Process
 
 @dataclass(slots=True)
 class LeaderRow:
-    """Who leads under which number, and when he said so last; all times are of the store's clock, s."""
+    """The leader's number, and the time of its last renewal; all times are of the store's clock, s."""
 
     epoch: int
     seen: float | None = None
@@ -27,20 +27,20 @@ class LeaderRow:
 
     @property
     def last_seen(self) -> tuple[int, float | None]:
-        """What is another thing whenever a leader says anything."""
+        """A value that changes with every statement of a leader."""
         return self.epoch, self.seen
 
     def leads(self, now: float) -> bool:
-        """Whether somebody has said lately that he leads, as whoever only looks sees it."""
+        """True if a leader has renewed its lease lately, as a process sees it that only looks."""
         return self.seen is not None and abs(now - self.seen) < LEASE_S
 
     def end_lease(self, last_seen: tuple[int, float | None]) -> None:
-        """That leader leads no more, where he has said nothing since."""
+        """End the lease of a leader if it has not renewed it since then."""
         if last_seen == self.last_seen:
             self.seen = None
 
     def lead(self, proposed: int, now: float) -> tuple[int, tuple[str, ...]] | None:
-        """Lead under that number or a higher one, and what is to go on; None where somebody leads."""
+        """Lead under this number or a higher one; return it and what is to go on; None if another leads."""
         if self.seen is not None:
             return None
         going = self.going if self._is_wanted(now) else ()
@@ -49,24 +49,24 @@ class LeaderRow:
         return self.epoch, going
 
     def renew(self, epoch: int, now: float) -> bool | None:
-        """Go on leading: whether another leader is wanted; None where that number leads no more."""
+        """Renew the lease; return whether another leader is wanted, or None if this number leads no more."""
         if epoch != self.epoch or self.seen is None:
             return None
         self.seen = now
         return self._is_wanted(now)
 
     def hand_over(self, epoch: int, going: Sequence[str]) -> None:
-        """Say what the next leader goes on with."""
+        """Record what the next leader is to go on with."""
         if epoch == self.epoch:
             self.going = tuple(going)
 
     def give_back(self, epoch: int) -> None:
-        """Lead no more, so that who waits begins at once."""
+        """Give up the lease, so that a waiting process can lead at once."""
         if epoch == self.epoch:
             self.seen = None
 
     def is_fenced(self, epoch: int) -> bool:
-        """Whether who leads under that number may write."""
+        """True if the leader with this number may write."""
         return epoch == self.epoch
 
     def _is_wanted(self, now: float) -> bool:
@@ -74,11 +74,11 @@ class LeaderRow:
 
 
 class StoreUnreachable(DiskFull):
-    """The store cannot be reached, so nothing can be kept."""
+    """Raised when the store cannot be reached, so that nothing can be kept."""
 
 
 class StoreRefused(DiskFull):
-    """Another process leads: the store takes nothing more from this one."""
+    """Raised when another process leads: the store takes nothing more from this one."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -91,10 +91,10 @@ class Write:
 
 
 class SharedDisk(Disk):
-    """What the store keeps; `writer` is the process whose plant writes with `commit`.
+    """Disk that the store keeps; `writer` is the process whose plant writes with `commit`.
 
-    `forgets`: of how many statements the answer is lost next, so that they are sent once more. `writes` is
-    all that it took since somebody looked.
+    `forgets`: the number of next statements whose answer is lost, so that they are sent once more. `writes`
+    is all that it took since it was last emptied.
     """
 
     def __init__(self, row: LeaderRow) -> None:
@@ -110,7 +110,7 @@ class SharedDisk(Disk):
         return self.take(self.writer, message, now)
 
     def take(self, writer: Process, message: Notice, now: float) -> float:
-        """One statement of a process: how long it takes, s; Refused, or Away where it hears no answer."""
+        """Take one statement of a process; return its seconds. Raises Refused, or Away without an answer."""
         took = 0.0
         if writer.host.reaches:
             took += self._fenced(writer.epoch, message, now)

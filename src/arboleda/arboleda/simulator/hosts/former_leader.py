@@ -1,4 +1,4 @@
-"""A process that led a plant, and may not know yet that another one does."""
+"""Former leader: a process that led a plant, and may not know yet that another one does."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ WAKES_S = 0.02  # how often it does something, at the least, until it is over
 
 @dataclass(frozen=True, kw_only=True)
 class LateMessage:
-    """What left a process after another one led: a message of its plant, or a publication of its bridge."""
+    """A message of a former plant, or a publication of its bridge, that left after another process led."""
 
     epoch: int
     standing: Standing
@@ -30,7 +30,7 @@ class LateMessage:
 
 
 class FormerLeader:
-    """Goes on as a process does that was frozen, cut off or slow, until it knows, and is `over`."""
+    """Former leader: goes on as a frozen, cut off or slow process until it finds out and is `over`."""
 
     def __init__(self, world: World, disk: SharedDisk, process: Process, left: SupersededProcess) -> None:
         self.process = process
@@ -40,7 +40,7 @@ class FormerLeader:
         world.at(left.until, self._go_on)
 
     def end(self) -> None:
-        """It is killed, or ends; idempotent."""
+        """End it, as if it was killed; may be called twice."""
         if not self.over:
             self.over = True
             self._world.bury(self._left)
@@ -58,7 +58,7 @@ class FormerLeader:
             world.at(world.now + WAKES_S, self._go_on)
 
     def _let_out(self, messages: Iterable[object]) -> None:
-        """As a plant in its loop does: what is kept first, before each message a look whether it leads."""
+        """Let a message out as the plant's loop does: keep it first, and check the lead before it leaves."""
         for message in messages:
             if self.over:
                 return
@@ -91,7 +91,7 @@ class FormerLeader:
             self._begin_end()
 
     def _begin_end(self) -> None:
-        """It cannot find out whether it leads: its robots are to stand, and then it is over."""
+        """Begin to end, as it cannot find out whether it leads: its robots are to stand first."""
         if self._ends_at is None:
             self._ends_at = self._world.now + ENDS_S
             self._left.inbox.append(Shutdown(at=self._world.now))

@@ -1,4 +1,4 @@
-"""Two hosts of a plant: who leads says so to the store, and who waits looks whether anybody does."""
+"""Two hosts of a plant: the leader renews its lease in the store, the other one watches it."""
 
 from __future__ import annotations
 
@@ -12,17 +12,17 @@ from .former_leader import FormerLeader
 from .process import Host, Process
 
 NAMES = ("host_a", "host_b")
-STARTS_S = 0.4  # what a standby takes from leading to its first step
+STARTS_S = 0.4  # from a standby's lead to its first step
 BACK_S = 5.0  # after which a process that ended is started again, to wait
 LOOKS_S = 0.05  # how often a planned change is looked at
-HELD_S = 10.0  # by then what is held stands still
-HEARD_S = 30.0  # by then robots are heard
+HELD_S = 10.0  # within which a held cell stands still
+HEARD_S = 30.0  # within which robots are heard
 
 
 class Hosts:
-    """Of `world`, whose plant is that of `leader`; `formers` are processes that led, and are not over yet.
+    """The two hosts of `world`, whose plant is that of `leader`; `formers` led before and still run.
 
-    `numbers` are all under which the plant was led, with the host that did.
+    `numbers` are all numbers under which the plant was led, with the host that did.
     """
 
     def __init__(self, world: World, disk: SharedDisk) -> None:
@@ -40,21 +40,21 @@ class Hosts:
         self._tend(second)
 
     def kill(self) -> None:
-        """The process that leads dies, its bridge with it."""
+        """Kill the process that leads, and its bridge with it."""
         world = self.world
         if world.is_on(PLANT) and not (world.is_stalled(PLANT) or world.is_stalled(BRIDGE)):
             world.stop_plant()
             world.stop_bridge()
 
     def hand_over(self) -> None:
-        """Somebody asks for a planned change; where nobody waits, nothing comes of it."""
+        """Ask for a planned change of leaders; without a waiting process nothing happens."""
         if self._waits:
             self.disk.row.wanted = self.world.now
 
     # --- what each host does again and again ---
 
     def _tend(self, host: Host) -> None:
-        """The leader says that he leads, who waits looks, and who ended comes back after a while."""
+        """Renew the leader's lease, have the waiting process look, start ended ones again after a while."""
         world = self.world
         if host.name in self._waits:
             self._look(host)
@@ -87,7 +87,7 @@ class Hosts:
             world.at(world.now + host.delay_s / 2, lambda _: self._renewed(process, asked_at))
 
     def _renewed(self, process: Process, asked_at: float) -> None:
-        """The store was told that a process leads; its answer counts from before it was asked."""
+        """Take in that a lease was renewed; it counts from the time before the statement was sent."""
         if process is not self.leader or not self.world.is_on(PLANT):
             return
         wanted = self.disk.row.renew(process.epoch, self.world.now)
@@ -134,7 +134,7 @@ class Hosts:
         return leader
 
     def _look_before_it_leaves(self, message: Command | Heartbeat) -> None:
-        """What the plant that leads lets out: nothing once it is unsure, as then it ends."""
+        """Check each message before it leaves; an unsure leader lets nothing out, and ends."""
         standing = self.leader.confirm(self.disk.row, self.world.now)
         if standing is Standing.UNSURE:
             raise StoreUnreachable("the store cannot be reached")

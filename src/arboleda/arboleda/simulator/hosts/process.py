@@ -1,4 +1,4 @@
-"""A host, its clock and its way to the store; and a process that leads there, as far as it knows."""
+"""Hosts, each with its clock and its connection to the store, and processes that led a plant there."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ ANSWER_S = 1.0  # a server that says nothing for so long counts as away
 
 
 class StorePath(Enum):
-    """What of a host's way to the store is cut."""
+    """The direction in which a host's connection to the store is cut."""
 
     TO = "to the store"
     BOTH = "both ways"
@@ -23,8 +23,8 @@ class StorePath(Enum):
 
 
 class Host:
-    """One of two; `delay_s`: how long the store takes to answer it, `wall_s`: how far its calendar is ahead,
-    which counts for nothing but the number that it proposes.
+    """One of the two hosts; `delay_s`: the time the store takes to answer it, `wall_s`: how far its calendar
+    is ahead, which counts for nothing but the number that it proposes.
     """
 
     def __init__(self, name: str, now: float) -> None:
@@ -36,11 +36,11 @@ class Host:
         self._rate, self._since, self._shown = 1.0, now, now
 
     def clock(self, now: float) -> float:
-        """What its own clock shows."""
+        """The time on the host's own clock."""
         return self._shown + self._rate * (now - self._since)
 
     def run(self, now: float, rate: float) -> None:
-        """Have its clock run so much faster than those of others from now on, or slower."""
+        """Run its clock faster or slower than other clocks from now on."""
         self._shown, self._since, self._rate = self.clock(now), now, rate
 
     @property
@@ -49,12 +49,12 @@ class Host:
 
     @property
     def reaches(self) -> bool:
-        """Whether what it says comes to the store."""
+        """True if its statements reach the store."""
         return not (self.cuts[StorePath.TO] or self.cuts[StorePath.BOTH])
 
     @property
     def hears(self) -> bool:
-        """Whether an answer of the store comes back in time."""
+        """True if answers of the store come back in time."""
         return self.reaches and not self.cuts[StorePath.FROM] and self.delay_s < ANSWER_S
 
 
@@ -68,7 +68,7 @@ class Process:
         self.standing = Standing.LEADS
 
     def confirm(self, row: LeaderRow, now: float) -> Standing:
-        """As a leader does before each message: it asks the store only where its lease may be over."""
+        """Confirm the lead before a message; ask the store only if the lease may be over."""
         if self.standing is not Standing.LEADS or self.lease.lasts(self.host.clock(now)):
             return self.standing
         took = row.renew(self.epoch, now) if self.host.reaches else None

@@ -1,4 +1,4 @@
-"""What must hold after every step, each a small function with one sentence."""
+"""Invariants: rules that hold after every step, each a small function with one sentence."""
 
 from __future__ import annotations
 

@@ -20,7 +20,7 @@ def advice_leads_out(look: Look) -> Iterator[str]:
 
 @invariant(Trigger.ASKED)
 def refusals_are_foretold(look: Look) -> Iterator[str]:
-    """Whether and why a verb would be refused is told before as it is answered then."""
+    """The refusal of a verb, or that it is not refused, is foretold just as it is answered then."""
     for request, foretold in look.record.asked.foretold:
         (answer,) = look.record.answers
         if answer.refusal != foretold:

@@ -1,4 +1,4 @@
-"""What the plant believes of its robots is their last word, and that they are there while they speak."""
+"""Invariants of the plant's beliefs: the last word of each robot, and its presence while it speaks."""
 
 from __future__ import annotations
 

@@ -44,8 +44,8 @@ def tasks_stay_in_their_cell(look: Look) -> Iterator[str]:
 
 @invariant(Trigger.TOLD)
 def courses_are_as_seen(look: Look) -> Iterator[str]:
-    """What is learned of a task that is done is when its steps began and how long it worked, as it was seen;
-    of one that an earlier start has begun nothing is.
+    """The course that is learned of a done task has its steps' beginnings and its working time as they were
+    seen; of a task that an earlier start has begun nothing is learned.
     """
     for change in look.record.tasks.changes:
         said, seen = change.said, look.record.courses.ended.get(change.said.task)

@@ -19,14 +19,14 @@ ROUNDING_S = 1e-6
 HOMING_S = 30.0
 # Homing is what makes an unhomed robot homed; an operator may have the effector opened during a stop.
 STOPPED = frozenset({Obstacle.LATCHED, Obstacle.STOPPED})
-# What only answers moves nothing.
+# A question moves nothing, so the device answers in spite of these.
 ANSWERS_ALL_THE_SAME = STOPPED | {Obstacle.FAULTED, Obstacle.UNHOMED}
 KNOWN_STILL = frozenset({Reason.STOPPED_SHORT, Reason.NOT_REACHED, Reason.STOPPED})
 GIVEN_UP = frozenset({State.CANCELLING, State.CANCELLED, State.FAILED})
 
 
 def _reachable() -> dict[State | None, frozenset[State]]:
-    """To where some chain of the ledger's rows leads from each state; each row counts as it was at import."""
+    """The states that the ledger's rows lead to from each state, in one or more steps."""
     after: dict[State, set[State]] = {state: set() for state in State}
     for (before, _), then in TABLE.items():
         after[before].add(then)
@@ -77,7 +77,7 @@ def one_motion_per_robot(look: Look) -> Iterable[str]:
 
 
 def _open_before(sent: SentCommand, commands: Commands) -> SentCommand | None:
-    """An open motion of the robot, but none that left later in this step, when this one may have ended."""
+    """Another open motion of the robot that was not sent after this one in this step, if any."""
     later = commands.new[commands.new.index(sent) + 1 :]
     others = (each for each in commands.open.values() if each.robot == sent.robot and each.is_work)
     return next((each for each in others if each is not sent and each not in later), None)
@@ -128,7 +128,7 @@ def _overrun(look: Look) -> Iterator[str]:
 def _too_long(look: Look, sent: SentCommand) -> str | None:
     timing = look.world.model.timing
     allowed_s = _longest_s(look.world.model.robots[sent.robot], sent, timing)
-    if sent.cancelled_at is not None:  # in the step that gave it: what it has is the time of its halt
+    if sent.cancelled_at is not None:  # cancelled in the same step: its deadline is that of its halt
         allowed_s = max(allowed_s, timing.stop_timeout_s)
     if sent.deadline <= sent.at + allowed_s + ROUNDING_S:
         return None
@@ -146,7 +146,7 @@ def _longest_s(robot: Robot, sent: SentCommand, timing: Timing) -> float:
 
 
 def _moved_deadline(look: Look, sent: SentCommand) -> Iterator[str]:
-    """Only a cancel gives another deadline: that for its halt."""
+    """Sentences on a deadline that was moved: only a cancel gives another one, that for its halt."""
     if sent.entry is None or sent.cancelled_at is None:
         if sent.entry is not None and sent.entry.deadline != sent.deadline:
             yield f"the deadline of {sent} was moved"
@@ -186,7 +186,7 @@ def _given_up(look: Look) -> Iterator[str]:
 
 
 def _left(look: Look) -> Iterator[str]:
-    """A command that no running step waits for any more must be ending; homing has no step."""
+    """Sentences on open commands for which no running step waits and that are not ending."""
     record = look.record
     for sent in record.commands.open.values():
         if not sent.can_be_halted or sent.state is State.CANCELLING or isinstance(sent.command, Home):
@@ -201,13 +201,13 @@ def _left(look: Look) -> Iterator[str]:
 
 
 def _needs_no_halt(look: Look, sent: SentCommand) -> bool:
-    """Whether it has had one, or cannot be under way."""
+    """True if a command has had its halt, or cannot be under way."""
     halted = look.record.robots[sent.robot].halts > sent.halts
     return halted or sent.rejected or _known_still(look, sent)
 
 
 def _known_still(look: Look, sent: SentCommand) -> bool:
-    """Whether its robot itself has said in this step that it stands still."""
+    """True if the robot itself has said in this step that it stands still."""
     failure = sent.entry.failure if sent.entry else None
     if failure is None or failure.reason not in KNOWN_STILL:
         return False

@@ -1,4 +1,4 @@
-"""What the plant says of its commands, by where robots truly are and what effectors truly do."""
+"""Invariants of commands that the plant calls done, by the true places of robots and states of effectors."""
 
 from __future__ import annotations
 
@@ -46,13 +46,13 @@ def _told(command: Command) -> str:
 
 
 def _untrue(truth: Truth, booked: EndedCommand) -> str | None:
-    """What of a command that is called done is not so; None where it is, or where nobody could know."""
+    """The part of a command called done that is not true; None if all is true, or if nobody could know."""
     command, robot = booked.command, truth.robot(booked.command.robot)
     if robot is None or _unprovable(truth, booked, robot):
         return None
     if isinstance(command, SetEffector) and isinstance(robot, ArmTruth):
-        ended_at = max(robot.booted_us / 1e6, robot.robbed_at)  # by its power, or by somebody else
-        lost = command.on and ended_at >= booked.sent_at  # it was on, which is told only now
+        ended_at = max(robot.booted_us / 1e6, robot.robbed_at)  # by a loss of power, or by somebody else
+        lost = command.on and ended_at >= booked.sent_at  # it was on before, and is reported only now
         return None if lost or robot.on == command.on else f"it is {'on' if robot.on else 'off'}"
     if isinstance(command, MoveJoints) and isinstance(robot, ArmTruth):
         return None if robot.stands_at(command.q) else _where(robot, f"{robot.true} motor steps")
@@ -66,12 +66,12 @@ def _where(robot: RobotTruth, place: str) -> str:
 
 
 def _unprovable(truth: Truth, booked: EndedCommand, robot: RobotTruth) -> bool:
-    """Whether what a robot may say, at its level and as its board lies, proves nothing.
+    """True if a robot's reports prove nothing of a command, by its evidence or by lies.
 
     At `ids` a move shows in two ways, its number and the place, and both must be lies. At `joints` it shows
-    in place and state: a boot without a trace makes them worthless, and so does a line that takes its time,
-    for nothing tells what was said before the command came. An effector does not show there at all. Whom
-    somebody put by hand to its reference since, and who is still there, may have been at the goal before.
+    in place and state: a boot without a trace makes them worthless, and so does a slow line, as nothing tells
+    what was said before the command came. An effector does not show there at all. A robot that somebody has
+    put at its reference by hand since then, and that is still there, may have been at the goal before.
     """
     evidence, place = robot.robot.evidence, "q" if isinstance(robot, ArmTruth) else "node"
 

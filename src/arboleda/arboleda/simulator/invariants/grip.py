@@ -1,4 +1,4 @@
-"""What grips, and where parts are, by what effectors truly did."""
+"""Invariants of grips and of places of parts, by what effectors truly did."""
 
 from __future__ import annotations
 
@@ -163,7 +163,7 @@ def _switches(look: Look) -> list[Switch]:
 
 
 def _grips_wrongly(cell: CellTruth, switch: Switch) -> str | None:
-    """Why the effector must not be on there; a command of a task that was stopped may still arrive."""
+    """The reason why the effector must not be on there; a command of a stopped task may still arrive."""
     if cell.order is None:
         return "no task asked for that"
     if not switch.legal:
@@ -172,7 +172,7 @@ def _grips_wrongly(cell: CellTruth, switch: Switch) -> str | None:
 
 
 def _untold(look: Look, arm: ArmTruth | None, since: float) -> bool:
-    """Whether nobody can tell what an effector did: its board lied or says nothing of it."""
+    """True if nobody can tell what an effector did: its board lied or says nothing of it."""
     if arm is None:
         return True
     unproven = arm.robot.evidence is not Evidence.IDS

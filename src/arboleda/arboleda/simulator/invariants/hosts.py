@@ -1,4 +1,4 @@
-"""What must hold where a plant has a leader and a standby."""
+"""Invariants of a plant that has a leader and a standby."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What an invariant is, and what it may look at."""
+"""Invariant, its occasions, and the look at the world that it judges by."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from ..world import Moment, World
 
 @dataclass(kw_only=True)
 class Look:
-    """The world after one step, what is true in it, what was said and done so far; `moment`: in this step."""
+    """The world after one step: what is true and what was said and done so far; `moment`: in this step."""
 
     world: World
     truth: Truth
@@ -30,7 +30,7 @@ class Look:
 
 
 class Trigger(Enum):
-    """After which steps an invariant is worth a look; the value is what of a `Look` is true, or not empty."""
+    """The steps after which an invariant looks: those in which this part of a `Look` is true or not empty."""
 
     ALWAYS = "world"
     DEEDS = "truth.deeds"
@@ -80,7 +80,7 @@ class Invariant:
 
 
 def invariant(when: Trigger) -> Callable[[Rule], Invariant]:
-    """Make a rule an invariant, named as the function, that is looked at after such steps."""
+    """Make a rule an invariant, named as the function, that looks after the steps of this kind."""
 
     def make(rule: Rule) -> Invariant:
         return Invariant(rule.__name__, (rule.__doc__ or "").strip(), when, rule)
@@ -97,7 +97,7 @@ class Judges:
             self._benches[each.when].rules.append((each.name, each.rule))
         used = [when for when, bench in self._benches.items() if bench.rules and when is not Trigger.END]
         self._after_a_step = [self._benches[when] for when in used]
-        # the last two are there because of one name alone attrgetter makes no tuple
+        # two more names, as attrgetter returns no tuple for a single one
         self._signs = attrgetter(*(when.value for when in used), "world", "world")
 
     @property
@@ -106,7 +106,7 @@ class Judges:
         return Counter({name: bench.looks for bench in benches for name, _ in bench.rules})
 
     def after_a_step(self, look: Look) -> Iterator[tuple[str, str]]:
-        """Each breach that a step gives reason to look for: the invariant's name, and its sentence."""
+        """Each breach by an invariant that looks after this step: the invariant's name, and its sentence."""
         for bench in compress(self._after_a_step, self._signs(look)):
             bench.looks += 1
             for name, rule in bench.rules:
@@ -114,17 +114,17 @@ class Judges:
                     yield name, sentence
 
     def at_the_end(self, look: Look) -> Iterator[tuple[str, str]]:
-        """Each breach of what must hold once everything should be at rest."""
+        """Each breach of an invariant that holds once everything should be at rest."""
         self._benches[Trigger.END].looks += 1
         return self._benches[Trigger.END].breaches(look)
 
     def is_at_rest(self, look: Look) -> bool:
-        """Whether that holds already."""
+        """True if everything that must hold at rest holds already."""
         return not any(True for _ in self._benches[Trigger.END].breaches(look))
 
 
 class _Bench:
-    """Those that look after the same steps."""
+    """The invariants that look after the same steps."""
 
     def __init__(self) -> None:
         self.rules: list[tuple[str, Rule]] = []

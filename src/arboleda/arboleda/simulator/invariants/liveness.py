@@ -28,7 +28,7 @@ def running_tree_has_waker(look: Look) -> Iterable[str]:
 
 
 def _sleeps(cell: KnownCell) -> bool:
-    """Whether no time will wake a tree that runs; a cell whose own time stands still has none."""
+    """True if no time will wake a tree that runs; a cell whose own time stands still has no such time."""
     runs = cell.tree is not None and cell.state is CellState.EXECUTE
     return runs and cell.context.next_deadline is None
 
@@ -62,7 +62,7 @@ def _idle_though_ready(look: Look) -> Iterator[str]:
 
 
 def ready(look: Look, cell: KnownCell) -> bool:
-    """Whether a cell would start a task, by what its robots said and what operators asked for."""
+    """True if a cell would start a task, by what its robots said and what operators asked for."""
     plant, robots = look.world.plant, look.record.robots
     if cell.stopped or plant.intake.closed:
         return False
@@ -71,26 +71,26 @@ def ready(look: Look, cell: KnownCell) -> bool:
             continue
         known = robots[robot.name]
         if known.stop is not None and robot.name in cell.cell.shared:
-            return False  # another cell that was stopped is not reset
+            return False  # it still waits for another cell's reset
         if known.state is MotionState.MOVING or known.is_unfit(plant.now, plant.epoch):
             return False
-        # whether a jump of its joints was a reboot is for the plant's evidence to judge
+        # the plant's evidence judges if a jump of its joints was a reboot
         if not robot.says_homed and plant.dispatcher.beliefs[robot.name].displaced:
             return False
     return not _is_busy(look, cell) and _outside(look, cell)
 
 
 def _is_busy(look: Look, cell: KnownCell) -> bool:
-    """Whether one of its robots was told something by hand that it may not have done yet."""
+    """True while one of its robots may not have done yet what an operator told it."""
     robots = {robot.name for robot in cell.cell.robots}
     asked = any(entry.command.robot in robots for entry in look.record.questions)
     return asked or any(sent.robot in robots for sent in look.record.commands.open.values())
 
 
 def _outside(look: Look, cell: KnownCell) -> bool:
-    """Whether each robot that shares zones is seen at a pose outside of them, and stays there.
+    """True if each robot that shares zones is seen at a pose outside of them, and stays there.
 
-    What one said just after a start may be older than its last move.
+    A report that comes just after a start may be older than the robot's last move.
     """
     if look.world.found.facts.get(Fact.QUARANTINE) and look.world.now < look.record.born_at + SURE_S:
         return not cell.cell.zone_users
@@ -99,7 +99,7 @@ def _outside(look: Look, cell: KnownCell) -> bool:
 
 def _is_outside(look: Look, space: Workspace) -> bool:
     robot, known = space.robot, look.record.robots[space.robot.name]
-    # until it names what it was told last, that may still be on its way and set it in motion
+    # until it names its last command, that may still be on its way and set it in motion
     if robot.evidence is Evidence.IDS and robot.has_stop and known.unnamed is not None:
         return False
     free = [pose for pose in space.poses if not pose.zones]
@@ -110,8 +110,8 @@ def _is_outside(look: Look, space: Workspace) -> bool:
 
 @invariant(Trigger.WAITING)
 def zone_requests_end(look: Look) -> Iterable[str]:
-    """Who waits for a zone gets it, or is refused it, within zone_wait_s of the cell's own time; a recovery
-    within as long since those before it were at work.
+    """A request for a zone is granted or refused within zone_wait_s of the cell's own time; that of a
+    recovery within as long since those before it were at work.
     """
     return _overdue(look)
 
@@ -142,14 +142,14 @@ def at_rest_at_end(look: Look) -> Iterable[str]:
 
 
 def _is_in_the_way(look: Look, device: str, zone: str) -> bool:
-    """Whether a machine that rests keeps a zone because it is in the way there: its door is shut."""
+    """True if a machine at rest keeps a zone because it is in the way there: its door is shut."""
     locked = any(device in cell.interlocked for cell in look.world.model.cells)
     there = locked and zone in look.truth.robot(device).zones
     return there and not look.world.plant.zones.is_quarantined(zone)
 
 
 def _restless(look: Look) -> Iterator[str]:
-    """Robots by what the plant has heard, and by what is true of their boards."""
+    """Sentences on robots that are not at rest, by what the plant heard or by the state of their boards."""
     plant, boards = look.world.plant, look.record.boards.of_robot
     for name, known in look.record.robots.items():
         if known.robot.link is Link.SCREEN:

@@ -1,4 +1,4 @@
-"""What a plant has kept, for its next start: before anything that hangs on it leaves, and nothing else."""
+"""Invariants of what a plant keeps for its next start: it is true, and kept before its effects leave."""
 
 from __future__ import annotations
 
@@ -35,12 +35,12 @@ def kept_before_it_leaves(look: Look) -> Iterator[str]:
 
 @invariant(Trigger.NEWS)
 def kept_is_what_is(look: Look) -> Iterable[str]:
-    """What is kept of stops, effectors and zones is how they are."""
+    """The kept states of stops, effectors and zones are their states."""
     return (*_stops(look), *_effectors(look), *_zones(look))
 
 
 def _stops(look: Look) -> Iterator[str]:
-    """A clear of a whole cell counts for a robot that was not stopped, too, until the cell is reset."""
+    """Sentences on stops kept wrongly. A cell's clear counts, until its reset, for unstopped robots, too."""
     kept = look.world.memory.get(Fact.LATCH, {})
     for cell in look.record.cells.values():
         for robot in (each for each in cell.cell.robots if each.link not in UNSENT):

@@ -19,7 +19,7 @@ INBOX = 20_000  # messages for a process that stalls for 15 s while everybody sa
 
 @invariant(Trigger.STEPPED)
 def bounded_books(look: Look) -> Iterable[str]:
-    """What the plant, the bridge and the boards keep stays below fixed bounds."""
+    """The books that the plant, the bridge and the boards keep stay below fixed bounds."""
     if look.world.plant.dispatcher.outbox:
         return ["the plant kept a message after its step"]
     return _long(look) if look.record.due_for("books", EVERY_S) else NOTHING

@@ -1,4 +1,4 @@
-"""What moves, by what was asked and where robots truly are."""
+"""Invariants of motion, by what was asked for and where robots truly are."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def no_unhomed_move(look: Look) -> Iterator[str]:
 
 @invariant(Trigger.SENT)
 def no_move_after_a_boot_that_was_told(look: Look) -> Iterator[str]:
-    """Whose board reports no homing gets no absolute move once the plant heard that it booted."""
+    """A robot whose board reports no homing gets no absolute move once the plant has heard that it booted."""
     boots = look.truth.boots
     for command in look.moment.sent if boots.mute else ():
         if isinstance(command, MoveJoints | FollowPath) and boots.told(command.robot):

@@ -1,4 +1,4 @@
-"""How much of its time each cell did good work is as it was seen, span by span."""
+"""Invariants of OEE: each cell's figures are what was seen of its work, span by span."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ def _shortest(works: list[Work]) -> dict[tuple[str, str], Shortest]:
 
 
 class _Interval:
-    """What was so at an instant, and for how long in all."""
+    """Sums of what was seen of a cell: its state at an instant, and for how many seconds a state lasted."""
 
     def __init__(self, kept: KeptFigures, cell: str, until_s: float) -> None:
         self._runs, self._until_s = kept.runs, until_s
@@ -72,7 +72,7 @@ class _Interval:
         return self._runs[0].since_s
 
     def items(self, since_s: float) -> list[Work]:
-        """The tasks that were begun, and were done or failed, since then."""
+        """The tasks that began after that time and were done or failed."""
         over = [each for each in self._works if each.state in ITEMS and each.started_s is not None]
         return [each for each in over if since_s <= (each.ended_s or 0.0) < self._until_s]
 
@@ -83,17 +83,17 @@ class _Interval:
         return self.total(self.is_up, work.started_s or 0.0, work.ended_s or 0.0)
 
     def total(self, is_so: Callable[[float], bool], since_s: float, until_s: float) -> float:
-        """For how many seconds something was so, which changes at edges only."""
+        """The seconds for which `so` was true; it changes at edges only."""
         edges = [since_s, *(edge for edge in self._edges if since_s < edge < until_s), until_s]
         return sum(b - a for a, b in pairwise(edges) if b > a and is_so((a + b) / 2))
 
     def is_up(self, at: float) -> bool:
-        """Whether the plant ran, and the cell did not stand."""
+        """True if the plant ran then, and the cell did not stand."""
         stood = any(each.since_s < at and (each.until_s is None or at < each.until_s) for each in self._downs)
         return not stood and self._run_at(at)[1]
 
     def is_planned(self, at: float) -> bool:
-        """Whether a task waited or was at work, and the plant was not ended."""
+        """True if a task waited or was at work then, and the plant was not ended."""
         wanted = any(
             each.accepted_s < at and (each.ended_s is None or at < each.ended_s) for each in self._works
         )
@@ -105,7 +105,7 @@ class _Interval:
         return any(each.ended_s is None or at < each.ended_s for each in begun) and self.is_up(at)
 
     def _run_at(self, at: float) -> tuple[Run, bool]:
-        """The start of the plant that was the last one then, and whether it still ran."""
+        """The last start of the plant before that time, and whether it still ran."""
         run = max((each for each in self._runs if each.since_s < at), key=lambda each: each.since_s)
         lasts = run is self._runs[-1] and not run.ended and self._until_s - run.seen_s <= LATE_S
         return run, lasts or at < run.seen_s

@@ -1,4 +1,4 @@
-"""What the plant concludes of its commands is what robots have said: no more, no less and no later."""
+"""Invariants of conclusions: the plant concludes of its commands no more, less or later than robots said."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ ROUNDING_S = 1e-6
 
 @invariant(Trigger.HEARD)
 def proofs_end_commands(look: Look) -> Iterable[str]:
-    """What a robot says ends its open commands where it proves their end, and shows them to be under way."""
+    """A report that proves the end of an open command ends it; one that shows it under way counts so."""
     record = look.record
     for id, proof in record.proofs.of.items():
         sent = record.commands.open.get(id)
@@ -52,7 +52,7 @@ def ends_are_proven(look: Look) -> Iterator[str]:
 
 
 def _is_forgotten(sent: SentCommand) -> bool:
-    """Whether it can be given up without a word of its robot: a question is."""
+    """True if a command can be given up without a word of its robot, as a question can."""
     return isinstance(sent.command, Query)
 
 
@@ -65,7 +65,7 @@ def _word(sent: SentCommand) -> str:
 
 
 def _settled(look: Look, sent: SentCommand) -> bool:
-    """What its robot need not answer counts as done after its time.
+    """True if a command that its robot need not answer counts as done, as its time is over.
 
     So do an effector that reports nothing and, at `state`, a move to where the robot is already.
     """
@@ -85,7 +85,7 @@ def _wrong_cause(look: Look, sent: SentCommand, proof: Proof) -> Iterator[str]:
 
 
 def _by_time(look: Look, sent: SentCommand) -> set[Reason]:
-    """For what it may fail now though its robot says nothing."""
+    """The reasons for which it may fail now though its robot says nothing."""
     record, known = look.record, look.record.robots[sent.robot]
     is_cut_off = known.stale_at <= record.stepped_at or sent.command.id in look.moment.undelivered
     found = {Reason.LINK_LOST} if is_cut_off else set()

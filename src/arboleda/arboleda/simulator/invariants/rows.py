@@ -36,12 +36,12 @@ WORDS = {
     "Announce": "notice",
     "Carry": "note",
     "Dwell": "dwell",
-}  # kinds of nodes by their class; others may have heirs
+}  # kinds of nodes by class; classes that are not here may have subclasses
 UNTOLD = ("age_s", "telemetry_hz")  # change all the time
 
 
 def line(said: TaskChanged) -> Row:
-    """One change of a task, for people who follow it."""
+    """The row for one change of a task, for people who follow it."""
     return {
         "id": said.task,
         "text": said.text,
@@ -53,16 +53,16 @@ def line(said: TaskChanged) -> Row:
 
 
 def task(known: KnownTask) -> Row:
-    """A task as it was told, but for times that pass."""
+    """The row of a task as it was told, without its times."""
     said = known.said
     expected: Row = {"text": said.text, "cell": known.cell, "state": known.state.value}
-    if known.state in ENDED:  # one that recovers has its reason before it is told
+    if known.state in ENDED:  # a recovering task has its reason before that is told
         expected |= {"reason": said.reason.value if said.reason else None, "sentence": said.sentence}
     return expected
 
 
 def times(known: KnownTask, row: Row, now: float) -> Iterator[str]:
-    """When it ran must fit to when it was told to run, and to have ended."""
+    """Differences between the times shown of a task and when it was told to run, and to have ended."""
     began = known.began
     ended = known.since if known.state in ENDED else None
     elapsed = None if began is None else (now if ended is None else ended) - began
@@ -72,7 +72,7 @@ def times(known: KnownTask, row: Row, now: float) -> Iterator[str]:
 
 
 def queue(cell: KnownCell, row: Row) -> Iterator[str]:
-    """Why a cell does not start what waits, what holds it, and how far its work is."""
+    """Differences in what is shown of a cell's queue: why no task starts, who holds it, its progress."""
     state, name = row["state"], cell.name
     waits = row["queue"] and (state != "idle" or row["paused"])
     if waits and not row["waiting_for"]:
@@ -104,7 +104,7 @@ def _progress(cell: KnownCell, row: Row) -> Iterator[str]:
 
 
 def node(cell: KnownCell, there: Behaviour, row: Row, now: float) -> Iterator[str]:
-    """What a node was given and how much of its time has passed."""
+    """Differences between the row of a tree's node and the node: kind, words, seconds that have passed."""
     where = f"{cell.name}: {row['path']}"
     word = WORDS.get(type(there).__name__)
     if word is not None and row["kind"] != word:
@@ -140,7 +140,7 @@ def _command(where: str, there: Any, row: Row, now: float) -> Iterator[str]:
 
 
 def command(last: SentCommand | None, now: float) -> Row | None:
-    """The last command of a robot."""
+    """The row of a robot's last command."""
     if last is None:
         return None
     state, what = (last.state.value, last.entry.doing) if last.state and last.entry else (None, None)
@@ -155,7 +155,7 @@ def rejected(last: SentCommand | None, row: Row) -> Iterator[str]:
 
 
 def ways(advised: tuple[Advice, ...], row: Row) -> Iterator[str]:
-    """What leads on, each step of it, and all of it in the sentence that people read."""
+    """Differences between the advice shown, as steps and as one sentence, and the plant's advice."""
     whole = str(sentence(advised))
     if len(advised) != len(row["advice"]):
         yield f"{row['name']} is shown with {len(row['advice'])} steps of advice, there are {len(advised)}"
@@ -182,7 +182,7 @@ def stands(row: Row) -> str:
 
 
 def obstacle(known: KnownRobot, now: float, plant: int) -> tuple[Phrase, ...] | None:
-    """What may be said of why a robot takes no command, nothing where nothing is in its way; None: unsure."""
+    """The phrases for why a robot takes no command; empty if nothing is in its way, None if unsure."""
     if known.stop is StopProgress.LATCHED:
         return (STOPPED.said,)
     if known.offline(now):
@@ -201,7 +201,7 @@ def obstacle(known: KnownRobot, now: float, plant: int) -> tuple[Phrase, ...] | 
 
 
 def of_robot(row: Row, values: dict[str, str]) -> Iterator[str]:
-    """A diagnosis has what the row of its robot has, as words."""
+    """The values of a diagnosis that are those of its robot's row, as words."""
     for key, value in row.items():
         if isinstance(value, dict) or value is None or key in UNTOLD:
             continue
@@ -224,7 +224,7 @@ def of_cell(row: Row) -> dict[str, str]:
 
 
 def ended_at(robot: Robot, last: SentCommand | None, q: tuple[float, ...] | None) -> Row | None:
-    """Where the last motion of a robot ended, as far as that was proven; `q`: where an arm's did."""
+    """The place where the last motion of a robot ended, as far as that was proven; `q`: an arm's place."""
     if robot.has_joints:
         return None if q is None else {"q": list(q)}
     done = last is not None and last.state is State.DONE and isinstance(last.command, FollowPath)
@@ -232,7 +232,7 @@ def ended_at(robot: Robot, last: SentCommand | None, q: tuple[float, ...] | None
 
 
 def waits_at(cell: KnownCell, text: str, part: Row | None) -> Iterator[str]:
-    """Where the part of a task is drawn that no effector holds."""
+    """Differences between the shown and the true place of a part that waits in no effector."""
     sent = [leaf.entry for leaf in _acts(cell) if leaf.entry is not None]
     sent.sort(key=lambda entry: entry.sent_at)
     letting_go = [entry for entry in sent if type(entry.command).__name__ == "SetEffector"]
@@ -255,7 +255,7 @@ def _acts(cell: KnownCell) -> Iterator[Any]:
 
 
 def place(cell: StorageCell) -> Row:
-    """What never changes of a cell."""
+    """The values of a cell that never change."""
     return {
         "arm": cell.arm.name,
         "mobile": cell.mobile.name,

@@ -1,4 +1,4 @@
-"""What screens, drawings and ROS 2 are shown of the plant is how it is, by the record."""
+"""Invariants of screens, drawings and ROS 2: they show the plant as it is by the record."""
 
 from __future__ import annotations
 
@@ -82,7 +82,7 @@ def _shown(look: Look) -> Iterator[str]:
 
 
 def _refused(look: Look, row: Row, kind: str) -> Iterator[str]:
-    """Which verbs are shown as refused where they are said of a cell or of a robot."""
+    """Differences between the verbs shown as refused for a cell or a robot and those refused now."""
     plant, found = look.world.plant, []
     for verb in rows.sayable(kind):
         if plant.refusal(OperatorRequest(at=plant.now, verb=verb, scope=row["name"])) is not None:
@@ -93,7 +93,7 @@ def _refused(look: Look, row: Row, kind: str) -> Iterator[str]:
 
 
 def _time_line(look: Look, shown: Row) -> Iterator[str]:
-    """The last event about each thing is how it is now, and there is one for all that anybody did."""
+    """Differences between time line and record: each thing's last event, and an event for each act."""
     line = look.record.time_line
     line.see(shown)
     if line.told != shown:
@@ -207,7 +207,7 @@ def _obstacle(look: Look, known: KnownRobot, row: Row) -> Iterator[str]:
 
 
 def _tree(cell: KnownCell, rows_: list[Row], now: float, *, own: bool) -> Iterator[str]:
-    """Each node in its place, with what it is doing; `own`: trees may be of nodes that nobody translates."""
+    """Differences between the tree shown and the tree; `own`: it may have nodes that nobody translates."""
     tree = cell.run.tree
     if tree is None:
         return
@@ -262,7 +262,7 @@ def _robot(look: Look, known: KnownRobot) -> Row:
 
 
 def _facts(known: KnownRobot) -> Row:
-    """What an arm has said of its tool."""
+    """The last words of an arm on its tool."""
     return {"effector": known.effector, **({} if known.piece is None else {"piece": known.piece})}
 
 
@@ -271,7 +271,7 @@ def _unit(joint: Any) -> str:
 
 
 def _goal(last: SentCommand | None) -> Row | None:
-    """Where a command leads that has not ended."""
+    """The goal of a command that has not ended; None if it has."""
     if last is None or last.state not in GOING:
         return None
     if isinstance(last.command, MoveJoints):
@@ -317,7 +317,7 @@ def _drawn(look: Look, drawn: Row) -> Iterator[str]:
 
 
 def _ends(look: Look, known: KnownRobot, row: Row) -> Iterator[str]:
-    """Since when a robot goes, where it came to, and when it said where it is."""
+    """Differences in since when a robot goes, where it came to, and when it said where it is."""
     name = known.robot.name
     last = look.record.commands.last.get(name)
     reached = rows.ended_at(known.robot, last, look.world.plant.dispatcher.reached.get(name))
@@ -331,7 +331,7 @@ def _ends(look: Look, known: KnownRobot, row: Row) -> Iterator[str]:
     if (row["position_at"] is None) is not (known_place is None):
         yield f"{name} is drawn as of {row['position_at']}, it has said {known_place}"
     age_s = math.inf if row["position_at"] is None else look.record.stepped_at - row["position_at"]
-    speaks = known.robot.evidence is not Evidence.STATE  # where it may be silent, by what it said lately
+    speaks = known.robot.evidence is not Evidence.STATE  # at `state` it may be silent for long
     if row["reports"] is not (speaks or age_s <= look.world.model.timing.stale_after_s):
         yield f"{name} is drawn as {'' if row['reports'] else 'not '}reporting, it did {age_s} s ago"
 
@@ -371,7 +371,7 @@ def _carried(look: Look) -> Iterator[str]:
 
 
 def _broken(look: Look) -> Iterator[str]:
-    """The last report as other nodes may garble it."""
+    """The last report, garbled as other nodes may garble it."""
     report = look.record.anew[-1]
     robot = look.world.model.robots.get(report.robot)
     if robot is None:
@@ -392,7 +392,7 @@ def _broken(look: Look) -> Iterator[str]:
 
 @invariant(Trigger.END)
 def plans_show_the_model(look: Look) -> Iterator[str]:
-    """What never changes is shown as the plant file says it."""
+    """The values that never change are shown as in the plant file."""
     model = look.world.model
     shown = {row["name"]: row for row in view.layout(model)["cells"]}
     placed = geometry.places(model)

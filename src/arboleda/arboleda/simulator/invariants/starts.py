@@ -1,4 +1,4 @@
-"""What must hold over all starts of a plant that dies: nothing accepted is lost, nothing is done twice."""
+"""Invariants over all starts of a plant that dies: nothing accepted is lost, nothing is done twice."""
 
 from __future__ import annotations
 
@@ -67,8 +67,8 @@ def ends_once_over_all_starts(look: Look) -> Iterable[str]:
 
 @invariant(Trigger.DONE_TWICE)
 def no_step_is_done_twice(look: Look) -> Iterable[str]:
-    """What a board has carried out of a task is not carried out again for a later start, but for a way that
-    may have been cut short, and what an operator wants tried again.
+    """A step that a board has carried out for a task is not carried out again for a later start, but for a
+    way that may have been cut short, and a step that an operator wants tried again.
     """
     return look.record.starts.twice
 

@@ -1,4 +1,4 @@
-"""What a stop (software) means for what truly moves."""
+"""Invariants of a stop (software), by what truly moves."""
 
 from __future__ import annotations
 

@@ -27,14 +27,14 @@ from ..recorded.scopes import UNSENT
 from ..truth.mobile import MobileTruth
 from .invariant import Look, Trigger, invariant
 
-LONGEST_WAIT_S = 1.5  # for the plant: robots have stopped themselves by then
+LONGEST_WAIT_S = 1.5  # s in which robots wait for the plant before they stop by themselves
 LEGAL: dict[TaskState | None, frozenset[TaskState]] = {
     None: frozenset({TaskState.QUEUED}),
     TaskState.QUEUED: frozenset({TaskState.RUNNING, TaskState.CANCELLED}),
     TaskState.RUNNING: ENDED,
 }
 NONE: frozenset[TaskState] = frozenset()
-# What moves a cell without any operator, and what each verb may do to it.
+# Causes that change a cell's state without an operator, and those of each verb.
 BY_ITSELF = frozenset({Cause.TASK, Cause.ENDED, Cause.STUCK, Cause.HALTED, Cause.CLEARED})
 BY_VERB: dict[Verb, frozenset[Cause]] = {
     Verb.STOP: frozenset({Cause.STOP}),
@@ -72,7 +72,7 @@ def ended_tasks_stay_ended(look: Look) -> Iterable[str]:
 
 
 def _had_ended(look: Look, answer: OperatorAnswer) -> bool:
-    """A word that also names a cell or a robot may mean that; what ended in this step may have run before."""
+    """True if the scope means a task that had ended before, and no cell or robot."""
     id = answer.scope.strip().lstrip("#")
     task = look.record.tasks.known(id)
     ended = task is not None and task.state in ENDED and task.since < look.world.plant.now
@@ -130,7 +130,7 @@ def cancelled_tasks_end_cancelled(look: Look) -> Iterable[str]:
 
 
 def _asked_to_cancel(look: Look) -> bool:
-    """Whether somebody asks for that in this step: the plant tells of the task before it answers."""
+    """True if somebody asks for a cancel in this step: the plant reports the task before it answers."""
     asked = (each for each in look.moment.asked if isinstance(each, OperatorRequest))
     return any(each.verb is Verb.CANCEL for each in asked)
 
@@ -178,7 +178,7 @@ def _illegal(look: Look) -> Iterator[str]:
 
 
 def _verbs(look: Look, cell: KnownCell) -> Iterator[Verb]:
-    """What was done in this step where the cell is; a scope that names no robot may be a task of any cell."""
+    """The verbs done in this step whose scope has the cell, or is no robot and so may be its task."""
     scopes = look.record.scopes
     for answer in look.record.answers:
         if answer.refusal is None and (answer.scope not in scopes or cell.name in scopes.cells(answer.scope)):
@@ -196,7 +196,7 @@ def _reachable(before: CellState, causes: frozenset[Cause]) -> set[CellState]:
 
 
 def _at_birth(look: Look) -> Iterator[str]:
-    """A stop outlives the plant: until clear, and until reset."""
+    """Sentences on cells that start in a wrong state: a stop lasts until clear and reset."""
     robots = look.record.robots
     for cell in look.record.cells.values():
         stops = {robots[robot.name].stop for robot in cell.cell.robots}
@@ -238,8 +238,8 @@ def nothing_moves_after_an_absence(look: Look) -> Iterator[str]:
 
 @invariant(Trigger.LATE)
 def nothing_late_leaves(look: Look) -> Iterator[str]:
-    """What a plant decided before its disk kept it for longer than robots wait for it is not sent any more,
-    but for stops.
+    """A decision of the plant that its disk held back for longer than robots wait is not sent any more,
+    unless it is a stop.
     """
     for message, late_s in look.moment.late:
         is_stop = isinstance(message, Stop) and message.mode is not StopMode.CLEAR
@@ -276,10 +276,10 @@ def no_task_fails_without_a_fault(look: Look) -> Iterable[str]:
 
 
 def _cannot_be_done(look: Look, said: TaskChanged) -> bool:
-    """Whether the plant file asks for what its robots, as they are simulated, cannot do.
+    """True if the plant file asks for what its robots, as they are simulated, cannot do.
 
-    A virtual board without ids has no piece sensor. A path may begin where the mobile robot is not, and the
-    plant may not drive it there, or at `state` not know it, and the board refuses such a path.
+    A virtual board without ids has no piece sensor. A path may begin where the mobile robot is not: the board
+    refuses it if the plant may not drive there, or at `state` does not know the place.
     """
     order = look.world.plant.intake.tasks[said.task].order
     cell = look.world.model.cell(order.cell)
@@ -296,7 +296,7 @@ def _cannot_be_done(look: Look, said: TaskChanged) -> bool:
 
 @invariant(Trigger.TOLD)
 def sentences_are_for_people(look: Look) -> Iterable[str]:
-    """What the plant tells people is one line without a traceback, and a failure always has a sentence."""
+    """Every sentence for people is one line without a traceback, and a failure always has one."""
     for message in look.moment.sent:
         if isinstance(message, TaskChanged):
             failed = message.reason is not None or message.state is TaskState.REFUSED

@@ -47,7 +47,7 @@ def texts_mean_what_they_say(look: Look) -> Iterator[str]:
 
 
 def _unhelpful(look: Look) -> Iterator[str]:
-    """An example is a task for the last place of a rack, and what is hinted at is there."""
+    """Sentences on refusals whose example is no task for a rack's last place, or whose hint is not there."""
     for said in look.moment.sent:
         if not isinstance(said, TaskChanged) or said.state is not TaskState.REFUSED:
             continue
@@ -69,7 +69,7 @@ def _is_last_place(model: PlantModel, text: str) -> bool:
 
 
 def _all_meant(model: PlantModel, text: str) -> list[tuple[str, str, str | None]]:
-    """What a text means in each of the cells that it names with commas; nothing where one cannot do it."""
+    """The meanings of a text in the cells that it names with commas; empty if one of them cannot do it."""
     names, space, rest = text.strip().partition(" ")
     if len(text) > LONGEST:
         return []

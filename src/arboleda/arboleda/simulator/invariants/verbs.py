@@ -64,8 +64,9 @@ def verbs_are_refused_rightly(look: Look) -> Iterator[str]:
 
 
 def _alone(look: Look) -> Iterator[tuple[OperatorRequest, OperatorAnswer]]:
-    """The one verb of a step, before which nothing else happened in it but that the plant had been away. A
-    plant that has just started first looks what became of the tasks that it found."""
+    """The verb of a step and its answer, if nothing but an absence came before it in that step. A plant's
+    first step has none, as the plant looks there first what became of the tasks that it found.
+    """
     asked, answers = look.moment.asked, look.record.answers
     alone = len(asked) == len(answers) == 1 and not look.moment.heard and not look.record.begins
     if alone and isinstance(asked[0], OperatorRequest) and not _is_shared(look, asked[0]):
@@ -73,12 +74,12 @@ def _alone(look: Look) -> Iterator[tuple[OperatorRequest, OperatorAnswer]]:
 
 
 def _is_shared(look: Look, request: OperatorRequest) -> bool:
-    """Whether a verb is for a device that cells share: it goes to the one that holds it."""
+    """True if a verb is for a device that cells share: it goes to the cell that holds the device."""
     return request.scope.strip().lower() in look.world.model.shared
 
 
 def _found(look: Look) -> list[CellSnapshot]:
-    """The cells as the verb found them: a plant that was away first holds what was at work."""
+    """The cells as the verb found them: a plant that was away first holds those at work."""
     cells = look.record.asked.cells
     return [_held_after_absence(cell) for cell in cells] if look.record.away else cells
 
@@ -90,7 +91,7 @@ def _held_after_absence(cell: CellSnapshot) -> CellSnapshot:
 
 
 def _refused(look: Look, request: OperatorRequest) -> bool | None:
-    """None where it cannot be said by what the record has."""
+    """The refusal that the verb must get; None if the record does not have enough to say."""
     record, verb, scope = look.record, request.verb, request.scope
     if verb is Verb.ANSWER:
         return None
@@ -117,7 +118,7 @@ def _refused(look: Look, request: OperatorRequest) -> bool | None:
 
 
 def _not_so(look: Look, request: OperatorRequest) -> bool:
-    """Whether a robot of the scope is not homed in this way."""
+    """True if a robot of the scope is not homed in this way, by hand or by its routine."""
     robots = [look.world.model.robots[name] for name in look.record.scopes.robots(request.scope)]
     robots = [robot for robot in robots if robot.link is not Link.NONE] or robots
     if request.by_hand:
@@ -145,14 +146,14 @@ def _is_task(look: Look, request: OperatorRequest) -> bool:
 
 
 def _cells(look: Look, request: OperatorRequest, can: Can) -> list[tuple[CellSnapshot, KnownCell]]:
-    """Those of its scope in which the verb could be done."""
+    """The cells of its scope in which the verb could be done."""
     names = look.record.scopes.cells(request.scope)
     asked = [cell for cell in _found(look) if cell.name in names and can(cell)]
     return [(cell, look.record.cells[cell.name]) for cell in asked]
 
 
 def _kept_stopped(look: Look, request: OperatorRequest) -> set[str]:
-    """The shared devices that a clear leaves stopped: another cell of theirs was, and is not cleared."""
+    """The shared devices that a clear leaves stopped, as a stopped cell of theirs is not cleared."""
     scope, record = set(look.record.scopes.robots(request.scope)), look.record
     kept = set()
     for device in look.world.model.shared:
@@ -188,7 +189,7 @@ def _uncancelled(look: Look, cell: str, *, motions: bool = False) -> Iterator[st
 
 
 def _finishes(sent: SentCommand) -> bool:
-    """Whether it is work that goes on through a stop."""
+    """True for work that goes on through a stop."""
     return sent.is_work and not sent.can_be_halted
 
 
@@ -198,7 +199,7 @@ def _cleared(look: Look, request: OperatorRequest) -> Iterator[str]:
     names = {robot.name for _, cell in could for robot in cell.cell.robots}
     wanted = names & record.scopes.commanded(request.scope) - _kept_stopped(look, request)
     cleared = _stops(look, StopMode.CLEAR)
-    wanted -= {*look.world.model.shared} - cleared  # which is cleared only where it was stopped, too
+    wanted -= {*look.world.model.shared} - cleared  # a shared device is cleared only if it was stopped, too
     if not cleared <= wanted or (len(could) == 1 and cleared != wanted):
         yield f"{sorted(wanted)} could be cleared, {sorted(cleared)} were"
     for before, cell in could:
@@ -300,7 +301,7 @@ EFFECTS: dict[Verb, Effect] = {
 
 @invariant(Trigger.SENT)
 def acts_end_as_told(look: Look) -> Iterator[str]:
-    """What devices did for an operator is told once it has ended, and as done only where each has done it."""
+    """An act of devices for an operator is told when it has ended, and as done if each device has done it."""
     told = [each for each in look.moment.sent if isinstance(each, Journal) and each.outcome is not None]
     ended = [sent for sent, _ in look.record.commands.moved if sent.state not in OPEN]
     for end in told:
@@ -319,7 +320,7 @@ def acts_end_as_told(look: Look) -> Iterator[str]:
 
 
 def _is_of(sent: SentCommand, verb: Verb) -> bool:
-    """Whether a command is that of an operator's verb; one that was asked for with it may be a task's."""
+    """True if a command comes from an operator's verb; one that a task gave in the same step may not."""
     if verb not in sent.verbs:
         return False
     if verb is Verb.HOME:

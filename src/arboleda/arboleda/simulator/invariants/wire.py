@@ -100,7 +100,7 @@ def _off_step(name: str, joint: Joint, value: float) -> Iterator[str]:
     step = on_wire(joint, joint.step)
     if abs(value - round(value / step) * step) > ROUNDING_DEG:
         yield f"{name}: {joint.name} {value} is no whole motor step of {step}"
-    # a limit between two steps is reached on the step that stands for it
+    # a limit between two motor steps is reached at the step nearest to it
     lower = on_wire(joint, min(joint.lower, joint.quantised(joint.lower))) - ROUNDING_DEG
     upper = on_wire(joint, max(joint.upper, joint.quantised(joint.upper))) + ROUNDING_DEG
     if not lower <= value <= upper:
@@ -180,7 +180,7 @@ def _untold(look: Look) -> Iterator[str]:
             continue
         _, board, _ = record.shown[report.robot]
         if not board.remembers(report.at - SLOW_S):
-            continue  # the plant waited for its disk for longer than this record reaches back
+            continue  # the plant waited longer for its disk than this record reaches back
         if not board.said(report.q, report.node, record.told_since(report.at)):
             yield f"{report.robot} is reported at {where}, which its board has not told lately"
 
@@ -220,7 +220,7 @@ def bridge_obeys_only_its_plant(look: Look) -> Iterable[str]:
 
 
 def _commanded(channel: str, body: dict[str, Any]) -> Callable[[Command], bool] | None:
-    """Whether a command is what a message of the bridge says; None for a message that needs none."""
+    """The test for the command that a message of the bridge carries; None for a message that needs none."""
     if channel == "juntas":
         return lambda command: isinstance(command, MoveJoints)
     if channel == "camino":

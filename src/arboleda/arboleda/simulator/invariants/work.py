@@ -1,4 +1,4 @@
-"""What is commanded is what the recipe says, in its order; a recovery holds what its way needs."""
+"""Invariants of work: commands follow the recipe in its order; a recovery holds its way's zones."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def recovery_takes_its_zones(look: Look) -> Iterator[str]:
 def _lacking(look: Look, cell: KnownCell, sent: SentCommand) -> Iterator[str]:
     held = look.world.plant.zones.held_by(cell.cell.arm.name)
     if cell.held_before_recovery:
-        return  # it stands inside of what it holds, and goes on with that
+        return  # it stands in zones that it holds already
     pickups = _pickups(cell.cell)
     goals = [pickup for pickup in pickups if sent.command.q in (pickup.q, pickup.above)] or pickups
     lacking = min((_of_any_way(cell.cell, pickup) - held for pickup in goals), key=len)
@@ -48,16 +48,16 @@ def _pickups(cell: StorageCell) -> list[Pose]:
 
 
 def _of_any_way(cell: StorageCell, pickup: Pose) -> frozenset[str]:
-    """Zones of a pick-up and home, and of every move that leads there."""
+    """The zones of a pick-up and home, and of every move that leads there."""
     ends = {pickup.name, cell.home.name}
     crossed = (each.zones for each in cell.crossings if {each.a, each.b} & ends)
     return pickup.zones.union(cell.home.zones, *crossed)
 
 
 def _sets_out(cell: KnownCell, sent: SentCommand) -> bool:
-    """Whether this is where its recovery goes first after it took its zones.
+    """True if this move is the first of its recovery after it took its zones, or repeats that one.
 
-    Where poses have an approach height it rises before: its first move, and all that repeat that one.
+    With approach heights the arm rises first: its first move, and all that repeat that one, do not count.
     """
     moves = cell.recovery_moves
     if any(pose.above for pose in cell.cell.poses):
@@ -68,7 +68,7 @@ def _sets_out(cell: KnownCell, sent: SentCommand) -> bool:
 
 
 def _is_seen(look: Look, cell: StorageCell) -> bool:
-    """Whether the arm was last seen at, or above, a pose outside of all zones; at `state` nobody sees it."""
+    """True if the arm was last seen at, or above, a pose outside of all zones; at `state` nobody sees it."""
     arm, q = cell.arm, look.record.robots[cell.arm.name].q
     if arm.evidence is Evidence.STATE:
         return True

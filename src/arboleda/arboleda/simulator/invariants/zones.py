@@ -28,7 +28,7 @@ def zone_released_only_outside(look: Look) -> Iterator[str]:
 
 @invariant(Trigger.ENTERED)
 def zone_entered_only_when_held(look: Look) -> Iterator[str]:
-    """Who gets into a shared zone does so only while the plant keeps that zone for it."""
+    """A robot that gets into a shared zone does so only while the plant keeps that zone for it."""
     for entry in look.truth.zones.entries:
         kept_for = entry.holder or "nobody"
         if kept_for != entry.arm and not look.truth.mistaken(look.truth.robots[entry.arm]):

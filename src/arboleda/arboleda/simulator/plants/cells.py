@@ -18,7 +18,7 @@ PICKUPS = 0.2  # how often exits have pick-ups of their own
 
 @dataclass(kw_only=True)
 class DrawnCell:
-    """The cell's section, and what the rest of the file must know of it."""
+    """The cell's section, and what the rest of the file needs to know of it."""
 
     name: str
     arm: DrawnArm
@@ -27,24 +27,24 @@ class DrawnCell:
 
     @property
     def poses(self) -> tuple[str, ...]:
-        """Its poses as zones name them."""
+        """Its poses, by the names that zones use."""
         pickups = (f"pickup {exit}" for exit in self.section.get("pickups", ()))
         return ("home", "pickup", *pickups, *(f"station {number}" for number in range(self.stations)))
 
     def place(self, shared: Section) -> str:
-        """Where its palletizing puts a part, with the sections that cells share."""
+        """The pose at which its palletizing puts a part, with the sections that cells share."""
         own = self.section.get("palletizing") or shared.get("palletizing")
         return str(own["place"]) if own else self.poses[-1]
 
     def take_stations(self, count: int) -> None:
-        """Have the shared stations in place of its own."""
+        """Use the shared stations in place of its own."""
         self.section.pop("stations")
         self.stations = count
         if "palletizing" in self.section:
             self.section["palletizing"] = {"pick": "pickup", "place": f"station {count - 1}"}
 
     def draw_pickups(self, dice: Dice) -> None:
-        """Now and then, have some exits of its own paths have a pick-up of their own."""
+        """Now and then, give some exits of its own paths a pick-up of their own."""
         exits = dict.fromkeys(code[1].upper() for code in self.section.get("paths", ()))
         if dice.chance(PICKUPS):
             poses = Poses(dice, self.arm.axes)
@@ -56,7 +56,7 @@ class DrawnCell:
 def draw_cell(
     dice: Dice, number: int, *, arms: Mapping[str, Sequence[Joint]], mobiles: Mapping[str, float]
 ) -> DrawnCell:
-    """The cell of that number."""
+    """The cell with this number."""
     arm = draw_arm(dice, f"arm_{number}", arms)
     poses = Poses(dice, arm.axes)
     section: Section = {
@@ -79,7 +79,7 @@ def _palletizing(dice: Dice, stations: int) -> Section:
 
 
 def _habits(dice: Dice) -> Section:
-    """How the cell works, besides where."""
+    """The settings of the cell that do not depend on places."""
     section: Section = {}
     if dice.chance(0.4):
         section["queue_limit"] = dice.pick((1, 2, 100))

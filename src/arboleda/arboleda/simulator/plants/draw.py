@@ -1,4 +1,4 @@
-"""A whole plant file from a seed: one to four cells, what they share, their zones and times."""
+"""Drawing of a whole plant file from a seed: one to four cells, what they share, their zones and times."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from .timing import draw_timing, hasten
 from .zones import draw_zones
 
 CELLS = (1, 1, 1, 1, 1, 2, 2, 2, 3, 4)  # how many; many are simulated slower and find little more
-# by section and key: what is of cells of devices, whose truth nobody judges yet
+# by section and key: settings without a draw here, most of them of cells of devices
 NOT_DRAWN = (
     ("", "uses"),
     ("", "kinds"),
@@ -36,8 +36,8 @@ def draw(
 ) -> Section:
     """The content of a plant file; `arms` are the joints and `mobiles` the speeds in m/s of the models.
 
-    What is drawn has the form of a plant file, but `arboleda check` may refuse it for what its values mean
-    together; another `attempt` draws another one. The same seed and attempt give the same file.
+    It has the form of a plant file, but `arboleda check` may refuse it for values that do not fit together;
+    another `attempt` draws another one. The same seed and attempt give the same file.
     """
     dice = Dice(seed, "plant", attempt)
     cells = [
@@ -63,7 +63,7 @@ def draw(
 
 
 def _share(dice: Dice, cells: Sequence[DrawnCell]) -> Section:
-    """Sections at the top of the file, and some cells that have none of their own because of that."""
+    """Put sections at the top of the file, for cells that then have none of their own."""
     shared: Section = {}
     if dice.chance(SHARED):
         shared["paths"] = draw_paths(dice)
@@ -86,6 +86,6 @@ def _share(dice: Dice, cells: Sequence[DrawnCell]) -> Section:
 
 
 def _some(dice: Dice, cells: Sequence[DrawnCell]) -> list[DrawnCell]:
-    """At least one of them."""
+    """Some of them, at least one."""
     first = dice.pick(cells)
     return [cell for cell in cells if cell is first or dice.chance(0.5)]

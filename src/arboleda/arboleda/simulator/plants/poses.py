@@ -15,9 +15,9 @@ MOST_STATIONS = 5  # of those that are drawn one by one
 
 @dataclass(frozen=True, kw_only=True)
 class Axis:
-    """A joint in deg, or in mm where it `slides`: its limits, and how far from its goal it may stop.
+    """A joint in deg, or in mm if it `slides`: its limits, and how far from its goal it may stop.
 
-    Where it slides, `up` is the way that lifts: -1 towards `lower`, 1 towards `upper`, 0 neither.
+    If it slides, `up` is the direction that lifts: -1 towards `lower`, 1 towards `upper`, 0 neither.
     """
 
     slides: bool
@@ -27,12 +27,12 @@ class Axis:
     up: int
 
     def room(self, value: float) -> float:
-        """How far it may lift from there."""
+        """The distance that it may lift from this value."""
         return (value - self.lower if self.up < 0 else self.upper - value) if self.up else 0.0
 
 
 class Poses:
-    """Draws the poses of one cell, each with those before it in mind."""
+    """Draws the poses of one cell, each with regard to those before it."""
 
     def __init__(self, dice: Dice, axes: Sequence[Axis]) -> None:
         self._dice = dice
@@ -46,7 +46,7 @@ class Poses:
         return self._section(values, approach=approach)
 
     def stations(self) -> tuple[Section, int]:
-        """The stations of a cell one by one, or by rule; and how many."""
+        """The stations of a cell one by one, or by rule, and their number."""
         if self._dice.chance(0.3) and may_have_rack(self._axes):
             return draw_rack(self._dice, self._axes)
         count = 1 + self._dice.below(MOST_STATIONS)
@@ -63,7 +63,7 @@ class Poses:
         return tuple(_inside(axis, self._dice.between(axis.lower, axis.upper)) for axis in self._axes)
 
     def _near(self, other: Values) -> Values:
-        """Within about its tolerance of another pose, or a little further away."""
+        """A pose within about its tolerance of another one, or a little further away."""
         share = self._dice.pick((0.5, 1.0, 1.5, 2.5))
         rows = zip(self._axes, other, strict=True)
         away = [(axis, value, axis.tolerance * share * self._dice.between(-1, 1)) for axis, value in rows]
@@ -84,17 +84,17 @@ class Poses:
 
 
 def told_mm(values: Sequence[float]) -> float | list[float]:
-    """The values of the sliding joints as a file has them: a single one needs no list."""
+    """The values of the sliding joints in the form of a file: a single one needs no list."""
     return values[0] if len(values) == 1 else list(values)
 
 
 def may_have_rack(axes: Sequence[Axis]) -> bool:
-    """Whether stations by rule name joints that turn."""
+    """True if stations by rule can name the first two joints: both turn, and there are two."""
     return len(axes) > 1 and not any(axis.slides for axis in axes[:2])
 
 
 def draw_rack(dice: Dice, axes: Sequence[Axis]) -> tuple[Section, int]:
-    """Stations by rule, and how many."""
+    """Stations by rule, and their number."""
     columns, rows = dice.pick(((1, 1), (1, 3), (2, 1), (2, 2), (3, 2), (3, 3)))
     first, second, *rest = axes
     section: Section = {

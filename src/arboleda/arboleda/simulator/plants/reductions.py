@@ -1,4 +1,4 @@
-"""Plant files that say a little less than one that broke something, for shrinking."""
+"""Smaller plant files: each says a little less than one that broke something, for shrinking."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ NEEDED = CHIEF | {"name", "link", "evidence", "model", "deg", "mm"}
 
 
 def smaller(file: Section) -> Iterator[Section]:
-    """The file without one of its parts each, the large parts first; zones name only what is left.
+    """Files without one part each, the large parts first; zones name only what is left.
 
-    Not every one of them is a plant file that `arboleda check` takes.
+    Some of them may not be a plant file that `arboleda check` takes.
     """
     for place in sorted(_places(file), key=len):
         less = deepcopy(file)
@@ -29,7 +29,7 @@ def smaller(file: Section) -> Iterator[Section]:
 
 
 def _places(value: Any, place: Place = ()) -> Iterator[Place]:
-    """Every key and position in it, by where it stands, the last one of a list first."""
+    """The path of every key and position in it, the last one of a list first."""
     if isinstance(value, dict):
         keys: list[str | int] = [key for key in value if key not in NEEDED]
         inner: list[str | int] = list(value)
@@ -43,7 +43,7 @@ def _places(value: Any, place: Place = ()) -> Iterator[Place]:
 
 
 def _tidy(file: Section) -> None:
-    """Leave out of zones what there is no more, and zones that are empty."""
+    """Remove from zones what no longer exists, and zones that are empty."""
     zones = file.get("zones", {})
     for zone in zones.values():
         poses = [spot for spot in zone.get("poses", []) if _is_there(file, spot)]

@@ -28,7 +28,7 @@ class DrawnArm:
     axes: tuple[Axis, ...]
 
     def around_zero(self) -> tuple[Axis, ...]:
-        """Joints with limits that every arm of this model has room for."""
+        """Limits of the joints that every arm of this model can have."""
         least = [max(axis.lower, 0.0 if axis.slides else -AROUND) for axis in self.axes]
         rows = zip(self.axes, least, strict=True)
         return tuple(replace(axis, lower=lower, upper=min(axis.upper, AROUND)) for axis, lower in rows)
@@ -134,7 +134,7 @@ def _half_speed(joint: Joint) -> Section:
 
 
 def _tolerance(dice: Dice, axes: Sequence[Axis]) -> tuple[Section, tuple[Axis, ...]]:
-    """From hardly more than the default to half of the arm's room, not the same for each joint."""
+    """Tolerances from just above the default to half of the arm's room, different for each joint."""
     widths = (1.0, 2.0, 10.0) if dice.chance(0.5) else (10.0, 50.0, 200.0)
     wide = tuple(
         replace(axis, tolerance=round(axis.tolerance * dice.pick(widths) + 0.0005, 3)) for axis in axes

@@ -27,7 +27,7 @@ def draw_timing(dice: Dice) -> Section:
 
 
 def hasten(dice: Dice, file: Section) -> None:
-    """Now and then, have a file give its robots and arms that wait for zones next to no time."""
+    """Now and then, give robots, and arms that wait for zones, next to no time in this file."""
     if not dice.chance(HASTE):
         return
     hasty: Section = {

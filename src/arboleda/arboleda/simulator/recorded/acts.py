@@ -1,4 +1,4 @@
-"""What operators did for each cell since it worked last, while nothing else happened to it."""
+"""Acts of operators on each cell since it worked last, as long as nothing else happened to it."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from .cells import KnownCell
 
 
 class Acts:
-    """`of` has them by cell, in words; a cell that works, and a fault anywhere, begin anew."""
+    """Acts of operators, in words by cell; forgotten once the cell works, and at a fault anywhere."""
 
     def __init__(self) -> None:
         self.of: dict[str, list[str]] = {}
@@ -29,7 +29,7 @@ class Acts:
             del self.of[name]
 
     def take(self, request: OperatorRequest, cells: Iterable[KnownCell]) -> None:
-        """Somebody asks for something on these cells."""
+        """Note that somebody asks for something on these cells."""
         for cell in cells:
             if cell.name not in self.of:
                 self._had[cell.name] = cell.run.task
@@ -37,7 +37,7 @@ class Acts:
             self.of.setdefault(cell.name, []).append(said)
 
     def _works(self, cell: KnownCell) -> bool:
-        """Whether a cell would start a task, or has started another one than it had then."""
+        """True if a cell would start a task, or works on another one than at the first noted act."""
         run = cell.run
         if run.state is CellState.IDLE:
             return run.not_ready is None

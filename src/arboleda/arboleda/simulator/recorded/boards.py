@@ -1,4 +1,4 @@
-"""What reached the boards and the bridge over the broker, and what the boards carried out."""
+"""Record of the messages that reached boards and bridge, and of the commands that boards carried out."""
 
 from __future__ import annotations
 
@@ -29,10 +29,10 @@ Numbers = tuple[int, int]  # (epoca, seq)
 
 
 class ExecutedCommand(NamedTuple):
-    """A command that a board carried out.
+    """A command that a board carried out, with the number of the one `before`; `delivered`: it had arrived.
 
-    With its last numbers before, whether it was delivered to it, the newest epoch that it had heard beating,
-    and when it told the telemetry that the command names, None where it did not lately.
+    `beat` is the newest epoch of which the board had heard a beat, `told_at` when it sent the telemetry that
+    the command names, None if it did not lately.
     """
 
     board: str
@@ -64,7 +64,7 @@ class KnownBoard:
         self._form = "{" + "".join(f'"{key}":%s,' for key in self._keys)
 
     def take_over(self, at: float, belief: Belief) -> None:
-        """What it told before the record began, as far as the plant has heard it."""
+        """Take over what the board said before this record began, as far as the plant has heard it."""
         q, node = belief.q, belief.node
         if belief.number is not None:
             self.told.append((belief.number, at))
@@ -73,7 +73,7 @@ class KnownBoard:
             self.telemetry.append(Delivery(at=at, topic="", payload=words))
 
     def carried_out(self, goal: Goal) -> ExecutedCommand:
-        """A command that it carries out now."""
+        """The record of a command that the board carries out now."""
         self._notice_boot()
         before, delivered = self.last, self._was_delivered(goal)
         if goal.seq is not None and goal.epoch is not None:
@@ -82,7 +82,7 @@ class KnownBoard:
         return ExecutedCommand(self.robot.mqtt, goal, before, delivered, self.beat, told_at)
 
     def tell(self, at: float, payload: bytes) -> None:
-        """It publishes telemetry."""
+        """Take in telemetry that the board publishes."""
         self._notice_boot()
         _, number, _ = parts(payload)
         if number:
@@ -92,7 +92,7 @@ class KnownBoard:
         return next((at for told, at in reversed(self.told) if told == number), None)
 
     def forget_read(self, unread: list[Any]) -> None:
-        """What it has taken out of its inbox, or lost from it, is no longer new to it."""
+        """Forget messages that left the board's inbox, read or lost: they are no longer new to it."""
         read = [each for each in self.inbox if not any(each is other for other in unread)]
         self.inbox = [each for each in self.inbox if any(each is other for other in unread)]
         if not self._notice_boot():
@@ -100,7 +100,7 @@ class KnownBoard:
                 self._read(delivery)
 
     def _notice_boot(self) -> bool:
-        """Whether it has booted since it was looked at last; it has forgotten everything then."""
+        """True if the board has booted since the last look; forgets what the board forgot by that."""
         booted = self.boot != self.board.boot_id
         if booted:
             self.boot, self.last, self.beat = self.board.boot_id, None, None
@@ -116,7 +116,7 @@ class KnownBoard:
             self.beat = max(epoch, self.beat or 0)
 
     def said(self, q: tuple[float, ...] | None, node: int | None, since: float) -> bool:
-        """Whether valid telemetry that reached the bridge at `since` or later says that it is there."""
+        """True if valid telemetry with this place reached the bridge at `since` or later."""
         if not self.telemetry:
             return False
         last = self.telemetry[-1]
@@ -126,11 +126,11 @@ class KnownBoard:
         return any(each.at >= since and _says(each.payload, there) for each in reversed(self.telemetry))
 
     def remembers(self, at: float) -> bool:
-        """Whether all is known that was told from then on."""
+        """True if all telemetry since then is kept here."""
         return len(self.telemetry) < RECENT or self.telemetry[0].at <= at
 
     def _words(self, q: tuple[float, ...] | None, node: int | None) -> bytes:
-        """How telemetry of our boards begins where it says this."""
+        """The beginning of our boards' telemetry for this place."""
         position = node if q is None else q
         if self._written is None or self._written[0] != position:
             self._written = position, (self._form % self._on_wire(q, node)).encode()
@@ -142,7 +142,7 @@ class KnownBoard:
         return tuple([_angle(value, degrees) for value, degrees in zip(q, self._degrees, strict=True)])
 
     def _was_delivered(self, goal: Goal) -> bool:
-        """Retained ones do not count: nobody knows how old they are."""
+        """True if the goal was delivered; not as a retained message, whose age nobody knows."""
         for delivery in self.inbox:
             self._read(delivery)
             if not delivery.retain and goal_of(delivery.topic, delivery.payload, self._axes) == goal:
@@ -152,7 +152,7 @@ class KnownBoard:
 
 
 class Boards:
-    """`executed`: what was carried out in this step."""
+    """All boards by name; `executed`: the commands carried out in this step."""
 
     def __init__(self, boards: dict[str, KnownBoard]) -> None:
         self.by_name = boards
@@ -175,17 +175,17 @@ class Boards:
                 hear(delivery)
 
     def tell(self, at: float, published: Iterable[tuple[str, Publication]]) -> None:
-        """What was published at a time, by whom; only what boards tell of themselves counts here."""
+        """Take in publications; only what boards publish about themselves counts here."""
         for name, publication in published:
             if publication.topic in self._hears and (board := self.by_name.get(name)) is not None:
                 board.tell(at, publication.payload)
 
     def execute(self, name: str, goal: Goal) -> None:
-        """A board carries out a command."""
+        """Note that a board carries out a command."""
         self.executed.append(self.by_name[name].carried_out(goal))
 
     def forget_read(self, clients: dict[str, Client]) -> None:
-        """What boards have read is no longer new to them."""
+        """Forget the messages that boards have read: they are no longer new to them."""
         if not self._busy:
             return
         for name in tuple(self._busy):
@@ -196,7 +196,7 @@ class Boards:
 
 @lru_cache(maxsize=KEPT)
 def _angle(value: float, degrees: float) -> str:
-    """An angle as boards write it; `degrees` to one of `value`."""
+    """An angle in the form that boards write; `degrees` is the number of degrees in one unit of `value`."""
     return repr(round(value * degrees, DECIMALS) + 0.0)
 
 
@@ -206,12 +206,12 @@ def _commands(board: str) -> list[str]:
 
 
 def on_wire(joint: Joint, value: float) -> float:
-    """rad, or m along the rack of a pinion, in degrees."""
+    """A joint's value in degrees, from rad, or from m along the rack of a pinion."""
     return math.degrees(value / joint.pinion_radius_m if joint.pinion_radius_m else value)
 
 
 def parts(payload: bytes) -> tuple[bytes, bytes, bytes]:
-    """A message up to its number, its number, and what comes after it."""
+    """The parts of a message: before its number, the number, after it."""
     before, _, rest = payload.partition(b'"seq":')
     after = rest.lstrip(b"0123456789")
     return before, rest[: len(rest) - len(after)], after

@@ -1,6 +1,6 @@
-"""What the bridge was told and what it said, board by board: its rules once more, without its short cuts.
+"""Rules of the bridge, written down once more without its short cuts, and checked board by board.
 
-What it keeps is not asked. `Bridges.wrong` has what it did otherwise, by the name of the rule.
+The bridge's own memory is not read. `Bridges.wrong` has the sentences on each breach, by the rule's name.
 """
 
 from __future__ import annotations
@@ -29,10 +29,10 @@ from .boards import fields, parts
 EXACT = 1e-9
 YEAR_2100, AHEAD_S = 4_102_444_800, 366 * 86_400  # Unix time; how far ahead another machine's clock may be
 MOVING = MotionState.MOVING.value
-LINGER_S = 1.0  # for which a board that names no command has to say that it stands still
+LINGER_S = 1.0  # how long a board that names no command must report standing still
 PLANT_GONE_S = 5.0  # after its last heartbeat the bridge obeys whoever commands
 COPIES_S, EARLY_S = 5.0, 0.2  # how late after its original, and how early before it a copy may come
-SLACK = 1e-6  # rad or m: what a goal at its limit may lose on its way
+SLACK = 1e-6  # rad or m: rounding of a goal at its limit on the wire
 FOREIGN_TO_ARMS, FOREIGN_TO_MOBILES = ("nodo",), ("efector", "pieza", "q1_mov")
 KEPT = 200  # numbers of a board, fewer than the bridge remembers
 REPORTS, COMMANDS, BEATS = "reports", "commands", "beats"
@@ -48,8 +48,8 @@ CHANNELS = {
 class Bridges:
     """Follows every bridge of the plant.
 
-    Of the last pass in which it did something: `wrong` is what was wrong, rule -> sentences; `of_others` are
-    the commands without an id that it took in while it heard no plant, and so obeys.
+    Of the last pass in which a bridge did something: `wrong` are the breaches, rule -> sentences; `of_others`
+    are the commands without an id that it took in, and so obeys, while it heard no plant.
     """
 
     def __init__(self, model: PlantModel) -> None:
@@ -60,7 +60,7 @@ class Bridges:
         self._known: _Bridge | None = None
 
     def take_over(self, bridge: Any, now: float, beliefs: Mapping[str, Belief]) -> None:
-        """A bridge that ran before anybody looked: the only time that the plant is asked."""
+        """Take over the plant's beliefs, this once: of a bridge that ran before this record began."""
         self._bridge, self._known = bridge, _Bridge(self._model, self.wrong)
         self._known.take_over(now, beliefs)
 
@@ -169,43 +169,41 @@ class _Board:
         self._heard_at = -math.inf
         self._number: int | None = None
         self._boot: int | None = None
-        self._least = (
-            self._least_before
-        ) = -1  # the oldest epoca that counts for the board: now, a step before
+        self._least = self._least_before = -1  # the oldest epoca that the board obeys: now, and a step before
         self._returns = 0
         self._plant: int | None = None
-        self._plant_before: int | None = None  # after the step before: a beat may come between two reports
+        self._plant_before: int | None = None  # after the step before; beats may come between reports
         self._latched = False
         self._ids: OrderedDict[tuple[int, int], str] = OrderedDict()  # (epoca, seq) -> command
-        self._given: dict[tuple[int, int], int] = {}  # of this step: the place of its command in `_orders`
+        self._given: dict[tuple[int, int], int] = {}  # number -> its place in `_orders`, in this step
         self._seq = 0
         self._seen: set[str] = set()
         self._refused: set[tuple[str, str]] = set()
         self._words: tuple[Any, ...] = ()  # of the last telemetry: its bytes without the number, the report
-        self._telling: list[tuple[Delivery, int]] = []  # with how many orders of this step came before it
+        self._telling: list[tuple[Delivery, int]] = []  # telemetry, number of orders before it in this step
         self._maybe: list[tuple[Delivery, int]] = []
-        self._copies: list[tuple[float, Command]] = []  # that are to come of what the plant said
-        self._early: list[tuple[float, Command]] = []  # without an id, whose original may still come
-        self._orders: list[tuple[Command, str]] = []  # with the word that refuses it, or ""
-        self._over = 0  # how many of them came before the link was lost: what they moved has ended
+        self._copies: list[tuple[float, Command]] = []  # expected copies of the plant's commands
+        self._early: list[tuple[float, Command]] = []  # commands without an id whose original may still come
+        self._orders: list[tuple[Command, str]] = []  # command, and the word that refuses it, or ""
+        self._over = 0  # orders that came before the link was lost: their motions have ended
         self._fell = self._rose = False
         self.touched = True  # in this step
         self._late = False
         self._parsed: tuple[bytes, bytes, dict[str, Any]] | None = None  # the last telemetry as it was read
-        self._was_down = True  # after the step before, or as a bridge that starts tells of it
-        self._rejections: list[Rejection] = []  # that the bridge told of it in this step
+        self._was_down = True  # the link after the step before, or as a new bridge reports it
+        self._rejections: list[Rejection] = []  # the bridge's rejections for it in this step
         self._foreign = (0, 0)  # commands of others that were refused, and obeyed, as people were told
-        self._is_foreign_new = False  # whether there was one in this step
-        self._may_halt = False  # whether the board took one that the bridge has not answered
+        self._is_foreign_new = False  # there was a foreign command in this step
+        self._may_halt = False  # the board obeyed a foreign command that the bridge may halt
         self._heard_beat = False  # in this step
-        self._is_new_plant = False  # whether a plant is heard since this step
+        self._is_new_plant = False  # a plant is heard, and was not before this step
         self._newest: tuple[int, int] | None = None  # (epoca, seq) of the last motion
         self._motion: int | None = None  # number of a motion that surely has not ended
-        self._may_move = False  # whether a motion may be open
-        self._is_taken_over = False  # whether nobody followed what it said first
-        self._had_ended = False  # whether none was open after the step before
-        self._moved = False  # whether the board has said so since the last motion, or a stop followed that
-        self._still_since: float | None = None  # since then
+        self._may_move = False  # a motion may be open
+        self._is_taken_over = False  # it was taken over, so its first reports are not known
+        self._had_ended = False  # no motion was open after the step before
+        self._moved = False  # the board has reported moving since the last motion, or a stop followed it
+        self._still_since: float | None = None  # it reports standing still since then
 
     def take_over(self, now: float, belief: Belief) -> None:
         self._connected, self._plant, self._boot = True, belief.plant, belief.boot_id
@@ -215,7 +213,7 @@ class _Board:
 
     @property
     def stale_at(self) -> float:
-        """When its silence will have lasted too long."""
+        """The time at which the silence of the board has lasted too long."""
         return self._heard_at + self._patience_s if self._up else math.inf
 
     def connect(self, up: bool) -> None:
@@ -225,14 +223,14 @@ class _Board:
             self._lose()
 
     def reject(self, told: Rejection) -> None:
-        """People are told of a refused command."""
+        """Expect that people are told of a refused command."""
         self._rejections.append(told)
         self.touched = True
         if told.reason == FOREIGN:
             self._foreign, self._is_foreign_new = (self._foreign[0] + 1, self._foreign[1]), True
 
     def obey_foreign(self, *, taken: bool) -> None:
-        """People are told of an obeyed command of somebody else; `taken`: it may be halted for it."""
+        """Expect that people are told of an obeyed foreign command; `taken`: it may be halted for it."""
         self._may_halt |= taken
         self._foreign, self._is_foreign_new = (self._foreign[0], self._foreign[1] + 1), True
         self.touched = True
@@ -277,7 +275,7 @@ class _Board:
         self._take(delivery, said)
 
     def _fields(self, payload: bytes) -> dict[str, Any] | None:
-        """The fields of telemetry; what differs from the last in its number alone is not read again."""
+        """The fields of telemetry; if only its number differs from the last one, it is not decoded again."""
         before, number, after = parts(payload)
         last = self._parsed
         if last is not None and number and last[0] == before and last[1] == after:
@@ -317,9 +315,7 @@ class _Board:
             self._early.remove(early)
 
     def hear_others(self, at: float, command: Command, *, is_alone: bool) -> None:
-        """A command without an id: nothing where it is a copy, and an order where it is a stop, or where the
-        bridge hears no plant.
-        """
+        """Take in a command without an id: a copy is ignored, a stop obeyed, others if no plant is heard."""
         self.touched = True
         self._copies = [each for each in self._copies if each[0] + COPIES_S > at]
         copy = next((each for each in self._copies if each[1] == command), None)
@@ -343,7 +339,7 @@ class _Board:
         self._orders.append((command, self._word_against(command)))
 
     def _word_against(self, command: Command) -> str:
-        """The word that refuses a command that is for the board, or ""; a stop is kept, whatever it is."""
+        """The word that refuses a command for this board, or ""; even a refused stop is remembered."""
         if isinstance(command, Stop) and command.mode is not StopMode.HALT:
             self._latched = command.mode is StopMode.LATCH
         if not self._up:
@@ -356,7 +352,7 @@ class _Board:
         return "paro" if self._latched and (isinstance(command, Motion) or grips) else ""
 
     def _is_within(self, command: Command) -> bool:
-        """Whether the robot can reach the goal: where an arm lies, a way up may lead beyond its limits."""
+        """True if the goal is within the robot's limits, which do not bind an arm's way up."""
         if not isinstance(command, MoveJoints) or not self.robot.has_joints:
             return True
         rows = zip(self.robot.joints, command.q, strict=True)
@@ -402,7 +398,7 @@ class _Board:
             )
 
     def _compare_beats(self, published: list[Publication]) -> None:
-        """Who moves hears that somebody is there; whose motion has ended need not, unless another is new."""
+        """Check the beats: a board that may move gets them; one whose motion has ended need not."""
         ended = not self._may_move
         if self._still_since is not None and not self._by_ids:
             ended |= self._heard_at >= self._still_since + LINGER_S + EXACT
@@ -417,7 +413,7 @@ class _Board:
             self._say(BEATS, f"{self.robot.name} moves, and is not told that somebody is there")
 
     def _fences(self, publication: Publication) -> bool:
-        """Whether it is a beat of which the board has not said yet that it takes nothing older."""
+        """True for a beat that fences older epochs off, which the board has not confirmed yet."""
         if not self._by_ids or not publication.topic.endswith("/latido"):
             return False
         return fields(publication.payload).get("epoca", -1) > min(self._least, self._least_before)
@@ -460,7 +456,7 @@ class _Board:
                 self._say(COMMANDS, f"{name} is sent {publication.payload!r}, which nobody commanded")
 
     def _halt_by_itself(self, publication: Publication, place: int) -> None:
-        """The bridge halts what a board does at the word of somebody else, once for each that is told of."""
+        """Take in a halt by the bridge itself, allowed once for each reported foreign command."""
         if not self._may_halt:
             self._say(COMMANDS, f"{self.robot.name} is halted, which nobody commanded")
         self._may_halt = False
@@ -468,7 +464,7 @@ class _Board:
         self._number_of("", publication, place)
 
     def _is_heard_again(self, reports: list[Report]) -> bool:
-        """Whether a lost board is reported by telemetry that counts only in hindsight."""
+        """True if a lost board is reported by telemetry that counts only in hindsight."""
         return any(report.at == delivery.at for delivery, _ in self._maybe for report in reports)
 
     def _check_body(self, command: Command, publication: Publication, place: int) -> None:
@@ -492,7 +488,7 @@ class _Board:
             self._motion, self._moved = None, self._moved or command.mode is not StopMode.CLEAR
 
     def _check_told(self, id: str, word: str) -> None:
-        """People are told which robot refused what, and why in words."""
+        """Check that people are told which robot refused the command, and why in words."""
         for each in self._rejections:
             said = each.sentence.values
             if (each.id, each.reason, said["robot"], said["word"]) == (id, word, self.robot.name, word):
@@ -535,7 +531,7 @@ class _Board:
                 self._say(REPORTS, f"{name} is reported with what it has not said: {report}")
 
     def _is_known(self, report: Report, last: Report | None) -> bool:
-        """Whether it repeats the one before, as for a plant that was not heard before, or what may count."""
+        """True if an unexpected report is right: a repetition for a new plant, or what may count."""
         counted = next((each for each, place in self._maybe if self._says(report, each, place)), None)
         if counted is not None:
             self._take(counted, _read(counted.payload, self.robot) or {})
@@ -546,7 +542,7 @@ class _Board:
         return self._is_new_plant and _content(report) == _content(last)
 
     def _says(self, report: Report, delivery: Delivery, place: int) -> bool:
-        """Whether a report says what telemetry says that came after `place` orders of this step."""
+        """True if a report says what this telemetry says, which came after `place` orders of this step."""
         if report.at != delivery.at or report.plant not in (self._plant, self._plant_before):
             return False
         before, _, after = parts(delivery.payload)
@@ -561,7 +557,7 @@ class _Board:
         return True
 
     def _names(self, report: Report, said: dict[str, Any], place: int) -> bool:
-        """Whether it names the commands by the numbers that the board tells, none before it had one."""
+        """True if a report names the commands of the board's numbers, and none without a number."""
         if not self._by_ids:
             return report.accepted is None and report.done is None
         epoch = said.get("epoca_ack")
@@ -592,7 +588,7 @@ def _content(report: Report) -> tuple[Any, ...]:
 
 
 def _read(payload: bytes, robot: Robot) -> dict[str, Any] | None:
-    """The fields of telemetry; None where it is refused, as far as the simulated world makes such."""
+    """The fields of telemetry; None if it is to be refused, for the reasons that occur in simulations."""
     try:
         said = json.loads(payload)
     except ValueError:

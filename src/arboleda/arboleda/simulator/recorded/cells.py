@@ -1,4 +1,4 @@
-"""Where each cell was after its last step, and which leaves run in it."""
+"""Record of each cell after its last step, and of the leaves that run in it."""
 
 from __future__ import annotations
 
@@ -22,14 +22,14 @@ PAUSED = (CellState.HOLDING, CellState.HELD)
 
 
 class KnownCell:
-    """A cell as it was after the last step; `stopped` outlives the plant: from stop to reset.
+    """A cell as it was after the last step; `stopped` outlives the plant: it lasts from stop to reset.
 
-    `leaves` are those that run, `looked` whether they were looked up in this step; `sends` counts the
-    commands of each leaf of the tree in each turn of what repeats it, `again` how often an operator had an
-    interrupted step given anew, `retries` how often one had a step tried again, over all starts;
-    `waited_s` is how long its arm has waited for its zones, in the cell's own time, a recovery since all
-    before it were at work, `behind_work` whether those were when it last waited; `frozen_s` how much of that
-    time did not pass since the last news although it was not held.
+    `leaves` are those that run; `looked`: they were looked up in this step. `sends` counts the commands of
+    each leaf of the tree in each turn of what repeats it, `again` how often an operator had an interrupted
+    step given anew, `retries` how often one had a step tried again, over all starts. `waited_s` is how long
+    the arm has waited for its zones in the cell's own time, for a recovery only since all before it were at
+    work; `behind_work`: those were at work when it last waited. `frozen_s` is how much of that time did not
+    pass since the last news although the cell was not held.
     """
 
     def __init__(self, cell: StorageCell) -> None:
@@ -39,7 +39,7 @@ class KnownCell:
         self.retries = 0
 
     def begin(self, run: CellRun) -> None:
-        """A plant starts."""
+        """Begin anew with a plant that starts."""
         self.run, self.context = run, run.context
         self.state, self.task = run.state, run.task
         self.paused, self.queued = run.queue_paused, len(run.queue)
@@ -60,7 +60,7 @@ class KnownCell:
         self.follow()
 
     def follow(self) -> bool:
-        """Take over how the cell is now; whether that is something else than before."""
+        """Take over the present state of the cell; True if it differs from the one before."""
         run = self.run
         self.wakes = self.context.wakes
         if (
@@ -80,7 +80,7 @@ class KnownCell:
         return True
 
     def changes(self) -> Iterator[str]:
-        """What is not as it was after the last step."""
+        """Sentences on what is not as it was after the last step."""
         run = self.run
         if run.state is not self.state:
             yield f"{self.name} went from {self.state.value} to {run.state.value}"
@@ -90,14 +90,14 @@ class KnownCell:
             yield f"the task of {self.name} changed"
 
     def woke(self) -> bool:
-        """Whether a time had come that its tree waited for after the last step."""
+        """True if a time for which its tree waited after the last step has come."""
         now = self.context.now
         return any(at <= now for at in self.wakes)
 
     def wait(self, seconds: float, *, behind_work: bool) -> None:
-        """Its arm waits for zones after this step; `seconds` passed since the one before.
+        """Count the time that its arm waits for zones; `seconds` passed since the step before.
 
-        A recovery may go on waiting for those who work.
+        For a recovery the time does not count while those before it are at work.
         """
         tree, waiter = self.run.tree, self._waiter
         if waiter is None or not _runs(waiter, tree):
@@ -119,7 +119,7 @@ class KnownCell:
         self._lag_s = math.inf if self.state in PAUSED else lag_s
 
     def watch_recovery(self, moves: list[SentCommand]) -> None:
-        """Commands of its tree left; `moves` are those of its arm."""
+        """Note the moves of its arm that its tree has sent, if it is in a recovery."""
         if not self.run.run.recovering:
             self._recovering = None
         elif self._recovering is not self.run.tree:
@@ -138,7 +138,7 @@ class KnownCell:
 
 
 def _runs(leaf: Behaviour, tree: Behaviour | None) -> bool:
-    """Whether a leaf runs in a tree."""
+    """True if a leaf runs in this tree."""
     node: Behaviour | None = leaf
     while node is not None and node.status is Status.RUNNING:
         if node is tree:

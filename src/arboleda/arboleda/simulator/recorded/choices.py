@@ -1,4 +1,4 @@
-"""What each cell promised just before somebody asked for a task that several of them can do."""
+"""Promises of each cell just before somebody asked for a task that several of them can do."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ STANDS = (CellState.HOLDING, CellState.HELD)
 
 @dataclass(frozen=True, kw_only=True)
 class Promise:
-    """Whether a cell had no room, whether something was in its way, in how many s it would have done it."""
+    """Promise of a cell: no room, an obstacle, and the seconds in which it would have done the task."""
 
     is_full: bool
     is_hindered: bool
@@ -32,15 +32,15 @@ class Promise:
 
     @property
     def rank(self) -> tuple[bool, bool, float]:
-        """The lowest is the best."""
+        """Sort key: the lowest promise is the best."""
         return self.is_full, self.is_hindered, self.seconds
 
 
 class Choices:
-    """The promises by cell, of a request that came alone; none where the plant had nothing to choose.
+    """Promises by cell, for a request that came alone; none where the plant had nothing to choose.
 
-    Whether a cell is hindered is judged by what robots said and by its state, at which step its task is by
-    what was seen of its tree; nothing is asked of what chooses.
+    A cell counts as hindered by what its robots said and by its state; the step of its task is known from
+    what was seen of its tree. The plant's own code that chooses is not asked.
     """
 
     def __init__(self, robots: Mapping[str, KnownRobot], courses: Courses) -> None:
@@ -49,7 +49,7 @@ class Choices:
         self.promises: dict[str, Promise] = {}
 
     def look(self, world: World) -> None:
-        """Somebody asks: the plant has not heard it yet."""
+        """Take down the promises of all cells before the plant hears the request."""
         self.promises = {}
         plant, asked = world.plant, world.moment.asked
         alone = len(asked) == 1 and not world.moment.heard and world.now < plant.next_deadline
@@ -78,7 +78,7 @@ class Choices:
         )
 
     def _left(self, run: CellRun, past: list[Task], since_step_s: float) -> float | None:
-        """What was left of tasks like the one that runs, when they had been at its step for as long."""
+        """The seconds left in past tasks like the running one, from its present step; None if unknown."""
         seen = self._courses.at_work.get(run.cell.name)
         if run.task is None or seen is None or seen.recovers:
             return None
@@ -96,7 +96,7 @@ class Choices:
         if run.state not in WORKS or run.queue_paused or run.not_ready is not None:
             return True
         now, epoch = world.plant.now, world.plant.epoch
-        displaced = world.disk.facts.get(Fact.DISPLACED, {})  # by more than reports say
+        displaced = world.disk.facts.get(Fact.DISPLACED, {})  # the disk knows more of these than reports say
         return any(
             robot.name in displaced or self._robots[robot.name].is_unfit(now, epoch)
             for robot in run.cell.reached
@@ -104,7 +104,7 @@ class Choices:
 
 
 def _expected(order: Order, past: list[Task]) -> float:
-    """By what is most like it of what was done."""
+    """The usual seconds of the past tasks that are most like this order."""
     for alike in _alike(order, past):
         if alike:
             return median(_took(task) for task in alike[-LAST:])
@@ -112,14 +112,14 @@ def _expected(order: Order, past: list[Task]) -> float:
 
 
 def _alike(order: Order, past: list[Task]) -> tuple[list[Task], ...]:
-    """What was done, from the very same to anything."""
+    """Past tasks in groups, from those most like the order to all of them."""
     of_recipe = [task for task in past if order.recipe and task.order.recipe == order.recipe]
     in_cell = [task for task in of_recipe if task.order.cell == order.cell]
     return [task for task in past if task.order.text == order.text], in_cell, of_recipe, past
 
 
 def _rest(course: Course, step: str, seconds: float) -> float:
-    """What was left of a task so many s after a step began, or once its next step did."""
+    """The seconds left of a task `seconds` after a step began, but not more than at its next step."""
     began = course.begun[step]
     following = [at for at in sorted(course.begun.values()) if at > began] or [course.seconds]
     return max(course.seconds - began - seconds, course.seconds - following[0])

@@ -17,7 +17,7 @@ RECENT = 32  # goals per robot that may still be under way to its board
 class SentCommand:
     """One command as it was sent; `state` and `entry` are what the ledger says after each step.
 
-    `obstacles` spoke against it by what the robot had said; `verbs` is what operators asked for its robot
+    `obstacles` spoke against it by what the robot had said; `verbs` are what operators asked for on its robot
     in the same step; `halts` counts the robot's halts and stops before it.
     """
 
@@ -43,7 +43,7 @@ class SentCommand:
         return self.command.robot
 
     def bind(self, entry: Entry) -> None:
-        """The ledger's own page for it."""
+        """Bind it to its entry in the ledger."""
         self.entry, self.state, self.deadline = entry, State.SENT, entry.deadline
 
     def __str__(self) -> str:
@@ -51,9 +51,9 @@ class SentCommand:
 
 
 class Commands:
-    """`new`: sent in this step; `moved`: changed its state in it, with the state before; `lost`: left the
-    ledger without an end; `goals`: the last ones of each robot, whatever became of them; `soonest`: the first
-    deadline of all, s.
+    """`new`: commands sent in this step; `moved`: those that changed state in it, with the state before;
+    `lost`: those that left the ledger without an end; `goals`: the last ones of each robot, whatever became
+    of them; `soonest`: the first deadline of all, s.
     """
 
     def __init__(self) -> None:
@@ -67,7 +67,7 @@ class Commands:
         self.soonest = math.inf
 
     def forget(self) -> None:
-        """The plant that sent them is gone."""
+        """Forget all commands, as the plant that sent them is gone."""
         self.open.clear()
         self.last.clear()
         self.last_work.clear()
@@ -79,7 +79,7 @@ class Commands:
         self.lost.clear()
 
     def take(self, sent: SentCommand, known: KnownRobot) -> None:
-        """The plant sent a command."""
+        """Take in a command that the plant sent."""
         self.new.append(sent)
         command = sent.command
         known.unnamed = command.id
@@ -93,14 +93,14 @@ class Commands:
             self.goals.setdefault(command.robot, deque(maxlen=RECENT)).append(command)
 
     def hear(self, report: Report, known: KnownRobot) -> None:
-        """A report names the command that was rejected last."""
+        """Take in a report, which names the last rejected command."""
         rejected = self.open.get(report.rejected or "")
         if rejected is not None:
             rejected.rejected = True
             known.barred |= report.refusal == "paro" and not known.robot.has_stop
 
     def follow(self, ledger: Ledger, now: float) -> bool:
-        """Compare with the ledger what was open; whether anything changed."""
+        """Take over from the ledger what became of open commands; True if anything changed."""
         for sent in self.new:
             entry = ledger.entries.get(sent.command.id)
             if entry is not None:

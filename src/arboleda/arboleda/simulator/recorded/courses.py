@@ -1,4 +1,4 @@
-"""How tasks go, as the statuses of their trees show it pass by pass."""
+"""Courses of tasks, as the statuses of their trees show them pass by pass."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ ROUNDING_S = 2e-3  # times are kept in ms
 
 
 class TaskInProgress:
-    """A task at work, its times in s of its cell's time, which stands still while it is held.
+    """A task at work, with times in s of its cell's own time, which stands still while the cell is held.
 
     `whole`: it was seen from its beginning; else only what begins after `began` is known of it.
     """
@@ -40,7 +40,7 @@ class TaskInProgress:
         self._over: dict[Behaviour, float] = {}  # since when steps have rested as done or failed
 
     def look(self, rested: object, now: float) -> None:
-        """Take in what has begun; where it came to rest as before nothing has."""
+        """Take in the steps that have begun; none has if the tree came to rest as before."""
         if rested is self._rested:
             return
         self._rested = rested
@@ -57,7 +57,7 @@ class TaskInProgress:
                 self.begun[step] = now
 
     def _is_in_another_turn(self, step: Behaviour) -> bool:
-        """Whether a step that runs, as it did before, is done again."""
+        """True if a step that runs now and ran before is in another turn of what repeats it."""
         if step not in self._turns or step.status is not Status.RUNNING:
             return False
         before, self._turns[step] = self._turns[step], turns_of(step)
@@ -65,18 +65,17 @@ class TaskInProgress:
 
     @property
     def steps(self) -> Mapping[str, float]:
-        """When each step began, by its name and how many before it in the tree have that name; the last of
-        them last."""
+        """The beginnings of steps, earliest first, by name and count of that name in the tree."""
         begun = {name: self.begun[step] for name, step in self._named().items()}
         return dict(sorted(begun.items(), key=lambda each: each[1]))
 
     @property
     def recovers(self) -> bool:
-        """Whether its work has failed."""
+        """True while its recovery runs, as its work has failed."""
         return any(node.name == RECOVERY and node.status is Status.RUNNING for node in self.nodes)
 
     def differs(self, told: Course | None) -> bool:
-        """Whether what is told of it, now that it is done, is not what was seen."""
+        """True if the course that is told of the done task is not the one that was seen."""
         if told is None or not self.whole:
             return (told is None) is self.whole
         named, took = self._named(), self.ended_at - self.began
@@ -94,8 +93,9 @@ class TaskInProgress:
         }
 
     def _began(self, step: Behaviour, after_s: float) -> bool:
-        """Whether a step began last after so many s. One that is repeated and over within a pass looks as it
-        did before: so in a task that repeats steps it may have begun anew whenever its tree came to rest."""
+        """True if a step may have begun last so many s after the task. A repeated step that ends within a
+        pass shows no beginning; it may have begun anew whenever the tree of its task came to rest.
+        """
         at = self.began + after_s
         if abs(min(self.begun[step], self.ended_at) - at) <= ROUNDING_S:
             return True
@@ -104,7 +104,7 @@ class TaskInProgress:
 
 
 class Courses:
-    """What runs in each cell; `ended` are the tasks of which that was so before this pass, by id."""
+    """Tasks at work in each cell; `ended` are those that ended in this pass, by id."""
 
     def __init__(self) -> None:
         self.ended: dict[str, TaskInProgress] = {}
@@ -112,11 +112,11 @@ class Courses:
 
     @property
     def at_work(self) -> Mapping[str, TaskInProgress]:
-        """By cell."""
+        """The tasks at work, by cell."""
         return self._at_work
 
     def look(self, plant: Plant, *, born: bool) -> None:
-        """Take in what the plant did in this step; `born`: what runs was begun by an earlier start of it."""
+        """Take in what the plant did in this step; `born`: an earlier start of the plant began what runs."""
         if self.ended:
             self.ended = {}
         if born:
@@ -134,5 +134,5 @@ class Courses:
 
 
 def _waits(step: Behaviour) -> bool:
-    """Whether it began to wait anew with the start of the plant."""
+    """True for a step that began to wait anew when the plant started."""
     return isinstance(step, Await | Dwell) and step.status is Status.RUNNING

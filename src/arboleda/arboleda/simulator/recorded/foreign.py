@@ -10,12 +10,12 @@ from arboleda.wire.rejections import ForeignCommand, Rejection
 
 from ..world import BridgeStep
 
-# it may still turn out to be a copy of what the plant says, and that copy then to be the command of another
+# for so long a command may turn out to be a copy of one of the plant's, or a copy to be a foreign command
 UNSURE_S = 1.0
 
 
 class ForeignCommands:
-    """`untold`: those of which nobody was told in time, in this step."""
+    """Commands of other nodes; `untold`: those of which nobody was told in time, in this step."""
 
     def __init__(self) -> None:
         self.untold: list[Command] = []
@@ -23,7 +23,7 @@ class ForeignCommands:
         self._bridge: object = None
 
     def look(self, passed: Iterable[BridgeStep], obeyed: list[Command]) -> None:
-        """Take in what bridges did; what one `obeyed` that heard no plant is nothing to tell."""
+        """Take in what bridges did; what a bridge `obeyed` because it heard no plant need not be told."""
         self.untold.clear()
         for each in passed:
             if each.bridge is not self._bridge:

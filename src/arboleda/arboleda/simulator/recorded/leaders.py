@@ -1,4 +1,4 @@
-"""Who led a plant with two hosts, what it let out and what it wrote, apart from what any of them believes."""
+"""Record of the leaders of a plant with two hosts, apart from what these believe themselves."""
 
 from __future__ import annotations
 
@@ -21,15 +21,15 @@ NO_ORDERS = (Channel.STOP, Channel.BEAT)
 
 
 class Leaders:
-    """`twice` are numbers that were led more than once, or that went back; `old` is what a board carries out
-    in this step of a number lower than one of which it had read a beat before, or carried out something,
-    since it booted; `wrong` is what of the history of tasks is lost or doubled, and what was written by who
-    leads no more.
+    """Breaches of the rules for leaders: `twice` are numbers that were led more than once, or that went back;
+    `old` are goals that a board carries out in this step under a number lower than one of which it had read a
+    beat, or carried out something, since it booted; `wrong` are tasks lost or doubled in the history, and
+    writes by a process that leads no more.
     """
 
     def __init__(self, world: World, hosts: Hosts, boards: Boards) -> None:
         self._world, self._hosts, self._boards = world, hosts, boards
-        self._known = 0  # of the numbers
+        self._known = 0  # how many of the numbers have been looked at
         self._boots: dict[str, int] = {}
         self._heard: dict[str, int] = {}
         self._beats: dict[str, tuple[int, int]] = {}  # boot and newest beat of each board before this step
@@ -48,7 +48,7 @@ class Leaders:
             self._look_at_numbers()
         for board, goal in moment.executed:
             self._carried_out(board, goal)
-        # Only now: which of the beats and commands of one step a board read first is not told.
+        # Only now, as nothing tells if a board read the beats or the commands of one step first.
         self._beats = {name: (each.boot, each.beat or 0) for name, each in self._boards.by_name.items()}
         for write in moment.writes:
             self._wrote(write)
@@ -64,7 +64,7 @@ class Leaders:
         self._known = len(numbers)
 
     def _carried_out(self, board: str, goal: Goal) -> None:
-        """A board that booted knows no numbers any more."""
+        """Take in goals that boards carried out; a board that booted knows no numbers any more."""
         if goal.epoch is None:
             return
         boot = self._world.boards[board].boot_id
@@ -97,7 +97,7 @@ class Leaders:
             self._states[said.task] = said.state
 
     def _look_at_found(self) -> None:
-        """Who starts finds all that the store took."""
+        """Check that a process that starts finds all that the store took."""
         tasks = self._world.disk.tasks
         for id, state in self._states.items():
             found = tasks.get(id)
@@ -107,8 +107,8 @@ class Leaders:
 
 
 def may_follow(said: LateMessage) -> bool:
-    """Whether something may leave a process that another one has superseded: a stop of one that cannot find
-    that out, and the beat without which it does not count; what its bridge makes of that, or stops by itself.
+    """True for what may leave a superseded process: a stop, if it cannot find out that it is superseded, and
+    the beat without which a stop does not count; what its bridge makes of these, or stops by itself.
     """
     if isinstance(said.message, Publication):
         return parse(said.message.topic)[1] in NO_ORDERS

@@ -1,6 +1,6 @@
-"""What the reports of one step prove about each open command, by rules that are written down here once more.
+"""Proofs: what the reports of one step prove of each open command, by rules written down here once more.
 
-They are slower and plainer than those of the plant, and ask none of its books.
+The rules are slower and plainer than the plant's, and none of its books is read.
 """
 
 from __future__ import annotations
@@ -30,11 +30,10 @@ REFUSED = {
 
 @dataclass
 class Proof:
-    """What one command's robot said in this step, in the order of its reports.
+    """Proof for one command from its robot's reports of this step, in their order.
 
-    `causes` are reasons for which it may fail now; `must_end` says what leaves no way but an end;
-    `must_run` that its board has named it; `done`, `named`, `still`: whether it may be done, be under way,
-    have come to a halt.
+    `causes` are reasons for which it may fail now; `must_end` says why it must end; `must_run`: its board has
+    named it, so it must count as accepted; `done`, `named`, `still`: it may be done, under way, or halted.
     """
 
     causes: set[Reason] = field(default_factory=set)
@@ -47,7 +46,7 @@ class Proof:
 
 @dataclass
 class ReportEvidence:
-    """What reports have shown of a command since it was sent."""
+    """All that reports have shown of a command since it was sent."""
 
     moving: bool = False
     position: bool = False
@@ -55,7 +54,7 @@ class ReportEvidence:
 
 
 class Proofs:
-    """`of`: by command id, in this step; a command of which nothing was said has none."""
+    """Proofs by command id in `of`, for this step; a command of which nothing was said has none."""
 
     def __init__(self) -> None:
         self.of: dict[str, Proof] = {}
@@ -63,7 +62,7 @@ class Proofs:
         self._by_robot: dict[str, list[SentCommand]] = {}
 
     def forget(self) -> None:
-        """The plant that sent them is gone."""
+        """Forget all, as the plant that sent the commands is gone."""
         self.of.clear()
         self._shown.clear()
         self._by_robot.clear()
@@ -80,7 +79,7 @@ class Proofs:
         self._shown = {id: shown for id, shown in self._shown.items() if id in ids}
 
     def hear(self, report: Report, known: KnownRobot) -> None:
-        """A report comes in; `known` is what its robot had said before."""
+        """Take in a report; `known` is what its robot had said before."""
         q = known.q if report.q is None else report.q
         node = known.node if report.node is None else report.node
         for sent in self._by_robot.get(report.robot, ()):
@@ -95,7 +94,7 @@ class Proofs:
 
 
 def _broken(proof: Proof, sent: SentCommand, report: Report, known: KnownRobot) -> None:
-    """What ends a command whenever it was said."""
+    """Note what ends any command: a lost link, silence, a restarted bridge, a boot."""
     if report.state is MotionState.NO_LINK:
         _must(proof, Reason.LINK_LOST, "its link was lost")
     if report.at > known.stale_at:
@@ -105,7 +104,7 @@ def _broken(proof: Proof, sent: SentCommand, report: Report, known: KnownRobot) 
     if _booted(report, known):
         _must(proof, Reason.REBOOTED, "its board booted")
     if known.robot.evidence is Evidence.JOINTS:
-        proof.causes.add(Reason.REBOOTED)  # a jump; how far is too far is for the tests of evidence
+        proof.causes.add(Reason.REBOOTED)  # its place may have jumped; how far is judged elsewhere
     if report.rejected == sent.command.id:
         _must(proof, REFUSED.get(report.refusal or "", Reason.REJECTED), "it was refused")
     if report.failed == sent.command.id:
@@ -113,7 +112,7 @@ def _broken(proof: Proof, sent: SentCommand, report: Report, known: KnownRobot) 
 
 
 def _booted(report: Report, known: KnownRobot) -> bool:
-    """At `joints` boots are counted by the bridge, which begins anew with each start of its own."""
+    """True if the board has booted; counts of boots at `joints` are comparable for one bridge only."""
     if report.boot_id == known.boot or None in (report.boot_id, known.boot):
         return False
     same_bridge = report.epoch == known.epoch
@@ -133,7 +132,7 @@ def _see(shown: ReportEvidence, report: Report) -> None:
 
 
 def _said(proof: Proof, sent: SentCommand, report: Report, robot: Robot) -> None:
-    """Codes that speak for themselves."""
+    """Note what state codes prove by themselves."""
     if report.state is MotionState.FAULT:
         _must(proof, Reason.DEVICE_FAULT, "its board reports a fault")
     if not sent.is_work:
@@ -149,7 +148,7 @@ def _said(proof: Proof, sent: SentCommand, report: Report, robot: Robot) -> None
 def _moved(
     proof: Proof, sent: SentCommand, shown: ReportEvidence, report: Report, robot: Robot, off: float | None
 ) -> None:
-    """Whether it is under way or done; `off` is how far beyond its tolerance the robot stands."""
+    """Note that it is under way or done; `off` is how far beyond its tolerance the robot stands."""
     command, stopped = sent.command, _rests(sent, report)
     if isinstance(command, Switch):
         told = all(report.fact(name) == value for name, value in command.sets)
@@ -174,7 +173,7 @@ def _moved(
             proof.must_end = proof.must_end or "its board says that it is done"
     else:
         proof.named |= shown.moving
-        # how near is near enough at `joints`, where words come apart, is for what is true to say
+        # at `joints` state and place come in separate messages, so the truth judges the distance
         seen = shown.moving if robot.evidence is Evidence.STATE else shown.position
         proof.done |= seen and (stopped or report.state is None)
     if (stopped or report.state is None) and not _surely_at(off):
@@ -182,7 +181,7 @@ def _moved(
 
 
 def _rests(sent: SentCommand, report: Report) -> bool:
-    """Whether it says that it is at rest; what goes on through a stop has ended where it says "stopped"."""
+    """True if the robot is at rest; "stopped" also ends work that goes on through a stop."""
     latched = sent.is_work and not sent.can_be_halted and report.state is MotionState.STOP_LATCHED
     return latched or report.state is MotionState.STOPPED
 
@@ -196,7 +195,7 @@ def _surely_at(off: float | None) -> bool:
 
 
 def _off(sent: SentCommand, robot: Robot, q: tuple[float, ...] | None, node: int | None) -> float | None:
-    """By how much the worst joint misses its goal beyond its tolerance; of a path see `_off_path`."""
+    """The distance beyond its goal's tolerance of the worst joint; for a path see `_off_path`."""
     command = sent.command
     if isinstance(command, FollowPath):
         return None if node is None else _off_path(command.nodes, node)
@@ -213,14 +212,14 @@ def _off(sent: SentCommand, robot: Robot, q: tuple[float, ...] | None, node: int
 
 
 def _off_facts(sent: SentCommand, report: Report, known: KnownRobot) -> float:
-    """-1 where its robot says, or said last, all that a command sets; else 1."""
+    """The distance from a switch's goal: -1 if all facts that it sets are so by their last report, else 1."""
     said = {name: report.fact(name) for name, _ in sent.command.sets}
     told = {name: known.fact(name) if value is None else value for name, value in said.items()}
     return -1.0 if all(told[name] == value for name, value in sent.command.sets) else 1.0
 
 
 def _off_path(nodes: tuple[int, ...], node: int) -> float:
-    """1 away from the last node, -1 on it; 0 on one by which the path comes before, as on a round trip."""
+    """The distance from a path's end: 1 away, -1 there, 0 there if the path comes by before, too."""
     if node != nodes[-1]:
         return 1.0
     return 0.0 if node in nodes[:-1] else -1.0

@@ -1,4 +1,4 @@
-"""Which stations have a part, by the tasks that put one there and by what operators have taken out."""
+"""Record of the stations that have a part, by the tasks that put one there and by what operators took out."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ Stations = set[int]
 
 
 class Racks:
-    """The stations of each cell that are `full`, and those that may be, as a task began to fill them."""
+    """Stations of each cell that are `full`, and those that may be, as a task began to fill them."""
 
     def __init__(self, cells: Iterable[StorageCell], scopes: Scopes) -> None:
         self.cells = {cell.name: cell for cell in cells}
@@ -24,7 +24,7 @@ class Racks:
         self._emptied: dict[tuple[str, int], float] = {}
 
     def restart(self, kept: Mapping[str, str], running: Iterable[KnownTask]) -> None:
-        """A plant starts with what is kept of its racks."""
+        """Begin anew with a plant that starts with what is kept of its racks."""
         for name in self.cells:
             self.full[name] = {int(number) for number in kept.get(name, "").split()}
             self._begun[name].clear()
@@ -50,7 +50,7 @@ class Racks:
                 self._end(task)
 
     def named(self, scope: str) -> dict[str, Stations]:
-        """The stations of a scope by their cells, as `sis_a 7` or `sis_a`; the scope may be anything."""
+        """The stations of a scope, as `sis_a 7` or `sis_a`, by their cells; the scope may be any word."""
         name, _, station = scope.partition(" ")
         robots = self._scopes.robots(name)
         cells = [cell for cell in self.cells.values() if not {*cell.holders}.isdisjoint(robots)]
@@ -59,13 +59,13 @@ class Racks:
         }
 
     def _begin(self, task: KnownTask) -> None:
-        """A part may come to where it is put, or back to where it was."""
+        """Note for a task that begins the stations that may get its part, or get it back."""
         cell, filled = self.cells[task.cell], self._filled_by(task)
         pick = {n for n, station in enumerate(cell.stations) if station.name == cell.palletizing.pick.name}
         self._begun[task.cell] |= filled | pick
 
     def _end(self, task: KnownTask) -> None:
-        """A task is done: its part is where it was to be put, unless somebody took it out since it began."""
+        """Note that a done task has filled its station, unless somebody emptied it since the task began."""
         for number in self._filled_by(task):
             if self._emptied.get((task.cell, number), -1.0) < (task.began or 0.0):
                 self.full[task.cell].add(number)

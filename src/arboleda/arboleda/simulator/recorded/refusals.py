@@ -1,4 +1,4 @@
-"""What a step changed in which everything that was asked was refused, and nothing else happened."""
+"""Comparison for a step in which all requests were refused and nothing else happened: nothing may change."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ if TYPE_CHECKING:
 
 
 def differences(record: Record) -> list[str]:
-    """Sentences; none where something was done or heard, or may have come due. Called before the mirrors
-    of the record are brought up to date.
+    """Sentences on what changed; none in a step in which something was done or heard, or may have come due.
+    Called before the mirrors of the record are brought up to date.
     """
     if not _only_refused(record) or _something_was_due(record):
         return []
@@ -31,7 +31,7 @@ def _something_was_due(record: Record) -> bool:
     now = record.world.plant.now
     if record.away:
         return True
-    # an arm whose tree has ended gives its zones back at the next step, whatever that is
+    # an arm whose tree has ended gives its zones back in the next step, whatever happens in that
     if any(isinstance(each, Remember) and each.fact is Fact.QUARANTINE for each in record.world.moment.sent):
         return True
     if any(cell.woke() for cell in record.cells.values()):

@@ -1,4 +1,4 @@
-"""What a robot has told the plant, and how operators have stopped it; no belief of the plant is asked."""
+"""Record of what each robot has told the plant and of operators' stops; no belief of the plant is read."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from arboleda.model.messages import BUILT_IN, Report
 from arboleda.model.plant_model import Evidence, Link, MotionState, Robot
 
 NUMBERS = 512  # telemetry messages, more than a plant that was stalled finds in its inbox
-LOOK_S = 0.5  # what stays the same is looked at this often
+LOOK_S = 0.5  # a report that says the same counts as news this often
 
 
 class Obstacle(str, Enum):
-    """Why a robot must not be given a command."""
+    """The reason why a robot must not be given a command."""
 
     OFFLINE = "offline"
     UNANSWERED = "reached by a bridge that does not hear this plant"
@@ -28,14 +28,14 @@ class Obstacle(str, Enum):
 
 
 class StopProgress(Enum):
-    """How far an operator's stop of a robot is undone."""
+    """Progress of an operator's stop: not cleared yet, or cleared and not reset."""
 
     LATCHED = "latched"
     CLEARED = "cleared"
 
 
 class KnownRobot:
-    """The last word of a robot on everything, None where it never said; `stop` outlives the plant."""
+    """Last word of a robot on everything, None where it never said; `stop` outlives the plant."""
 
     def __init__(self, robot: Robot, stale_after_s: float) -> None:
         self.robot = robot
@@ -46,7 +46,7 @@ class KnownRobot:
         self.forget()
 
     def forget(self) -> None:
-        """A plant that starts has heard nothing."""
+        """Forget all, as a plant that starts has heard nothing."""
         self._words: tuple[object, ...] = ()  # of the last report
         self._look_at = 0.0
         self.heard_at: float | None = None
@@ -66,13 +66,13 @@ class KnownRobot:
         self.unnamed: str | None = None  # the last command that it was sent, until a report names it
 
     def as_it_is(self) -> KnownRobot:
-        """What is known of it now, whatever it says later."""
+        """A copy that later reports do not change."""
         known = copy(self)
         known.facts = dict(self.facts)
         return known
 
     def hear(self, report: Report) -> bool:
-        """Take over what it says now; whether that is something else than before, or the same for LOOK_S."""
+        """Take over a report; True if it says something else than the one before, or the same for LOOK_S."""
         anew = report.words != self._words or report.at >= self._look_at
         if anew:
             self._words, self._look_at = report.words, report.at + LOOK_S
@@ -107,7 +107,7 @@ class KnownRobot:
             self.state = report.state
 
     def fact(self, name: str) -> Value | None:
-        """Its last word on a fact, which may have a field of its own."""
+        """The last word of the robot on a fact, some of which have a field of their own."""
         value: Value | None = getattr(self, name) if name in BUILT_IN else self.facts.get(name)
         return value
 
@@ -120,7 +120,7 @@ class KnownRobot:
 
     @property
     def stale_at(self) -> float:
-        """When its silence will have lasted too long, s."""
+        """The time at which the robot's silence has lasted too long, s."""
         return math.inf if self.heard_at is None else self.heard_at + self._patience_s
 
     def offline(self, now: float) -> bool:
@@ -131,15 +131,15 @@ class KnownRobot:
 
     @property
     def unhomed(self) -> bool:
-        """Whether its position means nothing."""
+        """True if the position of the robot means nothing."""
         return self.homed is False or self.displaced or self.state is MotionState.NOT_HOMED
 
     def is_unfit(self, now: float, plant_epoch: int) -> bool:
-        """Whether anything speaks against a command to it."""
+        """True if anything speaks against a command to the robot."""
         return any(is_so(self, now, plant_epoch) for is_so in OBSTACLES.values())
 
     def obstacles(self, now: float, plant_epoch: int) -> frozenset[Obstacle]:
-        """Everything that speaks against a command to it."""
+        """Everything that speaks against a command to the robot."""
         return frozenset(word for word, is_so in OBSTACLES.items() if is_so(self, now, plant_epoch))
 
 

@@ -1,4 +1,4 @@
-"""Whom an operator means: the plant, a cell, or one robot."""
+"""Scopes of operators: the plant, a cell, or one robot."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ NOBODY: tuple[str, ...] = ()
 
 
 class Scopes:
-    """The robots and the cells of a scope as an operator writes it; none for any other word."""
+    """Robots and cells of a scope as an operator writes it; none for any other word."""
 
     def __init__(self, model: PlantModel) -> None:
         cells = {cell.name: tuple(robot.name for robot in cell.robots) for cell in model.cells}
@@ -23,11 +23,11 @@ class Scopes:
         return self._robots.get(scope.strip().lower(), NOBODY)
 
     def commanded(self, scope: str) -> set[str]:
-        """The robots of a scope to whom commands are sent."""
+        """The robots of a scope to which commands are sent."""
         return set(self.robots(scope)) - self._unsent
 
     def cells(self, scope: str) -> tuple[str, ...]:
-        """The cells of a scope; of a device that cells share all of these."""
+        """The cells of a scope; for a shared device all cells that share it."""
         name = scope.strip().lower()
         names = [name] if name in self._cells else self.robots(scope)
         return tuple(dict.fromkeys(cell for each in names for cell in self._cells[each]))

@@ -1,4 +1,4 @@
-"""What was told and carried out of each task over all starts of the plant."""
+"""Record of what was told and carried out of each task over all starts of the plant."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ from arboleda.wire.payloads import Goal
 from ..truth.stops import is_order_of
 
 UNDER_WAY = 16  # commands of a robot that may still reach its board
-TASKS = 2000  # that are followed; older ones are of no interest any more
+TASKS = 2000  # tasks that are followed; older ones are dropped
 
 
 @dataclass(frozen=True, slots=True)
 class Step:
-    """A command that a step of a task gave: `start` numbers the start of the plant, `path` is where it stands
-    in the tree and in which turn of what repeats it; `retries` is how often an operator had steps of its cell
-    tried again by then.
+    """A command that a step of a task gave: `start` is the number of the plant's start, `path` the step's
+    place in the tree with the turn of what repeats it; `retries` is how often an operator had steps of its
+    cell tried again by then.
     """
 
     task: str
@@ -37,10 +37,10 @@ class Step:
 
 
 class Starts:
-    """`told` is the last word on each accepted task, `ended` its end as it was told first.
+    """Tasks over all starts: `told` is the last word on each accepted one, `ended` its first end told.
 
-    `wrong` are ends that were told otherwise or again in this step, `twice` the steps that a board has begun
-    again although it had done them for an earlier start, or from which their task had gone on in one.
+    `wrong` are ends that were told again or otherwise in this step. `twice` are steps that a board has begun
+    again although an earlier start had done them, or had gone on from them.
     """
 
     def __init__(self, model: PlantModel) -> None:
@@ -56,18 +56,18 @@ class Starts:
         self._over: dict[tuple[str, str], Step] = {}  # (task, path) -> a step from which the task went on
 
     def clear_news(self) -> None:
-        """Nothing has happened yet in the step that begins."""
+        """Clear the findings of the step before."""
         self.wrong.clear()
         self.twice.clear()
 
     def hear(self, messages: Iterable[object]) -> None:
-        """What the plant says, its last words too."""
+        """Take in what the plant says, its last words too."""
         for said in messages:
             if isinstance(said, TaskChanged) and said.state is not TaskState.REFUSED:
                 self._hear(said)
 
     def gave(self, step: Step) -> None:
-        """A step of a task gave a command."""
+        """Note a command that a step of a task gave."""
         over = self._over.get((step.task, step.path))
         if over is not None and over.start < step.start:
             self._again(step, over)
@@ -76,7 +76,7 @@ class Starts:
             self._sent[step.command.robot].append(step)
 
     def went_on(self, command: str) -> None:
-        """The task went on from the step of this command, and that was kept."""
+        """Note that the task went on from the step of this command, and that this was kept."""
         step = self._steps.pop(command, None)
         if step is not None:
             self._over[step.task, step.path] = step
@@ -84,13 +84,13 @@ class Starts:
                 del self._over[next(iter(self._over))]
 
     def restart(self, *, undone: bool) -> None:
-        """A plant starts; `undone`: what was kept last may be gone."""
+        """Begin another start of the plant; `undone`: what was kept last may be gone."""
         self._steps.clear()
         if undone:
             self._over.clear()
 
     def carries_out(self, board: str, goal: Goal) -> None:
-        """A board carries out a goal: of the commands that are this one the newest."""
+        """Note that a board carries out a goal: it belongs to the newest of the commands that match it."""
         robot = self._robots.get(board)
         if robot is None:
             return
@@ -133,17 +133,17 @@ class Starts:
 
 
 def turn_of(leaf: Behaviour) -> str:
-    """Where a step stands in its tree, and in which turn of each step around it that repeats it."""
+    """The path of a step in its tree, with the turn of each step around it that repeats it."""
     turns = turns_of(leaf)
     return f"{path_of(leaf)} in turn {turns}" if turns else path_of(leaf)
 
 
 def turns_of(leaf: Behaviour) -> list[int]:
-    """In which turn each step around it is that repeats it, the outermost first."""
+    """The turns of the repeating steps around a step, the outermost first."""
     turns, node = [], leaf.parent
     while node is not None:
         if isinstance(node, StepOfFile):
-            turns.append(node.turn)  # trees of files have many nodes that repeat: each step counts itself
+            turns.append(node.turn)  # in trees of files each step counts its turns
         elif isinstance(node, Times | Again):
             turns.append(node.done if isinstance(node, Times) else node.tries)
         node = node.parent
@@ -151,8 +151,6 @@ def turns_of(leaf: Behaviour) -> list[int]:
 
 
 def _may_be_repeated(done: list[Step], before: Step, again: Step) -> bool:
-    """Whether a step may be done again after a restart: a way on which the robot may have been stopped, and
-    what an operator had tried again.
-    """
+    """True if a step may be done anew after a restart: a motion cut short, or by an operator's retry."""
     interrupted = done[-1].path == again.path and isinstance(again.command, Motion)
     return interrupted or again.retries > before.retries

@@ -1,4 +1,4 @@
-"""Which moves the bridge takes in although the plant gave a stop or a halt after them, which came first."""
+"""Record of moves that reach the bridge before a stop or halt although the plant gave them after it."""
 
 from __future__ import annotations
 
@@ -7,18 +7,18 @@ from collections.abc import Iterable
 from arboleda.model.commands import Motion
 from arboleda.wire.hop import FromPlant, is_stop
 
-Number = tuple[int, int]  # the plant's start, and the how-manieth command of it
+Number = tuple[int, int]  # the number of the plant's start, and that of the command in it
 
 
 class EarlyStops:
-    """`overtaken` are sentences on the moves of this step; what others say has no order."""
+    """Early stops; `overtaken` are sentences on such moves of this step. Messages of others have no order."""
 
     def __init__(self) -> None:
         self.overtaken: list[str] = []
         self._last: dict[str, Number] = {}
 
     def look(self, taken: Iterable[FromPlant], epoch: int) -> None:
-        """Take in what the bridge took in, in its order; `epoch`: of the plant that runs."""
+        """Take in what the bridge took in, in its order; `epoch` is that of the running plant."""
         self.overtaken.clear()
         for command in (each.message for each in taken):
             number = _number(getattr(command, "id", ""))
@@ -37,6 +37,6 @@ class EarlyStops:
 
 
 def _number(id: str) -> Number | None:
-    """None for a command of somebody else."""
+    """The number in a command's id; None for a command of somebody else."""
     epoch, _, count = id.partition("-")
     return (int(epoch), int(count)) if epoch.isdigit() and count.isdigit() else None

@@ -17,11 +17,10 @@ OPEN = frozenset({TaskState.QUEUED, TaskState.RUNNING})
 
 @dataclass(slots=True)
 class KnownTask:
-    """A task that was accepted; `number` counts the accepted ones, `cancelled` is an operator's word,
-    None where it may have been for this one.
+    """A task that was accepted; `number` counts the accepted ones; `cancelled`: an operator has cancelled it,
+    None if that may have meant this task.
 
-    `said` is what was told of it last; `accepted` is when it was first heard of, `began` when it was told
-    to run.
+    `said` is the last word on it; `accepted` is when it was first heard of, `began` when it was told to run.
     """
 
     id: str
@@ -37,7 +36,7 @@ class KnownTask:
 
 @dataclass(slots=True)
 class Change:
-    """What the plant said of a task: its state before, and whether it only answered one who asked again.
+    """A word of the plant on a task, and the state before; `answer`: it only repeats itself on request.
 
     `first` is the task that was first in the queue of its cell.
     """
@@ -62,7 +61,7 @@ class Tasks:
         self._accepted = 0
 
     def restart(self, kept: Iterable[KeptTask], now: float) -> None:
-        """A plant starts with these tasks; of some of them nobody may have been told."""
+        """Begin a start of the plant with these tasks; of some of them nobody may have been told."""
         told = self.open
         self.open = {}
         self.running.clear()
@@ -96,7 +95,7 @@ class Tasks:
         self.refused = 0
 
     def known(self, id: str) -> KnownTask | None:
-        """The task of this id, unless the plant may have forgotten it and taken the id anew."""
+        """The task with this id, unless the plant may have forgotten it and given the id anew."""
         task = self.open.get(id) or self.ended.get(id)
         return task if task is not None and task.number > self._accepted - SURE else self.open.get(id)
 
@@ -106,7 +105,7 @@ class Tasks:
         return sorted((task for task in known if task.cell == cell), key=lambda task: task.number)
 
     def take(self, said: TaskChanged, now: float, *, asked_again: bool) -> None:
-        """The plant says what became of a task; `asked_again`: it may only answer a request."""
+        """Take in the plant's word on a task; `asked_again`: it may be a mere answer to a request."""
         if said.state is TaskState.REFUSED or said.cell is None:
             self.refused += 1
             return
@@ -119,7 +118,7 @@ class Tasks:
             self._follow(said, task, now)
 
     def _answered(self, said: TaskChanged, *, asked_again: bool) -> KnownTask | None:
-        """An old task that the plant turns out to remember still, as it answers with how that one ended."""
+        """The ended task that this word only repeats, as an answer to a repeated request; None for news."""
         task = self.ended.get(said.task) if asked_again else None
         return task if task is not None and task.state is said.state else None
 
@@ -150,7 +149,7 @@ class Tasks:
 
 
 def _said(row: KeptTask) -> TaskChanged:
-    """What would have been told of a task last."""
+    """The last word on a task that would have been told, from its row on the disk."""
     return TaskChanged(
         task=row.id,
         text=row.text,

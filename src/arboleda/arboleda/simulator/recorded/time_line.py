@@ -13,10 +13,10 @@ UNIX_S = 1_700_000_000.0  # what the clock on the wall says where the plant's sa
 
 
 class TimeLine:
-    """Takes in snapshots of one start of the plant; `told` is what a page has that hears only what is new.
+    """Time line over one start of the plant; `told` is what a page has that receives only news.
 
     `last` is the last event about each kind and subject, also where the time line has forgotten it; `acts`
-    are events of what operators did, `foreign` counts those of others that commanded. `whole`: no event was
+    are events of what operators did, `foreign` counts those of other nodes' commands. `whole`: no event was
     forgotten before it was seen here.
     """
 
@@ -24,7 +24,7 @@ class TimeLine:
         self.begin()
 
     def begin(self) -> None:
-        """A plant starts, and so do its pages."""
+        """Begin anew with a plant that starts, and with its pages."""
         self.told: Row = {}
         self.last: dict[tuple[str, str], Row] = {}
         self.acts: deque[Row] = deque(maxlen=EVENTS)

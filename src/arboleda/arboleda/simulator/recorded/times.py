@@ -1,4 +1,4 @@
-"""When cells stood, and when the plant ran, over all starts."""
+"""Record of the times in which cells stood and in which the plant ran, over all starts."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ AT_WORK = frozenset({CellState.IDLE, CellState.EXECUTE})
 
 
 class Times:
-    """What a plant's memory would have of its cells and of itself; times in s of the world."""
+    """Times of standing cells and of the plant's starts, as its memory should have them; s of the world."""
 
     def __init__(self, now: float) -> None:
         self._starts = [now]
@@ -22,7 +22,7 @@ class Times:
         self._downs: list[Downtime] = []
 
     def restart(self, last: float, now: float) -> None:
-        """The plant was seen `last` before it died, and starts anew."""
+        """Begin another start: the plant was seen `last` before it died, and starts at `now`."""
         self._ends.append(last)
         self._starts.append(now)
         for name in list(self._stands):
@@ -37,7 +37,7 @@ class Times:
                 self._stand_no_more(cell.name, now)
 
     def runs(self, now: float, *, ended: bool) -> list[Run]:
-        """All starts; `ended`: the last one is ended now, and was not killed."""
+        """All starts; `ended`: the last one ends now, and was not killed."""
         return [
             Run(since_s=since, seen_s=seen, ended=ended and number == len(self._ends))
             for number, (since, seen) in enumerate(zip(self._starts, [*self._ends, now], strict=True))
@@ -45,7 +45,7 @@ class Times:
 
     @property
     def downs(self) -> list[Downtime]:
-        """When cells stood, the lasting ones last."""
+        """All times in which cells stood, those that last at the end."""
         lasting = [Downtime(cell=name, since_s=since, until_s=None) for name, since in self._stands.items()]
         return [*self._downs, *lasting]
 

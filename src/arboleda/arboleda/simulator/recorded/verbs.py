@@ -1,4 +1,4 @@
-"""How cells, zones and tasks were when an operator's verb came in."""
+"""Record of cells, zones and tasks just before an operator's verb came in."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from .tasks import Tasks
 
 @dataclass(slots=True)
 class CellSnapshot:
-    """A cell after the last step: what may speak for or against a verb; `waits`: nobody can tell yet what
+    """A cell after the last step, with what speaks for or against a verb; `waits`: nobody can tell yet what
     became of the step at which an earlier start ended; `stored`: its stations with a part.
     """
 
@@ -32,7 +32,7 @@ class CellSnapshot:
 
 
 class EarlierState:
-    """All of that just before the step in which somebody asks."""
+    """Cells, zones and tasks just before the step in which somebody asks."""
 
     def __init__(self) -> None:
         self.cells: list[CellSnapshot] = []
@@ -42,7 +42,7 @@ class EarlierState:
         self.ids: frozenset[str] = frozenset()  # of all tasks that were accepted and may be remembered
 
     def look(self, cells: Iterable[KnownCell], tasks: Tasks, world: World) -> None:
-        """Somebody asks: the plant has not heard it yet."""
+        """Take all down before the plant hears the request."""
         plant, asked = world.plant, world.moment.asked
         alone = len(asked) == 1 and not world.moment.heard and world.now < plant.next_deadline
         verbs = [each for each in asked if isinstance(each, OperatorRequest)] if alone else []

@@ -1,4 +1,4 @@
-"""What each cell's task has commanded so far, beside what its recipe says, written down here once more."""
+"""Record of the commands of each cell's task, compared with its recipe, written down here once more."""
 
 from __future__ import annotations
 
@@ -26,10 +26,10 @@ Step = tuple[str, Any]
 
 @dataclass
 class Work:
-    """A task that runs: its steps, and how many of them have been commanded; `last` is the newest command.
+    """A task that runs: its steps, how many of them were commanded, and the `last` command.
 
-    `walked_back`: an earlier start gave that, and the plant judges what became of it; `undone`: a power cut
-    may have undone where the task stood, of which `retries` counts how often an operator had tried again.
+    `walked_back`: an earlier start gave `last`, and the plant judges what became of it. `undone`: a power cut
+    may have undone the task's step in memory; `retries` counts operators' retries up to that record.
     """
 
     task: str
@@ -44,7 +44,7 @@ class Work:
 
 
 class Works:
-    """Follows the work of every cell; `wrong` is what was commanded otherwise in this step."""
+    """Work of every cell; `wrong` are sentences on commands of this step that do not follow the recipe."""
 
     def __init__(self, cells: dict[str, Any], robots: dict[str, KnownRobot], dwell_s: float) -> None:
         self.wrong: list[str] = []
@@ -54,7 +54,7 @@ class Works:
         self._works: dict[str, Work] = {}
 
     def restart(self, running: Mapping[str, str], *, undone: bool) -> None:
-        """A plant starts, and these tasks of cells stand at their step; nobody goes on with the others.
+        """Begin a start of the plant in which these tasks stand at their steps; nobody goes on with others.
 
         `undone`: what was kept last may be gone.
         """
@@ -118,7 +118,7 @@ class Works:
         work.last = sent
 
     def _is_anywhere(self, name: str, work: Work) -> bool:
-        """Whether a person had a task tried again whose robots prove nothing, which may stand too early."""
+        """True if the task may stand at a step too early, by a power cut, and a person had it tried again."""
         return work.undone and self._cells[name].retries > work.retries
 
     def _in_time(self, name: str, work: Work, sent: SentCommand) -> None:
@@ -137,7 +137,7 @@ class Works:
 
 
 def _by_operator(sent: SentCommand) -> bool:
-    """Homing is no step of a recipe; to release is to open the effector."""
+    """True for a command of an operator, no step's: a homing, or a release that opens the effector."""
     step = _step_of(sent.command)
     return step is None or (Verb.RELEASE in sent.verbs and step == ("effector", False))
 
@@ -151,7 +151,7 @@ def _step_of(command: Command) -> Step | None:
 
 
 def _fits(step: Step | None, expected: Step) -> bool:
-    """A path is given whole."""
+    """True if a command is the expected step; a path must be given as a whole."""
     if step is None:
         return False
     if expected[0] == OPTIONAL:
@@ -162,12 +162,12 @@ def _fits(step: Step | None, expected: Step) -> bool:
 
 
 def _is_again(step: Step | None, expected: Step) -> bool:
-    """What was not done may be given anew, a path from wherever the robot is by then."""
+    """True if a command repeats a step that was not done; a path may begin where the robot is by then."""
     return _fits(step, expected) or (step is not None and step[0] == "path" and expected[0] == "path")
 
 
 def _steps(cell: StorageCell, words: list[str], mobile: KnownRobot, now: float) -> Iterator[Step]:
-    """What a task of this text that begins now commands, in order."""
+    """The steps that a task of this text commands if it begins now, in order."""
     if words[1] == "palletizing":
         yield "move", cell.home.q
         yield from _at(cell.palletizing.pick, list(_grip(cell)))
@@ -184,7 +184,7 @@ def _steps(cell: StorageCell, words: list[str], mobile: KnownRobot, now: float) 
 
 
 def _stands_on(mobile: KnownRobot, now: float) -> int | None:
-    """The node on which it has said that it stands, where that can be believed."""
+    """The node on which the robot has said that it stands, if that can be believed."""
     return None if mobile.offline(now) or mobile.unhomed else mobile.node
 
 

@@ -1,4 +1,4 @@
-"""What is true in a world, whatever the plant believes: where arms, mobiles and parts are, what was done."""
+"""Truth about a world, whatever the plant believes: where arms, mobiles and parts are, and what was done."""
 
 from .truth import Truth
 

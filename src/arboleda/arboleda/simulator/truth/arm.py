@@ -1,4 +1,4 @@
-"""What is true of one arm: where it stands, which zones it is in or sweeps, what its effector does."""
+"""Truth about one arm: where it stands, which zones it is in or sweeps, what its effector does."""
 
 from __future__ import annotations
 
@@ -20,14 +20,15 @@ Steps = tuple[int, ...]
 
 
 class ArmTruth(RobotTruth):
-    """Positions are in motor steps per joint.
+    """Truth about one arm; positions are in motor steps per joint.
 
     `true` is where the axes are, `lost` how many steps each lost since it was last put right. Poses, zones
     and stations have no extent here, so an arm that lost steps counts as where it would be without that, and
-    one within its tolerance of a pose as at it: `here` names the poses where it stands still in this sense,
-    `stood` where it stood in this step if it has moved on, `zones` where it is or may have swept: halted on
-    its way, by what the plant file says of that way, not by poses that it happens to be near; `opened`: in
-    this step somebody else than the plant opened its effector, `robbed_at` when that last ended a grip.
+    one within its tolerance of a pose as at it. In this sense `here` names the poses where it stands still,
+    `stood` those where it stood in this step if it has moved on, and `zones` those where it is or may have
+    swept: if it was halted on its way, by what the plant file says of that way, not by poses that happen to
+    be near. `opened`: in this step somebody else than the plant opened its effector; `robbed_at`: when that
+    last ended a grip.
     """
 
     SIGNS = ("next_change_us", "effector", "holding")
@@ -68,13 +69,13 @@ class ArmTruth(RobotTruth):
         self._locate()
 
     def be_opened(self, at: float) -> None:
-        """Somebody else than the plant opens its effector."""
+        """Note that somebody else than the plant opens its effector."""
         self.opened = True
         if self.on:
             self.robbed_at = at
 
     def poses_like(self, q: tuple[float, ...]) -> frozenset[str]:
-        """The names of all poses that are where `q` is."""
+        """The names of all poses that are at `q`."""
         return self._names.get(self._steps(q), NOWHERE)
 
     @property
@@ -83,22 +84,22 @@ class ArmTruth(RobotTruth):
         return self._names.get(self.true, NOWHERE)
 
     def stands_at(self, q: tuple[float, ...]) -> bool:
-        """Whether it stands within its tolerance of the motor step nearest to `q`."""
+        """True if it stands within its tolerance of the motor step nearest to `q`."""
         return self.stands and self._is_near(self.intended, self._steps(q))
 
     @property
     def let_go(self) -> bool:
-        """Whether its effector went off in this step, with its power on, and nobody else opened it."""
+        """True if its effector went off in this step, with its power on, and nobody else opened it."""
         return self.was_on and not self.on and not self.lost_power and not self.opened
 
     @property
     def stands(self) -> bool:
-        """Whether it does not move; even no way at all takes a board a moment."""
+        """True if it does not move, or only counts as moving for a moment as it is at its goal."""
         return not self.moving or self.body.targets == self.body.position
 
     @property
     def intended(self) -> Steps:
-        """Where it would be if it had lost no steps."""
+        """The position at which it would be if it had lost no steps."""
         return tuple(map(sub, self.true, self.lost))
 
     @property
@@ -141,7 +142,7 @@ class ArmTruth(RobotTruth):
         self._follow_speed()
 
     def _follow_drift(self, drift: Steps) -> None:
-        """What counters are wrong by is what boots took away and what was lost; homing ends both."""
+        """Follow the counters' error: by boots, and by lost steps; homing ends both."""
         if not any(drift):
             self._shift = self.lost = drift
         elif self.lost_power:
@@ -167,12 +168,12 @@ class ArmTruth(RobotTruth):
 
     @property
     def _switched_first(self) -> bool:
-        """Whether its effector was switched before it was told to move; a way of one step is done at once."""
+        """True if its effector was switched before it was told to move; a way of one step is done at once."""
         moves = [act.moves for act in self.acts if act.moves or isinstance(act.goal, EffectorGoal)]
         return any(moves) and not moves[0]
 
     def _found(self, book: dict[Steps, frozenset[str]], place: Steps) -> frozenset[str]:
-        """What a book has for a place, or for those within the arm's tolerance of it."""
+        """The names that a book has for a place, or for those within the arm's tolerance of it."""
         if place in book or not self._is_coarse:
             return book.get(place, NOWHERE)
         return NOWHERE.union(*(names for there, names in book.items() if self._is_near(place, there)))
@@ -190,7 +191,7 @@ class ArmTruth(RobotTruth):
         return self._zones_between[poses]
 
     def _follow_speed(self) -> None:
-        """While it stops, no axis gets faster."""
+        """Note if an axis gets faster while the arm stops."""
         if not self.stopping:
             self._speeds = None
             return
@@ -204,7 +205,7 @@ class ArmTruth(RobotTruth):
         return due is not None and due <= now_us + self._ramp_us
 
     def _goes_on(self) -> bool:
-        return False  # `sped_up` tells; how long it may take was judged when it heard the stop
+        return False  # `sped_up` covers it; the length of the ramp was judged when it heard the stop
 
     def _enter(self, pose: Pose) -> None:
         for book, q in ((self._names, pose.q), (self._spots, pose.q), (self._spots, pose.above)):
@@ -219,5 +220,5 @@ class ArmTruth(RobotTruth):
 
 
 def _faster(now: float, slowest: float, jitter: float) -> bool:
-    """Whether an axis sped up by more than its ramp's `jitter`, in (steps/s)2."""
+    """True if an axis sped up by more than its ramp's `jitter`, in (steps/s)2."""
     return now * now > slowest * slowest + jitter

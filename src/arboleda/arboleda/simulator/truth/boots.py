@@ -1,4 +1,4 @@
-"""Which boots of boards that report no homing the plant has heard of."""
+"""Boots of which the plant has heard, of boards that report no homing."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ NEVER = (None, None)
 
 
 class Boots:
-    """Follows the robots whose boots show only in the number of them; at `joints` the bridge counts them."""
+    """Boots of robots that report only the number of their boots; at `joints` the bridge counts them."""
 
     def __init__(self, robots: Iterable[RobotTruth]) -> None:
         self.mute = {each.robot.name: each for each in robots if _boots_show(each.robot)}
         self._last: dict[str, tuple[int | None, int | None]] = {}
         self._told: set[str] = set()
-        self._known: set[str] = set()  # those of them that a command of this step cannot have come before
+        self._known: set[str] = set()  # those told before any command of this step
 
     def look(self, heard: Iterable[Report], *, asked: bool) -> None:
         """Take in what the plant heard in this step; what was `asked` in it may have come before that."""
@@ -36,18 +36,18 @@ class Boots:
         if said != last:
             self._last[report.robot] = said
             known = last is not NEVER and self.mute[report.robot].robot.evidence is Evidence.IDS
-            put_right = report.at < self.mute[report.robot].put_right_at  # before a boot that nobody saw
+            put_right = report.at < self.mute[report.robot].put_right_at  # it booted before it was put right
             if not put_right and (said[0] == last[0] or (known and said[1] != last[1])):
                 self._told.add(report.robot)
 
     def restart(self) -> None:
-        """A plant starts: what an earlier one has heard of the counts of a bridge is nothing to it."""
+        """Begin anew with a plant that starts: what an earlier one heard of a bridge is nothing to it."""
         for name, each in self.mute.items():
             if each.robot.evidence is Evidence.JOINTS:
                 self._last.pop(name, None)
 
     def told(self, robot: str) -> bool:
-        """Whether the plant knows that it booted, and nobody has put it right since."""
+        """True if the plant knows that the robot booted, and nobody has put it right since."""
         return robot in self._known
 
 

@@ -1,4 +1,4 @@
-"""What was truly done for a cell's task: where its effector was switched, what was picked and placed."""
+"""True deeds for a cell's task: where its effector was switched, what was picked and placed."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ KEPT = 50  # switches of one task
 
 @dataclass(frozen=True, kw_only=True)
 class Switch:
-    """An effector that changed, at the named poses where its arm stood still.
+    """A change of an effector, at the named poses where its arm stood still.
 
     `by_others`: somebody else than the plant opened it; `asked`: the board carried out a command for it;
     `released`: an operator had it opened; `taken_away`: somebody had put the arm elsewhere by hand; `legal`:
@@ -40,12 +40,12 @@ class Switch:
 
 @dataclass(frozen=True, kw_only=True)
 class EndedTask:
-    """A task that has ended, and how things stood then.
+    """A task that has ended, and the state of things then.
 
     `robbed`: somebody else opened the effector while it held its part elsewhere than where that belongs;
-    `missing`: why it is not done if it is called so; `unprovable`: its mobile's evidence cannot show that.
-    `empty_handed`: its arm's board had said that no part is there before the effector was told to let go.
-    `unchecked`: what nobody confirmed, as the plant says.
+    `missing`: why the task is not done, even if it is called so; `unprovable`: its mobile's evidence cannot
+    show that. `empty_handed`: its arm's board had reported no part before the effector was told to let go.
+    `unchecked`: what nobody confirmed, by the plant's own word.
     """
 
     cell: CellTruth
@@ -65,10 +65,10 @@ class EndedTask:
 
 
 class CellTruth:
-    """What was done since the cell's last task began; `task` is None once it has ended.
+    """Deeds since the cell's last task began; `task` is None once it has ended.
 
-    `picks`: parts that left a pick-up in the effector; `places`: parts put down where they belong, of which
-    `puts_down` says that its effector was opened for one in this step.
+    `picks`: parts that left a pick-up in the effector; `places`: parts put down where they belong;
+    `puts_down`: its effector was opened for one of these in this step.
     """
 
     def __init__(self, cell: StorageCell, arm: ArmTruth | None, mobile: MobileTruth | None) -> None:
@@ -95,7 +95,7 @@ class CellTruth:
 
     @property
     def pick(self) -> Pose:
-        """Where the part of the last task is gripped."""
+        """The pose at which the part of the last task is gripped."""
         if self.order is None or "station" not in self.order.values:
             return self.cell.pickup if self.order is None else self.cell.palletizing.pick
         code = path.code if (path := self.order.values.get("path")) else ""
@@ -103,18 +103,18 @@ class CellTruth:
 
     @property
     def pick_poses(self) -> tuple[Pose, ...]:
-        """Everywhere a part of the cell may be gripped."""
+        """All poses at which a part of the cell may be gripped."""
         return (self.cell.pickup, *(pose for _, pose in self.cell.pickups), self.cell.palletizing.pick)
 
     @property
     def place(self) -> Pose | None:
-        """Where the part of the last task belongs."""
+        """The pose at which the part of the last task belongs."""
         if self.order is None:
             return None
         return self.order.values.get("station", self.cell.palletizing.place)
 
     def begin(self, task: str, order: Order, now: float) -> None:
-        """A task begins."""
+        """Begin to follow a task."""
         self.task, self.order, self.began_at = task, order, now
         self.earlier = self._over.pop(task, (0, 0))
         self.robbed = self.released = self.let_go = self.blind = False
@@ -124,26 +124,26 @@ class CellTruth:
         self._switches = []
 
     def cut_off(self) -> None:
-        """The plant died, and the next one does not go on with its task; a later one may."""
+        """Cut a task off, as the plant died and the next one does not go on with it; a later one may."""
         if self.task is not None:
             picks, places = self.earlier
             self._over[self.task] = (picks + self.picks, places + self.places)
         self.end()
 
     def tell(self, *, grips: bool) -> None:
-        """The plant tells its effector to grip, or to let go."""
+        """Take in that the plant tells its effector to grip, or to let go."""
         self._lets_go = not grips
         if grips:
             self.empty_handed = False
 
     def feel(self) -> None:
-        """The plant hears from the board of its arm that no part is there."""
+        """Take in that the plant hears from the board of its arm that no part is there."""
         arm = self.arm
         if arm is not None and arm.on and not arm.holding and not self._lets_go:
             self.empty_handed = True
 
     def end(self, text: str = "", *, done: bool = False, unchecked: tuple[Check, ...] = ()) -> EndedTask:
-        """The running task has ended, or nobody knows of it any more."""
+        """Note that the running task has ended, or that nobody knows of it any more."""
         task, self.task = self.task, None
         of_arm = self._missing_of_arm() if done and self.arm is not None else None
         of_way = self._missing_way() if done and self.arm is not None else None
@@ -176,7 +176,7 @@ class CellTruth:
             self.switch = self._switch(arm)
             self.released = self.released and arm.on
             at_place = self.place is not None and self._at(arm, self.place)
-            # where it stands the same for both, a pick that is tried again opens the effector, too
+            # if pick and place are one pose, a pick that is tried again also opens the effector there
             self.puts_down = not arm.on and at_place and (self._carries or not self._at(arm, self.pick))
             self.let_go = self.let_go or self.puts_down
             self.robbed = self.robbed or (arm.opened and arm.was_holding and not at_place)
@@ -208,7 +208,7 @@ class CellTruth:
         return f"the mobile never stood at node {self.order.values['path'].nodes[-1]}"
 
     def legal_to_open(self, arm: ArmTruth) -> bool:
-        """Whether nothing falls down where the arm stands."""
+        """True if nothing falls down when the effector opens where the arm stands."""
         places = (*self.pick_poses, self.cell.palletizing.place, self.place)
         return any(self._at(arm, pose) for pose in places if pose is not None)
 
@@ -229,7 +229,7 @@ class CellTruth:
         )
 
     def _due(self, switch: Switch) -> Pose:
-        """Where a switch belongs: all at the pick-up but the last one."""
+        """The pose at which a switch belongs: the place for a last one that opens, else the pick-up."""
         last = self._switches and switch is self._switches[-1]
         return self.place if last and not switch.on and self.place else self.pick
 
@@ -248,12 +248,12 @@ class CellTruth:
 
 
 def _moves_around_switch(arm: ArmTruth) -> tuple[bool, bool]:
-    """Whether it was told to move before, and after, its effector was switched in this step."""
+    """Two flags: a move was told before, and after, the last switch of its effector in this step."""
     switches = [number for number, act in enumerate(arm.acts) if isinstance(act.goal, EffectorGoal)]
     at = switches[-1] if switches else len(arm.acts)
     return any(act.moves for act in arm.acts[:at]), any(act.moves for act in arm.acts[at:])
 
 
 def named(poses: frozenset[str]) -> str:
-    """Poses for people."""
+    """Names of poses, for people."""
     return "/".join(sorted(poses)) if poses != NOWHERE else "no pose"

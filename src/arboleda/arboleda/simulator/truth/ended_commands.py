@@ -1,4 +1,4 @@
-"""What the plant's books say of its commands: which ended in this step, and how."""
+"""Changes in the plant's books of its commands: which ended in this step, and how."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ CALM_S = 20.0  # after the last fault, whatever it left under way has arrived or
 class EndedCommand:
     """A command that the plant takes for ended; `sent_at`: when it left.
 
-    `late`: it, or what its robot said before it came, was under way for some time.
+    `late`: the command, or a report that its robot sent before it came, was under way for some time.
     """
 
     entry: Entry
@@ -44,11 +44,11 @@ class Books:
         self._open: dict[str, EndedCommand] = {}
 
     def drop(self) -> None:
-        """The plant died, and with it its books."""
+        """Forget all, as the plant died, and its books with it."""
         self._open = {}
 
     def look(self) -> None:
-        """See which of the open commands are open no more since the last step."""
+        """Note which of the open commands are no longer open since the last step."""
         if self.ended:
             self.ended = []
         if self._in_time:
@@ -58,7 +58,7 @@ class Books:
             self.ended = [self._open.pop(id) for id in [*self._open] if id not in entries]
 
     def sent(self, command: Command) -> None:
-        """The plant has sent a command; one that it keeps no book of is passed over."""
+        """Take in a command that the plant has sent; one that has no entry in its ledger is passed over."""
         entry = self._world.plant.dispatcher.ledger.entries.get(command.id)
         if entry is not None:
             late = self.is_late(command.robot)
@@ -69,7 +69,7 @@ class Books:
             self._open[command.id] = EndedCommand(entry=entry, sent_at=self._world.now, late=late)
 
     def is_late(self, robot: str) -> bool:
-        """Whether anything between the plant and this robot's board, either way, takes its time now."""
+        """True if messages between the plant and this robot's board, either way, are slow now."""
         world, name = self._world, self._world.model.robots[robot].mqtt
         clients = [world.broker.clients[each] for each in (BRIDGE, name) if each in world.broker.clients]
         lines = [
@@ -83,5 +83,5 @@ class Books:
         return late or world.writes or world.is_stalled(BRIDGE) or world.is_stalled(name)
 
     def calm_since(self, at: float) -> bool:
-        """Whether nothing that a fault did can have touched what happened since then."""
+        """True if nothing that a fault did can have touched what happened since then."""
         return not self._world.faults_active and self._world.last_fault_at < at - CALM_S

@@ -1,4 +1,4 @@
-"""What is true of a device: its facts, the work that it carries out, and which zones it is in the way of."""
+"""Truth about a device: its facts, the work that it carries out, and the zones that it is in the way of."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ Facts = dict[str, Value]
 
 
 class MachineTruth(RobotTruth):
-    """`facts` are how it is, `were` how it was before this step; `work` is what it carries out, if anything.
+    """Truth about one device: its `facts`, those that `were` before this step, and its `work`, if any.
 
     `zones` are those that it is in the way of. Of this step: `unmet`, the commands that it carries out
     although what they need is not so, each with what that is; `cut_short`: it ended work that goes on
@@ -42,23 +42,23 @@ class MachineTruth(RobotTruth):
 
     @property
     def held(self) -> bool:
-        """Whether it holds something."""
+        """True while it holds something."""
         return bool(self.facts.get(self.robot.held_fact or ""))
 
     @property
     def let_go(self) -> bool:
-        """Whether in this step it let go by itself of what it held, with its power on and nobody at it."""
+        """True if it let go by itself in this step of what it held, with its power on and nobody at it."""
         held = bool(self.were.get(self.robot.held_fact or ""))
         return held and not self.held and not self.lost_power and not self.by_hand
 
     @property
     def falls_open(self) -> bool:
-        """What it held or was switched to is gone with its power, and may be what kept it out of the way."""
+        """True if power, and with it its grip and switches, is lost, which may put it in the way."""
         return self.lost_power
 
     @property
     def at_reference(self) -> bool:
-        """It has none to be away from."""
+        """True always, as it has no reference that it could be away from."""
         return True
 
     def be_opened(self, at: float) -> None:
@@ -84,7 +84,7 @@ class MachineTruth(RobotTruth):
         return isinstance(goal, OrderGoal) and self.body.is_work(goal)
 
     def _grips(self, goal: Goal) -> bool:
-        """Whether a goal that is no work is forbidden by a stop: all but questions, and what lets go."""
+        """True for a goal other than work that a stop forbids: neither a question nor a release."""
         command = self._command(goal)
         return command is not None and needs_clear(command)
 
@@ -122,14 +122,14 @@ class MachineTruth(RobotTruth):
         return self._was_due is not None and self._was_due <= self._now_us
 
     def _at_work(self, given: list[tuple[Act, Command | None]]) -> list[Command]:
-        """What it begins in this step, and the work that it goes on with."""
+        """The work that it begins in this step, and that with which it goes on."""
         begins = [command for _, command in given if command is not None and command is not self.work]
         return begins if self.work is None else [*begins, self.work]
 
     def _why_unmet(self, command: Command) -> str | None:
-        """What a command needs that neither was so before this step nor is so now."""
+        """The first need of a command that was met neither before nor after this step; None: all were."""
         rows = [(name, value) for name, value in command.needs if self.facts.get(name) != value]
-        if command is not self.work:  # what it sets itself may be what ended what it needs
+        if command is not self.work:  # its own effect may have ended what it needed
             rows = [(name, value) for name, value in rows if self.were.get(name) != value]
         return next((f"{name} is {self.facts.get(name)}, not {value}" for name, value in rows), None)
 

@@ -1,4 +1,4 @@
-"""What is true of one mobile robot: at which node it is."""
+"""Truth about one mobile robot: at which node it is."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ from .robot import NOWHERE, RobotTruth
 
 
 class MobileTruth(RobotTruth):
-    """`node` is where it stands, or what it passed last while it is on an edge; `counted` where it takes
-    itself to be, `strayed` whether these differ though it is homed: somebody moved it unseen.
+    """Truth about one mobile robot: `node` is where it stands, or what it passed last while on an edge.
 
-    `goal` is the last node of the path that it drives or drove last.
+    `counted` is where it takes itself to be; `strayed`: that is wrong though it is homed, as somebody moved
+    it unseen. `goal` is the last node of the path that it drives or drove last.
     """
 
     SIGNS = ("next_change_us", "true_node")
@@ -37,7 +37,7 @@ class MobileTruth(RobotTruth):
         return self.homed and self.node != self.counted
 
     def stands_at(self, node: int) -> bool:
-        """Whether it stands there, or would if nobody had moved it."""
+        """True if it stands at the node, or would if nobody had moved it."""
         return not self.moving and node in (self.node, self.counted if self.strayed else None)
 
     @property

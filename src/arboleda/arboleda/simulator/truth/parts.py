@@ -1,4 +1,4 @@
-"""Where every part is: it lies ready at a pick-up, hangs in an effector, and is put down or falls."""
+"""Truth about parts: each lies ready at a pick-up, hangs in an effector, or was put down or dropped."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ GRIPPED, PUT, RELEASED, FELL, POWER = "gripped", "put down", "released", "fell",
 
 @dataclass(kw_only=True)
 class Part:
-    """One part of a cell; `counts`: once it leaves the pick-up, that is a pick.
+    """One part of a cell; `counts`: when it leaves the pick-up, that is a pick.
 
-    It does not where an effector that had lost its part unseen came back to the pick-up and got this one.
+    It does not count if an effector came back to the pick-up for it after it had lost its part unseen.
     """
 
     number: int
@@ -26,9 +26,9 @@ class Part:
 
 @dataclass(frozen=True, kw_only=True)
 class Passage:
-    """A part that came to another place: how, and to which pose or FLOOR or EFFECTOR.
+    """Move of a part to another place: how, and to which pose or FLOOR or EFFECTOR.
 
-    `lay_there`: one lay where the arm gripped it.
+    `lay_there`: a part lay where the arm gripped it.
     """
 
     part: Part
@@ -39,7 +39,7 @@ class Passage:
 
 
 class Parts:
-    """Every part is at one place; a pick-up has new ones for ever, and takes back what is returned."""
+    """Places of all parts; a pick-up never runs out of new ones, and takes back what is returned."""
 
     def __init__(self) -> None:
         self.passages: list[Passage] = []  # of this step
@@ -49,11 +49,11 @@ class Parts:
         self._numbers = count(1)
 
     def forget(self) -> None:
-        """Nothing has happened yet in the step that begins."""
+        """Forget what happened in the step before."""
         self.passages = []
 
     def start(self, arm: ArmTruth) -> None:
-        """Take over what an arm holds already."""
+        """Take over that an arm holds a part already."""
         if arm.holding:
             self.held[arm.robot.name] = Part(number=next(self._numbers), cell=arm.cell.name)
 
@@ -70,7 +70,7 @@ class Parts:
             cell.picks += 1
 
     def empty(self, cell: str) -> None:
-        """The customer takes what lies in the stations of a cell."""
+        """Empty the stations of a cell, as the customer takes what lies there."""
         for key in [key for key in self.stations if key[0] == cell]:
             del self.stations[key]
 

@@ -1,4 +1,4 @@
-"""What is true of one robot: its power and its reference, what its board heard and carried out."""
+"""Truth about one robot: its power and its reference, what its board heard and carried out."""
 
 from __future__ import annotations
 
@@ -42,24 +42,24 @@ class Act:
 
 
 class RobotTruth:
-    """One robot, followed step by step; `look` says whether there was more to see than a body on its way.
+    """One robot, followed step by step; `look` returns True if there was more to see than a body on its way.
 
-    `stopping`: from a stop or halt that its board heard until it stands still or gets a new goal.
-    What `forget` forgets is of one step: `acts`, `lost_power`; `started`, `swerved`, `jumped`: it began to
-    move, changed its way or is elsewhere, and nothing that it heard explains it; `sped_up`, `runs_on`: it
-    was told to stop and does not.
+    `stopping`: from a stop or halt that its board heard until it stands still or gets a new goal. Of one
+    step, until `forget`: `acts` and `lost_power`; `started`, `swerved`, `jumped`: it began to move, changed
+    its way or is elsewhere, and nothing that it heard explains it; `sped_up`, `runs_on`: it was told to stop
+    and does not.
     """
 
-    SIGNS: tuple[str, ...]  # of a body: what changes with whatever happens
-    PLACE: str  # what a board that lies about it deceives of
+    SIGNS: tuple[str, ...]  # attributes of a body of which one changes with anything that happens
+    PLACE: str  # the name of the place in lies of boards
     zones = NOWHERE  # where it is, or may have swept
     here = NOWHERE  # the targets at which it stands still
     stood = NOWHERE  # the same, in this step, if it has moved on
-    unmet: Sequence[tuple[Command, str]] = ()  # what it carries out although what that needs is not so
+    unmet: Sequence[tuple[Command, str]] = ()  # commands that it carries out without their needs
     cut_short = False  # it ended work that goes on through a stop, and nothing explains that
     falls_open = False  # in this step it got into the way because its power was lost
     let_go = False  # in this step it let go of what it held, by itself and with its power on
-    worked_from: float | None = None  # when a machine whose place nothing but its end tells began to move, s
+    worked_from: float | None = None  # for a machine that reports only ends: when it began to move, s
 
     def __init__(self, robot: Robot, cell: Cell, board: Board, client: Client) -> None:
         self.robot = robot
@@ -82,47 +82,47 @@ class RobotTruth:
         self._ours: deque[tuple[str, bytes]] = deque(maxlen=UNDER_WAY)
         self._homing = self._put_right = False
         self.taken_away = False  # somebody has moved it by hand since it was last told to move
-        self.put_right_at = -math.inf  # when somebody last did, s
-        self._arrived = not self.moving  # whether it stood still at some time in this step
+        self.put_right_at = -math.inf  # when somebody put it at its reference last, s
+        self._arrived = not self.moving  # it stood still at some time in this step
         self._seen: tuple[Any, ...] = ()
         self._due: int | None = None  # when its motion was to end
         self._was_due: int | None = None  # the same, before this step
         self.forget()
 
     def forget(self) -> None:
-        """Nothing has happened yet in the step that begins."""
+        """Forget what happened in the step before."""
         if self.acts:
             self.acts = []
         self.lost_power = self.started = self.swerved = self.jumped = False
         self.sped_up = self.runs_on = False
 
     def expect(self, publication: Publication) -> None:
-        """Our bridge published a command for it."""
+        """Expect a command that our bridge published for it."""
         self._ours.appendleft((publication.topic, publication.payload))  # the last one is asked for most
 
     def put_right(self, now: float) -> None:
-        """Somebody has put it by hand to its reference, where its counters are right."""
+        """Put its counters right, as somebody has put it at its reference by hand."""
         self.homed = self.again = self._put_right = self.taken_away = True
         self.put_right_at = now
 
     def be_locked(self, locks: tuple[Interlock, ...]) -> None:
-        """It occupies zones whenever it is not as these say, in whichever cell."""
+        """Have it occupy zones whenever its facts differ from one of these, one for each cell."""
 
     def be_opened(self, at: float) -> None:
-        """Somebody else than the plant has it let go of what it holds."""
+        """Note that somebody else than the plant has it let go of what it holds."""
 
     def reach(self, delivery: Delivery) -> None:
-        """A message is at its board, which has not heard it yet."""
+        """Note a message that is at its board, which has not read it yet."""
         self._ahead.append(delivery)
         self.again = True
 
     def carry_out(self, goal: Goal) -> None:
-        """Its board says that it carries a goal out."""
+        """Take in a goal that its board carries out."""
         self._executed.append(goal)
         self.again = True
 
     def look(self, now_us: int) -> bool:
-        """Take in the present."""
+        """Take in the present state; True if there was more to see than a body on its way."""
         seen = self._signs(self.body)
         if seen == self._seen and self.board.boot_id == self._boot and not self.again:
             return False
@@ -155,8 +155,8 @@ class RobotTruth:
 
     @property
     def blind(self) -> bool:
-        """Whether nobody can know where it is, for what its board tells: at `state`, that it moved and
-        stopped; else counters that a boot may have set to 0, of a board that does not say so.
+        """True if nobody can know where it is by what its board tells: at `state`, only that it moved and
+        stopped; else counters that a boot may have set to 0, of a board that does not report a homing.
         """
         if self.robot.evidence is Evidence.STATE:
             return True
@@ -164,29 +164,29 @@ class RobotTruth:
 
     @property
     def _slows_down(self) -> bool:
-        """Whether there is something to see at every moment."""
+        """True while it slows down on a ramp, which is to be looked at in every step."""
         return False
 
     def _follow(self, was_moving: bool) -> None:
-        """Take in where the body is."""
+        """Take in the present place of the body."""
         raise NotImplementedError
 
     def _ends_soon(self, now_us: int) -> bool:
-        """Whether the present motion can be a stopping ramp, or goes on as before."""
+        """True if the present motion may end so soon that it can be a stopping ramp."""
         raise NotImplementedError
 
     def _goes_on(self) -> bool:
-        """Whether it did more since the last look than a robot that was told to stop before that."""
+        """True if it did more since the last look than a robot that was told to stop before that."""
         raise NotImplementedError
 
     @property
     def at_reference(self) -> bool:
-        """Whether it truly stands where homing ends."""
+        """True if it truly stands where homing ends."""
         raise NotImplementedError
 
     @property
     def _came_home(self) -> bool:
-        """Whether the body is where its homing routine ends, wherever it sets out for in this step."""
+        """True if the body is where its homing routine ends, wherever it sets out for in this step."""
         raise NotImplementedError
 
     def _boot_up(self, now_us: int) -> None:
@@ -209,11 +209,11 @@ class RobotTruth:
                 self._did(executed.pop(0), ours=(delivery.topic, delivery.payload) in self._ours)
         del self._ahead[:heard]
         self._left = waiting
-        for goal in executed:  # nobody sent it, or the board does what it was not told
+        for goal in executed:  # nobody sent it: the board acts on its own
             self._did(goal, ours=False)
 
     def _obeyed(self, goal: Goal) -> None:
-        """A stop counts whatever its numbers; one of the instant of a boot may have come before it."""
+        """Take in a stop, whatever its numbers; one of the instant of a boot may be older than that."""
         if isinstance(goal, StopGoal) and goal.mode is not StopMode.CLEAR and not self.lost_power:
             self.latched = self.latched or goal.mode is StopMode.LATCH
             self._homing = False
@@ -232,15 +232,15 @@ class RobotTruth:
             self.latched = goal.mode is StopMode.LATCH
 
     def _moves(self, goal: Goal) -> bool:
-        """Whether a goal sets it in motion."""
+        """True if a goal sets it in motion."""
         return isinstance(goal, MOTIONS)
 
     def _grips(self, goal: Goal) -> bool:
-        """Whether a goal that does not move it is forbidden by a stop all the same."""
+        """True if a stop forbids a goal although that moves nothing."""
         return isinstance(goal, EffectorGoal) and goal.on
 
     def _end_homing(self) -> None:
-        """It may have come home before a board that did nothing for long finds a stop in its inbox."""
+        """End the homing; it may have ended before a stalled board finds a stop in its inbox."""
         if self._came_home:
             self.homed, self._homing = True, False
 

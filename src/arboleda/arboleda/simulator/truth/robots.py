@@ -20,7 +20,7 @@ from .robot import BEATS, Act, RobotTruth
 from .stops import Stops
 from .zones import ZonesTruth
 
-SAMPLE_S = 1.0  # no deception is shorter: it lasts until what was said cannot be believed any more
+SAMPLE_S = 1.0  # no deception is shorter, as each lasts until its reports are stale
 KINDS: dict[str | None, Callable[..., RobotTruth]] = {"q": ArmTruth, "node": MobileTruth, None: MachineTruth}
 """What is followed of a robot, by what it says of its place."""
 
@@ -53,23 +53,23 @@ class RobotsTruth:
         self._deceived: dict[tuple[str, str], float] = {}
         self._sampled_at = -SAMPLE_S
         self._plant = world.plant
-        self._late: frozenset[str] = frozenset()  # robots from whom old words may still come
+        self._late: frozenset[str] = frozenset()  # robots of which old reports may still come
         self._late_until = 0.0
 
     def robot(self, name: str) -> Any:
-        """The robot of that name; None where it has no virtual board."""
+        """The robot with this name; None if it has no virtual board."""
         return self.robots.get(name)
 
     def deceived_since(self, board: str, what: str, at: float) -> bool:
-        """Whether a board may have lied about something since then."""
+        """True if a board may have lied about something since then."""
         now_so = self.world.deceptions.get((board, what), 0) > 0
         return now_so or self._deceived.get((board, what), -SAMPLE_S) + SAMPLE_S >= at
 
     def unseen(self, robot: RobotTruth) -> bool:
-        """Whether nobody can know where a robot is, as its board says too little.
+        """True if nobody can know where a robot is, as its board says too little.
 
-        At `joints` nothing tells whether what it says is older than its last command, if that took its time,
-        and a lie about place or state is all it takes.
+        At `joints` nothing tells whether a report is older than the robot's last command, if that took its
+        time, and a single lie about place or state is enough.
         """
         if robot.blind or robot.robot.evidence is not Evidence.JOINTS:
             return robot.blind
@@ -78,9 +78,9 @@ class RobotsTruth:
         return lies or robot.robot.name in self.books.late
 
     def mistaken(self, robot: RobotTruth) -> bool:
-        """Whether what the plant is told of a robot's place may be wrong: `unseen`, or its board lies, or
-        what it said before an earlier start moved it comes late, or it says that it stands still while it
-        moves; of a machine also if it has said so since it began to move.
+        """True if the plant may be told a wrong place of a robot: it is `unseen`, its board lies, a report
+        from before an earlier start moved it comes late, or it says that it stands still while it moves; for
+        a machine also if it has said so since it began to move.
         """
         if self.world.now < self._late_until and robot.robot.name in self._late:
             return True
@@ -111,7 +111,7 @@ class RobotsTruth:
         return bool(self.changed)
 
     def _look_at_messages(self) -> None:
-        """What reached the boards, and what they carry out."""
+        """Take in what reached the boards, and what they carry out."""
         moment = self.world.moment
         if moment.published or moment.delivered:
             self._overhear()
@@ -123,9 +123,9 @@ class RobotsTruth:
             self._boards[board].put_right(self.world.now)
 
     def _look_at_robots(self) -> None:
-        """What the robots did; before the plant, which steps after them."""
+        """Take in what the robots did; called before the plant's part, as the plant steps after them."""
         self.books.look()
-        for booked in self.books.ended:  # whether that is true is judged by the present
+        for booked in self.books.ended:  # the present state shows if that is true
             if (robot := self.robot(booked.command.robot)) is not None:
                 robot.again = True
         now_us = round(self.world.now * 1e6)
@@ -136,7 +136,7 @@ class RobotsTruth:
             self._follow_changes()
 
     def _look_at_plant(self) -> None:
-        """What the plant heard, was deceived about and sent."""
+        """Take in what the plant heard, was deceived about and sent."""
         world, moment = self.world, self.world.moment
         if self.boots.mute:
             self.boots.look(moment.heard, asked=bool(moment.asked))
@@ -164,7 +164,7 @@ class RobotsTruth:
             self._boards[robot.mqtt] = self.robots[robot.name] = truth
 
     def _new_plant(self) -> None:
-        """The old one is gone; its last words count."""
+        """Begin with a new plant; the last words of the old one count."""
         self.boots.restart()
         self._late = frozenset(name for name in self.robots if self.books.is_late(name))
         self._late_until = self.world.now + CALM_S
@@ -177,7 +177,7 @@ class RobotsTruth:
         self._plant = self.world.plant
 
     def _overhear(self) -> None:
-        """What our bridge publishes, and what reaches the boards."""
+        """Take in what our bridge publishes, and what reaches the boards."""
         boards = self._boards
         for client, publication in self.world.moment.published:
             if client == BRIDGE and not publication.topic.endswith(BEATS):

@@ -1,4 +1,4 @@
-"""Which robots an operator has stopped, and what was under way to them then."""
+"""Operators' stops of robots, and the commands that were under way at that time."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ ROUNDING_DEG = 1e-3  # of angles on the wire
 
 
 class Stops:
-    """A stop holds until its robot was cleared and its cell reset; what was sent before may still arrive."""
+    """Operators' stops, each until clear and reset; what was sent before one may still arrive."""
 
     def __init__(self, model: PlantModel) -> None:
         self._model = model
-        self._cleared: dict[str, bool] = {}  # stopped robot -> whether it was cleared
+        self._cleared: dict[str, bool] = {}  # stopped robot -> it was cleared
         self._resets: set[str] = set()  # robots in the scope of a reset that was answered in this step
         self._forgotten: set[str] = set()
         self._sent: dict[str, deque[tuple[float, Command]]] = {
@@ -31,16 +31,16 @@ class Stops:
         }
 
     def holds(self, robot: str) -> bool:
-        """Whether an operator's stop of this robot is not over."""
+        """True while an operator's stop of this robot holds."""
         return robot in self._cleared
 
     def sent(self, command: Command, now: float) -> None:
-        """The plant sends a command."""
+        """Take in a command of the plant."""
         if not self.holds(command.robot) and needs_clear(command):
             self._sent[command.robot].append((now, command))
 
     def breaks(self, robot: Robot, act: Act, now: float) -> bool:
-        """Whether what a board does was sent by nobody before the stop that holds."""
+        """True if a stop holds that a board's act breaks: nothing sent before it explains the act."""
         under_way = self._sent[robot.name]
         for at, command in under_way:
             if at > now - UNDER_WAY_S and is_order_of(act.goal, robot, command):
@@ -49,7 +49,7 @@ class Stops:
         return self.holds(robot.name)
 
     def answered(self, answer: OperatorAnswer) -> None:
-        """An operator's verb was carried out."""
+        """Take in that an operator's verb was carried out."""
         robots = robots_of(self._model, answer.scope)
         if answer.verb is Verb.STOP:
             self._cleared.update(dict.fromkeys(robots, False))
@@ -62,16 +62,16 @@ class Stops:
             )
 
     def remembered(self, fact: Remember) -> None:
-        """A reset does what it can in its scope; whose stop it ended, the plant need not keep any more."""
+        """Take in a reset by what is kept: a stop that the reset has ended need not be kept any more."""
         if fact.fact is Fact.LATCH and fact.value is None:
             self._forgotten.add(fact.name)
 
     def restart(self, kept: Mapping[str, str]) -> None:
-        """Of stops that were being said when the plant died, those that were kept hold."""
+        """Begin with a plant that starts: stops under way at the old one's death hold if kept."""
         self._cleared = {name: word == "cleared" for name, word in kept.items()}
 
     def settle(self) -> None:
-        """The step is over: stops that were cleared and then reset are no more."""
+        """End the stops that were cleared and then reset in this step."""
         if self._resets:
             for name in self._resets & self._forgotten:
                 if self._cleared.get(name):
@@ -91,7 +91,7 @@ def robots_of(model: PlantModel, scope: str) -> list[str]:
 
 
 def is_order_of(goal: Goal, robot: Robot, command: Command) -> bool:
-    """Whether a goal on the wire is this command."""
+    """True if a goal on the wire is this command."""
     stamp = {"seq": goal.seq, "epoch": goal.epoch}
     stamp |= {} if isinstance(goal, StopGoal) else {"heard": goal.heard}
     _, expected = goals.goal(robot, command, **stamp)

@@ -55,14 +55,14 @@ class Truth(RobotsTruth):
         self.begun, self.ended, self.stray_grips = [], [], []
 
     def _new_plant(self) -> None:
-        """The old one took its tasks with it, but for those with which the new one goes on."""
+        """Begin with a new plant: the old one's tasks are gone, but for those that go on."""
         super()._new_plant()
         for name, cell in self.cells.items():
             goes_on = self.world.plant.cells[name].task
             if goes_on is None or goes_on.id != cell.task:
                 cell.cut_off()
                 self.parts.empty(name)
-            if goes_on is not None and goes_on.id != cell.task:  # nobody was told that it runs
+            if goes_on is not None and goes_on.id != cell.task:  # its start was not reported
                 cell.begin(goes_on.id, goes_on.order, self.world.now)
 
     def _follow_changes(self) -> None:

@@ -1,4 +1,4 @@
-"""Which robots and devices are truly in which shared zone, and which zones the plant has just freed."""
+"""Truth about shared zones: the robots and devices in each, and the zones just freed by the plant."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from .robot import RobotTruth
 
 @dataclass(frozen=True, kw_only=True)
 class FreedZone:
-    """A zone that the plant took from the arm that held it; `by_hand`: an operator said so."""
+    """A zone that the plant took from the arm that held it; `by_hand`: on an operator's word."""
 
     zone: str
     arm: str
@@ -20,9 +20,9 @@ class FreedZone:
 
 @dataclass(frozen=True, kw_only=True)
 class Meeting:
-    """A zone with more than one arm in it; nobody but an operator, or a lie, can answer for `excused` there.
+    """A zone with more than one arm in it; for those in `excused` only an operator, or a lie, is to blame.
 
-    An arm is, from an override or from the release of its zone on false evidence until it has left.
+    An arm is excused from an override, or from the release of its zone on false evidence, until it has left.
     """
 
     zone: str
@@ -32,7 +32,7 @@ class Meeting:
 
 @dataclass(frozen=True, kw_only=True)
 class Entry:
-    """An arm that set out into a zone, and who held it then by the plant's books."""
+    """An arm that set out into a zone, and the arm that held the zone then by the plant's books."""
 
     zone: str
     arm: str
@@ -40,7 +40,7 @@ class Entry:
 
 
 class ZonesTruth:
-    """What happened in this step: `freed`, `meetings`, `entries`."""
+    """Zones in this step: `freed`, `meetings`, `entries`."""
 
     def __init__(
         self, world: World, robots: Mapping[str, RobotTruth], mistaken: Callable[[RobotTruth], bool]
@@ -58,12 +58,12 @@ class ZonesTruth:
         self._answered_for: set[tuple[str, str]] = set()  # (zone, arm) until the arm is truly outside
 
     def overridden(self, zone: str) -> None:
-        """An operator has answered for a zone being empty."""
+        """Take in that an operator has vouched for a zone being empty."""
         self._overridden.add(zone)
         self._answered_for.update((zone, name) for name in self._who_is_in(zone))
 
     def look(self, moved: bool) -> None:
-        """Take in where the arms are, if they `moved`, and who holds what by the plant's books."""
+        """Take in where the arms are, if they `moved`, and the holders of zones by the plant's books."""
         if self.meetings or self.freed or self.entries:
             self.meetings, self.freed, self.entries = [], [], []
         if moved:

@@ -1,4 +1,4 @@
-"""The tasks of a plant in PostgreSQL, for whoever only reads them."""
+"""Tasks of a plant in PostgreSQL, for readers only."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from .server import Impatient, checked, connected, explained, plain_values, tran
 
 
 class PostgresHistory(History):
-    """On a connection of its own, so that no reader waits for the plant, nor the plant for a reader."""
+    """Task history on a connection of its own, so that neither a reader nor the plant waits for the other."""
 
     def __init__(self, address: str, plant: str) -> None:
         self._address = checked(address)
@@ -64,7 +64,7 @@ class PostgresHistory(History):
 
 
 class _Reader:
-    """Takes queries as they are written for every store."""
+    """Database connection that takes queries as they are written for every store."""
 
     def __init__(self, db: Impatient) -> None:
         self._db = db
@@ -74,5 +74,5 @@ class _Reader:
 
 
 def _was_ended(db: Impatient) -> bool:
-    """Whether the server has said something unasked, as when it ends: nobody waits for an answer here."""
+    """True if the server has sent something unasked, as it does when it ends."""
     return not db.closed and bool(select.select([db.fileno()], [], [], 0.0)[0])

@@ -1,13 +1,15 @@
-"""What is asked of the row that says who leads a plant, in SQL."""
+"""SQL conditions on the row that names the leader of a plant."""
 
 from __future__ import annotations
 
 LAST_SEEN = "SELECT epoch, seen FROM leader"
-# of a leader who has said nothing since: where he has, this changes nothing
+# only if the leader is silent since then; otherwise this changes nothing
 END_LEASE = "UPDATE leader SET seen = NULL WHERE epoch = %s AND seen = %s RETURNING epoch"
 
 
 def lately(column: str, within: str = "%s") -> str:
-    """Whether that was said within so many seconds. A time far ahead is one from before the server's clock
-    was set back, and is as old as one far behind."""
+    """SQL that is true if the time in `column` is less than `within` seconds away from the server's clock.
+
+    A time far ahead was written before the clock was set back, and counts as old.
+    """
     return f"coalesce(abs(extract(epoch FROM clock_timestamp() - {column})) < {within}, FALSE)"

@@ -1,4 +1,4 @@
-"""Who leads each plant of a database, for whoever looks at all of them."""
+"""Leader of each plant of a database, for a process that watches all of them."""
 
 from __future__ import annotations
 
@@ -26,14 +26,14 @@ LEADER = (
 
 
 class Leaders:
-    """On a connection of its own, for one thread at a time; ArboledaError where the database is away."""
+    """Reader on its own connection, for one thread at a time; ArboledaError without the database."""
 
     def __init__(self, address: str) -> None:
         self._address = checked(address)
         self._opened: Impatient | None = None
 
     def all(self) -> dict[str, Leader]:
-        """By the name of the plant; those whose tables this user may read."""
+        """The leaders by the name of the plant; only of plants whose tables this user may read."""
         with explained(self._address, ArboledaError, "cannot be reached"):
             db = self._connection()
             schemas = [row[0] for row in db.execute(PLANTS, (PREFIX,)).fetchall()]
@@ -43,7 +43,7 @@ class Leaders:
         return {plain(name): _row(*rest) for name, *rest in rows}
 
     def close(self) -> None:
-        """Give the connection back; idempotent."""
+        """Close the connection; idempotent."""
         if self._opened is not None:
             self._opened.close()
             self._opened = None

@@ -1,4 +1,4 @@
-"""Who leads a plant, as others see it: a standby that waits, and whoever asks for a planned change."""
+"""Leader of a plant as others see it: a waiting standby, or somebody who asks for a planned change."""
 
 from __future__ import annotations
 
@@ -28,9 +28,11 @@ WAITS = (
 
 @dataclass(frozen=True, kw_only=True)
 class Leader:
-    """Who led the plant last; `leads` where he has said so lately, by the clock of the database, by which
-    nobody takes a plant over. `url` is his page, "" where he has said none; `standbys` is how many wait for
-    him to end."""
+    """The plant's last leader, and whether it still leads.
+
+    `leads`: it has renewed its lease lately, by the clock of the database; nobody takes a plant over by this
+    field. `url`: its page, "" if it gave none. `standbys`: the number of processes that wait to take over.
+    """
 
     epoch: int
     host: str
@@ -41,7 +43,7 @@ class Leader:
 
 
 class Leadership:
-    """On a connection of its own, for one thread at a time; ArboledaError where the database is away."""
+    """Connection of a waiting process, for one thread at a time; ArboledaError without the database."""
 
     def __init__(self, address: str, plant: str) -> None:
         self.name = f"{address} ({plant})"
@@ -52,7 +54,7 @@ class Leadership:
         self._silence = Silence()
 
     def prepare(self) -> None:
-        """Make what a plant has there; StartError says why that cannot be."""
+        """Make the plant's schema and tables; raises StartError if that is impossible."""
         with explained(self.name, StartError):
             prepare(self._connection(), self._schema, self.name)
 
@@ -64,19 +66,21 @@ class Leadership:
         )
 
     def is_free(self) -> bool:
-        """Whether nobody leads: who did gave the plant back, or was silent for the length of a lease, which
-        is ended then. Ask again and again: that time is counted here."""
+        """True if nobody leads: the last leader gave the plant back, or was silent for the length of a lease.
+
+        Ends the lease in the second case. The silence is counted over repeated calls.
+        """
         (seen,) = self._asked(LAST_SEEN)
         if seen[1] is None:
             return True
         return self._silence.ends_lease(clock.seconds(), seen) and bool(self._asked(END_LEASE, *seen))
 
     def wait_here(self, url: str = "") -> None:
-        """Say that this process waits to lead, and where its page is."""
+        """Store that this process waits to lead, and the address of its page."""
         self._asked(WAITS, *self._me, url)
 
     def own_address(self) -> str:
-        """By which address hosts that reach the database may reach this one, "" where that is not known."""
+        """The address by which hosts that reach the database may reach this one; "" if unknown."""
         with explained(self.name, ArboledaError, "cannot be reached"):
             return own_address(self._connection())
 
@@ -84,11 +88,11 @@ class Leadership:
         self._asked("DELETE FROM standby WHERE host = %s AND process = %s", *self._me)
 
     def ask_for_handover(self) -> None:
-        """Have the leader hold what is at work, and give the plant to who waits."""
+        """Ask the leader to hold all work, and to hand the plant over."""
         self._asked("UPDATE leader SET wanted = clock_timestamp()")
 
     def close(self) -> None:
-        """Give the connection back; idempotent."""
+        """Close the connection; idempotent."""
         if self._opened is not None:
             self._opened.close()
             self._opened = None

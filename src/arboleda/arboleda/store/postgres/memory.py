@@ -26,7 +26,7 @@ PAUSE_S = 0.1
 LEAD = (
     "UPDATE leader SET epoch = greatest(epoch + 1, %s), host = %s, process = %s, seen = clock_timestamp(),"
     " url = '', wanted = NULL,"
-    # what was left at work goes on by itself only where somebody has just asked for the change
+    # work goes on by itself only if the change of leader was just asked for
     f" going = CASE WHEN {lately('wanted')} THEN going ELSE '[]' END"
     " WHERE seen IS NULL RETURNING epoch, going"
 )
@@ -40,7 +40,7 @@ T = TypeVar("T")
 
 
 class PostgresMemory(PlantMemory):
-    """The memory of `plant` in the database of that address; nothing is written before `lead`."""
+    """Memory of `plant` in the database at an address; nothing is written before `lead`."""
 
     remedy = "put a backup in its place"
     renew_s = RENEW_S
@@ -68,11 +68,11 @@ class PostgresMemory(PlantMemory):
         self._opened, self._is_open = db, True
 
     def connect(self) -> Impatient:
-        """A session of its own with the server; psycopg.Error, StartError."""
+        """A new session with the server; raises psycopg.Error or StartError."""
         return connected(self.address, self._schema)
 
     def close(self) -> None:
-        """Give the plant back at once, where that can be said, for whoever waits for it; idempotent."""
+        """Give up the lead at once, if the server can be reached, so that no standby waits; idempotent."""
         if self._epoch is not None:
             with suppress(psycopg.Error, StartError):  # the lease ends by itself
                 self._connection().execute("UPDATE leader SET seen = NULL WHERE epoch = %s", (self._epoch,))
@@ -83,7 +83,7 @@ class PostgresMemory(PlantMemory):
             self._renewing = None
 
     def lead(self, epoch: int) -> int:
-        """As for every memory; who was killed and cannot say so is waited for, as long as a lease lasts."""
+        """Take the lead, as in every memory; a killed leader is waited for as long as its lease lasts."""
         silence, first = Silence(), self._last_seen()
         while True:
             asked_at = clock.seconds()
@@ -120,7 +120,7 @@ class PostgresMemory(PlantMemory):
         self._beside("UPDATE leader SET going = %s WHERE epoch = %s", json.dumps(list(going)), self._epoch)
 
     def _beside(self, statement: str, *values: object) -> None:
-        """Say something of the leader, on a connection for it: the plant's thread has its own."""
+        """Run a statement on a connection of its own: the other one belongs to the plant's thread."""
         with explained(self.name, ArboledaError, "cannot be reached"), self.connect() as db:
             db.execute(statement, values)
 
@@ -133,7 +133,7 @@ class PostgresMemory(PlantMemory):
         return self._lease.lasts(clock.seconds())
 
     def _renew(self, db: Impatient) -> bool:
-        """Say that it leads. Whether another leader is wanted."""
+        """Renew the lease; True if another process is wanted as the leader."""
         asked_at = clock.seconds()
         with explained(self.name, ArboledaError, "cannot be reached"):
             row = db.execute(RENEW, (self._epoch, WANTED_S, LEASE_S)).fetchone()
@@ -157,7 +157,7 @@ class PostgresMemory(PlantMemory):
         return self._patiently(lambda db: db.execute(translated(statement), plain_values(values)).fetchall())
 
     def _patiently(self, do: Callable[[Impatient], T]) -> T:
-        """Do it, once more where the connection was lost: what is written twice is there once."""
+        """Call `do`, again if the connection was lost: a statement that runs twice has the effect of one."""
         until = clock.seconds() + AGAIN_S
         while True:
             try:
@@ -171,7 +171,7 @@ class PostgresMemory(PlantMemory):
                 time.sleep(PAUSE_S)
 
     def _explain_end(self, error: ArboledaError) -> None:
-        """Raise what trying again does not change."""
+        """Raise an error that another attempt would not mend."""
         cause = error.__cause__
         if isinstance(cause, psycopg.Error) and cause.sqlstate == SUPERSEDED:
             raise self._superseded(self._connection()) from cause
@@ -218,7 +218,7 @@ class PostgresMemory(PlantMemory):
 
 
 def _leader(db: Impatient) -> str:
-    """Who leads, as far as that can be said."""
+    """Process and host of the leader in brackets, for a sentence; "" if they cannot be read."""
     try:
         row = db.execute("SELECT host, process FROM leader").fetchone()
     except psycopg.Error:

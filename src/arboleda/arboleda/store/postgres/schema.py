@@ -8,7 +8,7 @@ from arboleda.model.errors import StartError
 
 from .server import Impatient
 
-PREFIX, LONGEST = "plant_", 63  # PostgreSQL cuts names that are longer, and two plants would be one
+PREFIX, LONGEST = "plant_", 63  # PostgreSQL cuts longer names, so that two plants could become one
 VERSION = 6
 NUMBER = "BIGINT GENERATED ALWAYS AS IDENTITY PRIMARY KEY"
 TABLES = (
@@ -39,17 +39,17 @@ TABLES = (
     " IF NOT FOUND THEN RAISE EXCEPTION 'another process leads' USING ERRCODE = 'AR001'; END IF;"
     " END $$",
 )
-SINCE: dict[int, tuple[str, ...]] = {  # what brings the tables of a format to the next one
+SINCE: dict[int, tuple[str, ...]] = {  # statements from each format to the next one
     1: (
-        # where the leader's page is; since when somebody wants another leader; the cells that were at work
-        # when the last one gave the plant to the next, as JSON
+        # the address of the leader's page; since when another leader is wanted; the cells that were at work
+        # when the last leader handed the plant over, as JSON
         "ALTER TABLE leader ADD COLUMN url TEXT NOT NULL DEFAULT '', ADD COLUMN wanted TIMESTAMPTZ,"
         " ADD COLUMN going TEXT NOT NULL DEFAULT '[]'",
         "CREATE TABLE standby (host TEXT, process BIGINT, seen TIMESTAMPTZ NOT NULL,"
         " PRIMARY KEY (host, process))",
     ),
     2: ("ALTER TABLE task ADD COLUMN choice TEXT",),
-    3: ("ALTER TABLE standby ADD COLUMN url TEXT NOT NULL DEFAULT ''",),  # where the page of each is
+    3: ("ALTER TABLE standby ADD COLUMN url TEXT NOT NULL DEFAULT ''",),  # the address of its page
     4: ("ALTER TABLE task ADD COLUMN course TEXT",),
     5: ("ALTER TABLE task ADD COLUMN unchecked TEXT",),
 }
@@ -57,7 +57,7 @@ SUPERSEDED = "AR001"
 
 
 def schema_of(plant: str) -> str:
-    """Where a plant has its tables; StartError where its name is too long for that."""
+    """The name of a plant's schema; raises StartError if the plant's name is too long for one."""
     schema = PREFIX + plant
     if len(schema.encode()) > LONGEST:
         raise StartError(
@@ -67,13 +67,13 @@ def schema_of(plant: str) -> str:
 
 
 def exists(db: Impatient, schema: str) -> bool:
-    """Whether the plant has tables there; asked of a table, for what a session knows of names may be old."""
+    """True if the plant has tables in this database; looked up anew, as cached names may be old."""
     found = db.execute("SELECT FROM pg_tables WHERE schemaname = %s AND tablename = 'leader'", (schema,))
     return found.fetchone() is not None
 
 
 def prepare(db: Impatient, schema: str, name: str) -> None:
-    """Make the tables where there are none, and bring those of an older Arboleda up to date; StartError."""
+    """Make the tables, or bring those of an older Arboleda up to date; raises StartError."""
     if exists(db, schema):
         found = version(db)
         refuse_newer(found, name)
@@ -93,13 +93,13 @@ def prepare(db: Impatient, schema: str, name: str) -> None:
 
 
 def version(db: Impatient) -> int:
-    """The format of the tables; 0 where they are not ours."""
+    """The version of the tables; 0 if Arboleda did not make them."""
     row = db.execute("SELECT format FROM leader").fetchone()
     return 0 if row is None else int(row[0])
 
 
 def refuse_newer(found: int, name: str) -> None:
-    """StartError where the tables are not of a format that this Arboleda knows."""
+    """Raises StartError if the tables have a format that this Arboleda does not know."""
     if found > VERSION:
         raise StartError(
             f"The plant's memory {name} is of a newer Arboleda (format {found}, known: {VERSION}):"

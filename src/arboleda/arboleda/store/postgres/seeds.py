@@ -14,7 +14,7 @@ from arboleda.model.errors import StartError
 from .server import checked, connected, explained
 
 SCHEMA = "arboleda_simulate"
-HOUR_S = 3600.0  # a worker that is frozen while it has a seed gives it back then
+HOUR_S = 3600.0  # a frozen worker loses its seed after this time
 TABLE = (
     "CREATE TABLE IF NOT EXISTS seed (campaign TEXT, seed BIGINT, digest TEXT, broken TEXT, cycles INTEGER,"
     " worker TEXT, PRIMARY KEY (campaign, seed))"
@@ -30,8 +30,7 @@ ROWS = "SELECT seed, digest, broken, cycles, worker FROM seed WHERE campaign = %
 
 @dataclass(frozen=True, kw_only=True)
 class SeedRow:
-    """What came of a seed; `digest` is None while nobody has done it, `broken` says which invariant did not
-    hold."""
+    """Result of one seed; `digest` is None until it is done, `broken` names the invariant that failed."""
 
     seed: int
     digest: str | None
@@ -41,7 +40,7 @@ class SeedRow:
 
 
 class SeedRows:
-    """The rows of one campaign; StartError says what is wrong with the database."""
+    """Rows of one campaign; raises StartError for trouble with the database."""
 
     def __init__(self, address: str, campaign: str) -> None:
         self._name = checked(address)
@@ -51,7 +50,7 @@ class SeedRows:
             self._db = connected(address, SCHEMA, idle_s=HOUR_S)
 
     def lay_out(self, first: int, count: int) -> None:
-        """Have a row for each seed; those that are there stay as they are."""
+        """Make a row for each seed; those that are there stay as they are."""
         with explained(self._name, StartError), self._db.transaction():
             self._db.execute("SELECT pg_advisory_xact_lock(hashtext(%s))", (SCHEMA,))
             self._db.execute(sql.SQL("CREATE SCHEMA IF NOT EXISTS {}").format(sql.Identifier(SCHEMA)))
@@ -73,7 +72,7 @@ class SeedRows:
             return row
 
     def rows(self) -> list[SeedRow]:
-        """All of them, by their number."""
+        """All rows, by their number."""
         names = "seed", "digest", "broken", "cycles", "worker"
         with explained(self._name, StartError):
             found = self._db.execute(ROWS, (self._campaign,)).fetchall()

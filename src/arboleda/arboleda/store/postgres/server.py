@@ -18,7 +18,7 @@ from arboleda.model.errors import ArboledaError, StartError
 
 from ..address import has_password, is_address
 
-OLDEST = 13  # the oldest version of the server with which this was made
+OLDEST = 13  # the oldest supported version of the server
 ANSWER_S = 1.0  # a server that says nothing for so long counts as away
 CONNECT_S = 2  # libpq takes no less
 SETTINGS = {
@@ -31,7 +31,7 @@ SETTINGS = {
     "tcp_user_timeout": 2000,
     "application_name": "arboleda",
 }
-WORDS = {  # what a person does about it, by the class or the code that PostgreSQL gives an error
+WORDS = {  # advice by the class or the code of PostgreSQL's error
     "28": "look at the user and its password, which are in PGPASSWORD or ~/.pgpass",
     "3D": "make the database, or correct its name",
     "42501": "let this user use and make schemas and tables there",
@@ -42,7 +42,7 @@ T = TypeVar("T")
 
 
 class NoAnswer(psycopg.OperationalError):
-    """The server said nothing for ANSWER_S."""
+    """Error: the server did not answer within ANSWER_S."""
 
 
 class Impatient(psycopg.Connection[Any]):
@@ -60,7 +60,7 @@ class Impatient(psycopg.Connection[Any]):
 
 
 def _limited(gen: Generator[Any, Any, T], until: float) -> Generator[Any, Any, T]:
-    """The same, where it ends in time; psycopg asks at each interval."""
+    """The same generator, with NoAnswer raised after `until`; psycopg asks at each interval."""
     ready = None
     while True:
         try:
@@ -73,7 +73,7 @@ def _limited(gen: Generator[Any, Any, T], until: float) -> Generator[Any, Any, T
 
 
 def checked(address: str) -> str:
-    """An address of a database, as people write it; StartError where it has a password or is none."""
+    """The address of a database, as people write it; raises StartError if it has a password, or is none."""
     if not is_address(address):
         raise StartError("A store is written as postgresql://USER@HOST:PORT/DATABASE.")
     if has_password(address):
@@ -113,7 +113,7 @@ def connected(address: str, schema: str, *, idle_s: float = 1.0) -> Impatient:
 
 
 def own_address(db: Impatient) -> str:
-    """The address of this host on its way to the server; "" where both are on one, or no URL can have it."""
+    """The address of this host on its way to the server; "" if both are one machine, or it fits in no URL."""
     with socket.socket(fileno=os.dup(db.fileno())) as end:
         name = end.getsockname()
     if not isinstance(name, tuple) or "%" in name[0] or ipaddress.ip_address(name[0]).is_loopback:
@@ -122,12 +122,12 @@ def own_address(db: Impatient) -> str:
 
 
 def translated(statement: str) -> str:
-    """A statement of ours as psycopg takes it; PostgreSQL knows large and small letters apart in LIKE."""
+    """The statement in psycopg's form, with ILIKE for LIKE, which distinguishes case in PostgreSQL."""
     return statement.replace("%", "%%").replace("?", "%s").replace(" LIKE ", " ILIKE ")
 
 
 def plain_values(values: tuple[object, ...]) -> tuple[object, ...]:
-    """The values, without what PostgreSQL has in no text."""
+    """The values, without characters that no text of PostgreSQL can hold."""
     return tuple(
         each.replace("\0", "\N{REPLACEMENT CHARACTER}") if isinstance(each, str) else each for each in values
     )
@@ -143,7 +143,7 @@ def explained(name: str, kind: type[ArboledaError], cannot: str = "cannot be use
 
 
 def in_words(error: psycopg.Error) -> str:
-    """What it says, on one line, without the address that is named beside it."""
+    """The server's error on one line, without the address, which is named beside it."""
     said = error.diag.message_primary or next(iter(str(error).splitlines()), type(error).__name__)
     return re.sub(r"^connection failed: (connection to server .*? failed: )?(FATAL: *)?", "", said).rstrip(
         "."
@@ -151,7 +151,7 @@ def in_words(error: psycopg.Error) -> str:
 
 
 def advice(error: psycopg.Error) -> str:
-    """What to do about it."""
+    """The advice to the user for an error of PostgreSQL."""
     said, code = str(error), error.sqlstate or ""
     if "password" in said or "no pg_hba.conf entry" in said or "role" in said:
         code = code or "28"

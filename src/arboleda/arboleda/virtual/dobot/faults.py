@@ -1,4 +1,4 @@
-"""What can go wrong with a virtual Dobot, in a sentence each."""
+"""Faults of a virtual Dobot, with a sentence on each."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a Dobot's controller does: its dashboard, its queue of moves, its frames. No sockets, no clock."""
+"""Virtual controller of a Dobot: dashboard, queue of moves, feedback frames. No sockets, no clock."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ QUERIES = ("robotmode", "getangle", "geterrorid", "getcurrentcommandid", "gettoo
 
 @dataclass(frozen=True, kw_only=True)
 class ClientText:
-    """A client told the dashboard this; one line, or several that each end with a bracket."""
+    """Event: a client sent the dashboard this; one line, or several that each end with a bracket."""
 
     client: int
     text: str
@@ -35,7 +35,7 @@ class ClientText:
 
 @dataclass(frozen=True, kw_only=True)
 class Answer:
-    """What a client of the dashboard is sent."""
+    """Line to one client of the dashboard."""
 
     client: int
     text: str
@@ -43,14 +43,14 @@ class Answer:
 
 @dataclass(frozen=True, kw_only=True)
 class Frame:
-    """What every client of the feedback port is sent."""
+    """Frame to every client of the feedback port."""
 
     data: bytes
 
 
 @dataclass(frozen=True, kw_only=True)
 class Disconnect:
-    """Every connection ends."""
+    """Message: end every connection."""
 
 
 Message = Answer | Frame | Disconnect
@@ -58,7 +58,7 @@ Message = Answer | Frame | Disconnect
 
 @dataclass(frozen=True, kw_only=True)
 class QueuedMove:
-    """A move that waits for its turn."""
+    """Move that waits for its turn."""
 
     number: int
     goal: Joints
@@ -67,7 +67,7 @@ class QueuedMove:
 
 
 class ErrorReply(Exception):
-    """An ErrorID other than 0."""
+    """Error: the controller replies with an ErrorID other than 0."""
 
     def __init__(self, error: int) -> None:
         super().__init__(error)
@@ -75,7 +75,7 @@ class ErrorReply(Exception):
 
 
 class VirtualDobot:
-    """One arm and its controller; `faults` is looked at whenever it matters. Times are in s of any clock."""
+    """Virtual arm with its controller; `faults` are looked up when they matter. Times in s of any clock."""
 
     def __init__(
         self,
@@ -90,7 +90,7 @@ class VirtualDobot:
         self.joints_deg = joints_deg
         self.outputs = 0  # of the tool, a bit each
         self.speed_percent = 100.0
-        self._unix_s = unix_s  # what time it is when `now` is 0
+        self._unix_s = unix_s  # Unix time at which `now` is 0
         self._frame_s = frame_s
         self._powered = True
         self._enabled_at = -math.inf if enabled else math.inf
@@ -111,11 +111,11 @@ class VirtualDobot:
 
     @property
     def is_off(self) -> bool:
-        """Whether nobody can connect."""
+        """True while nobody can connect."""
         return "power_cycle" in self.faults
 
     def step(self, now: float, events: Sequence[ClientText]) -> list[Message]:
-        """Let time pass, do what it is told, and say what there is to say."""
+        """Let time pass, take events, and return messages."""
         out: list[Message] = []
         self._now = now
         self._booted_at = now if self._booted_at is None else self._booted_at
@@ -178,7 +178,7 @@ class VirtualDobot:
             self._travel(now)
 
     def _befall(self, now: float) -> None:
-        """The faults that happen to an arm by themselves."""
+        """Let the faults strike that befall an arm by themselves."""
         if "power_off" in self.faults:
             self._powered, self._powered_at = False, math.inf
             self._halt(now, disable=True)
@@ -250,7 +250,7 @@ class VirtualDobot:
         return [answer]
 
     def _reply(self, now: float, line: str) -> tuple[str, bool]:
-        """What is answered, and whether the connections end with it."""
+        """The reply to a line, and True if the connections end with it."""
         found = LINE.fullmatch(line)
         if found is None:
             return f"{UNKNOWN},{{}},{line.strip()[:40]};", False
@@ -372,7 +372,7 @@ class VirtualDobot:
         return 1 << (int(index) - 1)
 
     def _check(self, *, power: bool = False, moves: bool = False) -> None:
-        """Refuse what cannot be done in this state."""
+        """Raises Refused if a command is impossible in this state."""
         if "stop_button" in self.faults:
             raise ErrorReply(-3)
         if self._alarms or self._collided:
@@ -411,7 +411,7 @@ class VirtualDobot:
 
 
 def _lines(text: str) -> list[str]:
-    """Each command of what was sent at once."""
+    """The commands in a text of several."""
     found = re.findall(r"[^()]*\([^()]*\)", text)
     return found or [text]
 

@@ -1,4 +1,4 @@
-"""How the virtual arm moves: all joints begin and end together, with the ramps of the slowest of them."""
+"""Motion of the virtual arm: all joints begin and end together, with the ramps of the slowest of them."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ Joints = tuple[float, ...]
 
 @dataclass(frozen=True, kw_only=True)
 class Path:
-    """A way of `length_deg` of the slowest joint; a stop brakes at `braked_s`, on the way."""
+    """Path of an arm, by the `length_deg` of its slowest joint; a stop at `braked_s` brakes it on the way."""
 
     start: Joints
     goal: Joints
@@ -29,14 +29,14 @@ class Path:
         return self.began_at + self._total_s
 
     def at(self, now: float) -> Joints:
-        """Where the joints are."""
+        """The joints at a time, deg."""
         if self.length_deg == 0:
             return self.goal
         part = self._travelled(max(0.0, min(now, self.ends_at) - self.began_at)) / self.length_deg
         return tuple(a + (b - a) * part for a, b in zip(self.start, self.goal, strict=True))
 
     def braked(self, now: float) -> Path:
-        """The way as it goes on where a stop is said now."""
+        """The path after a stop that is given now."""
         return replace(self, braked_s=min(self.braked_s, now - self.began_at))
 
     @property
@@ -64,13 +64,13 @@ class Path:
 
 
 def path(start: Joints, goal: Joints, now: float, speed_percent: float, acceleration_percent: float) -> Path:
-    """The way of a joint move that begins now."""
+    """The path of a joint move that begins now."""
     distances = [abs(b - a) for a, b in zip(start, goal, strict=True)]
     times = [distance / speed for distance, speed in zip(distances, SPEED_DEG_S, strict=True)]
     slowest = times.index(max(times))
     acceleration = ACCELERATION_DEG_S2 * acceleration_percent / 100
     length = distances[slowest]
-    fastest = math.sqrt(length * acceleration) or 1.0  # where the ramps meet
+    fastest = math.sqrt(length * acceleration) or 1.0  # the speed at which the ramps meet
     return Path(
         start=start,
         goal=goal,

@@ -1,4 +1,4 @@
-"""The ports of a virtual Dobot: the dashboard, the feedback, and a thread around the machine."""
+"""Ports of a virtual Dobot: dashboard, feedback, and a thread around the machine."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ DASHBOARD, FEEDBACK, HEARD = "dashboard", "feedback", "heard"
 
 
 class Server:
-    """Listens on both ports and plays the controller until `stop`; port 0 takes a free one."""
+    """Server on both ports that plays the controller until `stop`; port 0 takes a free one."""
 
     def __init__(
         self,

@@ -1,4 +1,4 @@
-"""A gripper that closes until it is told otherwise, or until a part stops it."""
+"""Gripper that closes until it is told otherwise, or until a part stops it."""
 
 from __future__ import annotations
 
@@ -27,14 +27,15 @@ FAULTS = {
 
 @dataclass(frozen=True, kw_only=True)
 class Grip:
-    """A goal: where the finger joint is to be, m or rad, with which effort at most."""
+    """Goal: position of the finger joint, m or rad, and the greatest effort."""
 
     position: float
     effort: float = 0.0
 
 
 class GripperBody:
-    """`opened` is where its joint is at its widest, 0 where the fingers touch; a part stops it at `part`."""
+    """Body of a gripper; `opened` is its widest joint position, 0 the closed one, `part` where a part stops
+    it."""
 
     preempted = Status.CANCELED
 
@@ -65,7 +66,7 @@ class GripperBody:
         return Ride(points=points)
 
     def moved(self, now: float, position: Position) -> bool:
-        """A part stops fingers that close, and what was stopped for STALL_S is at its end."""
+        """Move towards the goal; a part stops closing fingers, and a stop of STALL_S ends the goal."""
         reached = self._reach(position[0])
         self.position = (reached,)
         if reached == position[0]:
@@ -75,7 +76,7 @@ class GripperBody:
         return now < self._stuck_since + STALL_S
 
     def rests(self, now: float) -> None:
-        """It goes on pressing: where the part is gone, it closes."""
+        """Without a goal it goes on pressing, and closes if the part is gone."""
         if "slip" in self._faults and self.position == (self._part,):
             self.position = (self._told,)
 
@@ -94,7 +95,7 @@ class GripperBody:
         return [JointStateEvent(names=(self.joint,), positions=position, stamp=stamp)]
 
     def _reach(self, position: float) -> float:
-        """Where the finger gets to on its way there; parts lie between fingers that are wider than they."""
+        """The position that the finger reaches on its way to `position`; a part in between stops it."""
         here, closes = self.position[0], abs(position) <= abs(self.position[0])
         if "jam" in self._faults and abs(position) < abs(self._opened) / 2 <= abs(here):
             return self._opened / 2

@@ -1,4 +1,4 @@
-"""The registers of the belt: where its program's numbers are, and what goes wrong on the line."""
+"""Registers of the belt: the addresses of its program's numbers, and the faults of the line."""
 
 from __future__ import annotations
 
@@ -23,11 +23,11 @@ VERB, TO, SPEED, NUMBER, BEAT = range(5)
 HALT, LATCH = range(2)
 ILLEGAL_ADDRESS, DEVICE_BUSY = 2, 6
 MEANINGLESS = 77
-UNIT_BYTE = {True: 6, False: 0}  # where the unit stands in a packet, by whether that is TCP
+UNIT_BYTE = {True: 6, False: 0}  # index of the unit in a packet; True: TCP
 
 
 class BeltMemory:
-    """What a Modbus server serves; it passes the time of the program whenever it is asked."""
+    """Registers that a Modbus server serves; each access also moves the program on to the present time."""
 
     def __init__(
         self,
@@ -60,7 +60,7 @@ class BeltMemory:
         return None
 
     def trace(self, sent: bool, packet: bytes) -> bytes:
-        """A packet as the line carries it."""
+        """A packet as it arrives over the line."""
         if not sent:
             return packet
         if "mute" in self._faults:
@@ -96,7 +96,7 @@ class BeltMemory:
                 self._belt.latch(now, on=bool(value))
 
     def _write(self, address: int, values: list[int]) -> None:
-        """A number that is another than before is a new order; the same one, written again, is none."""
+        """Write values; a changed number is a new order, the same one again is none."""
         now, before = self._clock(), self._holding[NUMBER]
         for at, value in enumerate(values, address):
             if at < len(self._holding):

@@ -1,4 +1,4 @@
-"""The virtual PLC at work: the belt's memory, served over Modbus."""
+"""Virtual PLC over Modbus, which serves the belt's memory."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from .memory import BeltMemory
 
 
 class Server:
-    """The belt, listening from `start` to `stop`."""
+    """Server of the belt, which listens from `start` to `stop`."""
 
     def __init__(self, faults: Faults, *, host: str = "127.0.0.1", port: int = 0, serial: str = "") -> None:
         self._where = serial or host
@@ -28,7 +28,7 @@ class Server:
         return f"the virtual PLC speaks Modbus on {where}"
 
     def start(self) -> None:
-        """StartError where pymodbus is missing, or nothing can listen there."""
+        """Listen; raises StartError if pymodbus is missing, or the port cannot be opened."""
         try:
             need_library()
             self.port = self._server.start()

@@ -1,4 +1,4 @@
-"""A base that drives straight from pose to pose, with odometry and a localisation that speaks on its way."""
+"""Base that drives straight from pose to pose, with odometry, and a localisation that speaks on its way."""
 
 from __future__ import annotations
 
@@ -32,14 +32,14 @@ FAULTS = {
 
 @dataclass(frozen=True, kw_only=True)
 class Drive:
-    """A goal: poses in the frame of the map."""
+    """Goal: poses in the frame of the map."""
 
     frame: str
     poses: tuple[Pose, ...]
 
 
 class BaseBody:
-    """Odometry begins where the base begins; localisation knows the map."""
+    """Body of a base; odometry starts at its first pose, localisation knows the map."""
 
     preempted = Status.ABORTED
 
@@ -72,7 +72,7 @@ class BaseBody:
         return True
 
     def rests(self, now: float) -> None:
-        """It stands."""
+        """Without a goal it stands."""
 
     def end(self, id: str, ride: Ride, *, arrived: bool) -> GoalResult:
         return GoalResult(id=id, status=Status.SUCCEEDED, missed=(0,) if self._missed else ())

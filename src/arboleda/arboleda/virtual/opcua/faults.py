@@ -1,4 +1,4 @@
-"""What can go wrong with the virtual PLC of OPC UA."""
+"""Faults of the virtual PLC of OPC UA."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The variables and methods of the belt: what its program shows by name, and what goes wrong on the way."""
+"""Variables and methods of the belt: the values of its program by name, and the faults on the way."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ SPOILT: dict[str, object] = {
 
 
 class BeltProgram:
-    """What a server of OPC UA serves; it passes the time of the program whenever it is asked."""
+    """Variables and methods that an OPC UA server serves; each access also moves the program on in time."""
 
     variables: Mapping[str, str] = dict.fromkeys((*PLACES, *ECHO), "uint16")
     methods: Mapping[str, Sequence[str]] = {
@@ -60,7 +60,7 @@ class BeltProgram:
         return None
 
     def beat(self, value: object) -> None:
-        """0 until somebody writes: who never did is not missed."""
+        """Take the heartbeat of a client. It is 0 until one writes; without any client it is not watched."""
         self._beaten = self._beaten or value != 0
         if self._beaten and isinstance(value, int):
             self._belt.beat(self._clock(), value)

@@ -1,4 +1,4 @@
-"""The virtual PLC at work: the belt's program, served over OPC UA."""
+"""Virtual PLC over OPC UA, which serves the belt's program."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from .program import BeltProgram
 
 
 class Server:
-    """The belt, listening from `start` to `stop`."""
+    """Server of the belt, which listens from `start` to `stop`."""
 
     def __init__(self, faults: Faults, *, host: str = "127.0.0.1", port: int = 0) -> None:
         self._host = host
@@ -26,7 +26,7 @@ class Server:
         return f"the virtual PLC speaks OPC UA on opc.tcp://{self._host}:{self.port}"
 
     def start(self) -> None:
-        """StartError where asyncua is missing, or nothing can listen there."""
+        """Listen; raises StartError if asyncua is missing, or the port cannot be opened."""
         try:
             need_library()
             self.port = self._server.start()

@@ -1,1 +1,1 @@
-"""A PLC with a belt, a gate and an eye: its program, which every protocol of PLCs shows in its own way."""
+"""PLC with a belt, a gate and an eye: its program, which every protocol of PLCs shows in its own way."""

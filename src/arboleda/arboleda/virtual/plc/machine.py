@@ -1,4 +1,4 @@
-"""The program of a PLC that drives a belt: orders in, what it shows out, under time that it is told.
+"""Program of a PLC that drives a belt: orders in, values out, under a time that is handed to it.
 
 One order at a time, named by a number. The part is loaded at the entry and carried to the exit; an eye
 looks at it there. The gate of the exit is a cylinder, which may be switched at any time and is there at once.
@@ -33,12 +33,12 @@ CLOSED, OPEN = range(2)
 GOOD, BAD = 1, 2
 LOAD, ADVANCE, GATE, SCAN = range(1, 5)
 LENGTH_MM, LOAD_S, SCAN_S = 300, 1.0, 0.3
-WATCH_S = 2.0  # how long it works on without a heartbeat, once it had one
+WATCH_S = 2.0  # it stops after this time without a heartbeat, once it had one
 
 
 @dataclass(kw_only=True)
 class PlcDisplay:
-    """What the PLC shows, in numbers."""
+    """Values that the PLC shows, as numbers."""
 
     boot: int = 1
     alive: int = 0
@@ -57,7 +57,7 @@ class PlcDisplay:
 
 @dataclass(frozen=True, kw_only=True)
 class Work:
-    """What it does, and until when."""
+    """Work of the belt, with its begin and end, s."""
 
     number: int
     verb: int
@@ -68,7 +68,7 @@ class Work:
 
 @dataclass(kw_only=True)
 class Belt:
-    """`scan` before anything is read; `faults` are the names of those that are on."""
+    """Program of the belt; call `scan` before reading. `faults` are the names of those that are on."""
 
     faults: Collection[str] = ()
     shown: PlcDisplay = field(default_factory=PlcDisplay)
@@ -77,7 +77,7 @@ class Belt:
     _latched: bool = False
 
     def order(self, now: float, number: int, verb: int, to: int = 0, speed_mm_s: int = 0) -> None:
-        """A new number was written, with what is asked."""
+        """Take a new order: a changed number, a verb and its values."""
         self.scan(now)
         if "deaf" in self.faults or "frozen" in self.faults:
             return
@@ -99,25 +99,25 @@ class Belt:
         self.scan(now)
 
     def halt(self, now: float) -> None:
-        """End what moves."""
+        """Halt everything that moves."""
         self.scan(now)
         if not {"runs_on", "frozen"} & set(self.faults):
             self._stop()
 
     def latch(self, now: float, *, on: bool) -> None:
-        """Halt and refuse every order, until it is switched off."""
+        """Halt, and refuse every order until the latch is switched off."""
         if on:
             self.halt(now)
         self._latched = on
         self._rest()
 
     def beat(self, now: float, number: int) -> None:
-        """Somebody is there, and says so with another number."""
+        """Take a heartbeat; its number must change, else the belt stops after WATCH_S."""
         if self._beat is None or self._beat[0] != number:
             self._beat = (number, now)
 
     def scan(self, now: float) -> None:
-        """One pass of the program."""
+        """Run the program once."""
         if "frozen" in self.faults:
             return
         self.shown.alive = int(now * 10) % 65536
@@ -155,7 +155,7 @@ class Belt:
             self.shown.done = number
 
     def _end(self, work: Work) -> None:
-        """What it sets is shown before the number is: who reads a number may believe the rest."""
+        """End a work: set its values before its number is shown as done, so that a reader may trust them."""
         self._work = None
         for name, value in work.sets.items():
             if "lies" not in self.faults and not ("blind" in self.faults and name == "part_at"):

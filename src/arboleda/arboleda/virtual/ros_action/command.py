@@ -1,4 +1,4 @@
-"""What the commands of virtual action servers share: where what speaks ROS 2 is found."""
+"""Lookup of the ROS 2 side of virtual action servers, for their commands."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ Rate = Annotated[float, typer.Option(min=1, max=1000, help="How often that is me
 
 
 def controller(name: str) -> Callable[..., Controller]:
-    """What plays it over ROS 2; StartError where that part of Arboleda, or rclpy, is not there."""
+    """The function that runs it over ROS 2; StartError if arboleda_ros or rclpy is missing."""
     found = next(iter(entry_points(group="arboleda.virtual", name=name)), None)
     try:
         if found is None:

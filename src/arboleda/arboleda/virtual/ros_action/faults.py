@@ -1,4 +1,4 @@
-"""What can go wrong with any virtual action server, in a sentence each."""
+"""Faults of any virtual action server, with a sentence on each."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A virtual action server: goals, their ends, cancels, and what is measured meanwhile. No ROS 2, no clock."""
+"""Virtual action server: goals, their ends, cancels, and measurements. No ROS 2, no clock."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ MEASURE_S = 0.02
 
 @dataclass(frozen=True, kw_only=True)
 class GoalRequest:
-    """A client sends a goal; what it holds is the body's own."""
+    """Event: a client sends a goal; its content is the body's own."""
 
     id: str
     goal: Any
@@ -27,14 +27,14 @@ class GoalRequest:
 
 @dataclass(frozen=True, kw_only=True)
 class CancelRequest:
-    """A client wants a goal to end."""
+    """Event: a client wants a goal to end."""
 
     id: str
 
 
 @dataclass(frozen=True, kw_only=True)
 class CancelDecision:
-    """What is answered to it."""
+    """Answer to a cancel request."""
 
     id: str
     accepted: bool
@@ -44,23 +44,23 @@ Message = GoalAnswer | GoalResult | Measurement | CancelDecision
 
 
 class BadGoal(Exception):
-    """A goal that the server refuses."""
+    """Error: the server refuses a goal."""
 
 
 class Body(Protocol):
-    """What the server moves."""
+    """Device that the server moves."""
 
     position: Position
-    preempted: Status  # how a goal ends that another takes the place of
+    preempted: Status  # end of a goal that another one replaces
 
     def ride(self, now: float, goal: Any, slower: float) -> Ride:
-        """The way to a goal; BadGoal where there is none."""
+        """The ride to a goal; raises BadGoal if there is none."""
 
     def moved(self, now: float, position: Position) -> bool:
-        """It is led there; False where it cannot get there, and its goal ends so."""
+        """Move to a position; False if it cannot be reached, which ends the goal."""
 
     def rests(self, now: float) -> None:
-        """It is led nowhere."""
+        """Called while there is no goal."""
 
     def end(self, id: str, ride: Ride, *, arrived: bool) -> GoalResult:
         """The end of a goal by itself."""
@@ -69,11 +69,11 @@ class Body(Protocol):
         """The end of a goal that goes wrong half way."""
 
     def measured(self, stamp: tuple[int, int], position: Position) -> list[Measurement]:
-        """What its sensors say."""
+        """The measurements of its sensors."""
 
 
 class VirtualServer:
-    """One action and its body; `faults` is looked at whenever it matters. Times are in s of any clock."""
+    """Virtual server of one action; `faults` are looked up when they matter. Times in s of any clock."""
 
     def __init__(self, body: Body, faults: Collection[str] = (), *, measure_s: float = MEASURE_S) -> None:
         self.body, self.faults = body, faults
@@ -82,12 +82,12 @@ class VirtualServer:
         self._ride: Ride | None = None
         self._late: list[tuple[float, Message]] = []
         self._measure_at = -math.inf
-        self._said: tuple[tuple[int, int], Position] | None = None  # what was measured last
+        self._said: tuple[tuple[int, int], Position] | None = None  # the last measurement
         self._off = False
 
     @property
     def is_off(self) -> bool:
-        """Whether there is no server now."""
+        """True while there is no server."""
         return "vanish" in self.faults
 
     @property
@@ -101,7 +101,7 @@ class VirtualServer:
         return min([self._measure_at, *ahead, *(at for at, _ in self._late)])
 
     def step(self, now: float, events: Sequence[GoalRequest | CancelRequest]) -> list[Message]:
-        """Let time pass, take what clients ask, and say what there is to say."""
+        """Let time pass, take requests, and return messages."""
         if self.is_off or self._off:
             self._boot()
             self._off = self.is_off
@@ -139,7 +139,7 @@ class VirtualServer:
         return out + self._over(now, self.body.end(self._goal or "", ride, arrived=arrived))
 
     def _befall(self) -> list[Message]:
-        """What happens to it half way."""
+        """Let the present fault strike the goal half way."""
         if "stall" in self.faults:
             self._ride = None
         elif "abort" in self.faults:
@@ -155,7 +155,7 @@ class VirtualServer:
 
     def _over(self, now: float, end: GoalResult) -> list[Message]:
         if self._goal is None or "no_result" in self.faults:
-            return []  # it is gone on with though it ended, or nobody hears of its end
+            return []  # it goes on although it ended, or its end is not reported
         self._goal = None
         if "late_result" in self.faults:
             self._late.append((now + LATE_RESULT_S, end))

@@ -1,4 +1,4 @@
-"""A way in time: from rest to rest between its points, each by a polynomial of degree five."""
+"""Ride in time: from rest to rest between its points, each by a polynomial of degree five."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ Position = tuple[float, ...]
 
 @dataclass(frozen=True, kw_only=True)
 class Ride:
-    """Times in s of any clock; `points` are when it is where, the first of them its start."""
+    """Ride; `points` are times (s of any clock) and positions, the first of them its start."""
 
     points: tuple[tuple[float, Position], ...]
 
@@ -34,14 +34,14 @@ class Ride:
         return before[1]
 
     def cut(self, share: float) -> Ride:
-        """The same way, which ends at that share of its last leg."""
+        """The same ride, which ends at that share of its last leg."""
         *before, (ends_at, goal) = self.points
         start = before[-1][1]
         end = tuple(a + (b - a) * share for a, b in zip(start, goal, strict=True))
         return Ride(points=(*before, (ends_at, end)))
 
     def passed(self, now: float) -> int:
-        """How many of its points, after its start, it has come by."""
+        """The number of points after the start that the ride has passed."""
         return sum(at <= now for at, _ in self.points[1:])
 
 

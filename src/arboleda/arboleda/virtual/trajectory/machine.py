@@ -1,4 +1,4 @@
-"""An arm that a joint trajectory controller moves: whatever points a trajectory has, in their times."""
+"""Arm behind a joint trajectory controller; it takes any number of points with their times."""
 
 from __future__ import annotations
 
@@ -24,14 +24,14 @@ FAULTS = {
 
 @dataclass(frozen=True, kw_only=True)
 class Points:
-    """A trajectory: at which time from its start, s, which joints are where."""
+    """Trajectory: positions of joints, each with its time from the start, s."""
 
     joints: tuple[str, ...]
     points: tuple[tuple[float, Position], ...]
 
 
 class ArmBody:
-    """It follows its points, each from rest to rest."""
+    """Body of an arm that follows its points, each from rest to rest."""
 
     preempted = Status.CANCELED
 
@@ -57,7 +57,7 @@ class ArmBody:
         return True
 
     def rests(self, now: float) -> None:
-        """It holds its position."""
+        """Without a goal it holds its position."""
 
     def end(self, id: str, ride: Ride, *, arrived: bool) -> GoalResult:
         return GoalResult(id=id, status=Status.SUCCEEDED)

@@ -1,4 +1,4 @@
-"""A virtual vehicle at an MQTT broker: its own, or one that is there."""
+"""Virtual vehicle at an MQTT broker: its own one, or an existing one."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ CONNECT_S = 5.0
 
 
 class Server:
-    """One vehicle from `start` to `stop`; without a `broker` it brings one on host and port."""
+    """Vehicle that runs from `start` to `stop`; without a `broker` it starts one on host and port."""
 
     def __init__(
         self,
@@ -94,7 +94,7 @@ class Server:
             self._headers = self._new_headers() if message.anew else self._headers
             self._connect()
         elif isinstance(message, ConnectionCut) and self._client is not None:
-            self._publish(self._broken())  # what the broker says in its place
+            self._publish(self._broken())  # its last will, which the broker sends
             self._client.close()
             self._client = None
 

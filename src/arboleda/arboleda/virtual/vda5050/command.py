@@ -12,7 +12,7 @@ from .faults import FAULTS
 
 
 class Version(str, Enum):
-    """What it speaks."""
+    """Version of VDA 5050 that the vehicle speaks."""
 
     V2_0 = "2.0"
     V2_1 = "2.1"

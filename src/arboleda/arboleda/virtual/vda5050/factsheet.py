@@ -1,4 +1,4 @@
-"""What a virtual vehicle says of itself, as each version of VDA 5050 has it."""
+"""Factsheet of a virtual vehicle, in the form of each version of VDA 5050."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ ACTIONS: dict[str, tuple[str, ...]] = {
     "stateRequest": (INSTANT,),
     "factsheetRequest": (INSTANT,),
 }
-VALUES = {"pick": "height"}  # which can be left out
+VALUES = {"pick": "height"}  # parameters that are optional
 
 
 def factsheet_of(version: str) -> dict[str, Any]:

@@ -1,4 +1,4 @@
-"""What can go wrong with a virtual vehicle, in a sentence each."""
+"""Faults of a virtual vehicle, with a sentence on each."""
 
 from __future__ import annotations
 

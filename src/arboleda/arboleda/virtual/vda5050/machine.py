@@ -1,4 +1,4 @@
-"""A virtual vehicle of VDA 5050: what it is told, how it drives, what it says. It has no clock of its own."""
+"""Virtual vehicle of VDA 5050: its orders, driving, and messages. It has no clock of its own."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from .words import state_of
 
 TICK_S = 0.05
 LATE_S = 1.0
-EDGE_S = 1.0  # where the order does not say how long an edge is
+EDGE_S = 1.0  # time for an edge whose length the order omits
 ACTION_S = 1.0
 INSTANT_ONLY = ("cancelOrder", "startPause", "stopPause", "stateRequest", "factsheetRequest")
 OVER = ("FINISHED", "FAILED")
@@ -22,7 +22,7 @@ OVER = ("FINISHED", "FAILED")
 
 @dataclass(frozen=True, kw_only=True)
 class VehicleMessage:
-    """A message for the vehicle; `said` is None where it does not fit the schema of its topic."""
+    """Event: a message for the vehicle; `said` is None if it does not fit the schema of its topic."""
 
     topic: str
     said: Said | None
@@ -30,7 +30,7 @@ class VehicleMessage:
 
 @dataclass(frozen=True, kw_only=True)
 class OutgoingMessage:
-    """A message of the vehicle, without its header."""
+    """Message of the vehicle, without its header."""
 
     topic: str
     body: Mapping[str, Any]
@@ -41,14 +41,14 @@ class OutgoingMessage:
 
 @dataclass(frozen=True, kw_only=True)
 class Connect:
-    """Be at the broker; `anew`: after a boot, so that headers begin anew."""
+    """Message: connect to the broker; `anew`: after a boot, so that headers begin anew."""
 
     anew: bool
 
 
 @dataclass(frozen=True, kw_only=True)
 class ConnectionCut:
-    """Be cut off from the broker."""
+    """Message: lose the connection to the broker."""
 
 
 Message = OutgoingMessage | Connect | ConnectionCut
@@ -56,7 +56,7 @@ Message = OutgoingMessage | Connect | ConnectionCut
 
 @dataclass(kw_only=True)
 class RunningAction:
-    """An action and how far it is."""
+    """Action and its progress."""
 
     id: str
     type: str
@@ -69,7 +69,7 @@ class RunningAction:
 
 
 class VirtualAgv:
-    """It stands at `node` at first, paused by nobody, with nothing on it; `speed` in m/s."""
+    """Virtual vehicle, at `node` first, not paused, without a load; `speed` in m/s."""
 
     def __init__(
         self,
@@ -100,7 +100,7 @@ class VirtualAgv:
         self.next_deadline = 0.0
 
     def step(self, now: float, events: Sequence[VehicleMessage]) -> list[Message]:
-        """Drive on until now, take what is told, and say what there is to say."""
+        """Drive on until now, take messages, and return others."""
         passed_s = 0.0 if self._now is None else now - self._now
         self._now = now
         messages = self._join()
@@ -204,7 +204,7 @@ class VirtualAgv:
             )
 
     def _cancel(self, doing: RunningAction) -> None:
-        """It stands at once, between two nodes if need be: as line guided vehicles may not, but others do."""
+        """Cancel the order at once, between two nodes if need be: line-guided vehicles may not, others do."""
         if not self.course.steps:
             doing.status = "FAILED"
             self._complain("noOrderToCancel", {"actionId": doing.id})
@@ -282,7 +282,7 @@ class VirtualAgv:
         self._arrive()
 
     def _arrive(self) -> None:
-        """The next step is a node, and the vehicle stands on it."""
+        """Reach the next node of the order."""
         step = self.course.steps[0]
         self.node, self.sequence, self._changed = step["nodeId"], step["sequenceId"], True
         self.at = _position(step) or self.at
@@ -293,7 +293,7 @@ class VirtualAgv:
         self._leave_if_done()
 
     def _leave_if_done(self) -> None:
-        """An order is over where its last node is reached and its actions have ended."""
+        """End the order if its last node is reached and its actions have ended."""
         steps = self.course.steps
         ended = all(
             self.actions[each["actionId"]].status in OVER for step in steps for each in step["actions"]

@@ -1,4 +1,4 @@
-"""The order that a virtual vehicle is at: its steps, and which updates fit it."""
+"""Order that a virtual vehicle carries out: its steps, and the updates that fit it."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ NO_ROUTE, ORDER, UPDATE = "noRouteError", "orderError", "orderUpdateError"
 
 @dataclass(kw_only=True)
 class Course:
-    """What is before the vehicle, nodes and edges by their sequence ids; the first is the next."""
+    """Nodes and edges still before the vehicle, by their sequence ids; the first is the next."""
 
     id: str = ""
     update: int = 0
@@ -27,7 +27,7 @@ class Course:
         return [step for step in self.steps if "edgeId" in step]
 
     def objection(self, said: Said, node: str) -> str | None:
-        """Why an order cannot be taken by a vehicle at that node; None where it can."""
+        """The reason why a vehicle at that node cannot take an order; None if it can."""
         if [step["sequenceId"] for step in _steps(said)] != list(_numbers(said)):
             return ORDER
         if said["orderId"] == self.id and self.id:

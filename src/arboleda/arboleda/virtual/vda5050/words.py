@@ -1,4 +1,4 @@
-"""The state of a virtual vehicle, as each version of VDA 5050 has it."""
+"""State of a virtual vehicle, in the form of each version of VDA 5050."""
 
 from __future__ import annotations
 
