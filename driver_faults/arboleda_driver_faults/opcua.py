@@ -81,7 +81,7 @@ class Variables:
         return self._program.call(call.method.removeprefix("ns=2;s="), [value for _, value in call.given])
 
     def _answer(self) -> None:
-        """Answer the calls that wait at the server, before any new one; raises Broken while it is mute."""
+        """Answer the calls that wait, before any new one; raises LineBroken while the server is mute."""
         if self._program.is_mute():
             raise LineBroken("the server does not answer")
         while self._late:

@@ -24,7 +24,7 @@ class LineBroken(Exception):
 
 
 class Wire(Protocol):
-    """Protocol between driver's machine and PLC; raises Broken or Unreadable where the link would end."""
+    """Protocol between driver and PLC; raises LineBroken or UnreadableValue where the link would end."""
 
     def begin(self) -> None:
         """Connect."""

@@ -79,7 +79,7 @@ class ActionClientDriver:
         raise NotImplementedError
 
     def end(self, result: Any) -> dict[str, Any]:
-        """The fields of Ended that the action's result gives."""
+        """The fields of GoalResult that the action's result gives."""
         raise NotImplementedError
 
     # What all of them do.

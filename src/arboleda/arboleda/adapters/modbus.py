@@ -273,7 +273,7 @@ def _client(settings: Settings) -> ModbusBaseSyncClient:
 
 
 def _check(answer: Any, what: str, code: int) -> None:
-    """Raises Refused for an exception code, ConnectionError for an answer to another request than `code`.
+    """Raises RequestRefused for an exception code, ConnectionError for the answer to another request.
 
     pymodbus takes such an answer as well.
     """

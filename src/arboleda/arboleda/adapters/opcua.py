@@ -243,7 +243,7 @@ class Changes:
 
 
 def values(nodes: Sequence[str], answers: Sequence[DataValue]) -> Read:
-    """The values that a server answered, by node; raises Unreadable if one of them is not good."""
+    """The values that a server answered, by node; raises UnreadableValue if one of them is not good."""
     if len(answers) != len(nodes):
         raise UnreadableValue(f"the server has answered with {len(answers)} values, not {len(nodes)}")
     read: dict[str, object] = {}

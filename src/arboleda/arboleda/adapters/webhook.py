@@ -68,7 +68,7 @@ class Webhook:
         return str(self._hook)
 
     def post(self, what: dict[str, Any]) -> None:
-        """Return once the message is accepted (2xx); raises Refused or NotTaken, with the reason."""
+        """Return once it is accepted (2xx); raises DeliveryRefused or NotDelivered, with the reason."""
         import httpx
 
         try:

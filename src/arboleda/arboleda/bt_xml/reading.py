@@ -21,7 +21,7 @@ ROOT, TREE, MODELS, INCLUDE = "root", "BehaviorTree", "TreeNodesModel", "include
 TAGS = {each.value: each for each in Category}
 FORMATS = ("3", "4")
 Fetch = Callable[[str, str, str], tuple[str, bytes]]
-"""Reads the file of an `include`: its name and its content; raises NotHere or ConfigError.
+"""Reads the file of an `include`: its name and its content; raises MissingInclude or ConfigError.
 
 The arguments are the name of the including file, the path, and the ROS package of the path ("" for none).
 """

@@ -18,7 +18,7 @@ class OutputLost(BaseException):
 
 
 class LineWriter:
-    """Teller: prints each line with `printed`, and writes it to `file`; Unheard if that fails."""
+    """LineWriter: prints each line with `printed`, and writes it to `file`; OutputLost if that fails."""
 
     def __init__(self, *, printed: bool, file: RawIOBase | None) -> None:
         self._printed = printed

@@ -42,7 +42,7 @@ class Plants(Protocol):
 
 @dataclass(frozen=True, kw_only=True)
 class PlantRotation:
-    """InTurn: some plants, seed n on number n modulo their count."""
+    """PlantRotation: some plants, seed n on number n modulo their count."""
 
     plants: tuple[Plant, ...]
 

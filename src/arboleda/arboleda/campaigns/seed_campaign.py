@@ -25,7 +25,7 @@ HELD, BROKEN, INTERRUPTED = 0, 1, 130  # exit statuses
 
 
 class SeedCampaign:
-    """Many: a campaign in a terminal; `file` gets its result."""
+    """SeedCampaign: a campaign in a terminal; `file` gets its result."""
 
     def __init__(self, request: Request, console: Console, file: Path | None) -> None:
         self._request = request

@@ -91,7 +91,7 @@ class PlantClient:
         """The events of `GET /api/events` as they happen: the kind and the row of each, `snapshot` first.
 
         A reader that was too slow gets a new snapshot; so does that of a plant with a database, once the next
-        leader is there within NEXT_S. Gone if the plant has ended.
+        leader is there within NEXT_S. PlantGone if the plant has ended.
         """
         epoch, cut_at = None, None
         while True:
@@ -221,7 +221,7 @@ class PlantClient:
 
     def _instead(self, line: Line, silent: PlantSilent, *, repeatable: bool) -> Line | None:
         """The line to another process that leads the plant, after one on this host was silent. None if there
-        is none; Silent if that one must not be asked as well."""
+        is none; PlantSilent if that one must not be asked as well."""
         led, running = None, find_running(self._state)
         if not isinstance(line, FarLine):
             with suppress(ArboledaError):  # then the silence of the one here is reported

@@ -69,7 +69,7 @@ class Line:
     def ask(
         self, method: str, path: str, body: dict[str, Any] | None = None, *, within_s: float = TIMEOUT_S
     ) -> Answer:
-        """The answer of the plant, refusals too; Silent if there is none."""
+        """The answer of the plant, refusals too; PlantSilent if there is none."""
         import httpx
 
         try:
@@ -87,7 +87,7 @@ class Line:
         raise self._refusal(answer)
 
     def events(self) -> Iterator[tuple[str, dict[str, Any]]]:
-        """The events of `GET /api/events` up to its end; Silent, or ArboledaError with its refusal."""
+        """The events of `GET /api/events` up to its end; PlantSilent, or ArboledaError with its refusal."""
         import httpx
 
         kind = ""

@@ -27,7 +27,7 @@ class NoLeader(ArboledaError):
 
 
 class RemotePlant:
-    """Elsewhere: finds the process that leads the plant of the state directory `state`. `kept_in()` is the
+    """RemotePlant: finds the process that leads the plant of the state directory `state`. `kept_in()` is the
     database of its memory, "" for a file, and its name; `known()` are tokens by address or by plant. Both are
     called only when needed, so that an error in them keeps nobody from the plant that runs here."""
 
@@ -48,7 +48,7 @@ class RemotePlant:
         return self._kept_in()
 
     def led(self) -> LeaderInfo | None:
-        """The leader of the plant as its database says it; None if its memory is a file. Raises Nobody if
+        """The leader of the plant as its database says it; None if its memory is a file. Raises NoLeader if
         nobody leads, ArboledaError if the database does not answer."""
         store, plant = self._memory
         if not store:

@@ -8,7 +8,7 @@ MOST = 40  # a browser opens its page within a second or two
 
 
 class PageBudget:
-    """Unopened: forgets the oldest page if too many wait. NiceGUI would keep each for a minute."""
+    """PageBudget: forgets the oldest page if too many wait. NiceGUI would keep each for a minute."""
 
     def __init__(self, most: int = MOST) -> None:
         self._most = most

@@ -38,7 +38,7 @@ def shape(name: str, settings: type) -> type[Shape]:
 def read(document: Document, place: Place, fits: type[Shape], settings: type) -> Any:
     """The settings, with those inside them; None, with its problems kept, if they do not fit.
 
-    Unfit if a dataclass refuses the values.
+    SettingsRefused if a dataclass refuses the values.
     """
     read = document.read(fits, place)
     return None if read is None else _made(document, place, settings, dict(read))

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 
 class RecordedPast:
-    """Recorded: a record as `arboleda.dashboard.past.side.PastSide`; NoRecord if it has nothing to see."""
+    """RecordedPast: a record as PastSide; NoRecord if it has nothing to see."""
 
     def __init__(self, record: Record, model: PlantModel) -> None:
         self._model = model

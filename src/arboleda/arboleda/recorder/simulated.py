@@ -29,7 +29,7 @@ class SimulatedRecorder:
     """Makes the plants of a world (`World(make_plant=...)`), each start with a record of its own in `folder`.
 
     A start that never made a step has none. `began_ns` is what the clock on the wall says where the world's
-    time is 0. Unwritten leaves a step that cannot be written.
+    time is 0. RecordNotWritten leaves a step that cannot be written.
     """
 
     def __init__(self, folder: Path, files: PlantFiles, limits: Limits, began_ns: int = 0) -> None:

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, kw_only=True)
 class LeaderInfo:
-    """Led: the process that leads a plant, its host, the address of its page, "" if it has announced none,
+    """LeaderInfo: the process that leads a plant, its host, the address of its page ("" if there is none),
     and the number of its start."""
 
     plant: str

@@ -117,7 +117,7 @@ class Loop(Generic[Event, Message]):
     def read_handed_on(self, fn: Callable[[Any], Result], within_s: float) -> Result:
         """Read as `read`, but after a step whose messages are all sent; not in the loop's thread.
 
-        UnderWay if they are not all sent `within_s` after the step.
+        StepInFlight if they are not all sent `within_s` after the step.
         """
         with self._between_steps:
             while (since := self._handing_on_since) is not None:

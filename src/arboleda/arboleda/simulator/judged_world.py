@@ -37,7 +37,7 @@ class BrokenInvariant(Exception):
 
 
 class JudgedWorld:
-    """A world in which every step is judged: raises Broken in the step that breaks an invariant.
+    """A world in which every step is judged: raises BrokenInvariant in the step that breaks an invariant.
 
     `faults` are those that have begun; their times are in s since `start`. `standby`: a second host waits to
     lead.

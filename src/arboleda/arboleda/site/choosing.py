@@ -48,7 +48,7 @@ def names_plants(text: str) -> bool:
 
 
 async def chosen(text: str, plants: Mapping[str, Reach]) -> Choice:
-    """Ask all plants that a text names; Refused where one of them refuses it, or none answers.
+    """Ask all plants that a text names; TaskRefused where one of them refuses it, or none answers.
 
     With an id each of them has to answer: one that does not may have that task already.
     """

@@ -32,7 +32,7 @@ class PlantRefusal(ArboledaError):
 
 
 class Reach:
-    """Reach: one address; Silent if it gives no answer, Said if it refuses."""
+    """Reach: one address; PlantSilent if it gives no answer, PlantRefusal if it refuses."""
 
     def __init__(self, place: Place) -> None:
         self.place = place

@@ -39,7 +39,7 @@ NOT_STOPPED_THAT = Phrase("site.not_stopped_that", "{plant} ({why})")
 
 
 class WatchedPlant:
-    """Watched: one address, and its last answers."""
+    """WatchedPlant: one address, and its last answers."""
 
     def __init__(self, place: Place) -> None:
         self.reach = Reach(place)

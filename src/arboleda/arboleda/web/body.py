@@ -12,7 +12,7 @@ from .request_head import RequestHead
 
 
 async def whole_body(asked: RequestHead, receive: Receive) -> Receive:
-    """A `receive` that hands out the body; Turned where it is too long or slow, Gone where it breaks off."""
+    """A `receive` with the whole body; HttpError if it is too long or slow, ClientGone if it ends early."""
     most = limits.PAGE_BODY_BYTES if asked.for_page else limits.API_BODY_BYTES
     try:
         body = await asyncio.wait_for(_read(receive, most), limits.BODY_S)

@@ -117,7 +117,7 @@ class Guard:
             )
 
     def _login(self, asked: RequestHead, peer: str) -> Login | None:
-        """The login of a request, None if it has none; raises Turned for a wrong token."""
+        """The login of a request, None if it has none; raises HttpError for a wrong token."""
         if self._door.open:
             return LOCAL
         if asked.bearer is not None:

@@ -34,7 +34,7 @@ class Sockets:
         self._open = 0
 
     async def run(self, scope: Scope, receive: Receive, send: Send, login: Login) -> None:
-        """Run one websocket until its end; raises Turned if too many are open."""
+        """Run one websocket until its end; raises HttpError if too many are open."""
         if self._open >= self._most:
             many = f"No more than {self._most} may be open at a time; close a page."
             raise HttpError(503, many, retry_after=limits.LATER_S)

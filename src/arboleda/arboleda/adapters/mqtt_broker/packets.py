@@ -178,7 +178,7 @@ class Fields:
 
 
 def read_connect(body: bytes) -> Connect:
-    """Parses the body of CONNECT (3.1); raises Refused for another version of MQTT."""
+    """Parses the body of CONNECT (3.1); raises ConnectRefused for another version of MQTT."""
     fields = Fields(body)
     name, level = fields.text(), fields.byte()
     if (name, level) != ("MQTT", LEVEL):

@@ -49,7 +49,7 @@ class Sessions:
 
     def log_in(self, client: Connection, said: Connect, shown: str = "") -> ClientIdentity:
         """Let it in, by what it says and the name that its certificate has (`shown`), in the place of an
-        earlier connection of its user with its client id; Refused."""
+        earlier connection of its user with its client id; ConnectRefused."""
         who = self.access.login(said.user, said.password, shown)
         if who is None or (said.will is not None and not self.access.may_write(who, said.will.topic)):
             raise ConnectRefused(Answer.NOT_AUTHORIZED)
@@ -86,8 +86,8 @@ class Sessions:
     def _make_room(self, who: ClientIdentity) -> None:
         """Make room for a user, if need be by cutting off an idle connection.
 
-        Raises Refused if this user, or all together, have as many as they may and none is idle. For the plant
-        itself another one is cut off, idle or not.
+        Raises ConnectRefused if this user, or all together, have as many as they may and none is idle. For
+        the plant itself another one is cut off, idle or not.
         """
         allowed = ALLOWED.get(who.role)
         others = [client for client in self._clients.values() if client.who and client.who.role in ALLOWED]
@@ -99,7 +99,7 @@ class Sessions:
 
 
 def _cut_oldest(clients: list[Connection], *, or_any: bool) -> None:
-    """Cut off the oldest idle connection, else the oldest if `or_any`; raises Refused if there is none."""
+    """Cut off the oldest idle connection, else the oldest if `or_any`; ConnectRefused if there is none."""
     idle = [client for client in clients if client.idle]
     leaving = idle or (clients if or_any else [])
     if leaving:

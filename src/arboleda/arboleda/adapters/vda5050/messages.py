@@ -29,13 +29,13 @@ class SchemaMismatch(ArboledaError):
 
 
 def to_bytes(version: str, topic: str, message: Mapping[str, Any]) -> bytes:
-    """A message as bytes to send; raises Unfit if the standard does not allow it."""
+    """A message as bytes to send; raises SchemaMismatch if the standard does not allow it."""
     _check(version, topic, message)
     return json.dumps(message, separators=(",", ":")).encode()
 
 
 def from_bytes(version: str, topic: str, payload: bytes) -> dict[str, Any]:
-    """A received message; raises Unfit for anything that the standard does not allow."""
+    """A received message; raises SchemaMismatch for anything that the standard does not allow."""
     if len(payload) > LARGEST:
         raise SchemaMismatch(f"it has {len(payload)} bytes")
     try:

@@ -22,7 +22,7 @@ WAITED = (
 
 
 def demand(truth: bool, sentence: str) -> None:
-    """Wrong with this sentence, unless it is true."""
+    """Raise CheckFailed with this sentence, unless it is true."""
     if not truth:
         raise CheckFailed(sentence)
 

@@ -12,7 +12,7 @@ Made = TypeVar("Made")
 
 
 class FrameQueue:
-    """Turns: runs one function at a time in a thread, for all pages, with `pause_s` after each."""
+    """FrameQueue: runs one function at a time in a thread, for all pages, with `pause_s` after each."""
 
     def __init__(self, pause_s: float = 0.0) -> None:
         self._pause_s = pause_s

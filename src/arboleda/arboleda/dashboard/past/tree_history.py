@@ -50,7 +50,7 @@ class TreeState:
 
 
 class TreeHistory:
-    """TreesThen: follows all that a task did up to a moment, as the state of each node depends on it.
+    """TreeHistory: follows all that a task did up to a moment, as the state of each node depends on it.
 
     `follow(cell, after_ns, until_ns)` has each change of a cell in that time; `events` are the time line.
     """

@@ -65,7 +65,7 @@ class ReplyReader:
         self._rest = ""
 
     def feed(self, data: bytes) -> list[Reply]:
-        """The replies that are complete now; raises Nonsense for one that cannot be read."""
+        """The replies that are complete now; raises NotAReply for one that cannot be read."""
         text = self._rest + data.decode("ascii", "replace")
         while OTHER_MODE in text:
             before, _, text = text.partition(OTHER_MODE)

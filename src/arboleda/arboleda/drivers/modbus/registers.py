@@ -94,7 +94,7 @@ class Register:
         return value  # type: ignore[no-any-return]
 
     def read(self, raw: Sequence[int], of: ValueType) -> Value:
-        """The value read there, as that type; raises Unreadable if it is none."""
+        """The value read there, as that type; raises UnreadableValue if it is none."""
         number = self.number(raw)
         if self.words:
             return self._word(number)

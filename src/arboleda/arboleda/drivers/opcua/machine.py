@@ -77,7 +77,7 @@ class OpcUaDevice:
         return Call(method=made.method, on=made.on, given=(*made.given, (sequence.type, given)))
 
     def report(self, at: float, read: Read) -> Report:
-        """The report that the values read make; raises Unreadable if the mapping has no meaning for one."""
+        """The report of the values read; raises UnreadableValue if the mapping has no meaning for one."""
         settings, kinds = self._settings, self._device.kind.facts
         if settings.alive is not None:
             self._alive.see(at, settings.alive, number(settings.alive, read[settings.alive]))

@@ -65,7 +65,7 @@ class Variable:
         check_words(self.words)
 
     def word(self, shown: object) -> object:
-        """The word for the value read, if this variable has words; Unreadable for a number without one."""
+        """The word for the value read, if there are words; UnreadableValue for a number without one."""
         if not self.words:
             return shown
         found = next((word for word, held in self.words.items() if is_whole(shown) and held == shown), None)
@@ -75,7 +75,7 @@ class Variable:
         return found
 
     def read(self, shown: object, of: FactType) -> Value:
-        """The value read, as that type; raises Unreadable if it is none."""
+        """The value read, as that type; raises UnreadableValue if it is none."""
         word = self.word(shown)
         finite = not isinstance(word, float) or math.isfinite(word)
         found = of.read(word) if finite else None
@@ -143,7 +143,7 @@ def is_whole(value: object) -> bool:
 
 
 def number(node: str, shown: object) -> int:
-    """The whole number of 0 or more that a node shows; raises Unreadable for anything else."""
+    """The whole number of 0 or more that a node shows; raises UnreadableValue for anything else."""
     if not isinstance(shown, int) or isinstance(shown, bool) or shown < 0:
         raise UnreadableValue(f"{node} is {quoted(shown)}; allowed: a whole number from 0")
     return shown

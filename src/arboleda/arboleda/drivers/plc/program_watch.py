@@ -17,7 +17,7 @@ class ProgramWatch:
         self._changed = None
 
     def see(self, at: float, place: str, number: int | float) -> None:
-        """Note the number; raises Unreadable if it has not changed for too long."""
+        """Note the number; raises UnreadableValue if it has not changed for too long."""
         if self._changed is None or self._changed[0] != number:
             self._changed = (number, at)
         elif at - self._changed[1] > self._patience_s:

@@ -134,7 +134,7 @@ class OnTopic:
         return f"the MQTT topic {self._topic}"
 
     def post(self, what: dict[str, Any]) -> None:
-        """Return once the broker has it; else raise NotTaken."""
+        """Return once the broker has it; else raise NotDelivered."""
         if self._client is None:  # its address is known once the broker has started
             self._client = MqttClient(
                 f"arboleda_alarms_{uuid4().hex[:8]}",

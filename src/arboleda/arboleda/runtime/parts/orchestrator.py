@@ -293,7 +293,7 @@ class Orchestrator:
         return slices.result
 
     def _read(self, fn: Callable[[Plant], Any], within_s: float) -> Any:
-        """`fn(plant)` once all of the plant is kept; UnderWay if it is not in time, or cannot be any more."""
+        """`fn(plant)` once all of the plant is kept; StepInFlight if it is not in time, or never will be."""
 
         def look(plant: Plant) -> Any:
             if self._amnesia is not None:
@@ -304,7 +304,7 @@ class Orchestrator:
 
     @property
     def _last_kept(self) -> dict[str, Any]:
-        """The last snapshot that screens got; NotKept if there is none."""
+        """The last snapshot that screens got; KeptStateUnknown if there is none."""
         if not self._kept:
             raise KeptStateUnknown
         return self._kept if self._amnesia is None else {**self._kept, "ending": True}
@@ -319,7 +319,7 @@ class Orchestrator:
         return {"now": clock.seconds(), **self.loop.read(twin_view.positions)}
 
     def find(self, task: str) -> dict[str, Any] | None:
-        """A task as it is kept; NotKept if that is unknown now."""
+        """A task as it is kept; KeptStateUnknown if that is unknown now."""
         try:
             found: dict[str, Any] | None = self._read(lambda plant: view.task_by_id(plant, task), READ_S)
         except StepInFlight:
@@ -428,7 +428,7 @@ class Orchestrator:
         return replace(answer, refusal=answer.refusal or as_sentence(why))
 
     def _refuse_late(self, message: Command | Notice) -> None:
-        """Raise TooLate if a process was stopped in the middle of a step: its commands may now be wrong."""
+        """Raise CommandTooLate if the process was stopped within a step: its commands may now be wrong."""
         now = clock.seconds()
         if is_too_late(message, self.plant, now):
             raise CommandTooLate(SENT_TOO_LATE(seconds=now - self.plant.now))

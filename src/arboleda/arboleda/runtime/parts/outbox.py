@@ -21,7 +21,7 @@ class Receiver(Protocol):
     """The receiver of alarms; `str()` names it, with nothing secret."""
 
     def post(self, what: Alarm) -> None:
-        """Return once it is taken; NotTaken to be asked again, Refused for one that it never takes."""
+        """Return once it is taken; NotDelivered to be asked again, DeliveryRefused for good."""
 
     def close(self) -> None: ...
 

@@ -76,7 +76,7 @@ class Stops:
             self.loop.post(Closed(token=answer.request or ""))
 
     def refuse_overtaken(self, message: Command | Notice) -> None:
-        """Raise Overtaken for a command that must not leave any more."""
+        """Raise CommandOvertaken for a command that must not leave any more."""
         if self._overtake(message):
             raise CommandOvertaken(message)
 

@@ -110,7 +110,7 @@ class SharedDisk(Disk):
         return self.take(self.writer, message, now)
 
     def take(self, writer: Process, message: Notice, now: float) -> float:
-        """Take one statement of a process; return its seconds. Raises Refused, or Away without an answer."""
+        """Take one statement of a process; return its seconds. Raises StoreRefused or StoreUnreachable."""
         took = 0.0
         if writer.host.reaches:
             took += self._fenced(writer.epoch, message, now)

@@ -89,7 +89,7 @@ def invariant(when: Trigger) -> Callable[[Rule], Invariant]:
 
 
 class Judges:
-    """Invariants in a row for each When; `looks` counts how often each of them looked."""
+    """Invariants in a row for each Trigger; `looks` counts how often each of them looked."""
 
     def __init__(self, invariants: Iterable[Invariant]) -> None:
         self._benches = {when: _Bench() for when in Trigger}

@@ -372,7 +372,7 @@ class VirtualDobot:
         return 1 << (int(index) - 1)
 
     def _check(self, *, power: bool = False, moves: bool = False) -> None:
-        """Raises Refused if a command is impossible in this state."""
+        """Raises ErrorReply if a command is impossible in this state."""
         if "stop_button" in self.faults:
             raise ErrorReply(-3)
         if self._alarms or self._collided:
