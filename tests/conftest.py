@@ -9,6 +9,7 @@ import os
 import shutil
 import signal
 import socket
+import subprocess
 import threading
 from collections.abc import Callable, Iterator
 from contextlib import suppress
@@ -19,8 +20,10 @@ from uuid import uuid4
 import pytest
 from hypothesis import HealthCheck, settings
 
+from arboleda.app import recipe_trial
 from arboleda.testing.domains import Domain
 
+from . import forked
 from .dealing import dealt
 from .postgres import PASSWORD, Server
 
@@ -142,6 +145,13 @@ def no_network(request: pytest.FixtureRequest) -> Iterator[None]:
         yield
         return
     with mock.patch.object(socket, "socket", LocalSocket):
+        yield
+
+
+@pytest.fixture(autouse=True)
+def quick_trials(request: pytest.FixtureRequest) -> Iterator[None]:
+    """Files of Python that a plant uses are tried in forks, where time is moved by hand."""
+    with mock.patch.object(recipe_trial, "subprocess", forked if by_hand(request.node) else subprocess):
         yield
 
 

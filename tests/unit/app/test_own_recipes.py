@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import subprocess
 import sys
 from pathlib import Path
 
@@ -291,6 +292,7 @@ def test_a_file_that_never_ends_is_a_problem_like_others(
 ) -> None:
     monkeypatch.setattr(recipe_trial, "LONGEST_S", 0.5)
     if not told:
+        monkeypatch.setattr(recipe_trial, "subprocess", subprocess)
         document = PLANT.encode()
         write(tmp_path, recipes)
         assert recipe_trial.verdict("plant.yaml", tmp_path, document).offers == {"bench": ["heat"]}
