@@ -12,10 +12,12 @@ import pytest
 from arboleda.drivers.nav2 import pose
 from arboleda.drivers.ros_action import joints
 
+from ..lengths import length
+
 pytestmark = pytest.mark.requires("rclpy")
 
 SCRIPT = Path(__file__).parents[2] / "scripts" / "fuzz-actions"
-RUNS = 400
+RUNS = length(150, whole=400)
 
 
 @pytest.fixture(scope="module")

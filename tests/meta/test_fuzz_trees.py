@@ -11,8 +11,10 @@ import pytest
 
 from arboleda.bt_xml import script
 
+from ..lengths import length
+
 SCRIPT = Path(__file__).parents[2] / "scripts" / "fuzz-trees"
-RUNS = 1500
+RUNS = length(500, whole=1500)
 
 
 @pytest.fixture

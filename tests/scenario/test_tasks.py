@@ -8,12 +8,14 @@ from arboleda.model.messages import TaskState
 from arboleda.model.plant_model import Evidence
 from arboleda.testing import Rig, shipped
 
+from ..lengths import sample
+
 
 @pytest.mark.parametrize("cell", ["sis_a", "sis_b", "sis_c"])
-def test_each_of_the_81_tasks_of_a_cell_is_done(cell: str) -> None:
+def test_each_task_of_a_cell_is_done(cell: str) -> None:
     rig = Rig(shipped())
     where = rig.model.cell(cell)
-    texts = [f"{cell} {path.code} {station}" for path in where.paths for station in range(9)]
+    texts = [f"{cell} {path.code} {station}" for path in where.paths for station in sample(range(9), every=4)]
     for text in texts:
         assert rig.submit(text).state in (TaskState.QUEUED, TaskState.RUNNING)
     rig.wait(81 * 60, until=lambda: rig.plant.at_rest and not rig.plant.cells[cell].queue)

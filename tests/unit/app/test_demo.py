@@ -54,10 +54,10 @@ def show() -> Show:
 
 
 def test_every_cell_gets_task_after_task(show: Show) -> None:
-    show.play(300, visited=True)
+    show.play(120, visited=True)
     given = Counter(task.text.split()[0] for task in show.tasks)
     assert set(given) == {"sis_a", "sis_b", "sis_c"}
-    assert min(given.values()) > 10
+    assert min(given.values()) > 3
     assert {task.state for task in show.tasks} <= {"done", "failed", "running", "queued"}
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import cache
+from itertools import product
 from typing import Any
 
 import pytest
@@ -19,6 +20,8 @@ from arboleda.recorder.tape import TapedPlant
 from arboleda.simulator.faults import KINDS, Fault
 from arboleda.simulator.world import World
 from arboleda.testing.plants import shipped
+
+from ...lengths import sample
 
 Act = Callable[[World], None]
 RECORDED = shipped()
@@ -89,8 +92,7 @@ def run_of(name: str) -> TapedPlant:
     return taped(RUNS[name])
 
 
-@pytest.mark.parametrize("run", RUNS)
-@pytest.mark.parametrize("at", [0.5, 3.2, 5.2, 8.0])
+@pytest.mark.parametrize(("run", "at"), sample(product(RUNS, (0.5, 3.2, 5.2, 8.0)), every=3))
 def test_a_fork_of_nothing_else_happens_as_recorded(run: str, at: float) -> None:
     found = fork(run_of(run), at)
     assert differences(found) == []

@@ -24,6 +24,7 @@ from arboleda.model.sentence import as_sentence
 from arboleda.recipes import parallel, work
 from arboleda.recipes.authoring import Kit
 
+from ...lengths import sample
 from .told import HEAD
 
 TICKS = 6
@@ -162,7 +163,7 @@ def left_alone(tree: Behaviour) -> list[Acts]:
 @pytest.mark.parametrize("kind", WITH_CHILDREN)
 def test_nothing_runs_below_what_has_ended(kind: str, cause: str) -> None:
     began = 0
-    for body in bodies(kind, cause):
+    for body in sample(bodies(kind, cause), every=3):
         tree, context = main(body)
         for number in range(TICKS):
             context.now = number * BETWEEN_S
@@ -179,7 +180,7 @@ def test_nothing_runs_below_what_has_ended(kind: str, cause: str) -> None:
 @pytest.mark.parametrize("kind", WITH_CHILDREN)
 def test_nothing_runs_once_the_whole_is_left(kind: str, cause: str) -> None:
     """As an operator's abandon leaves it, after each tick."""
-    for body in bodies(kind, cause):
+    for body in sample(bodies(kind, cause), every=5):
         for ticks in range(1, 4):
             tree, context = main(body)
             for number in range(ticks):
@@ -228,7 +229,7 @@ def test_every_frame_of_recipes_is_among_these() -> None:
 @pytest.mark.parametrize(("outer", "inner"), list(product(IN_PYTHON, repeat=2)))
 def test_nothing_runs_below_what_has_ended_in_python(outer: str, inner: str) -> None:
     began = 0
-    for ends in product(STEPS, repeat=3):
+    for ends in sample(product(STEPS, repeat=3), every=7):
         context = Context()
         kit: Any = Kit(context)  # type: ignore[arg-type]
         one, two, three = (Acts(context, ticks, end) for ticks, end in ends)

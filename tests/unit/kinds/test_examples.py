@@ -34,6 +34,7 @@ from arboleda.sim.machine import MachineBody
 from arboleda.testing.following import follow, works
 from arboleda.wire.payloads import OrderGoal
 
+from ...lengths import sample
 from .lab import Bench
 
 EXAMPLES = Path(__file__).parents[3] / "examples"
@@ -255,7 +256,7 @@ def test_a_task_ends_as_its_recipe_says_whatever_is_answered(case: Case) -> None
     assert here.holding() == []
 
 
-@pytest.mark.parametrize("case", WITH_DEVICES, ids=str)
+@pytest.mark.parametrize("case", sample(WITH_DEVICES, every=3), ids=str)
 def test_after_any_device_gave_up_the_first_advice_leads_back_to_work(case: Case) -> None:
     whole = Shop(case)
     assert whole.do() is TaskState.DONE
@@ -278,7 +279,7 @@ def test_after_any_device_gave_up_the_first_advice_leads_back_to_work(case: Case
         assert here.do() is TaskState.DONE, (name, verb, done, here.changes[-1])
 
 
-@pytest.mark.parametrize("case", PLAIN, ids=str)
+@pytest.mark.parametrize("case", sample(PLAIN, every=3), ids=str)
 def test_after_a_stop_at_any_time_the_first_advice_leads_back_to_work(case: Case) -> None:
     whole = Shop(case)
     assert whole.do() is TaskState.DONE

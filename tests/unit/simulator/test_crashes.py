@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from itertools import product
 
 import pytest
 
@@ -18,6 +19,8 @@ from arboleda.simulator.people import Customers
 from arboleda.simulator.run import Simulation
 from arboleda.simulator.world import PLANT, Fuse, Side, World
 from arboleda.testing import shipped
+
+from ...lengths import length, sample
 
 
 def dies(world: World, count: int, side: Side) -> None:
@@ -234,12 +237,11 @@ def simulated(seed: int, rates: dict[str, float], **changes: object) -> Simulati
     model = replace(model, cells=tuple(replace(cell, **changes) for cell in model.cells))  # type: ignore[arg-type]
     climate = Climate.from_file(model, seed, {"rates": rates})
     simulation = Simulation(model, seed, climate.faults)
-    simulation.run(cycles=6)
+    simulation.run(cycles=length(3, whole=6))
     return simulation
 
 
-@pytest.mark.parametrize("kind", OF_CRASHES)
-@pytest.mark.parametrize("goes_on", [False, True])
+@pytest.mark.parametrize(("kind", "goes_on"), sample(product(OF_CRASHES, [False, True]), every=3))
 def test_everything_holds_however_it_dies(kind: str, goes_on: bool) -> None:
     found = simulated(1, {kind: 8.0}, goes_on=goes_on)
     assert found.result.broken is None

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from itertools import product
 from typing import Any
 
 import pytest
@@ -36,6 +37,8 @@ from arboleda.wire.payloads import EffectorGoal, Goal, JointsGoal, encode
 from arboleda.wire.rivals import Rivals
 from arboleda.wire.topics import Channel, topic
 from arboleda.wire.transport import Publication
+
+from ...lengths import sample
 
 INVARIANTS = (*ZONES, *MOTION, *GRIP, *STOP)
 ARM, MOBILE = "ra_1", "rm_sis_a"
@@ -128,8 +131,7 @@ FAULTS: dict[str, Callable[[Watch], None]] = {
 }
 
 
-@pytest.mark.parametrize("fault", FAULTS)
-@pytest.mark.parametrize("after_s", [0.4, 1.0, 1.3, 1.6, 2.2])
+@pytest.mark.parametrize(("fault", "after_s"), sample(product(FAULTS, (0.4, 1.0, 1.3, 1.6, 2.2)), every=4))
 def test_nothing_is_found_when_a_fault_is_handled(fault: str, after_s: float) -> None:
     watch = Watch(zoned())
     for cell in watch.world.model.cells:
