@@ -1,6 +1,6 @@
 # Everything a person types here; what each target does is in `make help`.
 .DEFAULT_GOAL := help
-.PHONY: run test integration-test test-tools judge-test ros-test campaign drawn-campaign devices-campaign crash-campaign standby-campaign kills hosts mutants cost firmware firmware-test firmware-robot fuzz install lint diagrams reference shots example-pictures moving-picture clean help docs
+.PHONY: run test pinned-test integration-test test-tools judge-test ros-test nightly campaign drawn-campaign devices-campaign crash-campaign standby-campaign kills hosts mutants cost firmware firmware-test firmware-robot fuzz install lint diagrams reference shots example-pictures moving-picture clean help docs
 
 export PYTHON
 export PYTHONDONTWRITEBYTECODE := # what a target here runs hundreds of times is compiled once
@@ -9,6 +9,9 @@ PYTEST_ARGS ?= -n auto --dist worksteal
 INTEGRATION_ARGS ?= -n 5 --dist worksteal # more than cores: most of the time, tests of the real chain wait
 TESTS ?= tests/unit tests/scenario tests/meta
 INTEGRATION_TESTS ?= tests/contract tests/system tests/tutorial
+PINNED_TESTS ?= $(addprefix tests/scenario/,test_digests.py test_found_by_simulation.py test_found_by_drawn_plants.py)
+SIMULATE = $(BIN)/arboleda simulate $(if $(JOBS),--jobs $(JOBS))
+CALM_SEEDS ?= 100
 SEEDS ?= 1000
 CYCLES ?= 36
 DRAWN_SEEDS ?= 500
@@ -30,6 +33,10 @@ test:  ## run the tests that move time by hand, and those of the repository itse
 	@scripts/install test
 	$(BIN)/python -m pytest $(TESTS) $(PYTEST_ARGS)
 
+pinned-test:  ## run what pins seeds as a whole: their digests, and what they once broke
+	@scripts/install test
+	ARBOLEDA_LENGTH=whole $(BIN)/python -m pytest $(PINNED_TESTS) $(PYTEST_ARGS)
+
 integration-test:  ## run the tests of real parts: adapters, processes, the page, the tutorial; INTEGRATION_TESTS=... for others
 	@scripts/install test
 	$(BIN)/python -m pytest $(INTEGRATION_TESTS) $(INTEGRATION_ARGS)
@@ -45,28 +52,37 @@ ros-test:  ## build and test the ROS 2 packages with colcon, in .colcon
 	@scripts/install colcon
 	@.colcon/venv/bin/python scripts/ros-test
 
-campaign: install  ## simulate 1000 seeds with every kind of fault; SEEDS=... CYCLES=... for others
-	$(BIN)/arboleda simulate --seeds 100 --cycles 20 --faults none
-	$(BIN)/arboleda simulate --seeds $(SEEDS) --cycles $(CYCLES) --json campaign.json
+nightly: install  ## the long form of what .ci/run has in short: tests as a whole, all seeds, kills, 100 mutants; hours
+	ARBOLEDA_LENGTH=whole $(MAKE) test judge-test
+	$(MAKE) campaign drawn-campaign
+	$(MAKE) devices-campaign DEVICE_SEEDS=100
+	$(MAKE) crash-campaign CRASH_SEEDS=50
+	$(MAKE) standby-campaign STANDBY_SEEDS=200
+	$(MAKE) kills
+	$(MAKE) mutants MUTANTS="--sample 100"
+
+campaign: install  ## simulate 1000 seeds with every kind of fault; SEEDS=... CYCLES=... for others, JOBS=... processes
+	$(SIMULATE) --seeds $(CALM_SEEDS) --cycles 20 --faults none
+	$(SIMULATE) --seeds $(SEEDS) --cycles $(CYCLES) --json campaign.json
 	$(BIN)/python scripts/campaign campaign.json $(SEEDS)
 
 drawn-campaign: install  ## simulate 500 plants that are drawn from seeds, with every kind of fault; DRAWN_SEEDS=... for others
-	$(BIN)/arboleda simulate --drawn-plants --seeds $(DRAWN_SEEDS) --cycles $(DRAWN_CYCLES) --json drawn.json
+	$(SIMULATE) --drawn-plants --seeds $(DRAWN_SEEDS) --cycles $(DRAWN_CYCLES) --json drawn.json
 	$(BIN)/python scripts/campaign drawn.json $(DRAWN_SEEDS)
 
 devices-campaign: install  ## simulate the examples of cells of devices with every kind of fault; DEVICE_SEEDS=... for more seeds
 	@for plant in lab_bench assembly machine_tending own_tree; do \
-		$(BIN)/arboleda simulate --plant examples/$$plant/plant.yaml --seeds $(DEVICE_SEEDS) --cycles $(DEVICE_CYCLES) || exit 1; \
+		$(SIMULATE) --plant examples/$$plant/plant.yaml --seeds $(DEVICE_SEEDS) --cycles $(DEVICE_CYCLES) || exit 1; \
 	done
 
 crash-campaign: install  ## simulate plants that die again and again, also of power cuts; CRASH_SEEDS=... for more seeds
-	$(BIN)/arboleda simulate --faults crashes --seeds $(CRASH_SEEDS) --cycles $(CRASH_CYCLES)
+	$(SIMULATE) --faults crashes --seeds $(CRASH_SEEDS) --cycles $(CRASH_CYCLES)
 	@for plant in lab_bench machine_tending own_tree; do \
-		$(BIN)/arboleda simulate --faults crashes --plant examples/$$plant/plant.yaml --seeds $(CRASH_SEEDS) --cycles $(CRASH_CYCLES) || exit 1; \
+		$(SIMULATE) --faults crashes --plant examples/$$plant/plant.yaml --seeds $(CRASH_SEEDS) --cycles $(CRASH_CYCLES) || exit 1; \
 	done
 
 standby-campaign: install  ## simulate plants on two hosts, one of which stands by; STANDBY_SEEDS=... for more seeds
-	$(BIN)/arboleda simulate --standby --seeds $(STANDBY_SEEDS) --cycles $(STANDBY_CYCLES)
+	$(SIMULATE) --standby --seeds $(STANDBY_SEEDS) --cycles $(STANDBY_CYCLES)
 
 kills: install  ## kill a plant with -9 at 1000 random instants, count what came of its tasks; an hour; KILLS="--kills 12" for others
 	PYTHONPATH=kills $(BIN)/python -m arboleda_kills $(KILLS)
