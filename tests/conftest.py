@@ -25,10 +25,14 @@ from arboleda.testing.domains import Domain
 
 from . import forked
 from .dealing import dealt
+from .lengths import length
 from .postgres import PASSWORD, Server
 
 # How fast a machine is does not decide a test.
-settings.register_profile("arboleda", deadline=None, suppress_health_check=[HealthCheck.too_slow])
+EXAMPLES = length(50, whole=300)
+settings.register_profile(
+    "arboleda", max_examples=EXAMPLES, deadline=None, suppress_health_check=[HealthCheck.too_slow]
+)
 settings.load_profile("arboleda")
 
 HERE = Path(__file__).parent
@@ -50,7 +54,7 @@ PORTS = range(20_000, 32_000)
 _ports = itertools.cycle([*PORTS[os.getpid() * 37 % len(PORTS) :], *PORTS])
 
 
-def by_hand(item: pytest.Item) -> bool:
+def by_hand(item: pytest.Item | pytest.Module) -> bool:
     """Whether the test moves time by hand: those of unit/ and scenario/."""
     parts = item.path.relative_to(HERE).parts if item.path.is_relative_to(HERE) else ()
     return parts[:1] in {("unit",), ("scenario",)}
@@ -81,6 +85,13 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
         group = waiting.setdefault(item.path, []) if item.get_closest_marker("system") else computing
         group.append(item)
     items[:] = dealt(list(waiting.values()), computing, workers)
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_collection() -> Iterator[object]:
+    """Plants that tests load as they are imported are tried in forks, too."""
+    with mock.patch.object(recipe_trial, "subprocess", forked):
+        return (yield)
 
 
 def pytest_collection_finish() -> None:
@@ -138,7 +149,7 @@ class LocalSocket(socket.socket):
         super().__init__(family, *args, **kwargs)
 
 
-@pytest.fixture(autouse=True)
+@pytest.fixture(autouse=True, scope="module")
 def no_network(request: pytest.FixtureRequest) -> Iterator[None]:
     """Tests that move time by hand have no network."""
     if not by_hand(request.node):
@@ -148,7 +159,7 @@ def no_network(request: pytest.FixtureRequest) -> Iterator[None]:
         yield
 
 
-@pytest.fixture(autouse=True)
+@pytest.fixture(autouse=True, scope="module")
 def quick_trials(request: pytest.FixtureRequest) -> Iterator[None]:
     """Files of Python that a plant uses are tried in forks, where time is moved by hand."""
     with mock.patch.object(recipe_trial, "subprocess", forked if by_hand(request.node) else subprocess):

@@ -51,7 +51,7 @@ def test_a_seed_is_a_record_that_is_equal_at_every_step(said: Said, link: str) -
 def test_to_record_a_seed_changes_nothing_of_it_and_is_the_same_every_time(said: Said) -> None:
     digests = {
         line.split()[1]
-        for words in ((), ("--record", "a.mcap"), ("--record", "b.mcap"))
+        for words in (("--trace",), ("--record", "a.mcap"), ("--record", "b.mcap"))
         for line in simulated(said, *words)
         if line.startswith("digest ")
     }

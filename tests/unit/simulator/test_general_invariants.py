@@ -411,6 +411,8 @@ LIKELY = {  # seeds that found them, tried first
 @pytest.mark.parametrize(("name", "bug", "how"), BITES, ids=[f"{n}: {b.__name__}" for n, b, _ in BITES])
 def test_it_bites(monkeypatch: Patch, name: str, bug: Bug, how: Scenario | Weather) -> None:
     bug(monkeypatch)
+    monkeypatch.setattr("arboleda.simulator.run.PATIENCE", 1)  # a cell that is held does not wait for long
+    monkeypatch.setattr("arboleda.simulator.watched.REST_S", 60.0)
     if callable(how):
         watched = JudgedWorld(shop(*RECIPES), invariants=[each for each in GENERAL if each.name == name])
         with pytest.raises(BrokenInvariant, match=name):

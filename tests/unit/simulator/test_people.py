@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from arboleda.kinds.mobile import FollowPath
 from arboleda.model.messages import OperatorRequest, Verb
 from arboleda.model.plant_model import Evidence
@@ -32,9 +34,10 @@ def test_customers_bring_no_more_for_what_others_ask_again():
 
 
 def test_customers_come_again_when_a_queue_was_full():
-    world = World(shipped("sis_a"))
+    limit = 6
+    model = shipped("sis_a")
+    world = World(replace(model, cells=tuple(replace(cell, queue_limit=limit) for cell in model.cells)))
     customers = Customers(world, seed=1)
-    limit = world.model.cells[0].queue_limit
     for number in range(limit + 1):
         world.request_task(f"sis_a palletizing #lot{number}")
     world.advance(3.0)
