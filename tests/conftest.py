@@ -20,7 +20,7 @@ from uuid import uuid4
 import pytest
 from hypothesis import HealthCheck, settings
 
-from arboleda.app import recipe_trial
+from arboleda.plant_file import recipe_trial
 from arboleda.testing.domains import Domain
 
 from . import forked

@@ -10,7 +10,7 @@ from typing import Any
 __all__ = ["DEVNULL", "Popen", "TimeoutExpired"]  # what `subprocess` has of it
 
 FORKING = get_context("forkserver")
-FORKING.set_forkserver_preload(["arboleda.app.config", "arboleda.app.plant_file.recipe_check"])
+FORKING.set_forkserver_preload(["arboleda.plant_file.loader", "arboleda.plant_file.recipe_check"])
 ALONE = """import os, sys
 null = os.open(os.devnull, os.O_RDWR)
 for stream in range(3):

@@ -11,7 +11,7 @@ from queue import SimpleQueue
 
 import pytest
 
-from arboleda.app import waiting
+from arboleda.runtime import waiting
 
 pytestmark = pytest.mark.system
 WAITS: dict[str, Callable[[], object]] = {
