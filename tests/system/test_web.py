@@ -17,7 +17,7 @@ import httpx
 import pytest
 
 from arboleda.adapters import descriptors
-from arboleda.web.admission import Admission
+from arboleda.web.server import Admission
 
 from ..patience import PATIENCE_S
 from .conftest import Process, paths

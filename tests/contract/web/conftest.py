@@ -26,8 +26,7 @@ from arboleda.web.api import make_app
 from arboleda.web.auth import Door, Role
 from arboleda.web.guard import Guard
 from arboleda.web.names import names_for
-from arboleda.web.second_loop import SecondLoop
-from arboleda.web.server import Server
+from arboleda.web.server import SecondLoop, Server
 
 from ...patience import PATIENCE_S
 

@@ -12,7 +12,7 @@ from contextlib import ExitStack, contextmanager
 import pytest
 
 from arboleda.model.errors import StartError
-from arboleda.web import connections
+from arboleda.web import server
 from arboleda.web.server import Server
 
 from .conftest import VIEW, Web
@@ -41,13 +41,13 @@ KEPT_ALIVE_S = 5  # by uvicorn
 
 @pytest.mark.parametrize("said", [b"", b"GET /api/plant HT", b"GET / HTTP/1.1\r\nX-A: "])
 def test_a_request_that_does_not_come_is_waited_for_only_so_long(local, monkeypatch, said):
-    monkeypatch.setattr(connections, "REQUEST_S", 0.1)
+    monkeypatch.setattr(server, "REQUEST_S", 0.1)
     with idle(local, 1, said) as (talk,):
         assert ended(talk)
 
 
 def test_a_second_request_that_does_not_come_is_not_waited_for_either(local, monkeypatch):
-    monkeypatch.setattr(connections, "REQUEST_S", 0.1)
+    monkeypatch.setattr(server, "REQUEST_S", 0.1)
     asked = f"GET /api/plant HTTP/1.1\r\nHost: 127.0.0.1:{local.port}\r\n\r\n".encode()
     with idle(local, 1, asked) as (talk,):
         assert talk.recv(65536).startswith(b"HTTP/1.1 200 ")
@@ -57,7 +57,7 @@ def test_a_second_request_that_does_not_come_is_not_waited_for_either(local, mon
 
 
 def test_a_second_request_that_begins_with_the_first_is_not_waited_for_either(local, monkeypatch):
-    monkeypatch.setattr(connections, "REQUEST_S", 0.1)
+    monkeypatch.setattr(server, "REQUEST_S", 0.1)
     asked = f"GET /api/plant HTTP/1.1\r\nHost: 127.0.0.1:{local.port}\r\n\r\nGET /".encode()
     with idle(local, 1, asked) as (talk,):
         talk.settimeout(KEPT_ALIVE_S - 1)  # an idle connection would be closed then

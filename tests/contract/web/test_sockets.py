@@ -14,7 +14,7 @@ from websockets.sync.client import ClientConnection, connect
 
 from arboleda.web import limits
 from arboleda.web.auth import LOCAL, Role
-from arboleda.web.sockets import Sockets
+from arboleda.web.guard import Sockets
 
 from .conftest import TOKENS, Web
 

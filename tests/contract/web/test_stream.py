@@ -11,7 +11,7 @@ from contextlib import contextmanager
 import httpx
 import pytest
 
-from arboleda.web import connections, limits
+from arboleda.web import limits, server
 from arboleda.web.auth import Role
 
 from .conftest import TASK, VIEW, Plant, Web
@@ -131,7 +131,7 @@ def cut_off(talk: socket.socket) -> bool:
 def test_a_reader_that_never_reads_is_cut_off_and_others_hear_everything(
     local: Web, plant: Plant, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(connections, "UNREAD_S", 0.3)
+    monkeypatch.setattr(server, "UNREAD_S", 0.3)
     asked = f"GET /api/events HTTP/1.1\r\nHost: 127.0.0.1:{local.port}\r\n\r\n".encode()
     with socket.socket() as deaf, listening(local.client()) as listener:
         deaf.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)

@@ -21,7 +21,7 @@ from arboleda.adapters.server_tls import ServerTls, server_tls
 from arboleda.cli.client import PlantClient
 from arboleda.model.errors import ArboledaError
 from arboleda.runtime.state import StateDir
-from arboleda.web import connections
+from arboleda.web import server
 from arboleda.web.auth import Role
 
 from ...patience import PATIENCE_S
@@ -50,7 +50,7 @@ def test_who_believes_the_authority_is_answered(
 
 
 def test_who_does_not_believe_it_is_told_of(secure: Web, caplog: pytest.LogCaptureFixture) -> None:
-    caplog.set_level(logging.WARNING, logger="arboleda.adapters")
+    caplog.set_level(logging.WARNING, logger="arboleda.web")
     with pytest.raises(httpx.ConnectError, match="CERTIFICATE_VERIFY_FAILED"):
         httpx.get(secure.origin, trust_env=False)
     end = time.monotonic() + PATIENCE_S
@@ -133,7 +133,7 @@ def test_the_commands_believe_the_certificate_that_the_state_directory_has(
 def test_who_connects_and_begins_no_handshake_is_cut_off(
     secure: Web, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(connections, "REQUEST_S", 0.2)
+    monkeypatch.setattr(server, "REQUEST_S", 0.2)
     silent = socket.create_connection(("127.0.0.1", secure.port), PATIENCE_S)
     with silent, pytest.raises(ConnectionResetError):
         silent.recv(1)

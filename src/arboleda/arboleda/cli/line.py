@@ -12,7 +12,7 @@ from arboleda.model.outside import plain, said_by
 from arboleda.runtime.endpoints import Place
 from arboleda.web.limits import BEAT_S
 from arboleda.web.plant_api import COMMAND_LINE
-from arboleda.web.request_head import PLANT
+from arboleda.web.request import PLANT
 
 if TYPE_CHECKING:  # slow to load, and only needed to ask a plant
     import httpx

@@ -9,7 +9,7 @@ from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import HTMLResponse, Response
 
 from arboleda.model.errors import ArboledaError
-from arboleda.web import plain_page
+from arboleda.web import login
 
 from .page_api import PageApi
 from .shell import language_of
@@ -46,4 +46,4 @@ def serve(server: FastAPI, plant: PageApi) -> None:
 def _note(said: Words, task: str, text: str, status: int = 200) -> HTMLResponse:
     title = said("report.title", task=task)
     body = f"<h1>{escape(title)}</h1><p role=status>{escape(text)}</p>"
-    return plain_page.page(title, body, language=said.language, status=status)
+    return login.page(title, body, language=said.language, status=status)

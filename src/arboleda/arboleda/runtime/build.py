@@ -24,7 +24,7 @@ from arboleda.model.plant_model import Link, MqttVersion, PlantModel
 from arboleda.model.sentence import OWN, Sentence, from_data
 from arboleda.recorder.preamble import Beginning, Recording
 from arboleda.store.plant_memory import JournalEntry, PlantMemory, Superseded
-from arboleda.web.own_addresses import other_address
+from arboleda.web.names import other_address
 
 from .alarm_options import AlarmOptions
 from .demo import Demo

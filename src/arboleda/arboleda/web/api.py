@@ -1,11 +1,11 @@
-"""The routes of the HTTP API."""
+"""Routes of the HTTP API, and the answer to requests that no route takes."""
 
 from __future__ import annotations
 
 import asyncio
 import json
 import logging
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from concurrent.futures import Future
 from contextlib import suppress
 from dataclasses import asdict
@@ -17,6 +17,8 @@ from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import JSONResponse, PlainTextResponse
 from pydantic import BaseModel, ValidationError
 from starlette.exceptions import HTTPException
+from starlette.routing import BaseRoute, Match
+from starlette.types import Receive, Scope, Send
 
 from arboleda import __version__
 from arboleda.core.leaving import StopLeft
@@ -28,9 +30,9 @@ from arboleda.store.task_rows import COMMAND, HTTP, TaskRow, answers_of, choice_
 from . import limits, login, metrics, openapi, stream
 from .auth import SUBMIT, Forbidden, require
 from .limits import LATER_S
-from .not_found import NotFound
 from .plain_json import PlainJson, explained
 from .plant_api import COMMAND_LINE, PlantApi
+from .request import is_api
 from .schema import (
     Act,
     ByHand,
@@ -48,6 +50,32 @@ from .schema import (
     TaskForm,
     TaskText,
 )
+
+
+class NotFound(BaseRoute):
+    """The last of the `routes`. Pages are mounted after it, and take every path; without it they would
+    answer for a route of ours that was asked with another method."""
+
+    def __init__(self, routes: Sequence[BaseRoute]) -> None:
+        self._routes = tuple(routes)
+
+    def matches(self, scope: Scope) -> tuple[Match, Scope]:
+        if scope["type"] != "http":
+            return Match.NONE, {}
+        methods = self._methods(scope)
+        ours = methods or is_api(scope["path"])
+        return (Match.FULL if ours else Match.NONE), {"arboleda.methods": methods}
+
+    async def handle(self, scope: Scope, receive: Receive, send: Send) -> None:
+        methods = ", ".join(scope["arboleda.methods"])
+        if not methods:
+            raise HTTPException(404, "There is nothing here; /api/docs lists what there is.")
+        raise HTTPException(405, f"Here one can {methods} only.", {"allow": methods})
+
+    def _methods(self, scope: Scope) -> list[str]:
+        known = [route for route in self._routes if route.matches(scope)[0] is Match.PARTIAL]
+        return sorted({method for route in known for method in getattr(route, "methods", None) or ()})
+
 
 log = logging.getLogger(__name__)
 Answer = TypeVar("Answer")

@@ -1,7 +1,10 @@
-"""Access control and rate limits of the server: pure ASGI, for HTTP and websockets alike."""
+"""Guard of the HTTP server: access control, limits of bodies and websockets, one long answer at a time."""
 
 from __future__ import annotations
 
+import asyncio
+from collections.abc import Awaitable, Callable
+from itertools import count
 from urllib.parse import parse_qsl
 
 from starlette.responses import RedirectResponse
@@ -11,14 +14,145 @@ from arboleda.model.outside import quoted
 
 from . import limits
 from .auth import LOCAL, Door, Login
-from .body import whole_body
-from .headers import with_headers
-from .http_errors import ClientGone, HttpError
 from .limits import Buckets
 from .names import Names
-from .request_head import LOGIN, PLANT, RequestHead
-from .serial_requests import SerialRequests
-from .sockets import Sockets
+from .request import LOGIN, PLANT, ClientGone, HttpError, RequestHead, with_headers
+
+
+async def whole_body(asked: RequestHead, receive: Receive) -> Receive:
+    """A `receive` with the whole body; HttpError if it is too long or slow, ClientGone if it ends early."""
+    most = limits.PAGE_BODY_BYTES if asked.for_page else limits.API_BODY_BYTES
+    try:
+        body = await asyncio.wait_for(_read(receive, most), limits.BODY_S)
+    except asyncio.TimeoutError:
+        raise HttpError(408, f"The body did not come within {limits.BODY_S:.0f} s.") from None
+    waiting: list[Message] = [{"type": "http.request", "body": body, "more_body": False}]
+
+    async def next_message() -> Message:
+        return waiting.pop() if waiting else await receive()
+
+    return next_message
+
+
+async def _read(receive: Receive, most: int) -> bytes:
+    body, more = b"", True
+    while more:
+        message = await receive()
+        if message["type"] == "http.disconnect":
+            raise ClientGone
+        body += message.get("body", b"")
+        more = message.get("more_body", False)
+        if len(body) > most:
+            raise HttpError(413, f"The body may have {most} bytes.")
+    return body
+
+
+class SerialRequests:
+    """Runner of `app` that works on one request at a time.
+
+    Sending an answer does not count as work: a client that reads slowly keeps nobody waiting.
+    """
+
+    def __init__(self, app: ASGIApp) -> None:
+        self._app = app
+        self._free = asyncio.Lock()
+
+    async def run(self, scope: Scope, receive: Receive, send: Send, hears: Receive) -> None:
+        """Run one request after those before it; nothing if `hears` shows that its client has left."""
+        await self._free.acquire()
+        working = True
+
+        async def send_freed(message: Message) -> None:
+            nonlocal working
+            if working:
+                working = False
+                self._free.release()
+            await send(message)
+
+        try:
+            if not await _gone(hears):
+                await self._app(scope, receive, send_freed)
+        finally:
+            if working:
+                self._free.release()
+
+
+async def _gone(hears: Receive) -> bool:
+    """True if the client has disconnected; after the body nothing else can come from it."""
+    coming = asyncio.ensure_future(hears())
+    await asyncio.sleep(0)
+    if coming.done():
+        return bool(coming.result()["type"] == "http.disconnect")
+    coming.cancel()
+    return False
+
+
+LOGGED_OUT: Message = {"type": "websocket.close", "code": 1008, "reason": "logged out"}
+
+
+class Sockets:
+    """Runs websockets of `app`."""
+
+    def __init__(
+        self,
+        app: ASGIApp,
+        sleep: Callable[[float], Awaitable[None]] = asyncio.sleep,
+        *,
+        most: int = limits.SOCKETS,
+    ) -> None:
+        self._app = app
+        self._most = most
+        self._sleep = sleep
+        self._rates = Buckets(limits.MESSAGE)
+        self._names = count()
+        self._open = 0
+
+    async def run(self, scope: Scope, receive: Receive, send: Send, login: Login) -> None:
+        """Run one websocket until its end; raises HttpError if too many are open."""
+        if self._open >= self._most:
+            many = f"No more than {self._most} may be open at a time; close a page."
+            raise HttpError(503, many, retry_after=limits.LATER_S)
+        one = _Socket(receive, send, login, self._pace())
+        self._open += 1
+        try:
+            await self._app(scope, one.receive, one.send)
+        finally:
+            self._open -= 1
+
+    def _pace(self) -> Callable[[], Awaitable[None]]:
+        name = str(next(self._names))
+        return lambda: self._sleep(self._rates.delay_s(name))
+
+
+class _Socket:
+    def __init__(
+        self, receive: Receive, send: Send, login: Login, pace: Callable[[], Awaitable[None]]
+    ) -> None:
+        self._receive = receive
+        self._send = send
+        self._login = login
+        self._pace = pace
+        self._over = False
+
+    async def receive(self) -> Message:
+        """The next message, no faster than the rate: whoever floods waits, and nothing is lost."""
+        message = await self._receive()
+        if message["type"] != "websocket.receive":
+            return message
+        await self._pace()
+        return message if await self._known() else {"type": "websocket.disconnect", "code": 1008}
+
+    async def send(self, message: Message) -> None:
+        if message["type"] != "websocket.send" or await self._known():
+            self._over = self._over or message["type"] == "websocket.close"
+            await self._send(message)
+
+    async def _known(self) -> bool:
+        """True if the login is still valid; closes the socket if not."""
+        if not self._over and not self._login.alive():
+            await self.send(LOGGED_OUT)
+        return not self._over
+
 
 IN_URL = {"token", "access_token", "bearer", "authorization"}
 NOT_OURS = "Only tools and pages of this plant may use this address."

@@ -8,7 +8,7 @@ from fastapi import APIRouter
 from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import PlainTextResponse
 
-from .request_head import METRICS
+from .request import METRICS
 
 TEXT = "text/plain; version=0.0.4; charset=utf-8"
 

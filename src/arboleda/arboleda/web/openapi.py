@@ -13,7 +13,7 @@ from fastapi.responses import HTMLResponse, JSONResponse
 from arboleda.model.messages import Verb
 from arboleda.views.verb_words import ABOUT
 
-from .plain_page import page
+from .login import page
 
 Schema = dict[str, Any]
 VERB = Verb.__name__

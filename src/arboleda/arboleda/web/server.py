@@ -1,33 +1,329 @@
-"""uvicorn in a thread of its own."""
+"""HTTP server in a thread of its own: uvicorn, its connections, and the second loop for all but stops."""
 
 from __future__ import annotations
 
 import asyncio
 import logging
 import socket
+import struct
 import threading
-from collections.abc import Callable
+from collections.abc import Awaitable, Callable, Collection
+from concurrent.futures import Future
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from itertools import count
+from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
+import h11
 import uvicorn
-from starlette.types import ASGIApp
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
+from uvicorn.protocols.http.h11_impl import H11Protocol
+from uvicorn.protocols.websockets.websockets_sansio_impl import WebSocketsSansIOProtocol
 
 from arboleda.adapters import descriptors
 from arboleda.adapters.rate_limit import RateLimit
 from arboleda.model.errors import StartError
 
 from . import limits
-from .admission import Admission
-from .connections import HEAD_BYTES, Connection, Socket
+from .auth import LOCAL
 from .names import DEFAULT_PORT
+from .request import READS, RequestHead
 
 if TYPE_CHECKING:  # slow to load, and needed for TLS only
     from arboleda.adapters.server_tls import ServerTls
 
+
+class Guest(Protocol):
+    """A connection as the admission sees it."""
+
+    number: int  # in the order they came; the clocks of event loops are too coarse for it
+
+    @property
+    def peer(self) -> str | None:
+        """The address it comes from."""
+
+    @property
+    def waits(self) -> bool:
+        """True while the client has to act: to ask, to send the rest of a body, or to read an answer."""
+
+    @property
+    def looks(self) -> bool:
+        """True while the client waits for the answer to a request that only reads."""
+
+    @property
+    def known(self) -> bool:
+        """True if the client showed a login with its last request."""
+
+
+class Admission:
+    """Counts the connections of one server: at most `most`, and of one address `per_peer`.
+
+    Where one comes too many, the oldest that waits for its client is cut, one without login before one that
+    has it; where none waits for its client, as the server is flooded, the oldest that only wants to look. The
+    newcomer is not: it may be about to stop the plant, and what fills a server is old.
+    """
+
+    def __init__(self, most: int) -> None:
+        self.most = most
+        self.per_peer = most * 5 // 8  # twenty browsers behind one address, and room for everybody else
+        self._numbers = count()
+
+    def next_number(self) -> int:
+        """The number of the next connection."""
+        return next(self._numbers)
+
+    def surplus(self, guests: Collection[Guest], others: int, newcomer: Guest) -> Guest | None:
+        """The guest to disconnect for the newcomer, which is among `guests`; None if there is room.
+
+        `others` is the number of connections that count but cannot be cut.
+        """
+        mine = [guest for guest in guests if guest.peer == newcomer.peer]
+        if len(mine) > self.per_peer:
+            return _oldest(mine, newcomer)
+        return _oldest(guests, newcomer) if len(guests) + others > self.most else None
+
+
+def _oldest(crowd: Collection[Guest], newcomer: Guest) -> Guest:
+    waiting = [guest for guest in crowd if guest.waits and guest is not newcomer]
+    strangers = [guest for guest in waiting if not guest.known]
+    # Who has just come has had no time to show a login. Where it is the known ones that crowd, strangers
+    # keep a quarter of the places, or newcomers would push each other out.
+    those = strangers if 4 * len(strangers) >= len(crowd) else waiting
+    those = those or [guest for guest in crowd if guest.looks and guest is not newcomer]
+    return min(those, key=lambda guest: guest.number, default=newcomer)
+
+
+REQUEST_S = 10.0  # to send the head of a request
+UNREAD_S = 20.0  # a client that reads nothing of what it asked for
+HEAD_BYTES = 32768
+NOTHING_LINGERS = struct.pack("ii", 1, 0)
+
+
+class Timer:
+    """Timer that calls back once, unless it is switched off first."""
+
+    def __init__(self, seconds: float, callback: Any) -> None:
+        self._seconds = seconds
+        self._callback = callback
+        self._handle: asyncio.TimerHandle | None = None
+
+    def on(self) -> None:
+        if self._handle is None:
+            self._handle = asyncio.get_running_loop().call_later(self._seconds, self._callback)
+
+    def off(self) -> None:
+        if self._handle is not None:
+            self._handle.cancel()
+            self._handle = None
+
+
+class _MustRead:
+    """Mixin that cuts off a client which does not read its answers."""
+
+    def connection_made(self, transport: Any) -> None:
+        super().connection_made(transport)  # type: ignore[misc]
+        self._unread = Timer(UNREAD_S, lambda: cut(transport))
+
+    def connection_lost(self, exc: Exception | None) -> None:
+        self._unread.off()
+        super().connection_lost(exc)  # type: ignore[misc]
+
+    def pause_writing(self) -> None:
+        super().pause_writing()  # type: ignore[misc]
+        self._unread.on()
+
+    def resume_writing(self) -> None:
+        super().resume_writing()  # type: ignore[misc]
+        self._unread.off()
+
+
+class Socket(_MustRead, WebSocketsSansIOProtocol):
+    """Websocket connection."""
+
+
+class Connection(_MustRead, H11Protocol):
+    """HTTP connection; `admission` chooses the one to close if there are too many."""
+
+    def __init__(self, *args: Any, admission: Admission, **options: Any) -> None:
+        super().__init__(*args, **options)
+        self._admission = admission
+
+    def connection_made(self, transport: asyncio.Transport) -> None:  # type: ignore[override]
+        super().connection_made(transport)
+        self.number = self._admission.next_number()
+        self._request = Timer(REQUEST_S, lambda: cut(transport))
+        self._request.on()
+        self._make_room()
+
+    def connection_lost(self, exc: Exception | None) -> None:
+        self._request.off()
+        super().connection_lost(exc)
+
+    def data_received(self, data: bytes) -> None:
+        super().data_received(data)
+        if self.conn.their_state is h11.IDLE and not self.transport.is_closing():
+            self._request.on()
+        else:
+            self._request.off()
+
+    def on_response_complete(self) -> None:
+        super().on_response_complete()
+        head, _ = self.conn.trailing_data
+        if head and self.idles and not self.transport.is_closing():
+            self._request.on()  # its begin came before the last answer was whole
+
+    def handle_websocket_upgrade(self, event: h11.Request) -> None:
+        self._request.off()
+        super().handle_websocket_upgrade(event)
+
+    def shutdown(self) -> None:
+        """Called when the server ends: ends an answer without an end (a stream)."""
+        super().shutdown()
+        if not self.idles and self.cycle.response_started:
+            self.transport.abort()
+
+    @property
+    def idles(self) -> bool:
+        return self.cycle is None or self.cycle.response_complete
+
+    @property
+    def peer(self) -> str | None:
+        return self.client[0] if self.client else None
+
+    @property
+    def waits(self) -> bool:
+        return self.idles or self.cycle.more_body or self.flow.write_paused
+
+    @property
+    def looks(self) -> bool:
+        return not self.idles and not self.cycle.response_started and self.scope["method"] in READS
+
+    @property
+    def known(self) -> bool:
+        login = self.scope.get("arboleda.login") if self.scope is not None else None
+        return login not in (None, LOCAL)  # on its own machine a plant knows nobody, and lets everybody in
+
+    def _make_room(self) -> None:
+        guests = [other for other in self.connections if isinstance(other, Connection)]
+        surplus = self._admission.surplus(guests, len(self.connections) - len(guests), self)
+        if surplus is not None:
+            self.connections.discard(surplus)  # at once, so that the next connection does not count it
+            cut(surplus.transport)
+
+
+def cut(transport: Any) -> None:
+    """End a connection at once, without keeping unread data for the client."""
+    transport.get_extra_info("socket").setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, NOTHING_LINGERS)
+    transport.abort()
+
+
+Result = TypeVar("Result")
+Call = Callable[..., Awaitable[Result]]
+
+END_S = 3.0  # time for an application to end, and for the tasks left in the loop
+OVER: Message = {"type": "lifespan.shutdown.complete"}
+LOG = logging.getLogger(__name__)
+
+
+class SecondLoop:
+    """Runs `app` in a second event loop; a stop it runs in the loop of the server.
+
+    A page or a snapshot of a large plant takes a tenth of a second. In the server's loop nothing is made that
+    takes so long: it takes in, checks who asks, stops, and passes bytes on. The end of the server waits
+    END_S at most for what runs in the second loop.
+    """
+
+    def __init__(self, app: ASGIApp) -> None:
+        self._app = app
+        self._second = _SecondLoop()
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        if scope["type"] == "lifespan":
+            return await self._live(scope, receive, send)
+        if RequestHead(scope).stops:
+            return await self._app(scope, receive, send)
+        return await self._run_there(scope, receive, send)
+
+    async def _live(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Run the second loop for as long as the application lives."""
+        ending = asyncio.Event()
+
+        async def receive_noted() -> Message:
+            message = await receive()
+            if message["type"] == "lifespan.shutdown":
+                ending.set()
+            return message
+
+        async def send_others(message: Message) -> None:
+            if message["type"] != OVER["type"]:
+                await send(message)
+
+        self._second.start()
+        life = asyncio.create_task(self._run_there(scope, receive_noted, send_others))
+        asked_to_end = asyncio.create_task(ending.wait())
+        await asyncio.wait({life, asked_to_end}, return_when=asyncio.FIRST_COMPLETED)
+        await asyncio.wait({life}, timeout=END_S)
+        await self._second.end()
+        asked_to_end.cancel()
+        if life.done() and not life.cancelled():
+            life.result()
+        await send(OVER)
+
+    async def _run_there(self, scope: Scope, receive: Receive, send: Send) -> None:
+        here = asyncio.get_running_loop()
+
+        async def receive_here() -> Message:
+            return await _in(here, receive)
+
+        async def send_here(message: Message) -> None:
+            await _in(here, send, message)
+
+        await _in(self._second.loop, self._app, scope, receive_here, send_here)
+
+
+class _SecondLoop:
+    """An event loop in a daemon thread, from `start` to `end`."""
+
+    def __init__(self) -> None:
+        self._running: Future[asyncio.AbstractEventLoop] = Future()
+        self._over = asyncio.Event()
+        self._thread = threading.Thread(target=self._run, name="http pages", daemon=True)
+
+    @property
+    def loop(self) -> asyncio.AbstractEventLoop:
+        return self._running.result()
+
+    def start(self) -> None:
+        self._thread.start()
+        self._running.result()
+
+    async def end(self) -> None:
+        """Cancel the tasks that still run there, and wait for END_S at most."""
+        self.loop.call_soon_threadsafe(self._over.set)
+        await asyncio.to_thread(self._thread.join, END_S)
+        if self._thread.is_alive():
+            LOG.warning("what the web server made for its pages did not end within %g s; it is left", END_S)
+
+    def _run(self) -> None:
+        asyncio.run(self._until_over())
+
+    async def _until_over(self) -> None:
+        self._running.set_result(asyncio.get_running_loop())
+        await self._over.wait()
+
+
+async def _in(loop: asyncio.AbstractEventLoop, call: Call[Result], *args: Any) -> Result:
+    """The result of `call` in that loop; cancelling this cancels it there."""
+    if loop.is_closed():  # the server has ended, and nobody waits for this any more
+        raise asyncio.CancelledError
+    return await asyncio.wrap_future(asyncio.run_coroutine_threadsafe(_awaited(call, *args), loop))
+
+
+async def _awaited(call: Call[Result], *args: Any) -> Result:
+    return await call(*args)
+
+
 START_S = 20.0
 STOP_S = 5.0  # connections have 1 s to close; an application that hangs then ends with the process
-LOG = logging.getLogger(__name__)
 SENTENCE = b"This plant speaks TLS here: its address begins with https://\n"
 SPEAKS_TLS = (
     b"HTTP/1.1 400 Bad Request\r\nContent-Type: text/plain\r\nConnection: close\r\n"

@@ -1,18 +1,180 @@
-"""Changes of the plant, as server-sent events."""
+"""Changes of the plant for readers of whom none can hold it up, and as server-sent events."""
 
 from __future__ import annotations
 
 import asyncio
+import json
+from collections import deque
 from collections.abc import AsyncIterator, Callable
+from contextlib import suppress
+from dataclasses import dataclass
 from typing import Annotated, Any
 
 from fastapi import APIRouter, Header, Request
 from fastapi.responses import StreamingResponse
 from starlette.exceptions import HTTPException
 
+from arboleda.model.sentence import in_json
+
 from . import limits
-from .changes import Changes
-from .plant_api import PlantApi
+from .plant_api import PlantApi, Snapshot
+
+HISTORY, WAITING, PENDING = 200, 256, 64
+Row = dict[str, Any]
+
+# list in a snapshot: (kind of event, key that names a row, keys whose change counts)
+ROWS = {
+    "cells": (
+        "cell",
+        "name",
+        ("state", "task", "step", "queue", "paused", "waiting_for", "not_ready", "held_by", "advice"),
+    ),
+    "robots": (
+        "robot",
+        "name",
+        (
+            "online",
+            "holder",
+            "obstacle",
+            "state",
+            "node",
+            "homed",
+            "latched",
+            "effector",
+            "piece",
+            "facts",
+            "answer",
+            "boot_id",
+        ),
+    ),
+    "tasks": ("task", "id", ("text", "cell", "state", "reason", "sentence")),
+    "zones": ("zone", "zone", ("state", "robot", "waiting")),
+}
+PLANT = ("plant", "epoch", "ending")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Event:
+    """Server-sent event; `text` is made once for all readers."""
+
+    id: str
+    text: str
+
+
+def event(id: str, kind: str, row: Row) -> Event:
+    return Event(id=id, text=f"id: {id}\nevent: {kind}\ndata: {json.dumps(row, default=in_json)}\n\n")
+
+
+def changed(before: Snapshot, after: Snapshot) -> list[tuple[str, Row]]:
+    """The (kind, row) of each new or changed row; ages and positions do not count."""
+    plant = {key: after[key] for key in PLANT}
+    found = [] if plant == {key: before[key] for key in PLANT} else [("plant", plant)]
+    for where, (kind, name, keys) in ROWS.items():
+        known = {row[name]: _facts(row, (name, *keys)) for row in before[where]}
+        now = [_facts(row, (name, *keys)) for row in after[where]]
+        found += [(kind, row) for row in now if known.get(row[name]) != row]
+    return found
+
+
+def _facts(row: Row, keys: tuple[str, ...]) -> Row:
+    """The row with these keys only; for a task in it, its id."""
+    facts = {key: row[key] for key in keys}
+    return {key: value["id"] if key == "task" and value else value for key, value in facts.items()}
+
+
+class Reader:
+    """Queue of events for one client; an overflow ends it."""
+
+    def __init__(self) -> None:
+        self._queue: deque[Event] = deque()
+        self._news = asyncio.Event()
+        self.dropped = False
+
+    @property
+    def waiting(self) -> int:
+        return len(self._queue)
+
+    def put(self, news: Event) -> None:
+        if len(self._queue) >= WAITING:
+            self.dropped = True
+        else:
+            self._queue.append(news)
+        self._news.set()
+
+    async def next(self) -> Event | None:
+        """The next event; None once the reader was too slow."""
+        while not self._queue and not self.dropped:
+            self._news.clear()
+            await self._news.wait()
+        return None if self.dropped else self._queue.popleft()
+
+
+class Changes:
+    """Numbered events made of snapshots. All but `_saw` runs in the server's thread."""
+
+    def __init__(self, side: PlantApi) -> None:
+        self._side = side
+        self._readers: set[Reader] = set()
+        self._history: deque[Event] = deque(maxlen=HISTORY)
+        self._fresh: deque[Snapshot] = deque(maxlen=PENDING)
+        self._loop: asyncio.AbstractEventLoop | None = None
+        self._woken = False
+        self._number = 0
+        self._latest: Snapshot = {}
+
+    def __len__(self) -> int:
+        return len(self._readers)
+
+    def listen(self, last: str = "") -> Reader:
+        """A reader that continues after the event `last`; with a snapshot first if that one is forgotten."""
+        if self._loop is None:
+            self._loop = asyncio.get_running_loop()
+            self._side.watch(self._saw)
+            self._latest = self._side.snapshot()
+        reader = Reader()
+        for missed in self._missed(last):
+            reader.put(missed)
+        self._readers.add(reader)
+        return reader
+
+    def leave(self, reader: Reader) -> None:
+        """Remove a reader; idempotent."""
+        self._readers.discard(reader)
+
+    def _missed(self, last: str) -> list[Event]:
+        known = [told.id for told in self._history]
+        if last in known:
+            return list(self._history)[known.index(last) + 1 :]
+        return [event(self._id(), "snapshot", self._side.snapshot())]
+
+    def _saw(self, snapshot: Snapshot) -> None:
+        """Take a snapshot in the plant's thread, for the server's thread."""
+        self._fresh.append(snapshot)
+        if not self._woken and self._loop is not None:
+            self._woken = True
+            with suppress(RuntimeError):  # the server has ended
+                self._loop.call_soon_threadsafe(self._tell)
+
+    def _tell(self) -> None:
+        self._woken = False
+        while self._fresh:
+            snapshot = self._fresh.popleft()
+            if snapshot["at"] < self._latest["at"]:
+                continue
+            for kind, row in changed(self._latest, snapshot):
+                self._number += 1
+                self._give(event(self._id(), kind, row))
+            self._latest = snapshot
+
+    def _give(self, news: Event) -> None:
+        self._history.append(news)
+        for reader in self._readers:
+            reader.put(news)
+
+    def _id(self) -> str:
+        """The id of an event: a number, which starts anew with the plant, and the epoch of that start."""
+        return f"{self._latest['epoch']}-{self._number}"
+
 
 ABOUT: dict[int | str, dict[str, Any]] = {
     200: {

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from arboleda.web.admission import Admission
+from arboleda.web.server import Admission
 
 
 @dataclass(frozen=True, kw_only=True)

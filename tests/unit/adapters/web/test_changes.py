@@ -12,9 +12,9 @@ from arboleda.core.plant import Plant
 from arboleda.model.sentence import in_json
 from arboleda.testing.plants import shipped
 from arboleda.views import view
-from arboleda.web import changes
-from arboleda.web.changes import Reader, changed
+from arboleda.web import stream
 from arboleda.web.schema import Snapshot
+from arboleda.web.stream import Reader, changed
 
 
 @pytest.fixture
@@ -73,7 +73,7 @@ def test_a_task_in_a_cell_is_told_by_its_id(before: dict) -> None:
 
 def test_a_reader_that_does_not_keep_up_is_ended_and_keeps_nothing_more() -> None:
     reader = Reader()
-    for number in range(changes.WAITING + 50):
-        reader.put(changes.event(str(number), "task", {}))
-    assert reader.dropped and reader.waiting == changes.WAITING
+    for number in range(stream.WAITING + 50):
+        reader.put(stream.event(str(number), "task", {}))
+    assert reader.dropped and reader.waiting == stream.WAITING
     assert asyncio.run(reader.next()) is None

@@ -15,7 +15,7 @@ from starlette.routing import Route
 from arboleda.web import limits, login
 from arboleda.web.guard import Guard
 from arboleda.web.names import names_for
-from arboleda.web.request_head import API
+from arboleda.web.request import API
 from arboleda.web.server import Server
 
 from .. import tokens

@@ -14,8 +14,7 @@ from arboleda.web import limits
 from arboleda.web.api import make_app
 from arboleda.web.guard import Guard
 from arboleda.web.names import DEFAULT_PORT, is_loopback, names_for
-from arboleda.web.second_loop import SecondLoop
-from arboleda.web.server import Server
+from arboleda.web.server import SecondLoop, Server
 
 from .. import tokens
 from ..web_options import WebOptions

@@ -1,11 +1,13 @@
-"""Request before it is answered: its headers, login and purpose."""
+"""Requests of the HTTP server: their head, the security headers of answers, refusals."""
 
 from __future__ import annotations
 
 import re
 from http.cookies import CookieError, SimpleCookie
 
-from starlette.types import Scope
+from starlette.datastructures import MutableHeaders
+from starlette.responses import JSONResponse, Response
+from starlette.types import Message, Scope, Send
 
 from .names import is_loopback
 
@@ -132,3 +134,59 @@ class RequestHead:
 def cookie_name(scope: Scope) -> str:
     """The name of the login cookie, with the port: browsers send the cookies of all ports of a machine."""
     return f"arboleda_{(scope.get('server') or ('', 0))[1]}"
+
+
+# NiceGUI's pages carry scripts in them, and Vue compiles templates in the browser.
+PAGE_POLICY = "; ".join(
+    (
+        "default-src 'self'",
+        "script-src 'self' 'unsafe-inline' 'unsafe-eval'",
+        "style-src 'self' 'unsafe-inline'",
+        "img-src 'self' data: blob:",
+        "font-src 'self' data:",
+        "connect-src 'self'",
+        "object-src 'none'",
+        "base-uri 'self'",
+        "form-action 'self'",
+        "frame-ancestors 'none'",
+    )
+)
+PLAIN_POLICY = "default-src 'none'; frame-ancestors 'none'; base-uri 'none'"
+ALWAYS = {
+    "x-content-type-options": "nosniff",
+    "x-frame-options": "DENY",
+    "referrer-policy": "same-origin",  # with no-referrer a form of ours would come from Origin "null"
+    "cross-origin-opener-policy": "same-origin",
+    "cross-origin-resource-policy": "same-origin",
+}
+
+
+def with_headers(scope: Scope, send: Send) -> Send:
+    """A `send` that adds them; an answer may bring a policy of its own."""
+    plain = is_api(scope["path"]) or scope["path"] in (LOGIN, LOGOUT)
+
+    async def send_with_headers(message: Message) -> None:
+        if message["type"] in ("http.response.start", "websocket.http.response.start"):
+            headers = MutableHeaders(scope=message)
+            headers.update(ALWAYS)
+            headers.setdefault("content-security-policy", PLAIN_POLICY if plain else PAGE_POLICY)
+            if plain:
+                headers["cache-control"] = "no-store"
+        await send(message)
+
+    return send_with_headers
+
+
+class HttpError(Exception):
+    """Error: the request is refused with a status, a sentence, and headers such as `retry_after="1"`."""
+
+    def __init__(self, status: int, sentence: str, **headers: str) -> None:
+        super().__init__(sentence)
+        named = {name.replace("_", "-"): value for name, value in headers.items()}
+        self.answer: Response = JSONResponse(
+            {"sentence": sentence}, status_code=status, headers={"connection": "close", **named}
+        )
+
+
+class ClientGone(Exception):
+    """Error: the client left before its request was complete; there is nobody to answer."""
