@@ -11,13 +11,15 @@ from arboleda.recipes import storage
 from arboleda.sim.arm import ArmBody
 from arboleda.sim.board import Board
 from arboleda.trees import steps
-from arboleda.trees.context import Context
+from arboleda.trees.cell_zones import CellZones
+from arboleda.trees.failures import Failures
 from arboleda.trees.leaves import Piece
+from arboleda.trees.parts import Parts
 
 from .mutant import SHARED, edit, mutant
 
 LOOKS_AT_NO_PIECE = (
-    edit(Context.part_lost, "if robot is None or", "if True or"),
+    edit(Parts.lost, "if robot is None or", "if True or"),
     edit(Piece._seen, " is True", " is not None"),
 )
 
@@ -32,7 +34,7 @@ ZONES = (
         "zone_released_only_outside",
         "An arm gives its zones back without being seen outside.",
         edit(
-            Context.leave_zones,
+            CellZones.leave,
             "held = self._left(robot, self._zones.held_by(robot))",
             "held = self._zones.held_by(robot)",
         ),
@@ -43,7 +45,7 @@ ZONES = (
         "zone_entered_only_when_held",
         "A leg's zones are taken one pose too late, and nothing guards them.",
         edit(steps.visit, "if leg.start == index and", "if leg.start + 1 == index and"),
-        edit(Context._barrier, "if not missing:", "if missing is not None:"),
+        edit(CellZones.objection, "if not missing:", "if missing is not None:"),
         seeds=SHARED,
     ),
 )
@@ -158,7 +160,7 @@ ROBBED = (
     mutant(
         "robbed_task_is_not_done",
         "Nobody looks whether an effector opened by itself, or has lost its part.",
-        edit(Context.part_gone, "if robot is None or", "if True or"),
+        edit(Failures.opened_effector, "if robot is None or", "if True or"),
         *LOOKS_AT_NO_PIECE,
         weather={"opened_effector": 20.0},
     ),
@@ -171,7 +173,7 @@ ROBBED = (
     mutant(
         "unchecked_is_as_said",
         "Where no piece sensor speaks nothing is said of it.",
-        edit(Piece._seen, "handling.miss(Check.GRIP)", "pass"),
+        edit(Piece._seen, "self.handling.miss(Check.GRIP)", "pass"),
         weather="none",
         seeds=SHARED,
     ),

@@ -17,7 +17,7 @@ from arboleda.wire import strict
 from .mutant import SHARED, edit, mutant
 
 BEAT = "self._beat()\n    self.next_deadline = self._earliest()"
-COLLECT = "out, self.dispatcher.outbox = self.dispatcher.outbox, []"
+COLLECT = "out = self.dispatcher.outbox.copy()\n    self.dispatcher.outbox.clear()"
 STAYS_SHORT = (
     " or at < seen.stopped_since + QUIET_S:\n"
     "        return False\n"
@@ -76,7 +76,7 @@ TASKS = (
     mutant(
         "courses_are_as_seen",
         "The time for which a task is held counts as its work.",
-        edit(TreeRun.course, "self._context.now", "self._context.plant_now"),
+        edit(TreeRun.course, "self._context.time.now", "self._context.time.plant_now"),
         weather={"operator_hold": 30.0, "operator_resume": 60.0},
     ),
     mutant(
@@ -98,7 +98,7 @@ TASKS = (
     mutant(
         "accepted_tasks_are_kept",
         "A stop empties the queue and tells nobody.",
-        edit(CellRun.stop, "self.queue_paused = True", "self.queue_paused = True; self.queue.clear()"),
+        edit(CellRun.stop, "self.queue.paused = True", "self.queue.paused = True; self.queue.clear()"),
         weather={"operator_stop": 10.0},
     ),
     mutant(
@@ -161,13 +161,13 @@ LIVENESS = (
     mutant(
         "running_tree_has_waker",
         "A dwell does not ask to be woken.",
-        edit(Dwell.initialise, "self.context.wake_at(self.until)", ""),
+        edit(Dwell.initialise, "self.time.wake_at(self.until)", ""),
         weather="none",
     ),
     mutant(
         "time_stands_still_only_when_held",
         "A cell that is stopped while it is held never gets its time back.",
-        edit(CellRun.stop, "self.context.go_on()", ""),
+        edit(CellRun.stop, "self.context.time.go_on()", ""),
         weather={"operator_hold": 5.0, "operator_stop": 5.0},
     ),
     mutant(
@@ -181,8 +181,8 @@ LIVENESS = (
         "An idle cell looks into its queue only when something else changed.",
         edit(
             CellRun.advance,
-            "if self.state is CellState.IDLE and self.queue",
-            "if self.dirty and self.state is CellState.IDLE and self.queue",
+            "if self.queue and self.state is CellState.IDLE",
+            "if self.dirty and self.queue and self.state is CellState.IDLE",
         ),
         weather="none",
     ),
@@ -209,8 +209,8 @@ LIVENESS = (
         "To resume an idle cell does not let its queue run.",
         edit(
             CellRun.resume,
-            "    self.queue_paused = False",
-            "        self.queue_paused = False",
+            "    self.queue.resume()",
+            "        self.queue.resume()",
         ),
         weather={"operator_stop": 5.0},
         rest_s=PATIENCE_S,

@@ -8,7 +8,7 @@ from arboleda.core.leaving import leaves_unkept
 from arboleda.core.operator import _not_yet
 from arboleda.dispatch import evidence
 from arboleda.model.messages import Course
-from arboleda.trees.context import Context
+from arboleda.trees.stations import Stations
 from arboleda.trees.trail import Known, put_back
 from arboleda.trees.tree_run import TreeRun
 from arboleda.trees.walk_back import WalkBack, fate
@@ -50,8 +50,8 @@ PLANTED = (
     mutant(
         "verbs_do_what_they_say",
         "A stop does not cancel homing and release.",
-        edit(CellRun.stop, "self.context.cancel_all()", ""),
-        edit(TreeRun.drop, "self._context.cancel_all()", ""),
+        edit(CellRun.stop, "self.context.commands.cancel_all()", ""),
+        edit(TreeRun.drop, "self._context.commands.cancel_all()", ""),
         weather={"operator_stop": 60.0, "operator_home": 60.0, "operator_release": 60.0, "reboot": 10.0},
     ),
     mutant(
@@ -96,7 +96,7 @@ PLANTED = (
     mutant(
         "verbs_do_what_they_say",
         "A station keeps its part though somebody takes it out.",
-        edit(Context.unload, "self.stored - {station}", "self.stored"),
+        edit(Stations.unload, "self.stored - {station}", "self.stored"),
         weather={"operator_unload": 60.0},
     ),
     mutant(

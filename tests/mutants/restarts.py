@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from arboleda.core.cell import CellRun
 from arboleda.core.intake import Intake
 from arboleda.core.leaving import is_too_late, leaves_unkept
 from arboleda.core.plant import Plant
+from arboleda.core.task_queue import TaskQueue
 from arboleda.model.task import Task
 
 from .mutant import edit, mutant
@@ -60,7 +60,7 @@ RESTARTS = (
     mutant(
         "nothing_moves_after_a_restart",
         "What waited starts again by itself.",
-        edit(CellRun.take_back, "not self.cell.goes_on", "False"),
+        edit(TaskQueue.take_back, "not self._cell.goes_on", "False"),
         weather=DIES,
     ),
 )

@@ -5,15 +5,16 @@ from __future__ import annotations
 from arboleda.core import advisor
 from arboleda.core.acts import outcome_of
 from arboleda.core.advisor import Advisor
-from arboleda.core.cell import CellRun
 from arboleda.core.operator import Operator
 from arboleda.core.plant import Plant
+from arboleda.core.readiness import Readiness
 from arboleda.dispatch import evidence
 from arboleda.dispatch.belief import Belief
 from arboleda.dispatch.dispatcher import Dispatcher
 from arboleda.recipes import storage
 from arboleda.trees import steps
-from arboleda.trees.context import Context
+from arboleda.trees.cell_zones import CellZones
+from arboleda.trees.stations import Stations
 from arboleda.views import oee, view
 from arboleda.wire import status
 from arboleda.wire.board import Board
@@ -64,8 +65,8 @@ PEOPLE = (
         "tasks_start_where_all_is_ready",
         "A task starts whatever its robots say.",
         edit(
-            CellRun._unready,
-            "found = [self.context.obstacle(robot.name) for robot in self.cell.reached]",
+            Readiness.objection,
+            "found = [self._context.robots.obstacle(robot.name) for robot in self._cell.reached]",
             "found = []",
         ),
     ),
@@ -89,8 +90,8 @@ PEOPLE = (
         "After an effector nobody dwells.",
         edit(
             steps.effector,
-            "Dwell(DWELL(), context, context.timing.dwell_s)",
-            "Dwell(DWELL(), context, 0.0)",
+            "Dwell(DWELL(), context.time, context.timing.dwell_s)",
+            "Dwell(DWELL(), context.time, 0.0)",
         ),
         weather="none",
     ),
@@ -98,9 +99,9 @@ PEOPLE = (
         "recovery_takes_its_zones",
         "A recovery from an unknown place is planned as from home.",
         edit(
-            Context.recovery_zones,
+            CellZones.for_recovery,
             "self._dispatcher.place(space)",
-            "self.standing(robot)",
+            "self._robots.standing(robot)",
         ),
         seeds=SHARED,
         weather={"brown_out": 10.0, "operator_override": 20.0, "operator_retry": 20.0, "lost_steps": 10.0},
@@ -109,7 +110,7 @@ PEOPLE = (
     mutant(
         "verbs_are_refused_rightly",
         "A cell whose queue runs can be resumed.",
-        edit(Operator._not_resumable, "None if cell.queue_paused else", "None if True else"),
+        edit(Operator._not_resumable, "None if cell.queue.paused else", "None if True else"),
         weather={"operator_resume": 40.0},
         likely=12,
     ),
@@ -134,22 +135,22 @@ PEOPLE = (
         "A latch is remembered only after it left.",
         edit(
             Dispatcher.latch,
-            "self.remember(Fact.LATCH, robot, LATCHED)\n    self._stop(robot, StopMode.LATCH)",
-            "self._stop(robot, StopMode.LATCH)\n    self.remember(Fact.LATCH, robot, LATCHED)",
+            "self.memory.remember(Fact.LATCH, robot, LATCHED)\n    self._stop(robot, StopMode.LATCH)",
+            "self._stop(robot, StopMode.LATCH)\n    self.memory.remember(Fact.LATCH, robot, LATCHED)",
         ),
         weather={"operator_stop": 10.0},
     ),
     mutant(
         "kept_is_what_is",
         "An overridden zone is still kept, and so quarantined again after a restart.",
-        edit(Operator._override, "self._dispatcher.forget_zone(zone)", ""),
+        edit(Operator._override, "self._dispatcher.memory.vacate([zone])", ""),
         seeds=SHARED,
         weather={"brown_out": 15.0, "operator_override": 40.0, "operator_stop": 5.0},
     ),
     mutant(
         "racks_hold_what_was_put",
         "Of the parts in a rack only the last one is known.",
-        edit(Context.store, "self.stored | numbers", "numbers"),
+        edit(Stations.store, "self.stored | numbers", "numbers"),
         weather="none",
     ),
 )
@@ -173,7 +174,7 @@ ADVICE = (
     mutant(
         "no_advice_where_all_is_well",
         "It is advised to resume a queue that runs.",
-        edit(advisor._running_again, "if run.queue_paused:", "if True:"),
+        edit(advisor._running_again, "if run.queue.paused:", "if True:"),
         likely=83,
         weather="none",
         rest_s=60.0,

@@ -8,6 +8,7 @@ from typing import Any
 
 import pytest
 
+from arboleda.core import reasons
 from arboleda.core.cell_states import CellState
 from arboleda.kinds.arm import MoveJoints
 from arboleda.kinds.mobile import FollowPath
@@ -54,8 +55,8 @@ def test_a_cell_at_work_is_held_and_its_next_task_waits(
     away(rig, seconds, *processes)
     held = rig.plant.cells["sis_a"]
     assert (held.state, held.trouble.reason) == (CellState.HELD, Reason.LINK_LOST)
-    assert f"the plant was away for {seconds:.0f}" in str(held.held_by)
-    assert "retry sis_a or abandon sis_a" in str(held.held_by)
+    assert f"the plant was away for {seconds:.0f}" in str(reasons.of_hold(held))
+    assert "retry sis_a or abandon sis_a" in str(reasons.of_hold(held))
     assert motions(rig) == [] and len(held.queue) == 1
     assert [type(each) for each in rig.sent if isinstance(each, Absence)] == [Absence]
 
@@ -110,7 +111,7 @@ def test_a_task_that_waits_in_a_cell_with_nothing_under_way_begins_by_itself(rig
     task = rig.submit("sis_a 0B 4").task
     away(rig, 20.0, PLANT)
     cell = rig.plant.cells["sis_a"]
-    assert (cell.state, len(cell.queue), cell.queue_paused) == (CellState.IDLE, 1, False)
+    assert (cell.state, len(cell.queue), cell.queue.paused) == (CellState.IDLE, 1, False)
     rig.start_broker()
     assert rig.wait(120.0, until=lambda: rig.outcomes()[task].state.value == "done")
 
@@ -238,10 +239,10 @@ def test_a_cell_of_which_the_file_says_nothing_stays_held_beside_one_that_goes_o
 def test_a_queue_that_was_paused_before_an_absence_stays_so(going_on: Rig) -> None:
     first = going_on.submit("sis_a 0B 4").task
     going_on.wait_for("sis_a", "main/move to pick-up")
-    going_on.plant.cells["sis_a"].queue_paused = True
+    going_on.plant.cells["sis_a"].queue.paused = True
     going_on.stall(PLANT, 3.0)
     assert going_on.wait(120.0, until=lambda: going_on.outcomes()[first].state.value == "done")
-    assert going_on.plant.cells["sis_a"].queue_paused
+    assert going_on.plant.cells["sis_a"].queue.paused
 
 
 def test_a_hold_of_an_operator_is_still_his(rig: Rig) -> None:

@@ -7,6 +7,7 @@ from typing import Any
 
 import pytest
 
+from arboleda.core import reasons
 from arboleda.core.advice import Advice, Hand, sentence
 from arboleda.model.commands import Stop, StopMode
 from arboleda.model.messages import OperatorRequest, Reason, TaskState, Verb
@@ -120,7 +121,7 @@ def test_the_first_advice_leads_to_a_working_cell(stage: Stage, evidence: Eviden
     rig.wait(20.0)
     follow(rig, "sis_a")
     rig.submit("sis_a 0B 1")
-    assert rig.wait(60.0, until=lambda: works(rig, "sis_a")), cell(rig).waiting_for()
+    assert rig.wait(60.0, until=lambda: works(rig, "sis_a")), reasons.of_waiting(cell(rig))
     assert witness.false_successes == []
 
 
@@ -130,7 +131,7 @@ def test_after_a_reboot_in_mid_move_home_comes_first(stage: Stage) -> None:
     rig.wait(10.0)
     assert advised(rig, "sis_a") == ["home ra1", "retry sis_a", "abandon sis_a"]
     said = "sis_a is held (ra1 was not homed); home ra1, then retry sis_a or abandon sis_a"
-    assert str(cell(rig).held_by) == said
+    assert str(reasons.of_hold(cell(rig))) == said
     assert (first(rig).moves, str(first(rig).why)) == (("ra1",), "ra1 is not homed")
     assert follow(rig, "sis_a") == ["home ra1", "retry sis_a", "resume sis_a"]
 
@@ -150,8 +151,8 @@ def test_what_is_lost_is_brought_back_first_and_what_is_back_is_not_said_to_be_l
     assert str(first(rig).why) == "ra1 is offline"
     rig.power_on("ra_1")
     rig.wait(2.0)
-    assert str(cell(rig).held_by).startswith("sis_a is held (ra1 was lost); home ra1, then ")
-    assert "is offline" not in str(cell(rig).held_by)
+    assert str(reasons.of_hold(cell(rig))).startswith("sis_a is held (ra1 was lost); home ra1, then ")
+    assert "is offline" not in str(reasons.of_hold(cell(rig)))
 
 
 def test_a_fault_is_repaired_first(stage: Stage) -> None:
@@ -223,7 +224,7 @@ def test_there_is_no_advice_where_only_time_is_needed(stage: Stage, trouble: Any
         rig.wait(10.0)
         assert rig.operate(Verb.HOME, "ra1") is None
         rig.wait(0.2)
-        assert str(cell(rig).held_by).endswith("; ra1 is still homing")
+        assert str(reasons.of_hold(cell(rig))).endswith("; ra1 is still homing")
     else:
         rig.submit(TASK)
     assert rig.plant.advice("sis_a") == ()
@@ -263,7 +264,7 @@ def test_a_cell_is_held_by_a_part_that_its_arm_may_hold(stage: Stage) -> None:
     rig.wait(2.0)
     assert [rig.operate(verb, "sis_a") for verb in (Verb.CLEAR, Verb.RESET)] == [None, None]
     rig.wait(2.0)
-    assert "ra1 may hold a part, its effector is on" in str(cell(rig).held_by)
+    assert "ra1 may hold a part, its effector is on" in str(reasons.of_hold(cell(rig)))
 
 
 def test_an_idle_cell_that_cannot_work_says_why(stage: Stage) -> None:

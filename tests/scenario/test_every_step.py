@@ -8,6 +8,7 @@ from typing import Any, cast
 
 import pytest
 
+from arboleda.core import reasons
 from arboleda.core.cell_states import CellState
 from arboleda.model.messages import Reason, TaskChanged, TaskState, Verb
 from arboleda.model.plant_model import Evidence
@@ -79,7 +80,7 @@ class Scene:
 
     def becomes(self, state: CellState, seconds: float) -> None:
         assert self.rig.wait(seconds, until=lambda: self.cell.state is state), (
-            f"{self.cell.state.value}: {self.cell.waiting_for()}"
+            f"{self.cell.state.value}: {reasons.of_waiting(self.cell)}"
         )
 
     @property
@@ -156,7 +157,7 @@ def test_stop_then_clear_reset_and_resume(scene: Any, evidence: Evidence, step: 
     here.rig.wait(2.0)
     assert here.witness.motions_since(mark, here.rig.model.robots) == []
     assert here.body.effector is on, "effectors keep their state"
-    assert here.cell.state is (CellState.HELD if here.cell.context.holding else CellState.IDLE)
+    assert here.cell.state is (CellState.HELD if here.cell.context.parts.holding else CellState.IDLE)
     assert not on or here.cell.state is CellState.HELD
     if here.cell.state is CellState.HELD:
         assert here.operate(Verb.RESUME) is not None

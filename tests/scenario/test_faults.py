@@ -14,6 +14,7 @@ from typing import Any
 
 import pytest
 
+from arboleda.core import reasons
 from arboleda.core.cell_states import CellState
 from arboleda.model.messages import Reason, TaskState
 from arboleda.model.plant_model import Evidence
@@ -609,7 +610,7 @@ def run(rig: Rig, row: Row, spot: Spot, bound_s: float) -> Course:
     course, cell = Course(), rig.plant.cells["sis_a"]
 
     def watch() -> None:
-        if course.noticed is None and cell.context.failure is not None:
+        if course.noticed is None and cell.context.failures.first is not None:
             course.noticed = rig.now
 
     rig.watchers.append(watch)
@@ -656,5 +657,5 @@ def test_fault(row: Row, spot: Spot, level: Evidence) -> None:
         assert course.noticed is not None and course.noticed - course.began <= notice_s
         assert spot.robot in str(change.sentence) or change.reason is Reason.INTERNAL
     if where is CellState.HELD:
-        said = str(cell.held_by)
+        said = str(reasons.of_hold(cell))
         assert ("retry sis_a" in said and "abandon sis_a" in said) or "stop sis_a, then clear sis_a" in said

@@ -6,6 +6,7 @@ from typing import Any
 
 import pytest
 
+from arboleda.core import reasons
 from arboleda.core.cell_states import CellState
 from arboleda.kinds.arm import SetEffector
 from arboleda.model.messages import Interference, Reason, Verb
@@ -83,7 +84,7 @@ def test_an_effector_that_opens_while_the_task_is_held_leaves_nothing_to_go_on_w
     rig.open_effector("ra_1")
     rig.wait(1.0)
     held = rig.plant.cells["sis_a"]
-    assert "ra1 has no part to go on with: abandon sis_a" in str(held.held_by)
+    assert "ra1 has no part to go on with: abandon sis_a" in str(reasons.of_hold(held))
     assert rig.operate(Verb.RESUME, "sis_a") and rig.operate(Verb.RETRY, "sis_a")
     assert rig.operate(Verb.ABANDON, "sis_a") is None
     rig.wait(60.0, until=lambda: rig.plant.at_rest)

@@ -8,6 +8,7 @@ from typing import Any
 
 import pytest
 
+from arboleda.core import reasons
 from arboleda.core.cell_states import CellState
 from arboleda.model.commands import Command, Home, Stop, StopMode
 from arboleda.model.messages import Fact, Journal, OperatorRequest, Reason, TaskChanged, TaskState, Verb
@@ -131,7 +132,7 @@ STATES: dict[str, tuple[Callable[[Rig], None], CellState, set[Verb]]] = {
 def facts(rig: Rig) -> Any:
     """Everything that a refused verb must leave as it is."""
     latched = set(rig.plant.dispatcher.latched)
-    grip = rig.plant.dispatcher.grips["ra1"]
+    grip = rig.plant.dispatcher.effectors.grips["ra1"]
     return rig.snapshot(), latched, grip, {fact: dict(kept) for fact, kept in rig.memory.items()}
 
 
@@ -358,7 +359,9 @@ def test_a_fault_while_held_makes_resume_impossible(stage: Stage, evidence: Evid
         evidence is Evidence.IDS and fault == "the arm's board reboots"
     )  # its effector went off, and says so
     refusal = str(rig.operate(Verb.RESUME, "sis_a"))
-    assert (refusal == str(cell(rig).held_by) and "abandon sis_a" in refusal) or "stop sis_a" in refusal
+    assert (
+        refusal == str(reasons.of_hold(cell(rig))) and "abandon sis_a" in refusal
+    ) or "stop sis_a" in refusal
     assert ("no part to go on with" in refusal) is robbed
     rig.wait(10.0)
     assert witness.motions_since(mark, rig.model.robots) == []
@@ -394,7 +397,7 @@ def test_after_a_failed_recovery_retry_carries_the_part_back(stage: Stage, evide
     assert (change.state, change.reason) == (TaskState.FAILED, Reason.DEVICE_FAULT)
     assert witness.part["ra1"] == "effector"
     rig.submit("sis_a 0B 1")
-    assert "held" in str(cell(rig).waiting_for())
+    assert "held" in str(reasons.of_waiting(cell(rig)))
     act(rig, Verb.RETRY)
     assert rig.wait(30.0, until=lambda: cell(rig).state is CellState.IDLE)
     assert witness.part["ra1"] == "pick-up"
@@ -473,7 +476,7 @@ def test_a_rebooted_arm_is_homed_by_the_verb(stage: Stage) -> None:
     rig.crash("ra_1")
     rig.wait(1.0)
     rig.submit(TASK)
-    assert str(cell(rig).waiting_for()) == "ra1 is not homed"
+    assert str(reasons.of_waiting(cell(rig))) == "ra1 is not homed"
     mark = len(rig.to_boards)
     rig.wait(20.0)
     assert witness.motions_since(mark, rig.model.robots) == [], "the position is unknown"
@@ -508,7 +511,7 @@ def test_a_robot_that_cannot_say_so_is_homed_by_hand(evidence: Evidence) -> None
     rig.wait(30.0, until=lambda: rig.plant.at_rest)
     if evidence is Evidence.STATE:
         return  # a reboot is not detectable there
-    assert "not homed" in str(cell(rig).held_by)
+    assert "not homed" in str(reasons.of_hold(cell(rig)))
     if evidence is Evidence.JOINTS:
         assert "--by-hand" in str(rig.operate(Verb.HOME, "ra1"))
     assert rig.operate(Verb.HOME, "ra1", by_hand=True) is None
@@ -637,7 +640,7 @@ def test_the_queue_is_paused_after_a_stop_until_resume(stage: Stage, evidence: E
     rig.submit("sis_a 0B 1")
     act(rig, Verb.STOP, Verb.CLEAR, Verb.RESET)
     rig.wait(10.0)
-    assert "paused" in str(cell(rig).waiting_for()) and len(cell(rig).queue) == 1
+    assert "paused" in str(reasons.of_waiting(cell(rig))) and len(cell(rig).queue) == 1
     act(rig, Verb.RESUME)
     rig.wait(60.0, until=lambda: rig.plant.at_rest)
     assert [change.state for change in rig.outcomes().values()] == [TaskState.FAILED, TaskState.DONE]

@@ -240,7 +240,7 @@ def test_a_piece_that_never_comes_is_waited_for_as_long_as_declared(
     rig.submit(TASK)
     rig.wait_for("sis_a", "piece there")
     began, wait_s = rig.now, rig.model.timing.piece_wait_s
-    assert rig.wait(60.0, until=lambda: cell(rig).context.failure is not None)
+    assert rig.wait(60.0, until=lambda: cell(rig).context.failures.first is not None)
     assert rig.now - began == pytest.approx(wait_s + times * (1.5 + wait_s))
     change = ended(rig)
     assert (change.state, change.reason, cell(rig).state) == (
@@ -385,7 +385,7 @@ def test_a_part_that_falls_is_noticed_once_it_is_gone_for_the_debounce_time(
     body(rig).supplied = False
     body(rig).lose_piece()
     fell_at = rig.now
-    assert rig.wait(10.0, until=lambda: cell(rig).context.failure is not None)
+    assert rig.wait(10.0, until=lambda: cell(rig).context.failures.first is not None)
     timing = rig.model.timing
     assert timing.piece_debounce_s <= rig.now - fell_at <= timing.piece_debounce_s + 0.3
     change = ended(rig)

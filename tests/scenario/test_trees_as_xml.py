@@ -8,6 +8,7 @@ from shutil import copytree
 import pytest
 
 from arboleda.bt_xml.parameters import LARGEST
+from arboleda.core import reasons
 from arboleda.core.plant import Plant
 from arboleda.core.text import parse
 from arboleda.model.messages import TaskState, Verb
@@ -82,7 +83,7 @@ def test_a_tree_that_was_changed_is_not_walked_into(folder: Path) -> None:
     tree.write_text(tree.read_text().replace('num_attempts="2"', 'num_attempts="3"'))
     restart(rig, load(folder / "plant.yaml"), after_s=1.0)
     rig.wait(1.0)
-    assert "its recipe or the plant file has changed" in str(rig.plant.cells["cell"].held_by)
+    assert "its recipe or the plant file has changed" in str(reasons.of_hold(rig.plant.cells["cell"]))
 
 
 def test_screens_see_its_variables(folder: Path) -> None:

@@ -9,6 +9,7 @@ from typing import Any
 
 import pytest
 
+from arboleda.core import reasons
 from arboleda.core.cell_states import CellState
 from arboleda.model.commands import Command, Stop
 from arboleda.model.messages import Fact, Reason, Remember, Shutdown, TaskState, Verb
@@ -63,7 +64,7 @@ def commands(rig: Rig) -> list[str]:
 
 def held(rig: Rig) -> str:
     assert run(rig).state is CellState.HELD
-    return str(run(rig).held_by)
+    return str(reasons.of_hold(run(rig)))
 
 
 def outcome(rig: Rig) -> TaskState:
@@ -89,7 +90,7 @@ def test_it_stands_at_its_step_moves_nothing_and_goes_on_after_resume(
     assert len(commands(rig)) == before
     assert rig.operate(Verb.RESUME, CELL) is None
     assert outcome(rig) is TaskState.DONE
-    assert run(rig).context.stored == {7}
+    assert run(rig).context.stations.stored == {7}
     assert [switch.on for switch in witness.switches] == [True, False], "it picks once and places once"
     assert not witness.illegal and not witness.false_successes
 
@@ -186,7 +187,7 @@ def test_a_part_that_was_lost_meanwhile_is_not_delivered(stage: Stage) -> None:
     assert rig.operate(Verb.ABANDON, CELL) is None
     assert outcome(rig) is TaskState.FAILED
     assert rig.outcomes()[ID].reason is Reason.PART_LOST
-    assert run(rig).context.stored == frozenset()
+    assert run(rig).context.stations.stored == frozenset()
 
 
 def test_a_part_that_was_lost_stays_lost_though_the_effector_is_closed_again(stage: Stage) -> None:
@@ -458,7 +459,7 @@ def test_killed_between_any_two_messages_it_picks_once_and_places_once(bridge: b
         restart(rig, bridge=bridge, after_s=1.5)
         assert served(rig) is TaskState.DONE, number
         assert [switch.on for switch in witness.switches] == [True, False], number
-        assert run(rig).context.stored == {7}, number
+        assert run(rig).context.stations.stored == {7}, number
         assert not witness.illegal and not witness.false_successes, number
         number += 1
     assert number > 20

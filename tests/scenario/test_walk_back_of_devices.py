@@ -7,6 +7,7 @@ from shutil import copytree
 
 import pytest
 
+from arboleda.core import reasons
 from arboleda.core.advice import Hand
 from arboleda.core.cell_states import CellState
 from arboleda.model.commands import Command, Stop
@@ -111,7 +112,7 @@ def test_a_switch_that_was_done_before_its_board_took_it_is_known_to_have_been_o
 
     rig.lost = held_up
     rig.submit("tending wave #one")
-    assert rig.wait(5.0, until=lambda: rig.plant.cells["tending"].context.moves("left"))
+    assert rig.wait(5.0, until=lambda: rig.plant.cells["tending"].context.robots.belief("left").moves)
     rig.inject(late[0])
     rig.wait(0.3)
     restart(rig)
@@ -246,7 +247,7 @@ def test_what_a_power_cut_made_the_plant_forget_is_not_begun_again(reached: int)
     rig.start_plant()
     rig.wait(10.0)
     if rig.operate(Verb.RESUME, "bench") is not None:
-        held = str(rig.plant.cells["bench"].held_by)
+        held = str(reasons.of_hold(rig.plant.cells["bench"]))
         assert "pump has taken commands of which this plant knows nothing" in held
     rig.wait(20.0)
     assert sent(rig).count("pump dispense") == 1
@@ -264,7 +265,7 @@ def test_another_recipe_of_that_name_is_not_walked_into() -> None:
     restart(rig, plant(twice), after_s=1.0)
     rig.wait(1.0)
     said = "its recipe or the plant file has changed since it began: abandon tending"
-    assert str(rig.plant.cells["tending"].held_by).endswith(said)
+    assert str(reasons.of_hold(rig.plant.cells["tending"])).endswith(said)
     assert rig.operate(Verb.RESUME, "tending") is not None
     assert rig.operate(Verb.ABANDON, "tending") is None
     assert rig.wait(30.0, until=lambda: state(rig) is TaskState.FAILED)
@@ -367,4 +368,4 @@ def test_while_only_time_is_needed_nothing_is_advised() -> None:
     restart(rig, after_s=1.0)
     rig.wait(2.0)
     assert rig.plant.advice("bench") == ()
-    assert str(rig.plant.cells["bench"].held_by).endswith("; wait")
+    assert str(reasons.of_hold(rig.plant.cells["bench"])).endswith("; wait")

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pytest
 
+from arboleda.core import reasons
 from arboleda.core.cell_states import CellState
 from arboleda.model.messages import Fact, Journal, Reason, TaskState, Verb
 from arboleda.model.plant_model import Evidence, PlantModel
@@ -111,7 +112,7 @@ def test_the_zone_of_a_silent_arm_is_quarantined_and_who_waits_gives_up_in_time(
     rig.wait(2.0)
     assert zone(rig, "centre") == ("quarantined", "ra1")
     assert rig.memory[Fact.QUARANTINE]["centre"] == "ra1"
-    assert rig.wait(WAIT_S + 20.0, until=lambda: rig.plant.cells["sis_b"].context.failure is not None)
+    assert rig.wait(WAIT_S + 20.0, until=lambda: rig.plant.cells["sis_b"].context.failures.first is not None)
     assert rig.now - since == pytest.approx(WAIT_S)
     assert rig.wait(WAIT_S + 20.0, until=lambda: rig.plant.cells["sis_b"].task is None)
     change = list(rig.outcomes().values())[1]
@@ -243,7 +244,7 @@ def test_after_a_crash_an_empty_arm_is_homed_out_of_the_zones(zoned: Plants, evi
     if evidence is Evidence.STATE:
         return  # nobody can see where it stands
     rig.submit("sis_a 0B 7")
-    assert "home ra1" in str(rig.plant.cells["sis_a"].waiting_for())
+    assert "home ra1" in str(reasons.of_waiting(rig.plant.cells["sis_a"]))
     if evidence is Evidence.IDS:
         assert rig.operate(Verb.HOME, "ra1") is None
         assert rig.wait(120.0, until=lambda: at_rest(rig))
@@ -335,7 +336,9 @@ def test_a_recovery_gives_up_where_who_has_the_zone_or_waits_before_it_is_held(
     assert rig.operate(Verb.HOLD, "sis_a") is None
     rig.wait(2 * HASTE_S)
     assert rig.plant.cells["sis_c"].state is CellState.HELD
-    assert str(rig.plant.cells["sis_b"].waiting_for()).startswith("sis_b is held (ra2: zone centre was not")
+    assert str(reasons.of_waiting(rig.plant.cells["sis_b"])).startswith(
+        "sis_b is held (ra2: zone centre was not"
+    )
     for name in ("sis_b", "sis_c", "sis_a"):
         follow(rig, name)
     assert rig.wait(120.0, until=lambda: at_rest(rig))
@@ -418,7 +421,7 @@ def calm(rig: Rig) -> None:
             rig.wait(2.0)
         for robot, belief in rig.plant.dispatcher.beliefs.items():
             cell = rig.model.cell_of[robot]
-            if belief.unhomed or rig.plant.cells[cell.name].context.astray():
+            if belief.unhomed or rig.plant.cells[cell.name].context.zones.astray():
                 rig.operate(Verb.HOME, robot)
         rig.wait(8.0)
         rig.operate(Verb.RETRY)
@@ -436,7 +439,7 @@ def test_whatever_happens_no_two_arms_meet_and_nothing_is_dropped(zoned: Plants,
         assert witness.collisions == []
     calm(rig)
     honest(witness)
-    states = {name: (cell.state, cell.held_by) for name, cell in rig.plant.cells.items()}
+    states = {name: (cell.state, reasons.of_hold(cell)) for name, cell in rig.plant.cells.items()}
     assert all(state is CellState.IDLE for state, _ in states.values()), states
     assert all(row["state"] == "free" for row in rig.plant.zones.snapshot())
 

@@ -99,7 +99,7 @@ def test_a_robot_that_moves_is_not_at_its_end_but_one_that_stands_may_be(plant):
 
 
 def test_a_tree_that_awaits_the_piece_sensor_is_not_kept_waiting(plant):
-    plant.cells["sis_a"].context.awaits_piece = True
+    plant.cells["sis_a"].context.sensors.awaited = True
     silent = replace(REST, piece=None)
     assert patience(plant, REST, REST) == [0.0, 0.0]
     assert patience(plant, silent, silent) == [0.0, RESTING_S]

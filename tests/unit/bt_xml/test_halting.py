@@ -38,16 +38,17 @@ class Context:
 
     def __init__(self) -> None:
         self.now = 0.0
-        self.failure: Failure | None = None
+        self.first: Failure | None = None
+        self.time = self.failures = self
 
     def wake_at(self, at: float) -> None:
         """Every tick comes anyway."""
 
-    def fail(self, failure: Failure, leaf: Behaviour | None = None) -> None:
-        self.failure = self.failure or failure
+    def add(self, failure: Failure, leaf: Behaviour | None = None) -> None:
+        self.first = self.first or failure
 
     def forgive(self) -> None:
-        self.failure = None
+        self.first = None
 
 
 class Acts(Behaviour):
@@ -63,7 +64,7 @@ class Acts(Behaviour):
             return Status.RUNNING
         if self.ends == "done":
             return Status.SUCCESS
-        self.context.fail({"lost": LOST, "refused": REFUSED}[self.ends], self)
+        self.context.failures.add({"lost": LOST, "refused": REFUSED}[self.ends], self)
         return Status.FAILURE
 
 
@@ -166,7 +167,7 @@ def test_nothing_runs_below_what_has_ended(kind: str, cause: str) -> None:
     for body in sample(bodies(kind, cause), every=3):
         tree, context = main(body)
         for number in range(TICKS):
-            context.now = number * BETWEEN_S
+            context.time.now = number * BETWEEN_S
             tree.scope.set("n", number + 1)
             tree.tick_once()
             assert left_alone(tree) == [], (body, number)
@@ -184,7 +185,7 @@ def test_nothing_runs_once_the_whole_is_left(kind: str, cause: str) -> None:
         for ticks in range(1, 4):
             tree, context = main(body)
             for number in range(ticks):
-                context.now = number * BETWEEN_S
+                context.time.now = number * BETWEEN_S
                 tree.tick_once()
             tree.stop(Status.INVALID)
             assert at_work(tree) == [], (body, ticks)
@@ -195,7 +196,7 @@ def test_nothing_runs_once_the_task_has_failed_beside_the_tree(kind: str) -> Non
     for body in bodies(kind, "done"):
         tree, context = main(body)
         tree.tick_once()
-        context.fail(LOST)
+        context.failures.add(LOST)
         tree.tick_once()
         assert (tree.status, at_work(tree)) == (Status.FAILURE, []), body
 
@@ -235,7 +236,7 @@ def test_nothing_runs_below_what_has_ended_in_python(outer: str, inner: str) -> 
         one, two, three = (Acts(context, ticks, end) for ticks, end in ends)
         tree = work(IN_PYTHON[outer](kit, IN_PYTHON[inner](kit, one, two), three))
         for number in range(TICKS):
-            context.now = number * BETWEEN_S
+            context.time.now = number * BETWEEN_S
             tree.tick_once()
             assert left_alone(tree) == [], (ends, number)
             began += len(at_work(tree))

@@ -10,6 +10,7 @@ from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 from py_trees.composites import Sequence
 
+from arboleda.core import reasons
 from arboleda.core.cell import CellRun
 from arboleda.core.cell_states import CellState
 from arboleda.core.operator import Operator
@@ -157,7 +158,7 @@ def test_a_rule_that_raises_holds_its_cell_and_halts_what_moves(
     monkeypatch.undo()
     held = cell_of(plant, "sis_a")
     assert (held.state, held.trouble.reason) == (CellState.HELD, Reason.INTERNAL)
-    assert "retry sis_a or abandon sis_a" in str(held.held_by)
+    assert "retry sis_a or abandon sis_a" in str(reasons.of_hold(held))
     assert [stop.robot for stop in plant.commands(Stop)] == ["rm_sis_a"]
     assert len(plant.commands(InternalError)) == 1
     assert plant.states()[-1] == "failed" and cell_of(plant, "sis_b").state is CellState.EXECUTE

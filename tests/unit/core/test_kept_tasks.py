@@ -45,22 +45,22 @@ def test_nothing_starts_before_somebody_resumes_and_the_cell_says_so() -> None:
     plant = start(kept("a", "sis_a 0B 1"))
     run = plant.cells["sis_a"]
     plant.step(100.0, ())
-    assert run.queue_paused
-    assert str(run.why_paused) == "1 task of an earlier start waits in sis_a; resume sis_a starts it"
+    assert run.queue.paused
+    assert str(run.queue.why_paused) == "1 task of an earlier start waits in sis_a; resume sis_a starts it"
     plant.step(100.1, [OperatorRequest(at=100.1, verb=Verb.RESUME, scope="sis_a")])
-    assert not run.queue_paused
-    assert not plant.cells["sis_b"].queue_paused
+    assert not run.queue.paused
+    assert not plant.cells["sis_b"].queue.paused
 
 
 def test_a_cell_that_goes_on_by_itself_is_not_paused() -> None:
-    assert not start(kept("a", "sis_a 0B 1"), goes_on=True).cells["sis_a"].queue_paused
+    assert not start(kept("a", "sis_a 0B 1"), goes_on=True).cells["sis_a"].queue.paused
 
 
 def test_a_task_that_was_at_work_has_failed_and_pauses_even_a_cell_that_goes_on() -> None:
     plant = start(kept("a", "sis_a 0B 1", TaskState.RUNNING), kept("b", "sis_a 0B 2"), goes_on=True)
     (told,) = changes(plant)
     assert (told.task, told.state, told.reason) == ("a", TaskState.FAILED, Reason.INTERRUPTED)
-    assert plant.cells["sis_a"].queue_paused
+    assert plant.cells["sis_a"].queue.paused
     assert [task.id for task in plant.cells["sis_a"].queue] == ["b"]
 
 

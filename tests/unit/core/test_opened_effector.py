@@ -24,7 +24,7 @@ def test_whatever_the_evidence_a_reported_opening_counts(
     carries(plant, level)
     plant.tell("ra1", state=MOVING, effector=True)
     plant.tell("ra1", state=MOVING, effector=False)
-    assert plant.plant.cells["sis_a"].context.failure.reason is Reason.PART_LOST
+    assert plant.plant.cells["sis_a"].context.failures.first.reason is Reason.PART_LOST
 
 
 def carries(plant: Any, level: Evidence) -> None:

@@ -312,7 +312,7 @@ def test_shutdown_halts_what_moves_and_rests_when_the_halt_is_confirmed(
         assert task.failure is not None and task.failure.reason is Reason.INTERRUPTED
     else:
         assert task.state is TaskState.RUNNING
-        assert plant.plant.dispatcher.kept(Fact.STEP, task.id), "the next start finds it at its step"
+        assert plant.plant.dispatcher.memory.value(Fact.STEP, task.id), "the next start finds it at its step"
 
 
 def test_an_arm_that_goes_on_moving_is_waited_for_as_long_as_a_stop_may_take(hand: Any) -> None:
@@ -320,12 +320,12 @@ def test_an_arm_that_goes_on_moving_is_waited_for_as_long_as_a_stop_may_take(han
     plant.awake()
     plant.submit("sis_a palletizing")
     context, failed_after = plant.plant.cells["sis_a"].context, 0.0
-    while context.failure is None and failed_after < 10.0:
+    while context.failures.first is None and failed_after < 10.0:
         failed_after += 0.1
         plant.tell("ra1", after=0.1, state=MOVING, q=(0.1, 0.0, 0.0))
     timing = plant.plant.model.timing
     assert failed_after == pytest.approx(timing.dwell_s + timing.stop_timeout_s, abs=0.15)
-    assert str(context.failure.sentence) == "ra1 was still moving: no moving to home"
+    assert str(context.failures.first.sentence) == "ra1 was still moving: no moving to home"
     assert plant.commands(MoveJoints) == []
 
 

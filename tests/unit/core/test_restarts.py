@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import pytest
 from py_trees.common import Status
 
@@ -79,7 +81,8 @@ def test_what_an_arm_said_just_after_a_start_does_not_free_the_zone_that_it_held
 def test_what_is_kept_of_a_step_that_was_proven_done_stays_kept_until_the_task_has_gone_on() -> None:
     """Else a plant that dies just after `resume` would give it again: a program of a mill ran twice."""
     last = {"robot": "mill", "effect": "process", "goal": None, "sets": [], "done": False}
-    step = Act("run", None, lambda id: None, "running")  # type: ignore[arg-type, return-value]
+    context = SimpleNamespace(time=None, failures=None)
+    step = Act("run", context, lambda id: None, "running")  # type: ignore[arg-type, return-value]
     step.restore({"tries": 0, "left": False, "last": {**last, "before": [1, 5, 5], "number": [1, 6]}})
     step.status, step.proven = Status.RUNNING, True
     assert step.kept() == {"tries": 0, "left": False, "last": step.last}
@@ -92,5 +95,5 @@ def test_a_stop_is_kept_until_its_cell_is_reset_and_no_longer() -> None:
     for verb in (Verb.STOP, Verb.CLEAR, Verb.RESET):
         assert rig.operate(verb, "sis_a") is None
         rig.wait(2.0)
-        kept.append(rig.plant.dispatcher.kept(Fact.LATCH, "ra1") is not None)
+        kept.append(rig.plant.dispatcher.memory.value(Fact.LATCH, "ra1") is not None)
     assert kept == [True, True, False]

@@ -26,7 +26,7 @@ def test_a_hold_pauses_the_queue(hand: Callable[[Evidence], Any]) -> None:
     plant.awake()
     plant.submit("sis_a palletizing")
     plant.plant.step(plant.now, [OperatorRequest(at=plant.now, verb=Verb.HOLD, scope="sis_a")])
-    assert plant.plant.cells["sis_a"].queue_paused
+    assert plant.plant.cells["sis_a"].queue.paused
 
 
 def test_a_cell_that_is_being_cleared_waits_for_its_robots_while_they_are_heard(

@@ -8,6 +8,7 @@ from typing import Any
 
 import pytest
 
+from arboleda.core import reasons
 from arboleda.core.advice import Hand, sentence
 from arboleda.core.cell_states import CellState
 from arboleda.model.grips import Grip
@@ -79,7 +80,7 @@ WAYS: dict[str, Break] = {
 def take_up(here: Rig) -> None:
     """A task has a device hold a part."""
     here.submit(TASKS[cell_of(here)])
-    grips = here.plant.dispatcher.grips
+    grips = here.plant.dispatcher.effectors.grips
     assert here.wait(120.0, until=lambda: grips[HOLDER[cell_of(here)]] is Grip.ON)
 
 
@@ -147,11 +148,11 @@ def follow(here: Rig) -> list[str]:
         if first.do is Verb.RELEASE and not first.by_hand:
             assert (act.outcome is Outcome.DONE) <= is_open(body), act
             assert (act.outcome is Outcome.FAILED) is (act.why is not None)
-    raise AssertionError(f"no way out by {acts}: {run.waiting_for()}")
+    raise AssertionError(f"no way out by {acts}: {reasons.of_waiting(run)}")
 
 
 def resting(here: Rig, run: Any) -> bool:
-    if run.context.open_commands() or run.state in (CellState.EXECUTE, CellState.ABORTING, CellState.HOLDING):
+    if run.context.commands.open() or run.state in (CellState.EXECUTE, CellState.ABORTING, CellState.HOLDING):
         return False
     ready = run.state is CellState.IDLE and run.not_ready is None
     ways = here.plant.advice(run.cell.name)
@@ -268,22 +269,22 @@ def emptied() -> Bench:
 def test_who_took_a_part_out_is_believed_against_the_word_of_the_device() -> None:
     here = emptied()
     assert here.machines["oven"].facts["clamped"] is True
-    assert here.plant.cells["bench"].context.holding == []
+    assert here.plant.cells["bench"].context.parts.holding == []
     assert "release oven by hand: the part was taken out" in [str(each.sentence) for each in here.plant.acts]
     assert here.plant.cells["bench"].state is CellState.IDLE
     here.crash()
     here.wait(3.0)
-    assert here.plant.cells["bench"].context.holding == [], "the next start knows it as well"
+    assert here.plant.cells["bench"].context.parts.holding == [], "the next start knows it as well"
 
 
 def test_the_next_word_of_the_device_itself_counts_again() -> None:
     here = emptied()
     here.set_by_hand("oven", (("clamped", False),))
     here.wait(1.0)
-    assert here.plant.dispatcher.kept(Fact.EMPTIED, "oven") is None
+    assert here.plant.dispatcher.memory.value(Fact.EMPTIED, "oven") is None
     here.set_by_hand("oven", (("clamped", True),))
     here.wait(1.0)
-    assert here.plant.cells["bench"].context.holding == ["oven"]
+    assert here.plant.cells["bench"].context.parts.holding == ["oven"]
 
 
 def test_nobody_takes_out_what_is_not_held_or_at_work() -> None:
@@ -293,14 +294,14 @@ def test_nobody_takes_out_what_is_not_held_or_at_work() -> None:
     assert here.operate(Verb.RELEASE, "eye", by_hand=True) == "eye has no effector"
     assert here.operate(Verb.RELEASE, "bench", by_hand=True) == said
     here.submit("bench bake 10")
-    assert here.wait(30.0, lambda: bool(here.plant.cells["bench"].context.holding))
+    assert here.wait(30.0, lambda: bool(here.plant.cells["bench"].context.parts.holding))
     assert "hold or stop it first" in str(here.operate(Verb.RELEASE, "oven", by_hand=True))
 
 
 def test_a_part_that_was_taken_out_by_hand_is_missing_to_a_held_task() -> None:
     here = Bench(model())
     here.submit("bench bake 10")
-    assert here.wait(30.0, lambda: bool(here.plant.cells["bench"].context.holding))
+    assert here.wait(30.0, lambda: bool(here.plant.cells["bench"].context.parts.holding))
     assert here.operate(Verb.HOLD, "bench") is None
     assert here.wait(60.0, lambda: here.plant.cells["bench"].state is CellState.HELD)
     here.wait(25.0)

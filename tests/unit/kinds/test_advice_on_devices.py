@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from arboleda.core import reasons
 from arboleda.core.advice import sentence
 from arboleda.model.messages import TaskState, Verb
 
@@ -15,7 +16,7 @@ def test_after_a_failure_the_device_is_to_be_released() -> None:
     assert here.wait(30.0, lambda: bool(here.plant.advice("bench")))
     ways = here.plant.advice("bench")
     assert str(sentence(ways)) == "release oven, then resume bench"
-    assert "oven may hold a part: clamped is true" in str(here.plant.cells["bench"].held_by)
+    assert "oven may hold a part: clamped is true" in str(reasons.of_hold(here.plant.cells["bench"]))
     for each in ways:  # none is refused once those before it are done
         assert here.operate(Verb(each.do), each.scope) is None
         here.wait(3.0)

@@ -9,6 +9,7 @@ from typing import Any
 
 import pytest
 
+from arboleda.core import reasons
 from arboleda.core.cell_states import CellState
 from arboleda.dispatch.ledger import State
 from arboleda.kinds.declared import Device, DeviceKind, DeviceVerb, Effect, FactType, UseError
@@ -103,7 +104,7 @@ def test_a_part_that_is_left_clamped_holds_the_cell_until_somebody_acts() -> Non
     here.outcome()
     here.wait(2.0)
     assert here.plant.cells["bench"].state is CellState.HELD
-    assert "oven may hold a part" in str(here.plant.cells["bench"].held_by)
+    assert "oven may hold a part" in str(reasons.of_hold(here.plant.cells["bench"]))
     assert here.operate(Verb.RELEASE, "oven") is None
     here.wait(2.0)
     assert here.plant.cells["bench"].state is CellState.IDLE
@@ -123,7 +124,7 @@ def test_a_process_that_finishes_goes_on_through_a_stop_and_keeps_the_cell_from_
     assert here.operate(Verb.RESET) is None
     here.operate(Verb.RESUME)
     here.submit("bench bake 5")
-    assert str(here.plant.cells["bench"].waiting_for()) == "oven is still doing bake 10"
+    assert str(reasons.of_waiting(here.plant.cells["bench"])) == "oven is still doing bake 10"
     assert here.wait(60.0, lambda: not here.machines["oven"].moving)
     assert here.machines["oven"].facts["dose"] == 10
 

@@ -202,7 +202,7 @@ def test_a_machine_that_is_heard_again_keeps_its_zone_without_quarantine() -> No
     here.power_off("gate")
     here.wait(3.0)
     assert here.plant.zones.is_quarantined("vise")
-    assert not context.take_zones("gate", frozenset({"feed"}))  # nobody knows where it is
+    assert not context.zones.take("gate", frozenset({"feed"}))  # nobody knows where it is
     assert here.plant.zones.waiting == ()
     here.power_on("gate")
     here.wait(3.0)
@@ -214,8 +214,8 @@ def test_a_machine_is_only_in_the_way_of_a_zone_in_which_it_is() -> None:
     here = Bench(with_gate())
     here.wait(1.0)
     context = here.plant.cells["tending"].context
-    assert context.in_the_way("gate", ["vise"]) == ("at right",)
-    assert context.in_the_way("gate", ["feed"]) is None
+    assert context.zones.interlocks.in_the_way("gate", ["vise"]) == ("at right",)
+    assert context.zones.interlocks.in_the_way("gate", ["feed"]) is None
 
 
 def test_a_zone_kept_for_a_robot_that_the_plant_file_no_longer_has_is_freed_on_advice() -> None:

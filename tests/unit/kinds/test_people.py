@@ -8,6 +8,7 @@ from typing import Any
 import pytest
 
 from arboleda.cli.screen import parting
+from arboleda.core import reasons
 from arboleda.kinds.person import person
 from arboleda.model.messages import Reason, TaskAnswer, Verb
 from arboleda.model.plant_model import PlantModel
@@ -164,7 +165,7 @@ def test_a_question_stays_while_the_cell_is_held() -> None:
     here.wait(1.0)
     assert question(here) is not None
     told = "tending is held (by the operator); ana has a question to answer first"
-    assert str(here.plant.cells["tending"].held_by) == told
+    assert str(reasons.of_hold(here.plant.cells["tending"])) == told
     assert here.operate(Verb.ANSWER, "ana yes") is None
     assert not any("ana" in each.moves for each in here.plant.advice("tending"))
     assert here.operate(Verb.RESUME, "tending") is None

@@ -252,7 +252,7 @@ def test_an_inverted_step_has_to_fail() -> None:
 
 
 def test_an_inverted_step_fails_where_its_step_does_not() -> None:
-    inverted = Inverted(Success("found"), Bench(plant(load)).plant.cells["tending"].context)
+    inverted = Inverted(Success("found"), Bench(plant(load)).plant.cells["tending"].context.failures)
     inverted.tick_once()
     assert inverted.status is Status.FAILURE
 

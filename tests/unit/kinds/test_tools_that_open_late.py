@@ -6,6 +6,7 @@ from collections.abc import Callable
 
 import pytest
 
+from arboleda.core import reasons
 from arboleda.core.advice import sentence
 from arboleda.core.plant import Plant
 from arboleda.model.grips import Grip
@@ -104,9 +105,9 @@ def test_a_recipe_that_goes_on_without_it_is_refused_the_move() -> None:
 
 def test_a_plant_that_starts_again_knows_that_the_tool_may_still_open() -> None:
     here = opening_late(Bench(plant(load)))
-    assert here.plant.dispatcher.kept(Fact.EFFECTOR, "jaw") == Grip.SWITCHING.value
+    assert here.plant.dispatcher.memory.value(Fact.EFFECTOR, "jaw") == Grip.SWITCHING.value
     again = Plant(here.model, epoch=2, now=here.now, memory={Fact.EFFECTOR: {"jaw": Grip.SWITCHING.value}})
-    assert again.dispatcher.opening_tool("left") == "jaw"
+    assert again.dispatcher.effectors.opening_tool("left") == "jaw"
 
 
 def test_a_part_from_nobody_knows_where_is_to_be_released() -> None:
@@ -127,7 +128,7 @@ def test_a_recovery_does_not_let_go_of_a_part_from_nobody_knows_where() -> None:
     assert here.operate(Verb.ABANDON, "tending") is None
     here.wait(20.0)
     assert "left 0.0 0.0" in moved(here) and OPENS not in moved(here)
-    assert "jaw may hold a part" in str(here.plant.cells["tending"].held_by)
+    assert "jaw may hold a part" in str(reasons.of_hold(here.plant.cells["tending"]))
 
 
 def test_a_held_task_that_can_only_be_abandoned_keeps_no_zone_that_its_robot_has_left() -> None:

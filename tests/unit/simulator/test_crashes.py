@@ -8,6 +8,7 @@ from itertools import product
 
 import pytest
 
+from arboleda.core.cell_states import CellState
 from arboleda.model.commands import Command, Stop
 from arboleda.model.messages import Fact, Heartbeat, TaskChanged, TaskState, Verb
 from arboleda.simulator.chance import Dice
@@ -197,7 +198,7 @@ def test_of_a_plant_that_ends_only_stops_reach_its_robots() -> None:
     assert world.advance(10.0, lambda: world.is_on(PLANT))
     assert world.plant.intake.tasks["lot"].state is TaskState.RUNNING
     world.advance(1.0)
-    assert world.plant.cells["sis_a"].is_held
+    assert world.plant.cells["sis_a"].state is CellState.HELD
 
 
 def test_it_may_die_while_it_ends() -> None:
@@ -289,7 +290,7 @@ def test_a_command_that_the_disk_made_too_late_is_not_sent_and_its_cell_is_held_
     world.advance(5.0)
     assert len(heard) == 1
     assert [each for _, each in left if isinstance(each, Command) and not isinstance(each, Stop)] == []
-    assert world.plant.cells["sis_a"].is_held
+    assert world.plant.cells["sis_a"].state is CellState.HELD
     watched.world.request_verb(Verb.RETRY, "sis_a")
     world.advance(30.0)
     assert world.plant.intake.tasks["lot"].ended_at is not None

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections import deque
 from collections.abc import Callable, Iterable
 from dataclasses import replace
 from operator import attrgetter
@@ -12,6 +11,7 @@ import pytest
 
 from arboleda.core import cell, operator, plant
 from arboleda.core.cell_states import CellState
+from arboleda.core.task_queue import TaskQueue
 from arboleda.dispatch import belief, dispatcher, evidence, ledger
 from arboleda.dispatch.ledger import TABLE, Feed, State
 from arboleda.kinds.arm import Arm, MoveJoints, SetEffector
@@ -19,7 +19,7 @@ from arboleda.kinds.mobile import FollowPath
 from arboleda.model.commands import Command, Home, Stop, StopMode
 from arboleda.model.messages import Fact, Heartbeat, OperatorRequest, TaskState, Verb
 from arboleda.model.plant_model import Evidence, ForeignCommands, PlantModel, Retry
-from arboleda.model.sentence import Phrase
+from arboleda.model.sentence import Phrase, as_sentence
 from arboleda.sim.board import Board
 from arboleda.sim.freshness import Freshness
 from arboleda.sim.receipts import Receipts
@@ -33,7 +33,7 @@ from arboleda.simulator.record import Record
 from arboleda.simulator.truth import Truth
 from arboleda.simulator.world import BRIDGE, PLANT, World
 from arboleda.testing.plants import shipped, slowed
-from arboleda.trees import context, leaves
+from arboleda.trees import cell_commands, cell_time, cell_zones, leaves
 from arboleda.wire import board as wire_board
 from arboleda.wire.bridge import PLANT_GONE_S
 from arboleda.wire.hop import FromPlant
@@ -377,7 +377,7 @@ def test_halted_moves_sent_halt(monkeypatch, bites):
 
 def test_halted_moves_sent_halt__by_a_step_left_early(monkeypatch, bites):
     monkeypatch.setattr(leaves.Act, "terminate", lambda self, status: None)
-    monkeypatch.setattr(context.Context, "cancel_all", lambda self: None)
+    monkeypatch.setattr(cell_commands.CellCommands, "cancel_all", lambda self: None)
     watch = Watch()
     watch.task(wait_s=1)
     watch.verb(Verb.STOP, "sis_a")
@@ -440,14 +440,15 @@ def test_only_legal_task_states(monkeypatch, bites):
     bites(watch)
 
 
-class LastFirst(deque):
+class LastFirst(TaskQueue):
     def popleft(self) -> Any:
         return self.pop()
 
 
 def test_first_come_first_served(bites):
     watch = Watch()
-    watch.world.plant.cells["sis_a"].queue = LastFirst()
+    run = watch.world.plant.cells["sis_a"]
+    run.queue = LastFirst(run.cell)
     for _ in range(3):
         watch.task()
     watch.wait(20)
@@ -494,7 +495,7 @@ def test_rejected_input_changes_nothing(monkeypatch, bites):
     parse = plant.Intake.task
 
     def with_effect(self: Any, words: str) -> Any:
-        watch.world.plant.cells["sis_a"].queue_paused = True
+        watch.world.plant.cells["sis_a"].queue.paused = True
         return parse(self, words)
 
     watch = Watch()
@@ -698,7 +699,7 @@ def test_nothing_shown_before_heard(monkeypatch, bites):
 
 
 def test_running_tree_has_waker(monkeypatch, bites):
-    monkeypatch.setattr(context.Context, "wake_at", lambda self, at: None)
+    monkeypatch.setattr(cell_time.CellTime, "wake_at", lambda self, at: None)
     watch = Watch()
     watch.task()
     bites(watch)
@@ -706,13 +707,13 @@ def test_running_tree_has_waker(monkeypatch, bites):
 
 def test_running_tree_has_waker__in_a_cell_whose_time_stands_still(bites):
     watch = Watch()
-    watch.world.plant.cells["sis_a"].context.pause()
+    watch.world.plant.cells["sis_a"].context.time.pause()
     watch.task()
     bites(watch)
 
 
 def test_time_stands_still_only_when_held(monkeypatch, bites):
-    monkeypatch.setattr(context.Context, "go_on", lambda self: None)
+    monkeypatch.setattr(cell_time.CellTime, "go_on", lambda self: None)
     watch = Watch()
     watch.task(wait_s=1)
     watch.verb(Verb.HOLD, "sis_a", wait_s=3)
@@ -730,7 +731,7 @@ def test_no_tree_outlives_its_work(monkeypatch, bites):
 
 
 def test_no_starvation(monkeypatch, bites):
-    monkeypatch.setattr(cell.CellRun, "waiting_for", lambda self: "its muse")
+    monkeypatch.setattr(cell.CellRun, "not_ready", property(lambda self: as_sentence("its muse")))
     watch = Watch()
     watch.task()
     bites(watch)
@@ -785,7 +786,7 @@ def test_zone_requests_end__of_a_recovery_where_who_has_the_zone_does_not_work(m
     watch = Watch(zoned())
     assert watch.world.plant.zones.request("ra2", frozenset({"table"}))
     monkeypatch.setattr(plant.Plant, "_watch_zones", lambda self: None)
-    monkeypatch.setattr(context.Context, "will_come_free", lambda self, robot: True)
+    monkeypatch.setattr(cell_zones.CellZones, "will_come_free", lambda self, robot: True)
     watch.task("sis_a palletizing", wait_s=6.1)
     assert watch.found == {}
     watch.wait(1)
@@ -835,6 +836,6 @@ def test_nothing_waits_at_end(bites):
 
 def test_bounded_books(bites):
     watch = Watch()
-    watch.world.plant.cells["sis_a"].context.wakes += [1e9] * 200
+    watch.world.plant.cells["sis_a"].context.time.wakes += [1e9] * 200
     watch.wait(10)
     bites(watch)

@@ -301,7 +301,7 @@ def test_a_refusal_that_changes_something_is_found_out(world, record):
     world.watchers.append(lambda: differences.extend(record.differences))
     world.advance(0.03)
     cell = world.plant.cells["sis_a"]
-    cell.queue_paused = True
+    cell.queue.paused = True
     world.request_task("nonsense")
     world.advance(0.01)
     assert differences == ["the queue of sis_a changed"]

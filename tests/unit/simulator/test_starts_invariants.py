@@ -8,9 +8,9 @@ from typing import Any
 
 import pytest
 
-from arboleda.core.cell import CellRun
 from arboleda.core.intake import Intake
 from arboleda.core.plant import Plant
+from arboleda.core.task_queue import TaskQueue
 from arboleda.model.messages import ENDED, KeptTask, TaskState
 from arboleda.model.plant_model import PlantModel
 from arboleda.model.task import Task
@@ -95,7 +95,7 @@ def gives_again_what_is_proven(patch: Patch) -> None:
 
 def goes_on_by_itself(patch: Patch) -> None:
     """What waited starts without a word, whatever the plant file says."""
-    patch.setattr(CellRun, "take_back", lambda self, waiting, *, cut_off: self.queue.extend(waiting))
+    patch.setattr(TaskQueue, "take_back", lambda self, waiting, *, cut_off: self.extend(waiting))
 
 
 def says_what_it_cannot_keep(patch: Patch) -> None:

@@ -198,7 +198,7 @@ def test_the_timeline_rounds_and_is_cut(sim: Sim) -> None:
 
 def unhurried(order: Order, context: Context) -> Behaviour:
     """The shipped recipe after a rest."""
-    children = [Dwell("rest", context, 3.0), recipes.storage(order, context)]
+    children = [Dwell("rest", context.time, 3.0), recipes.storage(order, context)]
     return Sequence("unhurried", memory=True, children=children)
 
 

@@ -64,16 +64,17 @@ def _about(forest: Forest, main: str) -> str:
 
 def _built(name: str, forest: Forest, main: str, order: Order, devices: Devices) -> Behaviour:
     context, causes = devices.context, devices.causes
-    context.back, context.origins = {}, set()
+    context.parts.forget_origins()
     scope = Scope(values={key: _variable(value) for key, value in order.values.items()})
-    builder = Builder(forest, devices.make, context, devices.kinds)
+    builder = Builder(forest, devices.make, context.time, devices.kinds)
     tree = builder.tree(main, scope)
     changed = {(id(place), key) for place, key in builder.written}
     for place, key, node in devices.fixed:
         if (id(place), key) in changed:
             why = "which the tree changes while it runs; its way has to be known before"
             raise TreeError(f"{node.kind} is given the variable {quoted(key)}, {why}", node.place)
-    return steps.task(name, [held(context, Main(name, tree, context, causes))], context, notes_origins=True)
+    work = held(context, Main(name, tree, context.failures, causes))
+    return steps.task(name, [work], context, notes_origins=True)
 
 
 def _variable(value: object) -> float | int | str:

@@ -1,4 +1,4 @@
-"""What operators did last, and what became of it: asked, under way, done or failed, and why."""
+"""Acts of operators, the last ones, and what became of each: asked, under way, done or failed, and why."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ KEPT = 20  # what a screen shows of them; the journal has all
 
 @dataclass(frozen=True, kw_only=True)
 class OperatorAct:
-    """What an operator did, at `at` s of the plant's clock, and what became of it so far.
+    """Act of an operator, at `at` s of the plant's clock, and what became of it so far.
 
     `ended_at` is when it had come to its end that was still to come, or failed at once.
     """
@@ -79,7 +79,7 @@ class Acts:
 
 
 def outcome_of(entries: Sequence[Entry]) -> tuple[Outcome, Sentence | None]:
-    """What has become of the commands of an act."""
+    """The outcome of the commands of an act."""
     if any(entry.open for entry in entries):
         return Outcome.UNDER_WAY, None
     if failures := [_failure(entry) for entry in entries if entry.state is not State.DONE]:

@@ -1,4 +1,4 @@
-"""What leads a cell out of its present state: verbs and acts of a hand, as data, in the order to do them."""
+"""Advice that leads a cell out of its present state: verbs and acts of a hand, as data, in order."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from arboleda.model.sentence import NOTHING, Phrase, Sentence
 
 
 class Hand(str, Enum):
-    """What only a person at a machine can do."""
+    """Acts that only a person at a machine can do."""
 
     BRING_BACK = "bring_back"  # a robot that is not heard, or does not hear this plant
     REPAIR = "repair"  # a robot whose board reports a fault
@@ -56,7 +56,7 @@ AND = Phrase("do.and", "{first} and {second}")
 
 
 def in_words(advice: Advice) -> Sentence:
-    """What is to be done, as a person types or says it."""
+    """The act, as a person types or says it."""
     by_hand = advice.by_hand and isinstance(advice.do, Verb)
     return (BY_HAND[Verb(advice.do)] if by_hand else DO[advice.do])(scope=advice.scope)
 

@@ -1,4 +1,4 @@
-"""Which ways lead a cell out of its present state: by the cell, its robots and the zones, nothing else."""
+"""Advisor: finds the ways out of a cell's present state, by the cell, its robots and the zones alone."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from arboleda.dispatch.dispatcher import MAY_LET_GO
 from arboleda.model.messages import OperatorRequest, Reason, Verb
 from arboleda.model.sentence import Phrase, Sentence
 
+from . import reasons
 from .advice import Advice, Hand
 from .cell import CellRun
 from .cell_states import CellState
@@ -36,7 +37,7 @@ class Advisor:
         return tuple(replace(each, refusal=self._refused(each)) for each in self.ways_out(cell))
 
     def ways_out(self, cell: str, asked: frozenset[str] = frozenset()) -> tuple[Advice, ...]:
-        """What to do, in order; nothing where the cell works or only time is needed.
+        """The advice, in the order to follow it; none where the cell works or only time is needed.
 
         `asked`: the cells that wait for this one to give its zones back.
         """
@@ -53,7 +54,7 @@ class Advisor:
         return self._refusal(_request(advice.do, advice.scope, by_hand=advice.by_hand))
 
     def _idle(self, run: CellRun, asked: frozenset[str]) -> Iterator[Advice]:
-        if run.context.open_commands():
+        if run.context.commands.open():
             return
         readying = [*self._readying(run, asked)]
         yield from readying
@@ -61,7 +62,7 @@ class Advisor:
             yield from _running_again(run)
 
     def _held(self, run: CellRun, asked: frozenset[str]) -> Iterator[Advice]:
-        if run.context.open_commands():
+        if run.context.commands.open():
             return
         readying = [*self._readying(run, asked)]
         yield from readying
@@ -78,22 +79,27 @@ class Advisor:
             yield _abandon(run, run.stranded)
         else:
             verb = Verb.RETRY if run.trouble else Verb.RESUME
-            yield Advice(do=verb, scope=run.cell.name, why=run.why_held, moves=_movers(run))
-            yield replace(_abandon(run, run.why_held), instead=True)
+            yield Advice(do=verb, scope=run.cell.name, why=reasons.cause_of_hold(run), moves=_movers(run))
+            yield replace(_abandon(run, reasons.cause_of_hold(run)), instead=True)
 
     def _recovering(self, run: CellRun, asked: frozenset[str]) -> Iterator[Advice]:
-        name, holding = run.cell.name, run.context.holding
-        yield from self._freeing(run, run.context.awaited_by_recovery(), asked)
-        retry = Advice(do=Verb.RETRY, scope=name, why=run.why_held, moves=_recovered(run))
+        name, holding, why = run.cell.name, run.context.parts.holding, reasons.cause_of_hold(run)
+        yield from self._freeing(run, run.context.zones.awaited_by_recovery(), asked)
+        retry = Advice(do=Verb.RETRY, scope=name, why=why, moves=_recovered(run))
         helps, failed = not holding or _can_bring_back(run), (Verb.RETRY, name) in run.in_vain
         if helps and not failed:
             yield retry
         for number, robot in enumerate(holding):
-            yield from _releasing(run, robot, run.why_held, instead=helps and not failed and number == 0)
+            yield from _releasing(run, robot, why, instead=helps and not failed and number == 0)
         if holding and run.waits_for_grip:
             yield from _running_again(run)
         else:
-            yield Advice(do=Verb.ABANDON, scope=name, why=run.why_held, instead=not holding and not failed)
+            yield Advice(
+                do=Verb.ABANDON,
+                scope=name,
+                why=why,
+                instead=not holding and not failed,
+            )
         if helps and failed:
             yield replace(retry, instead=True)
 
@@ -108,17 +114,18 @@ class Advisor:
         yield Advice(do=Verb.RESET, scope=run.cell.name, why=run.why_stopped)
         yield from self._readying(run, asked)
         failed = (Verb.RETRY, run.cell.name) in run.in_vain
-        if run.context.holding and _can_bring_back(run) and not failed:
+        if run.context.parts.holding and _can_bring_back(run) and not failed:
             yield Advice(do=Verb.RETRY, scope=run.cell.name, why=run.why_stopped, moves=_recovered(run))
-        elif run.context.holding:
-            for robot in run.context.holding:
+        elif run.context.parts.holding:
+            for robot in run.context.parts.holding:
                 yield from _releasing(run, robot, run.why_stopped)
         yield from _running_again(run)
 
     def _readying(self, run: CellRun, asked: frozenset[str]) -> Iterator[Advice]:
-        """What the robots of a cell need before they can work: a stop first, as it ends what is under way."""
+        """Advice for robots that cannot work yet: a stop first, as it ends what is under way."""
         by_reason: list[Advice] = []
-        seen = run.context.obstacle if run.state in AT_HAND else run.context.obstacle_besides_stop
+        robots = run.context.robots
+        seen = robots.obstacle if run.state in AT_HAND else robots.obstacle_besides_stop
         for robot in run.cell.reached:
             obstacle = seen(robot.name)
             if obstacle is None:
@@ -134,7 +141,7 @@ class Advisor:
                 by_reason.append(Advice(do=HANDS[obstacle.reason], scope=robot.name, why=obstacle.sentence))
             elif obstacle.reason is Reason.NOT_HOMED:
                 by_reason += self._homing(run, robot.name, obstacle.sentence, asked)
-        astray = run.context.astray() if run.state is CellState.IDLE else None
+        astray = run.context.zones.astray() if run.state is CellState.IDLE else None
         if astray is not None and not any(each.scope == astray[0] for each in by_reason):
             by_reason += self._homing(run, astray[0], astray[1].sentence, asked)
         yield from by_reason
@@ -142,25 +149,27 @@ class Advisor:
     def _stoppers(self, run: CellRun, device: str) -> list[str]:
         """The other cells that share a device and whose stop keeps it; nothing where this one's does."""
         runs = self._runs[device]
-        if run.state in STOPPING or not run.context.is_stopped(device):
+        if run.state in STOPPING or not run.context.devices.is_stopped(device):
             return []
         return [other.cell.name for other in runs if other.state in STOPPING]
 
     def _homing(self, run: CellRun, robot: str, why: Sentence, asked: frozenset[str]) -> Iterator[Advice]:
-        by_routine = run.context.homes_by_routine(robot)
+        by_routine = run.context.robots.homes_by_routine(robot)
         if by_routine:
             yield from _letting_go(run, robot)
             if robot in run.cell.zone_users:
                 zones = run.cell.workspaces[robot].zones
-                awaited = run.context.awaited_zones(robot, zones)
-                if any(map(run.context.moves, set(run.cell.interlocked).intersection(awaited.values()))):
+                awaited = run.context.zones.awaited(robot, zones)
+                machines = set(run.cell.interlocked).intersection(awaited.values())
+                if any(run.context.robots.belief(each).moves for each in machines):
                     return  # a machine at work comes to its end
                 yield from self._freeing(run, awaited, asked)
             yield from _running_home(run, robot, why)
             return
-        if run.context.says_unhomed(robot):
+        belief = run.context.robots.belief(robot)
+        if belief.says_unhomed:
             yield Advice(do=Hand.REFERENCE, scope=robot, why=why)
-            if not run.context.is_displaced(robot):
+            if not belief.displaced:
                 return
         yield Advice(do=Verb.HOME, scope=robot, why=why, by_hand=True)
 
@@ -176,7 +185,7 @@ class Advisor:
             other = self._run_of(holder)
             if other.state is CellState.EXECUTE and holder in other.cell.shared:
                 continue  # it is not ours to move while a task of another cell uses it
-            if (facts := other.context.in_the_way(holder, its)) is not None:
+            if (facts := other.context.zones.interlocks.in_the_way(holder, its)) is not None:
                 yield Advice(do=Hand.FREE, scope=holder, why=IN_THE_WAY(device=holder, facts=facts))
                 continue
             if other is run and _can_leave(run, holder):
@@ -189,13 +198,13 @@ class Advisor:
             by_hand = bool(leads) and leads[0].do in HANDS.values()
             yield from leads[:1] if by_hand else _until_it_moves(leads)
             if waits_too or by_hand:
-                silent = [zone for zone in its if run.context.is_quarantined(zone)]
+                silent = [zone for zone in its if run.context.zones.is_quarantined(zone)]
                 yield from self._overriding(silent, holder, instead=by_hand)
 
     def _run_of(self, robot: str) -> CellRun:
         """The cell of a robot; of a shared device that which holds it, where one does."""
         runs = self._runs[robot]
-        return next((run for run in runs if run.context.has_device(robot)), runs[0])
+        return next((run for run in runs if run.context.devices.holds(robot)), runs[0])
 
     def _overriding(self, zones: Sequence[str], holder: str, *, instead: bool) -> Iterator[Advice]:
         for zone in zones:
@@ -212,8 +221,8 @@ def _request(verb: Verb, scope: str, *, by_hand: bool = False) -> OperatorReques
 
 
 def _letting_go(run: CellRun, robot: str) -> Iterator[Advice]:
-    """What ends that the tool of a robot may open late, for which the robot stays where it is."""
-    tool = run.context.opening_tool(robot)
+    """Advice against a tool that may open late, for which its robot stays where it is."""
+    tool = run.context.parts.opening_tool(robot)
     if tool is not None:
         why = MAY_LET_GO(robot=robot, tool=tool)
         yield from _releasing(run, tool, why)
@@ -225,7 +234,7 @@ def _releasing(run: CellRun, robot: str, why: Sentence, *, instead: bool = False
     """
     release = Advice(do=Verb.RELEASE, scope=robot, why=why, drops=(robot,), instead=instead)
     by_hand = Advice(do=Verb.RELEASE, scope=robot, why=why, by_hand=True, instead=instead)
-    obstacle = run.context.obstacle_to_opening(robot)
+    obstacle = run.context.parts.obstacle_to_opening(robot)
     if (Verb.RELEASE, robot) in run.in_vain:
         yield by_hand
         yield replace(release, instead=True)
@@ -244,10 +253,10 @@ def _running_home(run: CellRun, robot: str, why: Sentence) -> Iterator[Advice]:
 
 
 def _can_leave(run: CellRun, robot: str) -> bool:
-    """Whether a robot of a cell that only stands there can be homed out of its zones."""
-    space, context = run.cell.workspaces.get(robot), run.context
-    ready = space is not None and context.obstacle(robot) is None and context.homes_by_routine(robot)
-    return ready and space is not None and not context.awaited_zones(robot, space.zones)
+    """True for a robot that can be homed out of its zones, in a cell that only stands there."""
+    space, robots = run.cell.workspaces.get(robot), run.context.robots
+    ready = space is not None and robots.obstacle(robot) is None and robots.homes_by_routine(robot)
+    return ready and space is not None and not run.context.zones.awaited(robot, space.zones)
 
 
 def _until_it_moves(ways: Sequence[Advice]) -> Iterator[Advice]:
@@ -269,19 +278,19 @@ def _abandon(run: CellRun, why: Sentence) -> Advice:
 
 
 def _running_again(run: CellRun) -> Iterator[Advice]:
-    if run.queue_paused:
+    if run.queue.paused:
         moves = _movers(run) if run.queue else ()
-        yield Advice(do=Verb.RESUME, scope=run.cell.name, why=run.why_paused, moves=moves)
+        yield Advice(do=Verb.RESUME, scope=run.cell.name, why=run.queue.why_paused, moves=moves)
 
 
 def _can_bring_back(run: CellRun) -> bool:
-    """Whether a robot carries what holds a part, and a recovery knows where that belongs.
+    """True where a robot carries what holds a part, and a recovery knows where that belongs.
 
     A clamp on a bench, and a robot whose part came from nobody knows where, keep it however often one tries.
     """
     context, spaces = run.context, run.cell.workspaces
-    carriers = [name for name, space in spaces.items() if space.hand.name in context.holding]
-    return any(context.way_back(name) is not None for name in carriers)
+    carriers = [name for name, space in spaces.items() if space.hand.name in context.parts.holding]
+    return any(context.parts.way_back(name) is not None for name in carriers)
 
 
 def _recovered(run: CellRun) -> tuple[str, ...]:

@@ -12,7 +12,7 @@ from arboleda.model.sentence import Phrase, Sentence
 
 
 class CellState(str, Enum):
-    """Where a cell is; the value is its one word on every screen and in every document."""
+    """State of a cell; the value is its one word on every screen and in every document."""
 
     IDLE = "idle"
     EXECUTE = "execute"
@@ -39,7 +39,7 @@ SAID = {
 
 
 class Cause(str, Enum):
-    """What moves a cell.
+    """Cause for which a cell changes its state.
 
     `stuck` is a recovery that failed, a part found in an idle arm's effector, or a defect; `away` is a
     plant that finds that it did nothing for long, as after a suspend of its machine.

@@ -1,4 +1,4 @@
-"""Which cell does a task that several cells may do: the one that is expected to have done it first."""
+"""Choice among cells that may do a task: the one that is expected to have done it first."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from arboleda.model.messages import TaskState
 from arboleda.model.sentence import Phrase, Sentence
 from arboleda.model.task import Order, Task
 
+from . import reasons
 from .cell import CellRun
 
 CHOSEN = Phrase("choice.chosen", "{cell} is expected to have done it first, in {seconds:.0f} s; {others}")
@@ -29,7 +30,7 @@ ANY: Key = ("any",)
 
 
 class PastTimes:
-    """How tasks went that were done, as far as the plant remembers them."""
+    """Times that tasks took which were done, as far as the plant remembers them."""
 
     def __init__(self, tasks: Iterable[Task]) -> None:
         self._done: dict[Key, deque[Task]] = {}
@@ -45,7 +46,7 @@ class PastTimes:
         return median(map(_took, alike)) if alike else UNKNOWN_S
 
     def left(self, order: Order, steps: Sequence[tuple[str, float]]) -> float | None:
-        """What is expected to be left of a task whose steps began so many s ago, the last one first: the
+        """The expected rest of a task whose steps began so many s ago, the last one first: the
         median of what was left the last times that such tasks were where it is; None where none ever was.
         """
         for key in _keys(order):
@@ -58,7 +59,7 @@ class PastTimes:
 
 
 def _keys(order: Order) -> tuple[Key, ...]:
-    """What is alike, the most alike first."""
+    """The keys under which alike tasks are found, the most alike first."""
     if not order.recipe:
         return (("text", order.text),)
     return ("text", order.text), ("cell", order.cell, order.recipe), ("recipe", order.recipe)
@@ -73,7 +74,7 @@ def _took(task: Task) -> float:
 
 @dataclass(frozen=True, kw_only=True)
 class Prospect:
-    """What a cell promises: in how many s it would have done an order, and what is in the way of that."""
+    """Promise of a cell: in how many s it would have done an order, and what is in the way of that."""
 
     order: Order
     seconds: float
@@ -91,11 +92,13 @@ def prospect(order: Order, run: CellRun, times: PastTimes, now: float) -> Prospe
     seconds = times.expected(order) + sum(times.expected(task.order) for task in run.queue)
     if run.task is not None:
         seconds += _left(run.task, run, times, now)
-    return Prospect(order=order, seconds=seconds, hindrance=run.hindrance, is_full=run.is_full)
+    return Prospect(
+        order=order, seconds=seconds, hindrance=reasons.of_hindrance(run), is_full=run.queue.is_full
+    )
 
 
 def _left(task: Task, run: CellRun, times: PastTimes, now: float) -> float:
-    """What is left of the task that runs, by the step at which it is; where nothing is known of that, by how
+    """The rest of the task that runs, by the step at which it is; where nothing is known of that, by how
     long it has run."""
     left = times.left(task.order, run.run.steps)
     if left is not None:

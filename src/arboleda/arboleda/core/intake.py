@@ -1,4 +1,4 @@
-"""Where task texts come in: what is accepted, under which id, and what is remembered."""
+"""Intake of task texts: accepts them under an id, and remembers them."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
-"""Who leads a plant that several hosts reach, as far as a process can know: rules for its own clock and what
-the common store tells it. Adapters, the app and the simulator decide by these and by no others.
+"""Leadership of a plant that several hosts reach: rules for a process by its own clock and by what the common
+store tells it. Adapters, the app and the simulator decide by these and by no others.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ WANTED_S = 30.0  # who asked for another leader waits no longer
 
 
 class Standing(Enum):
-    """What a process that led knows of itself."""
+    """Standing of a process that led, as far as it knows."""
 
     LEADS = "leads"
     UNSURE = "unsure"  # it cannot find out, or can keep nothing: it stops what moves, and ends
@@ -43,7 +43,7 @@ class Lease:
         self._until = asked_at + SURE_S
 
     def lasts(self, now: float) -> bool:
-        """Whether nobody else can lead yet."""
+        """True while nobody else can lead."""
         return now < self._until
 
 
@@ -55,15 +55,16 @@ class Silence:
         self._since = math.inf
 
     def ends_lease(self, now: float, seen: object) -> bool:
-        """Whether it has lasted as long as a lease; `seen` is what the store last heard of him, another thing
-        whenever he says anything."""
+        """True once it has lasted as long as a lease; `seen` is what the store last heard of him, another
+        thing whenever he says anything.
+        """
         if seen != self._seen:
             self._seen, self._since = seen, now
         return now - self._since >= LEASE_S
 
 
 def may_leave(message: Command | Notice, standing: Standing) -> bool:
-    """Whether a process may still let a message out to robots."""
+    """True where a process may still let a message out to robots."""
     if standing is Standing.UNSURE:
         return leaves_unkept(message)
     return standing is Standing.LEADS
@@ -75,5 +76,5 @@ def at_work(states: Mapping[str, str]) -> list[str]:
 
 
 def all_stand(states: Mapping[str, str], held: Iterable[str]) -> bool:
-    """Whether all that was held for a planned change stands still."""
+    """True once all that was held for a planned change stands still."""
     return not any(states[name] == CellState.HOLDING for name in held)

@@ -1,4 +1,4 @@
-"""Which messages of a plant leave first, may leave late, or leave a plant that can keep nothing more."""
+"""Departure of a plant's messages: first, late, or from a plant that can keep nothing more."""
 
 from __future__ import annotations
 
@@ -62,16 +62,16 @@ def stop_left(request: OperatorRequest | OperatorAnswer, why: Sentence) -> StopL
 
 
 def ends_motion(message: Command | Notice) -> bool:
-    """Whether it is a stop: it is never too late, and needs nothing to be kept."""
+    """True for a stop: it is never too late, and needs nothing to be kept."""
     return isinstance(message, Stop) and message.mode is not StopMode.CLEAR
 
 
 def is_too_late(message: Command | Notice, plant: Plant, now: float) -> bool:
-    """Whether the plant was away between its step and now: what was right then is not sent any more."""
+    """True where the plant was away between its step and now: what was right then is not sent any more."""
     stale = now - plant.now > plant.away_after_s
     return stale and isinstance(message, Command) and not ends_motion(message)
 
 
 def leaves_unkept(message: Command | Notice) -> bool:
-    """Whether it leaves a plant that can keep nothing more: stops do, and the beat with which they count."""
+    """True for what leaves a plant that can keep nothing more: stops, and the beat with which they count."""
     return isinstance(message, Heartbeat) or ends_motion(message)

@@ -1,4 +1,4 @@
-"""What the operator's verbs do, and when each is refused."""
+"""Verbs of the operator: carries each out, or refuses it."""
 
 from __future__ import annotations
 
@@ -18,11 +18,13 @@ from arboleda.model.plant_model import Evidence, Link, PlantModel
 from arboleda.model.recipe import known
 from arboleda.model.sentence import Phrase, Sentence, Value
 
+from . import reasons
 from .acts import ENDED, Acts, OperatorAct, outcome_of
 from .advice import AND, DO, OR
-from .cell import NOT_YET, STILL_DOING, CellRun
+from .cell import NOT_YET, CellRun
 from .cell_states import Cause, CellState
 from .intake import Intake
+from .readiness import STILL_DOING
 
 
 class Refused(ArboledaError):
@@ -171,7 +173,7 @@ class Operator:
         return act
 
     def _at_once(self, verb: Verb) -> tuple[Outcome, Sentence | None]:
-        """What has become of an act in the step in which it is asked."""
+        """The outcome of an act in the step in which it is asked."""
         if self._defects:
             return Outcome.FAILED, self._defects[0]
         return (Outcome.SENT, None) if verb is Verb.STOP else outcome_of(self._sent)
@@ -186,7 +188,7 @@ class Operator:
         return news
 
     def _learn(self, verb: Verb, entries: Sequence[Entry]) -> None:
-        """What devices could not do is advised no more before other ways; what they could, is again."""
+        """Note acts that devices could not do: they are advised after other ways, until they succeed."""
         for entry in entries:
             tried = (verb, entry.command.robot)
             if entry.state is State.DONE:
@@ -239,7 +241,7 @@ class Operator:
         return [cell for cell in cells if cell.cell.name == holder]
 
     def _with_shared(self, verb: Verb, scope: str, did: Sentence) -> Sentence:
-        """What was done, and that the stop of one cell stopped what it shares with others."""
+        """The sentence about an act, and that the stop of one cell stopped what it shares with others."""
         cell = self._cells.get(scope) if verb is Verb.STOP else None
         if cell is None or not cell.cell.shared:
             return did
@@ -330,11 +332,11 @@ class Operator:
 
     def _override(self, zone: str) -> None:
         granted = self._zones.override(zone)
-        self._dispatcher.forget_zone(zone)
+        self._dispatcher.memory.vacate([zone])
         self._dispatcher.wake({*granted, *self._zones.robbed})
 
     def _works(self, arm: str) -> bool:
-        """Whether a tree counts on what an arm has, or the arm moves without one: homing needs none."""
+        """True where a tree counts on what an arm has, or the arm moves without one: homing needs none."""
         cell = self._cells[self._dispatcher.model.cell_of[arm].name]
         moves = any(entry.is_work for entry in self._dispatcher.ledger.of_robot(arm))
         return moves or cell.tree is not None
@@ -347,9 +349,8 @@ class Operator:
         if station and not any(station == str(n) for cell in cells for n in range(len(cell.cell.stations))):
             raise Refused(NO_STATION(station=quoted(station), cell=_whole(name)))
         number = int(station) if station else None
-        if not any(
-            cell.context.stored if number is None else number in cell.context.stored for cell in cells
-        ):
+        stored = [cell.context.stations.stored for cell in cells]
+        if not any(each if number is None else number in each for each in stored):
             if number is None:
                 raise Refused(RACK_EMPTY(cell=_whole(name)))
             raise Refused(STATION_EMPTY(station=number, cell=name))
@@ -357,7 +358,7 @@ class Operator:
 
     def _unload(self, cells: list[CellRun], number: int | None) -> None:
         for cell in cells:
-            cell.context.unload(number)
+            cell.context.stations.unload(number)
 
     def _planned_answer(self, scope: str) -> Callable[[], None]:
         """`operator good`: a person, and one of the answers to what is being asked; `operator #1-7 good` is
@@ -402,18 +403,19 @@ class Operator:
         able = [(cell, name) for cell in cells for name in cell.cell.holders if name in robots]
         if not able:
             raise Refused(NO_EFFECTOR(robot=sorted(robots)[0]))
-        holding = [(cell, name) for cell, name in able if name in cell.context.holding]
+        holding = [(cell, name) for cell, name in able if name in cell.context.parts.holding]
         if not holding:
             raise Refused(HOLDS_NOTHING(devices=tuple(dict.fromkeys(name for _, name in able))))
         for cell, name in holding:
-            if (told := cell.context.told(name)) is not None:
+            if (told := cell.context.commands.first_of(name)) is not None:
                 raise Refused(STILL_DOING(robot=name, doing=told.doing))
         return partial(self._empty, holding)
 
     def _empty(self, holding: list[tuple[CellRun, str]]) -> None:
         for cell, name in holding:
             cell.let_go(name)
-            self._dispatcher.declare_empty(name)
+            self._dispatcher.effectors.declare_empty(self._dispatcher.beliefs[name])
+            self._dispatcher.wake([name])
 
     def _planned_homing(self, robots: set[str], *, by_hand: bool) -> Callable[[], None]:
         """What is only drawn, and what has no homing, is left out; asked for alone, it is refused."""
@@ -439,8 +441,8 @@ class Operator:
         cell = self._cells[self._dispatcher.model.cell_of[name].name]
         cell.uproot(name)
         if name in cell.cell.zone_users:
-            cell.context.forsake()
-            cell.context.claim_zones(name)
+            cell.context.zones.forsake()
+            cell.context.zones.claim(name)
         return self._dispatcher.home(name, self._clock())
 
     def _uproot(self, name: str) -> None:
@@ -452,7 +454,7 @@ class Operator:
         for cell in self._of_robots(robots):
             for name, space in cell.cell.workspaces.items():
                 for zone in sorted(space.zones) if name in robots else ():
-                    kept = None if cell.context.keeps_for_task(zone) else self._zones.holder(zone)
+                    kept = None if cell.context.zones.is_for_task(zone) else self._zones.holder(zone)
                     holder = kept or taken.setdefault(zone, name)
                     if holder != name:
                         return MAY_CROSS(arm=name, zone=zone, holder=holder)
@@ -531,11 +533,11 @@ class Operator:
 
     def _not_resumable(self, cell: CellRun, robots: set[str]) -> Sentence | None:
         if cell.state is CellState.IDLE:
-            return None if cell.queue_paused else QUEUE_RUNS(cell=cell.cell.name)
+            return None if cell.queue.paused else QUEUE_RUNS(cell=cell.cell.name)
         if cell.state is not CellState.HELD:
             return ONLY_HELD(cell=cell.cell.name, state=cell.state.said)
         if cell.task is None or cell.trouble is not None or cell.stranded:
-            return cell.held_by
+            return reasons.of_hold(cell)
         return _not_yet(cell)
 
     def _not_releasable(self, cell: CellRun, robots: set[str]) -> Sentence | None:
@@ -571,7 +573,7 @@ def scope_of(request: OperatorRequest) -> str:
 
 
 def _answered(scope: str) -> tuple[str, str | None, str]:
-    """Who answers, the id of the question where it is named, and the answer."""
+    """The person, the id of the question where it is named, and the answer."""
     person, _, rest = scope.partition(" ")
     first, _, word = rest.strip().partition(" ")
     if QUESTION_ID.fullmatch(first):
@@ -580,7 +582,7 @@ def _answered(scope: str) -> tuple[str, str | None, str]:
 
 
 def _did(request: OperatorRequest, scope: str) -> Sentence:
-    """What an operator, or a task's own client, has done."""
+    """The sentence about the act of an operator, or of a task's own client."""
     if request.verb is Verb.ANSWER:
         person, _, word = _answered(scope)
         scope = f"{person} {word}"
@@ -626,7 +628,7 @@ def _not_holdable(operator: Operator, cell: CellRun, robots: set[str]) -> Senten
 def _not_retryable(operator: Operator, cell: CellRun, robots: set[str]) -> Sentence | None:
     refusal = _in(CellState.HELD)(operator, cell, robots)
     if refusal is None and cell.stranded:
-        return cell.held_by
+        return reasons.of_hold(cell)
     if refusal is None and cell.task is not None and cell.trouble is None:
         return NO_FAULT(cell=cell.cell.name)
     return refusal or _not_yet(cell)
@@ -639,7 +641,7 @@ def _not_yet(cell: CellRun) -> Sentence | None:
 
 def _not_abandonable(operator: Operator, cell: CellRun, robots: set[str]) -> Sentence | None:
     refusal = _in(CellState.HELD)(operator, cell, robots)
-    if refusal is None and cell.task is None and (holding := cell.context.holding):
+    if refusal is None and cell.task is None and (holding := cell.context.parts.holding):
         return _release_first(holding)
     return refusal
 

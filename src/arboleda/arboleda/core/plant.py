@@ -11,7 +11,8 @@ from typing import Any
 
 from py_trees.behaviour import Behaviour
 
-from arboleda.dispatch.dispatcher import Dispatcher, Memory
+from arboleda.dispatch.dispatcher import Dispatcher
+from arboleda.dispatch.fact_memory import Memory
 from arboleda.dispatch.zones import Zones
 from arboleda.model.commands import Command, Stop
 from arboleda.model.errors import ArboledaError, IllegalTransition, QueueFull, TextError
@@ -43,6 +44,7 @@ from arboleda.model.sentence import OWN, Phrase, Sentence
 from arboleda.model.task import Order, Task
 from arboleda.trees.context import Context
 
+from . import reasons
 from .acts import OperatorAct
 from .advice import Advice
 from .advisor import Advisor
@@ -148,21 +150,22 @@ class Plant:
             self._changes += self._operator.look()
         self._beat()
         self.next_deadline = self._earliest()
-        out, self.dispatcher.outbox = self.dispatcher.outbox, []
+        out = self.dispatcher.outbox.copy()
+        self.dispatcher.outbox.clear()
         return out
 
     @property
     def version(self) -> int:
         """A number that changes whenever something other than a position changed."""
-        return self.dispatcher.version + self._changes
+        return self.dispatcher.version + self.dispatcher.effectors.version + self._changes
 
     @property
     def acts(self) -> Sequence[OperatorAct]:
-        """What operators did last, oldest first."""
+        """The last acts of operators, oldest first."""
         return self._operator.acts.last
 
     def advice(self, cell: str) -> tuple[Advice, ...]:
-        """What leads a cell out of its present state, in the order to do it; nothing where it works."""
+        """Advice that leads a cell out of its present state, in the order to do it; none where it works."""
         return self._advisor.advice(cell)
 
     def refusal(self, request: OperatorRequest) -> Sentence | None:
@@ -170,20 +173,21 @@ class Plant:
         return self._operator.refusal(request)
 
     def prospects(self, text: str) -> list[Prospect]:
-        """What each cell that a task text names promises now; TextError or QueueFull where there is none."""
+        """The promise of each cell that a task text names; TextError or QueueFull where there is none."""
         return self._prospects(self.intake.orders(text))
 
     @property
     def at_rest(self) -> bool:
-        """Whether no command is open and no task runs, but for those that are left for the next start."""
-        ended = all(cell.tree is None or (cell.closed and cell.is_held) for cell in self.cells.values())
+        """True where no command is open and no task runs, but for those that are left for the next start."""
+        runs = self.cells.values()
+        ended = all(run.tree is None or (run.closed and run.state is CellState.HELD) for run in runs)
         return not self.dispatcher.ledger.entries and ended
 
     def sleepers(self) -> list[str]:
         """Cells whose tree runs with nothing left to wake it; anything here is a defect."""
         awake = {entry.cell for entry in self.dispatcher.ledger.entries.values()}
         runs = [cell for cell in self.cells.values() if cell.tree and cell.state is CellState.EXECUTE]
-        asleep = [cell.cell.name for cell in runs if not cell.context.wakes]
+        asleep = [cell.cell.name for cell in runs if not cell.context.time.wakes]
         return [name for name in asleep if name not in awake]
 
     def _run(self, cell: Cell) -> CellRun:
@@ -202,9 +206,9 @@ class Plant:
             own = [task for _, task in tasks if task.order.cell == name]
             waiting = [task for task in own if task.state is TaskState.QUEUED]
             at_work = [task for task in own if task.state is TaskState.RUNNING]
-            run.take_back(waiting, cut_off=bool(at_work))
+            run.queue.take_back(waiting, cut_off=bool(at_work))
             for task in at_work:
-                trail = self.dispatcher.kept(Fact.STEP, task.id)
+                trail = self.dispatcher.memory.value(Fact.STEP, task.id)
                 if trail is not None and run.task is None and run.state is CellState.IDLE:
                     run.walk_back(task, trail)
         known = {run.task for run in self.cells.values()}
@@ -214,13 +218,13 @@ class Plant:
                 task.become(TaskState.FAILED, self.now)
             if task.state is not was:
                 self._task_changed(task)
-        for id in self.dispatcher.names_kept(Fact.STEP) - {task.id for task in known if task}:
-            self.dispatcher.remember(Fact.STEP, id, None)
+        for id in self.dispatcher.memory.names(Fact.STEP) - {task.id for task in known if task}:
+            self.dispatcher.memory.remember(Fact.STEP, id, None)
         held = (run for run in self.cells.values() if run.task is not None)
         self._to_home -= {robot.name for run in held for robot in run.cell.robots}
 
     def _was_stopped(self, cell: Cell, stopped: set[str]) -> bool:
-        """Whether a cell had been stopped: one of its own robots was, or what it shares, by itself."""
+        """True for a cell that had been stopped: one of its own robots was, or what it shares, by itself."""
         if not stopped.isdisjoint(cell.own):
             return True
         for name in stopped.intersection(cell.shared):
@@ -229,7 +233,7 @@ class Plant:
         return False
 
     def _at_work(self, holder: str) -> bool:
-        """Whether what a robot, or a cell, does comes to an end by itself."""
+        """True where the work of a robot, or a cell, comes to an end by itself."""
         if holder in self.cells:
             return self.cells[holder].state is CellState.EXECUTE
         executes = any(run.state is CellState.EXECUTE for run in self._runs.get(holder, ()))
@@ -244,7 +248,7 @@ class Plant:
 
     def _task_changed(self, task: Task, request: str | None = None) -> None:
         self._changes += 1
-        sentence = self.cells[task.order.cell].waiting_for() if task.state is TaskState.QUEUED else None
+        sentence = reasons.of_waiting(self.cells[task.order.cell]) if task.state is TaskState.QUEUED else None
         change = TaskChanged(
             task=task.id,
             text=task.order.text,
@@ -259,7 +263,7 @@ class Plant:
         )
         self.dispatcher.outbox.append(change)
         if task.ended_at is not None:
-            self.dispatcher.remember(Fact.STEP, task.id, None)
+            self.dispatcher.memory.remember(Fact.STEP, task.id, None)
 
     def _expire(self, limit: float) -> None:
         if limit >= self.next_deadline:
@@ -319,7 +323,7 @@ class Plant:
         first = next(waits, len(outbox))
         later = outbox[first:]
         outbox[first:] = filter(_is_fact, later)
-        self.dispatcher.remember(Fact.STEP, run.task.id, text)
+        self.dispatcher.memory.remember(Fact.STEP, run.task.id, text)
         outbox += filterfalse(_is_fact, later)
 
     def _guard(self, cell: str, act: Callable[[], None]) -> None:
@@ -362,12 +366,12 @@ class Plant:
         self._changes += 1
         for name, cell in self.cells.items():
             if cell.state is CellState.EXECUTE:
-                cell.context.pause(at=left)
+                cell.context.time.pause(at=left)
             self._guard(name, partial(cell.hold_after_absence, failure))
 
     def _watch_interlocks(self) -> None:
         for run, device in self._interlocked:
-            self._guard(run.cell.name, partial(run.context.keep_interlocks, device))
+            self._guard(run.cell.name, partial(run.context.zones.follow, device))
 
     def _watch_zones(self) -> None:
         inside = self.zones.robots
@@ -379,7 +383,7 @@ class Plant:
             holder = self.cells.get(self.zones.holder(device) or "")
             if holder is not None:
                 ended = holder.state is CellState.IDLE  # a cell that is held or stopped keeps what it has
-                self._guard(holder.cell.name, partial(holder.context.keep_device, device, ended=ended))
+                self._guard(holder.cell.name, partial(holder.context.devices.keep, device, ended=ended))
 
     def _watch_zones_of(self, cell: CellRun, robot: str) -> None:
         """A robot that is not heard may still be where it was; one that is seen outside is not."""
@@ -387,7 +391,7 @@ class Plant:
         if not belief.online or belief.unhomed:
             self.zones.quarantine(robot)
         elif cell.tree is None or cell.stranded:  # no step of it needs them any more
-            cell.context.leave_zones(robot)
+            cell.context.zones.leave(robot)
 
     def _beat(self) -> None:
         if self.now >= self._next_beat:
@@ -403,8 +407,8 @@ class Plant:
             for run in runs:
                 if run.state is not CellState.EXECUTE:  # what such a cell waits for shows in reports
                     self._touched.add(run.cell.name)
-                if report.piece is not None and run.context.awaits_piece:
-                    run.context.awaits_piece = False  # who goes on waiting asks again
+                if report.piece is not None and run.context.sensors.awaited:
+                    run.context.sensors.awaited = False  # who goes on waiting asks again
                     self.dispatcher.ledger.changed.add(run.cell.name)
             if report.robot in self._to_home:
                 self._home_at_start(report.robot)
@@ -442,7 +446,7 @@ class Plant:
                 if request.choice and task.choice is None:
                     task.choice = OWN(text=plain(request.choice))
                 self._refuse_trigger(request, task)
-                self.cells[task.order.cell].enqueue(task)
+                self.cells[task.order.cell].queue.add(task)
                 self.intake.remember(task)
         except (TextError, QueueFull) as refusal:
             for_now = isinstance(refusal, QueueFull)
@@ -454,7 +458,7 @@ class Plant:
         self._task_changed(task, request.request)
 
     def _prospects(self, orders: Iterable[Order]) -> list[Prospect]:
-        """What the cells promise that may carry out one of these orders."""
+        """The promises of the cells that may carry out one of these orders."""
         times = PastTimes(self.intake.tasks.values())
         return [prospect(order, self.cells[order.cell], times, self.now) for order in orders]
 
@@ -496,7 +500,7 @@ class Plant:
 
 
 def _requests_last(events: Iterable[Event], now: float) -> list[Event]:
-    """What a plant finds that was away, with what people asked for meanwhile as if they asked for it now.
+    """The events that a plant finds which was away, with requests of people as if they asked now.
 
     They ask for it of robots as they are now, so the plant hears first what those have said since.
     """
@@ -517,7 +521,7 @@ def _begins(message: Command | Notice, task: Task) -> bool:
 
 
 def _is_fact(message: Command | Notice) -> bool:
-    """Whether it is a fact, but for that a task stands nowhere any more: that is told after its end."""
+    """True for a fact, but for that a task stands nowhere any more: that is told after its end."""
     return isinstance(message, Remember) and not (message.fact is Fact.STEP and message.value is None)
 
 

@@ -83,7 +83,7 @@ class StopLane:
 
     @property
     def next_deadline(self) -> float | None:
-        """When somebody is to be answered whose stop is not kept yet; None: never."""
+        """The time at which somebody is to be answered whose stop is not kept yet; None: never."""
         return min((each.due for each in self._open.values() if each.has_left), default=None)
 
     def reached(self, request: OperatorRequest) -> frozenset[str]:

@@ -159,7 +159,7 @@ def _order(cell: Cell, recipe: Recipe, words: Mapping[str, str], id: str | None)
 
 
 def _cell_and_recipe(words: list[str], plant: PlantModel) -> tuple[Cell, Recipe]:
-    """What the first two words name: the second a recipe, or it is a parameter of the cell's default."""
+    """The cell that the first word names, and the recipe of the second, or the cell's default."""
     second = words[1] if len(words) > 1 else ""
     asked = [each for each in plant.recipes if not each.is_default]
     name = known(second, [each.name for each in asked])
@@ -187,7 +187,7 @@ def _cell_and_recipe(words: list[str], plant: PlantModel) -> tuple[Cell, Recipe]
 
 
 def _is_named(words: list[str], cell: Cell, recipe: Recipe) -> bool:
-    """Whether a task says the name of its cell's default recipe, which it need not."""
+    """True where a task has the name of its cell's default recipe, which it need not have."""
     if len(words) < 2 or known(words[1], [recipe.name]) is None:
         return False
     return all(first.reads(cell, words[1]) is None for first in recipe.parameters[:1])
@@ -284,7 +284,7 @@ def _cell(word: str, plant: PlantModel, *, robots: bool) -> Cell:
 
 
 def _form(plant: PlantModel) -> Sentence:
-    """How tasks are written here, with an example of the first cell that offers something."""
+    """The form of tasks, with an example of the first cell that offers something."""
     forms = list(dict.fromkeys(each.form() for each in plant.recipes))
     cell = next(cell for cell in plant.cells if cell.recipes)
     recipe = next(each for each in plant.recipes if each in cell.recipes)

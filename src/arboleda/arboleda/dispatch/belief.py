@@ -1,4 +1,4 @@
-"""What the plant knows of one robot, merged from its reports."""
+"""Belief about one robot, merged from its reports."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def _position_under(key: str | None) -> Callable[[Report | Belief], Position | N
 
 
 def _nowhere(said: Report | Belief) -> None:
-    """What has no position says none."""
+    """The position of a robot that has none."""
 
 
 @cache
@@ -99,12 +99,12 @@ class Belief:
 
     @property
     def numbers_commands(self) -> bool:
-        """Whether its board numbers the commands that it takes, and has told of its boot."""
+        """True where its board numbers the commands that it takes, and has reported its boot."""
         return self.robot.evidence is Evidence.IDS and self.boot_id is not None
 
     @property
     def senses_pieces(self) -> bool:
-        """Whether it has a piece sensor, by its plant file or by what it said since it booted."""
+        """True where it has a piece sensor, by its plant file or by its reports since it booted."""
         said = self.piece is not None and self.piece_boot == self.boot_id
         return said or self.robot.piece_on_change
 
@@ -198,12 +198,12 @@ class Belief:
 
     @property
     def still(self) -> bool:
-        """Whether its last two words agree that it stands still."""
+        """True where its last two reports agree that it stands still."""
         return self.still_since(Moment(0, -math.inf))
 
     @property
     def moves(self) -> bool:
-        """Whether nothing but its moving keeps it from a command."""
+        """True while nothing but its moving keeps it from a command."""
         return self.trouble is MOVING
 
     def moment(self, now: float) -> Moment:
@@ -211,11 +211,11 @@ class Belief:
         return Moment(self.reports, now)
 
     def rested_since(self, at: float) -> bool:
-        """Whether it reported the same position at least twice from `at` on, and no other one since."""
+        """True where it reported the same position at least twice from `at` on, and no other one since."""
         return self._rested_from < self.position_no and self._rested_at >= at
 
     def still_since(self, moment: Moment) -> bool:
-        """Whether it stands still for sure: a still code and, where it reports its position, the same one in
+        """True where it surely stands still: a still code and, where it reports its position, the same one in
         two reports, all of them after that moment. What has no position says so twice; what has no work to do
         stands still.
 
@@ -237,12 +237,12 @@ class Belief:
 
     @property
     def answered(self) -> bool:
-        """Whether our bridge says that it hears this plant; a robot without our bridge cannot say so."""
+        """True where our bridge reports that it hears this plant; without our bridge nobody reports it."""
         return self.plant == self.plant_epoch or self.epoch is None or self.robot.link is Link.ROS
 
     @property
     def is_located(self) -> bool:
-        """Whether its position can be believed."""
+        """True where its position can be believed."""
         return self.online and not self.unhomed
 
     @property
@@ -261,12 +261,12 @@ class Belief:
 
     @property
     def unhomed(self) -> bool:
-        """Whether its position means nothing: it says so, or it must have rebooted."""
+        """True where its position means nothing: it reports so, or it must have rebooted."""
         return self.displaced or self.says_unhomed
 
     @property
     def says_unhomed(self) -> bool:
-        """Whether the board itself says that it is not homed."""
+        """True where the board itself reports that it is not homed."""
         return self.homed is False or self.state is MotionState.NOT_HOMED
 
     def obstacle(self, *, was: bool) -> Failure | None:
@@ -280,7 +280,7 @@ class Belief:
         return self._failure(trouble if lost else None, was=was)
 
     def stopped(self, *, was: bool = False) -> Failure | None:
-        """What keeps a robot from every command that an operator of this plant stopped."""
+        """The obstacle to every command of a robot that an operator of this plant stopped."""
         return self._failure(STOPPED, was=was)
 
     def obstacle_besides_stop(self, *, was: bool = False) -> Failure | None:
@@ -310,7 +310,7 @@ class Belief:
 
     @property
     def trouble(self) -> Trouble | None:
-        """What an obstacle is made of, whose ever it is."""
+        """The first trouble that keeps it from a command; None where it is ready."""
         if self.drawn:
             return DRAWN
         if not self.online:
@@ -324,7 +324,7 @@ class Belief:
 
 
 class Trouble(NamedTuple):
-    """What is said of a robot while it is so, and of what it was the cause afterwards."""
+    """Trouble of a robot: its sentence while it lasts, and another one that stays true afterwards."""
 
     reason: Reason
     said: Phrase

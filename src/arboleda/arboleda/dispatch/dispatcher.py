@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable
 from dataclasses import replace
 from functools import partial
 
@@ -20,14 +20,16 @@ from arboleda.model.commands import (
     Work,
 )
 from arboleda.model.facts import shown
-from arboleda.model.grips import Grip, Grips
-from arboleda.model.messages import Fact, Failure, Notice, Reason, Remember, Report
+from arboleda.model.grips import Grip
+from arboleda.model.messages import Fact, Failure, Notice, Reason, Report
 from arboleda.model.plant_model import Evidence, Link, MotionState, PlantModel, Pose, Workspace
 from arboleda.model.sentence import BOTH, Phrase, Sentence
 
 from . import evidence
 from .belief import Belief
+from .effectors import Effectors
 from .evidence import Before, Verdict
+from .fact_memory import FactMemory, Memory
 from .interference import MOST, NEVER_GIVEN, Interferences
 from .ledger import Entry, Feed, Ledger, State
 from .underway import UnderWay, Unnamed
@@ -35,7 +37,6 @@ from .underway import UnderWay, Unnamed
 Make = Callable[..., Command]  # called with id=<the new command's id>
 Guard = Callable[[str, Callable[[], None]], None]  # runs what belongs to the cell of that name
 Barrier = Callable[[Command], "Failure | None"]  # why a command must not leave its cell
-Memory = Mapping[Fact, Mapping[str, str]]
 HOMING = Phrase("doing.home", "homing")
 NOT_GIVEN = Phrase("command.not_given", "{why}: no {doing}")
 BUSY_MOVING = (
@@ -56,10 +57,6 @@ NEEDS_UNSAID = Phrase("robot.needs_unsaid", "{robot} needs {fact} to be {value},
 MAY_LET_GO = Phrase(
     "tool.may_let_go", "{robot} stays where it is: {tool} was told to let go and may still do it"
 )
-OPENED = Phrase("effector.opened", "{arm}: the effector opened while it held a part, {how}")
-DEVICE_OPENED = Phrase("device.let_go", "{device} let go of the part that it held, {how}")
-UNBIDDEN = Phrase("effector.unbidden", "not commanded by this plant")
-AS_REBOOTED = Phrase("effector.as_rebooted", "as its board rebooted")
 NO_TELEMETRY = Phrase("command.no_telemetry", "{robot}: no telemetry for {seconds:g} s while {doing}")
 NOT_FINISHED = Phrase("command.not_finished", "{robot}: did not finish within {seconds:.1f} s while {doing}")
 NOT_STOPPED = Phrase(
@@ -67,7 +64,7 @@ NOT_STOPPED = Phrase(
 )
 UNSENT = (Link.NONE, Link.SCREEN)  # nothing leaves the plant for these
 LATCHED, CLEARED = "on", "cleared"  # a stop as it is kept: until clear, and until reset
-DISPLACED = EMPTIED = "true"
+DISPLACED = "true"
 HOMING_S = 30.0  # a slow search for the switch, and back off it
 BROKEN_OFF = frozenset({Reason.LINK_LOST, Reason.REBOOTED, Reason.STOPPED, Reason.CANCELLED, Reason.INTERNAL})
 """What befell a command that its device might have carried out."""
@@ -75,7 +72,7 @@ KNOWN_STILL = frozenset({Reason.STOPPED_SHORT, Reason.NOT_REACHED, Reason.STOPPE
 
 
 def unguarded(cell: str, act: Callable[[], None]) -> None:
-    """What it raises is for the caller to handle."""
+    """Act without a guard: an exception goes to the caller."""
     act()
 
 
@@ -91,6 +88,7 @@ class Dispatcher:
         self.epoch = epoch
         self.ledger = Ledger()
         self.outbox: list[Command | Notice] = []
+        self.memory = FactMemory(memory, self.outbox)
         self.version = 0  # changes whenever something other than a position changed
         stale_after_s = model.timing.stale_after_s
         self.beliefs = {name: Belief(robot, stale_after_s, epoch) for name, robot in model.robots.items()}
@@ -101,23 +99,12 @@ class Dispatcher:
             if name in self.beliefs and boot.isdigit():
                 self.beliefs[name].boot_id = int(boot)
         self._stale_at: dict[str, float] = {}  # of those beliefs that can get stale
-        holders = [robot.name for robot in model.robots.values() if robot.held_fact is not None]
-        spaces = [space for cell in model.cells for space in cell.reach.values()]
-        self._tools = {space.robot.name: space.tool.name for space in spaces if space.tool is not None}
-        self.grips = Grips(holders, memory.get(Fact.EFFECTOR, {}), self._tools.values())
+        self.interference = Interferences()
+        self.effectors = Effectors(model, memory, self.memory, self.ledger, self.interference)
         stopped = memory.get(Fact.LATCH, {})
         self.latched = {name for name in self.beliefs if stopped.get(name) == LATCHED}
         self.cleared = {name for name in self.beliefs if stopped.get(name) == CLEARED}
-        self.unopened: set[str] = set()  # who was told last to let go, and could not
-        # who let go unbidden since the last command to its effector, and how
-        self.opened: dict[str, Sentence] = {}
-        self.cut_off: set[str] = (
-            set()
-        )  # who may still be switching what it holds with, since an earlier start
         self.reached: dict[str, Position] = {}  # the goal of each robot's last motion, once it is done
-        self._kept: dict[tuple[Fact, str], str | None] = {
-            (fact, name): value for fact, kept in memory.items() for name, value in kept.items()
-        }
         self.under_way = UnderWay(model)
         self.unnamed = Unnamed(model)
         self.unheard_clears: set[str] = set()  # robots whose stop was cleared while they were offline
@@ -125,14 +112,13 @@ class Dispatcher:
         self._last_work: dict[str, Entry] = {}  # of each robot
         # how often a robot refused a command, and the last why
         self.rejected: dict[str, tuple[int, Sentence | None]] = {}
-        self.interference = Interferences()
         # a place that was told before may be older than the last move of an earlier start
         self.sure_from = -math.inf
         self._count = 0
 
     @property
     def next_deadline(self) -> float:
-        """When a command is due or a silence too long, s of the plant's clock; inf where nothing is."""
+        """The time at which a command is due or a silence too long, s of the plant's clock; else inf."""
         stale_at = min(self._stale_at.values()) if self._stale_at else math.inf
         return min(self.ledger.next_deadline, stale_at)
 
@@ -166,11 +152,7 @@ class Dispatcher:
         if entry.is_work:
             self._last_work[command.robot] = entry
         if isinstance(command, Switch) and command.grips is not None:
-            self.opened.pop(command.robot, None)
-            self.remember(Fact.EMPTIED, command.robot, None)
-            if not command.grips:
-                self.grips.open(command.robot, command.id)
-            self._grip(command.robot, Grip.SWITCHING)
+            self.effectors.command(command)
         elif isinstance(command, Motion):
             self._forget_place(command.robot)
         self._leave(command)
@@ -206,13 +188,8 @@ class Dispatcher:
         """The work of a robot that has not ended."""
         return next((entry for entry in self.ledger.of_robot(robot) if entry.is_work), None)
 
-    def opening_tool(self, robot: str) -> str | None:
-        """The tool of a robot that may still let go of a part because it was told to: the robot stays."""
-        tool = self._tools.get(robot)
-        return tool if tool in self.grips.opening else None
-
     def finishes(self, robot: str) -> bool:
-        """Whether a robot does what goes on even when it is stopped, until it is finished."""
+        """True while a robot does work that goes on even when it is stopped, until it is finished."""
         work = self.work_of(robot)
         return work is not None and work.finishes
 
@@ -228,7 +205,7 @@ class Dispatcher:
         """Stop a robot and let nothing move it until `unlatch`, whatever restarts meanwhile."""
         self.latched.add(robot)
         self.unheard_clears.discard(robot)
-        self.remember(Fact.LATCH, robot, LATCHED)
+        self.memory.remember(Fact.LATCH, robot, LATCHED)
         self._stop(robot, StopMode.LATCH)
 
     def unlatch(self, robot: str) -> None:
@@ -237,26 +214,12 @@ class Dispatcher:
         self.beliefs[robot].barred = False
         if not self.beliefs[robot].online:
             self.unheard_clears.add(robot)
-        self.remember(Fact.LATCH, robot, CLEARED)
+        self.memory.remember(Fact.LATCH, robot, CLEARED)
         self._stop(robot, StopMode.CLEAR)
 
     def forget_stop(self, robot: str) -> None:
         """A cleared robot's cell was reset: the stop is over."""
-        self.remember(Fact.LATCH, robot, None)
-
-    def remember(self, fact: Fact, name: str, value: str | None) -> None:
-        """Have a fact kept before anything sent after it leaves; what is kept already is not told again."""
-        if self._kept.get((fact, name)) != value:
-            self._kept[fact, name] = value
-            self.outbox.append(Remember(fact=fact, name=name, value=value))
-
-    def kept(self, fact: Fact, name: str) -> str | None:
-        """What is kept of a fact."""
-        return self._kept.get((fact, name))
-
-    def names_kept(self, fact: Fact) -> set[str]:
-        """Of whom or what a fact is kept."""
-        return {name for (kind, name), value in self._kept.items() if kind is fact and value is not None}
+        self.memory.remember(Fact.LATCH, robot, None)
 
     def home(self, robot: str, now: float) -> Entry:
         """Have a robot run its homing routine."""
@@ -264,9 +227,9 @@ class Dispatcher:
         return self.send(partial(Home, robot=robot), cell, HOMING(), now)
 
     def _displace(self, belief: Belief, *, displaced: bool) -> None:
-        """Whether the position of a robot that cannot say so means anything outlives the plant."""
+        """Remember if the position of a robot has lost its meaning, which it cannot report itself."""
         belief.displaced = displaced
-        self.remember(Fact.DISPLACED, belief.robot.name, DISPLACED if displaced else None)
+        self.memory.remember(Fact.DISPLACED, belief.robot.name, DISPLACED if displaced else None)
 
     def declare_homed(self, robot: str) -> None:
         """An operator has put a robot that cannot say so at its reference, wherever it stood before."""
@@ -277,21 +240,6 @@ class Dispatcher:
         if belief.robot.reference is not None and not belief.supervised and stands:
             self.reached[robot] = belief.robot.reference
         self.wake([robot])
-
-    def declare_empty(self, robot: str) -> None:
-        """A person has taken out what a device held: it holds nothing, even where it goes on saying so, until
-        it is told to grip or to let go, or says itself that it is empty.
-        """
-        belief = self.beliefs[robot]
-        self.cut_off.discard(robot)
-        if belief.held_in(belief):
-            self.remember(Fact.EMPTIED, robot, EMPTIED)
-        self._grip(robot, Grip.OFF)
-        self.wake([robot])
-
-    def forget_zone(self, zone: str) -> None:
-        """Nobody is in this zone any more."""
-        self.remember(Fact.QUARANTINE, zone, None)
 
     def wake(self, holders: Iterable[str]) -> None:
         """Have the trees of these cells, and of these robots' cells, look again."""
@@ -334,10 +282,10 @@ class Dispatcher:
         was_online, latched = belief.online, report.robot in self.latched
         new_link = latched and _is_new_link(belief, report)
         belief.merge(report)
-        if report.robot in self.grips.opening:
-            self._settle_opening(before, belief, report)
+        if report.robot in self.effectors.grips.opening:
+            self.effectors.settle_opening(before, belief, report)
         if was_held and belief.held_in(belief) is False:
-            self._note_opening(belief, rebooted=belief.held_boot != held_since_boot)
+            self.effectors.note_opening(belief, rebooted=belief.held_boot != held_since_boot)
         if not belief.supervised and report.state not in (None, MotionState.STOPPED):
             self._moves_again(report.robot)
         goal = self.reached.get(report.robot)
@@ -345,7 +293,7 @@ class Dispatcher:
         if astray or evidence.displaced(before, belief, report):
             self._displace(belief, displaced=True)
         if belief.boot_id is not None and evidence.tells_boots_only(belief.robot):
-            self.remember(Fact.BOOT, report.robot, str(belief.boot_id))
+            self.memory.remember(Fact.BOOT, report.robot, str(belief.boot_id))
         self._prove(belief, report, now, before)
         if latched and (new_link or (belief.online and not was_online)):  # it may have forgotten its stop
             self._stop(report.robot, StopMode.LATCH)
@@ -361,7 +309,7 @@ class Dispatcher:
             entry.interference = sentence
 
     def question(self, robot: str) -> Entry | None:
-        """What a person is being asked; None where that is nothing, or this is no person."""
+        """The open question to a person; None where there is none, or this is no person."""
         asked = (e for e in self.ledger.of_robot(robot) if isinstance(e.command, Question) and e.open)
         return next(asked, None)
 
@@ -405,7 +353,7 @@ class Dispatcher:
             if belief.online:
                 self._say_again(belief, now)
         if (held := belief.held_in(belief)) is not None:
-            self._settle_grip(belief.robot.name, Grip.ON if held else Grip.OFF)
+            self.effectors.settle(belief.robot.name, Grip.ON if held else Grip.OFF)
 
     def give_up(self, cell: str, failure: Failure, now: float) -> None:
         """Fail every open command of a cell, and halt what moves: nobody can judge them any more."""
@@ -431,7 +379,7 @@ class Dispatcher:
         failure = Failure(reason=Reason.LINK_LOST, sentence=sentence)
         for entry in self.ledger.of_robot(robot):
             if entry.command.id == id:
-                self.grips.will_not_open(robot, id)
+                self.effectors.grips.will_not_open(robot, id)
                 feed = Feed.HALTED if entry.state is State.CANCELLING else Feed.FAILED
                 self._book(entry, Verdict(feed=feed, failure=failure), now)
 
@@ -476,7 +424,7 @@ class Dispatcher:
             self._stop(name, StopMode.HALT)
 
     def _told(self, belief: Belief) -> tuple[object, ...]:
-        """What of a belief trees and screens react to: everything but positions."""
+        """The part of a belief to which trees and screens react: everything but positions."""
         return (belief.trouble, belief.piece, belief.effector, belief.facts_no)
 
     def _obstacle_to(self, command: Command, *, by_hand: bool, was: bool = False) -> Failure | None:
@@ -490,7 +438,7 @@ class Dispatcher:
             return Failure(reason=Reason.REJECTED, sentence=sentence)
         if isinstance(command, Query):
             return self.beliefs[robot].unreachable(was=was) or self._unmet(command, was=was)
-        if isinstance(command, Work) and (tool := self.opening_tool(robot)) is not None:
+        if isinstance(command, Work) and (tool := self.effectors.opening_tool(robot)) is not None:
             return Failure(reason=Reason.REJECTED, sentence=MAY_LET_GO(robot=robot, tool=tool))
         obstacle = self.obstacle(robot, was=was)
         if isinstance(command, Home) and obstacle and obstacle.reason is Reason.NOT_HOMED:
@@ -503,7 +451,7 @@ class Dispatcher:
         return obstacle or self._unmet(command, was=was)
 
     def _busy_with(self, command: Command) -> Entry | None:
-        """What keeps a robot from another command: its work; from a query, only another query."""
+        """The command that keeps a robot from another one: its work; from a query, only another query."""
         if not isinstance(command, Query):
             return self.work_of(command.robot)
         queries = (e for e in self.ledger.of_robot(command.robot) if isinstance(e.command, Query))
@@ -518,7 +466,7 @@ class Dispatcher:
         return next((name for other in others for name, _ in other.sets if name in facts), None)
 
     def _unmet(self, command: Command, *, was: bool) -> Failure | None:
-        """What a command needs and its robot does not say."""
+        """The need of a command that its robot does not report as met."""
         belief = self.beliefs[command.robot]
         for name, value in command.needs:
             told = belief.fact(name)
@@ -533,7 +481,7 @@ class Dispatcher:
         return None
 
     def _may_be_the_end_of_its_last_move(self, robot: str) -> bool:
-        """Whether "moving" may be what a robot, whose position proved that move done, says of it only now.
+        """True where "moving" may be a late report of a move that the position has already proved done.
 
         At `state` nothing but that code proves a move: who says it again after its end is not to be trusted.
         """
@@ -541,69 +489,21 @@ class Dispatcher:
         return belief.moves and belief.robot.evidence is Evidence.JOINTS
 
     def _shows_its_own_end(self, command: Command) -> bool:
-        """Whether the end of an earlier move cannot be taken for that of this command."""
+        """True where the end of an earlier move cannot be taken for that of this command."""
         evidence_level = self.beliefs[command.robot].robot.evidence
         if evidence_level is Evidence.JOINTS:
             return isinstance(command, Switch)
         return evidence_level is Evidence.IDS
 
     def _breaks_its_work(self, command: Command) -> bool:
-        """Whether it would end what the last work of its robot needs, whose end nothing has proven."""
+        """True for a command that would end a need of its robot's last work, whose end nothing has proven."""
         work, sets = self._last_work.get(command.robot), dict(command.sets)
         if work is None or work.state is State.DONE:
             return False
         return any(sets.get(name, value) != value for name, value in work.command.needs)
 
-    def _grip(self, arm: str, grip: Grip) -> None:
-        if self.grips.set(arm, grip):
-            self.version += 1
-            self.remember(Fact.EFFECTOR, arm, grip.value)
-        if grip is Grip.OFF:
-            self.unopened.discard(arm)
-
-    def _note_opening(self, belief: Belief, *, rebooted: bool) -> None:
-        """An effector that was on is off; where no command of this plant is open for it, that is news."""
-        arm = belief.robot.name
-        if self.grips[arm] is not Grip.ON or self._switches(arm):
-            return
-        how = AS_REBOOTED if rebooted else UNBIDDEN
-        opened = OPENED(arm=arm, how=how()) if belief.robot.has_effector else None
-        sentence = opened or DEVICE_OPENED(device=arm, how=how())
-        others = None if rebooted else self.interference.lately_obeyed(arm, belief.heard_at or 0.0)
-        self.opened[arm] = BOTH(first=sentence, second=others) if others else sentence
-
-    def settle_grip(self, arm: str) -> None:
-        """What an earlier start had switched is as it is said now."""
-        self.cut_off.discard(arm)
-        belief = self.beliefs[arm]
-        if (held := belief.held_in(belief)) is not None:
-            self._settle_grip(arm, Grip.ON if held else Grip.OFF)
-
-    def _switches(self, arm: str) -> bool:
-        return arm in self.cut_off or any(_grips(entry.command) for entry in self.ledger.of_robot(arm))
-
-    def _settle_grip(self, robot: str, grip: Grip) -> None:
-        """An effector that nobody is switching, and that does not open late, is what its board reports.
-
-        What a person has emptied stays so until it says that itself.
-        """
-        if self._kept.get((Fact.EMPTIED, robot)) is not None:
-            if grip is not Grip.OFF:
-                return
-            self.remember(Fact.EMPTIED, robot, None)
-        switches = self._switches(robot) or (grip is Grip.ON and robot in self.grips.opening)
-        if self.grips[robot] is not grip and not switches:
-            self._grip(robot, grip)
-
-    def _settle_opening(self, before: Before, belief: Belief, report: Report) -> None:
-        """A tool has forgotten what it was told, as it rebooted, or says that it will not do it."""
-        tool = belief.robot.name
-        if evidence.rebooted(before, belief, report):
-            self.grips.forget_opening(tool)
-        self.grips.will_not_open(tool, report.rejected, report.failed)
-
     def _allowed_s(self, command: Command) -> float:
-        """How long a command may take: as it says itself, or by its distance, then not below `timeout_s`."""
+        """The time that a command may take: its own, or by its distance, then not below `timeout_s`."""
         timing, robot = self.model.timing, self.model.robots[command.robot]
         if command.at_most_s is not None:
             return command.at_most_s
@@ -615,7 +515,7 @@ class Dispatcher:
         return max(robot.timeout_s, travel_s * timing.deadline_factor + timing.deadline_floor_s)
 
     def _settles_at(self, command: Command, now: float, deadline: float) -> float | None:
-        """When a command that the robot need not answer counts as done; None where it must report.
+        """The time at which a command without an answer counts as done; None where the robot must report.
 
         So does an effector that reports nothing; and a move, by a robot that tells no position, to where its
         last move ended: it may have nothing to say, and has `stop_timeout_s` to say that it moves.
@@ -632,7 +532,7 @@ class Dispatcher:
         return now + self.model.timing.effector_settle_s
 
     def _is_there(self, command: Command) -> bool:
-        """Whether a motion ends where the robot's last one, which was done, has left it."""
+        """True for a motion that ends where the robot's last one, which was done, has left it."""
         return isinstance(command, Motion) and command.way == (self.reached.get(command.robot),)
 
     def _book(self, entry: Entry, verdict: Verdict, now: float) -> None:
@@ -644,7 +544,7 @@ class Dispatcher:
         if entry.state in (State.DONE, State.CANCELLED):
             self.under_way.ended(entry.command)
         if _lets_go(entry.command) and entry.state is State.FAILED and not was_broken_off(entry):
-            self.unopened.add(entry.command.robot)
+            self.effectors.unopened.add(entry.command.robot)
         if entry.state is State.DONE:
             self._done(entry.command)
         elif verdict.feed is Feed.REJECTED:
@@ -661,7 +561,7 @@ class Dispatcher:
 
     def _done(self, command: Command) -> None:
         if isinstance(command, Switch) and command.grips is not None:
-            self._grip(command.robot, Grip.ON if command.grips else Grip.OFF)
+            self.effectors.set(command.robot, Grip.ON if command.grips else Grip.OFF)
         elif isinstance(command, Motion) and command.way:
             self.reached[command.robot] = command.way[-1]
         elif isinstance(command, Home):
@@ -680,7 +580,7 @@ class Dispatcher:
 
 
 def was_broken_off(entry: Entry) -> bool:
-    """Whether a command failed by what befell it from outside, or was halted: its device is not the cause."""
+    """True for a command that failed by something from outside, or was halted: not by its device."""
     return entry.failure is None or entry.failure.reason in BROKEN_OFF
 
 
@@ -688,13 +588,8 @@ def _lets_go(command: Command) -> bool:
     return isinstance(command, Switch) and command.grips is False
 
 
-def _grips(command: Command) -> bool:
-    """Whether it has to do with what its robot holds."""
-    return isinstance(command, Switch) and command.grips is not None
-
-
 def _is_new_link(belief: Belief, report: Report) -> bool:
-    """Whether a robot is heard through a new bridge or boot."""
+    """True where a robot is heard through a new bridge or boot."""
     new_bridge = report.epoch is not None and report.epoch != belief.epoch
     return new_bridge or (report.boot_id is not None and report.boot_id != belief.boot_id)
 

@@ -62,21 +62,21 @@ class Zones:
 
     @property
     def is_used(self) -> bool:
-        """Whether anybody holds one."""
+        """True while anybody holds one."""
         return bool(self._holders)
 
     @property
     def robots(self) -> set[str]:
-        """Who holds any."""
+        """The holders of any."""
         return set(self._holders.values())
 
     @property
     def robbed(self) -> set[str]:
-        """Who is inside and may lack what an override took; each may look whether it can `regain` that."""
+        """Robots inside that may lack what an override took; each may look whether it can `regain` that."""
         return set(self._robbed)
 
     def ahead_of(self, robot: str) -> tuple[str, ...]:
-        """Who waits before a waiting robot for one of its zones, the first one first."""
+        """The robots that wait before a waiting one for one of its zones, the first one first."""
         names, zones = list(self._waiting), self._waiting[robot]
         return tuple(name for name in names[: names.index(robot)] if zones & self._waiting[name])
 
@@ -124,7 +124,7 @@ class Zones:
             self._waiting.pop(robot, None)
 
     def regain(self, robot: str, zones: frozenset[str]) -> bool:
-        """Whether a robot inside has all it needs to get out, `zones` at the most; it never waits.
+        """True where a robot inside has all it needs to get out, `zones` at the most; it never waits.
 
         What an override took from it, also in an earlier start, it takes again where nobody else has it.
         """

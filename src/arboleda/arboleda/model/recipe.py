@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 from unicodedata import normalize
 
 from py_trees.behaviour import Behaviour
@@ -13,13 +13,11 @@ from .facts import shown
 from .sentence import Phrase
 
 if TYPE_CHECKING:
-    from arboleda.trees.context import Context
-
     from .plant_model import Cell
     from .task import Order
 
-Build = Callable[["Order", "Context"], Behaviour]
-"""Makes the tree of an order in the context of its cell."""
+Build = Callable[["Order", Any], Behaviour]
+"""Makes the tree of an order in the `Context` of its cell, which stands two rooms above this one."""
 Builders = Mapping[str, Build]
 """By the name of the recipe that they make the tree of."""
 

@@ -89,7 +89,7 @@ def notes_of(name: str, function: Callable[..., Step]) -> dict[str, Any]:
 
 
 def _build(name: str, function: Callable[..., Step], order: Order, context: Context) -> Step:
-    context.back, context.origins = {}, set()
+    context.parts.forget_origins()
     step = function(Kit(context), **order.values)
     if not isinstance(step, Behaviour):
         raise RecipeError(f"{name} returns {quoted(step)}; a recipe returns a step, e.g. work(...)")
@@ -163,7 +163,7 @@ class Kit:
             """A way that was taken and failed has named its cause."""
             told = asked.answer
             if told in ways:
-                return self._context.failure
+                return self._context.failures.first
             known = tuple(map(shown, ways))
             sentence = OTHER_ANSWER(robot=asked.name, answer=said(told), known=known)
             return Failure(reason=Reason.REJECTED, sentence=sentence)
@@ -173,17 +173,17 @@ class Kit:
             return steps.framed(steps.sequence(shown(value), chosen, *flat([way])))
 
         branches = [branch(value, way) for value, way in ways.items()]
-        other_way = Require(NO_OTHER(), self._context, other)
+        other_way = Require(NO_OTHER(), self._context.failures, other)
         return steps.framed(steps.selector(CHOOSE(), *branches, other_way))
 
     def fail(self, sentence: str) -> Step:
         """The task has failed, with this sentence."""
         failure = Failure(reason=Reason.REJECTED, sentence=as_sentence(sentence))
-        return Require(FAIL(), self._context, lambda: failure)
+        return Require(FAIL(), self._context.failures, lambda: failure)
 
     def wait(self, seconds: float) -> Step:
         """Nothing for so long; the time stands still while the cell is held."""
-        return Dwell(WAIT(), self._context, seconds)
+        return Dwell(WAIT(), self._context.time, seconds)
 
     def retry(
         self,
@@ -202,7 +202,7 @@ class Kit:
 
     def repeat(self, step: Step, times: int) -> Step:
         """The step `times` times, one after the other."""
-        return Times(step, self._context, times=times)
+        return Times(step, self._context.time, times=times)
 
     def timeout(self, step: Step, seconds: float) -> Step:
         """The step, which is left and has failed after so many seconds."""
@@ -211,9 +211,9 @@ class Kit:
     def fallback(self, *parts: Step) -> Step:
         """The first step that does not fail; where all do, the last one's failure counts."""
         *others, last = parts
-        forgiven = [Forgiven(each, self._context) for each in others]
+        forgiven = [Forgiven(each, self._context.failures) for each in others]
         return steps.framed(steps.selector(FALLBACK(), *forgiven, last))
 
     def invert(self, step: Step) -> Step:
         """The step, which has to fail."""
-        return Inverted(step, self._context)
+        return Inverted(step, self._context.failures)

@@ -14,7 +14,9 @@ from py_trees.decorators import Decorator
 
 from arboleda.model.messages import Failure, Reason
 from arboleda.model.sentence import Phrase
+from arboleda.trees.cell_time import CellTime
 from arboleda.trees.context import Context
+from arboleda.trees.failures import Failures
 from arboleda.trees.leaves import title_of, titled
 from arboleda.trees.trail import Keeps
 
@@ -45,7 +47,7 @@ class Again(Around):
         self, child: Behaviour, context: Context, *, times: int, pause_s: float, causes: Collection[Reason]
     ) -> None:
         super().__init__(RETRY, child)
-        self.context = context
+        self.time, self.failures = context.time, context.failures
         self.times = times
         self.pause_s = pause_s
         self.causes = causes
@@ -63,30 +65,30 @@ class Again(Around):
 
     def tick(self) -> Iterator[Behaviour]:
         if self.status is Status.RUNNING and self.again_at is not None:
-            if self.context.now < self.again_at:
+            if self.time.now < self.again_at:
                 yield self
                 return
             self.again_at = None
         yield from super().tick()
 
     def update(self) -> Status:
-        status, failure = self.decorated.status, self.context.failure
+        status, failure = self.decorated.status, self.failures.first
         spent = self.tries >= self.times or failure is None or failure.reason not in self.causes
         if status is not Status.FAILURE or spent:
             return status
         self.tries += 1
-        self.context.forgive()
-        self.again_at = self.context.now + self.pause_s
-        self.context.wake_at(self.again_at)
+        self.failures.forgive()
+        self.again_at = self.time.now + self.pause_s
+        self.time.wake_at(self.again_at)
         return Status.RUNNING
 
 
 class Times(Around):
     """Does its step `times` times, one after the other."""
 
-    def __init__(self, child: Behaviour, context: Context, *, times: int) -> None:
+    def __init__(self, child: Behaviour, time: CellTime, *, times: int) -> None:
         super().__init__(REPEAT, child)
-        self.context = context
+        self.time = time
         self.times = times
         self.done = 0
 
@@ -105,7 +107,7 @@ class Times(Around):
         self.done += 1
         if self.done >= self.times:
             return Status.SUCCESS
-        self.context.wake_at(self.context.now)
+        self.time.wake_at(self.time.now)
         return Status.RUNNING
 
 
@@ -114,52 +116,52 @@ class AtMost(Around):
 
     def __init__(self, child: Behaviour, context: Context, *, seconds: float) -> None:
         super().__init__(TIMEOUT, child)
-        self.context = context
+        self.time, self.failures = context.time, context.failures
         self.seconds = seconds
         self.until = 0.0
 
     def initialise(self) -> None:
-        self.until = self.context.now + self.seconds
-        self.context.wake_at(self.until)
+        self.until = self.time.now + self.seconds
+        self.time.wake_at(self.until)
 
     def begin_anew(self) -> None:
         self.initialise()
 
     def update(self) -> Status:
-        if self.decorated.status is not Status.RUNNING or self.context.now < self.until:
+        if self.decorated.status is not Status.RUNNING or self.time.now < self.until:
             return self.decorated.status
         self.decorated.stop(Status.INVALID)
         sentence = TOO_LATE(step=self.decorated.name, seconds=self.seconds)
-        self.context.fail(Failure(reason=Reason.DEADLINE, sentence=sentence), self)
+        self.failures.add(Failure(reason=Reason.DEADLINE, sentence=sentence), self)
         return Status.FAILURE
 
 
 class Forgiven(Around):
     """Its step may fail, for another one is tried then."""
 
-    def __init__(self, child: Behaviour, context: Context) -> None:
+    def __init__(self, child: Behaviour, failures: Failures) -> None:
         super().__init__(TRY, child)
-        self.context = context
+        self.failures = failures
 
     def update(self) -> Status:
         if self.decorated.status is Status.FAILURE:
-            self.context.forgive()
+            self.failures.forgive()
         return self.decorated.status
 
 
 class Inverted(Around):
     """Its step has to fail."""
 
-    def __init__(self, child: Behaviour, context: Context) -> None:
+    def __init__(self, child: Behaviour, failures: Failures) -> None:
         super().__init__(INVERT, child)
-        self.context = context
+        self.failures = failures
 
     def update(self) -> Status:
         if self.decorated.status is Status.FAILURE:
-            self.context.forgive()
+            self.failures.forgive()
             return Status.SUCCESS
         if self.decorated.status is Status.SUCCESS:
             sentence = NOT_FAILED(step=self.decorated.name)
-            self.context.fail(Failure(reason=Reason.REJECTED, sentence=sentence), self)
+            self.failures.add(Failure(reason=Reason.REJECTED, sentence=sentence), self)
             return Status.FAILURE
         return self.decorated.status

@@ -85,7 +85,7 @@ class Handle:
     def says(self, **facts: Value) -> Step:
         """A check: the device says so, else the task fails."""
         self._check(facts)
-        return Require(SAYS(), self._context, partial(self._objection, facts))
+        return Require(SAYS(), self._context.failures, partial(self._objection, facts))
 
     def becomes(self, *, at_most_s: float, **facts: Value) -> Step:
         """Wait until the device says so, at most `at_most_s` s."""
@@ -114,7 +114,7 @@ class Handle:
         return [name for name, value in facts.items() if self._told(name) != value]
 
     def _told(self, fact: str) -> Value | None:
-        return self._context.fact(self._device.name, fact)
+        return self._context.robots.fact(self._device.name, fact)
 
     def _objection(self, facts: Mapping[str, Value]) -> Failure | None:
         for name in self._unsaid(facts):
@@ -218,11 +218,12 @@ class RobotHandle(Handle):
     def let_go(self) -> Step:
         """Let go of what it holds."""
         name = self._device.name
-        return steps.effector(self._context, name, on=False, then=partial(self._context.store_where, name))
+        store = partial(self._context.stations.store_below, name)
+        return steps.effector(self._context, name, on=False, then=store)
 
     def brings_back_to(self, target: str) -> None:
         """A recovery brings what it holds there; else it is where the part was taken."""
-        self._context.back[self._device.name] = self._pose(target)
+        self._context.parts.back[self._device.name] = self._pose(target)
 
     def _pose(self, target: str) -> Pose:
         poses = self._context.cell.spots(self._device.name)

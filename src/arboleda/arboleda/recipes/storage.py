@@ -36,9 +36,9 @@ def storage(order: Order, context: Context) -> Behaviour:
     path, station = order.values["path"], order.values["station"]
     cell = _as_storage(context.cell)
     arm, check = cell.arm.name, cell.piece_check
-    context.origins.discard(arm)  # a recipe of one's own may have run before
-    pickup = context.back[arm] = cell.pickup_of(path)
-    way = storage_way(cell, pickup, station, context.standing(arm))
+    pickup = cell.pickup_of(path)
+    context.parts.set_origin(arm, pickup)
+    way = storage_way(cell, pickup, station, context.robots.standing(arm))
     visits = [
         (pickup, steps.grip(context, arm, pickup, check=check)),
         (station, steps.let_go(context, arm, station, check=check)),
@@ -53,9 +53,8 @@ def palletizing(order: Order, context: Context) -> Behaviour:
     cell = _as_storage(context.cell)
     arm, check = cell.arm.name, cell.piece_check
     pick, place = cell.palletizing.pick, cell.palletizing.place
-    context.origins.discard(arm)
-    context.back[arm] = cell.pickup
-    way = palletizing_way(cell, context.standing(arm))
+    context.parts.set_origin(arm, cell.pickup)
+    way = palletizing_way(cell, context.robots.standing(arm))
     visits = [
         (cell.home, []),
         (pick, steps.grip(context, arm, pick, check=check)),
@@ -133,13 +132,13 @@ def _drive(context: Context, path: Path) -> list[Behaviour]:
     if known is None or known == start:
         return [follow]
     if not cell.drive_to_start:
-        return [Require(AT_START(), context, lambda: _not_at_start(context, path)), follow]
+        return [Require(AT_START(), context.failures, lambda: _not_at_start(context, path)), follow]
     way = cell.mobile.grid.route(known, start)
     return [_follow(context, DRIVE_TO(node=start), DRIVING_TO(node=start), way), follow]
 
 
 def _node(context: Context) -> int | None:
-    known = context.position(_as_storage(context.cell).mobile.name)
+    known = context.robots.position(_as_storage(context.cell).mobile.name)
     return known if isinstance(known, int) else None
 
 

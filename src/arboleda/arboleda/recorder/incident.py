@@ -194,7 +194,7 @@ class Reader:
         if run.task is None or run.task.id != found.task:
             self._keep()
             return
-        failure = run.task.failure or run.context.failure
+        failure = run.task.failure or run.context.failures.first
         if failure is None:  # perhaps another attempt: an earlier failure no longer counts
             found.failure = found.failed_at = None
             if self._drawn and run.tree is not None:

@@ -33,7 +33,17 @@ BELIEVED = (
     "lost",
 )
 OPENED = ("command", "state", "sent_at", "deadline", "settles_at", "accepted_at", "cancelled_at", "answer")
-STANDS = ("state", "queue_paused", "left_over", "dirty", "closed", "trouble", "awaits", "stranded", "due")
+STANDS = (
+    "state",
+    "queue.paused",
+    "queue.left_over",
+    "dirty",
+    "closed",
+    "trouble",
+    "awaits",
+    "stranded",
+    "due",
+)
 _believed, _opened, _stands = attrgetter(*BELIEVED), attrgetter(*OPENED), attrgetter(*STANDS)
 
 State = dict[str, Any]

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from arboleda.core.intake import HISTORY
-from arboleda.dispatch.dispatcher import CLEARED, DISPLACED, EMPTIED, LATCHED
+from arboleda.dispatch.dispatcher import CLEARED, DISPLACED, LATCHED
+from arboleda.dispatch.effectors import EMPTIED
 from arboleda.model.errors import StartError
 from arboleda.model.grips import Grip
 from arboleda.model.messages import Fact, Failure, KeptTask, Reason, TaskState

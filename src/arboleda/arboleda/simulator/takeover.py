@@ -66,7 +66,7 @@ def _place(world: World, plant: Plant, robot: Robot, began: Position | None) -> 
     told = BodyReport(q, node, belief.effector, belief.piece, tuple(belief.facts.items()) or None)
     holds = (
         robot.held_fact is not None
-        and plant.dispatcher.grips.holding(robot.name)
+        and plant.dispatcher.effectors.grips.holding(robot.name)
         and belief.piece is not False
     )
     latched = belief.state is MotionState.STOP_LATCHED

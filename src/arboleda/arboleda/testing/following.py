@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from arboleda.core import reasons
 from arboleda.core.advice import Advice, Hand, in_words
 from arboleda.core.cell_states import CellState
 from arboleda.simulator.hands import do
@@ -28,8 +29,8 @@ def follow(rig: Rig, cell: str) -> list[str]:
     done: list[str] = []
     while not _comes_to_work(rig, cell):
         ways = rig.plant.advice(cell)
-        assert ways, f"after {done} nothing is advised: {rig.plant.cells[cell].waiting_for()}"
-        assert len(done) < ENOUGH, f"{done} lead nowhere: {rig.plant.cells[cell].waiting_for()}"
+        assert ways, f"after {done} nothing is advised: {reasons.of_waiting(rig.plant.cells[cell])}"
+        assert len(done) < ENOUGH, f"{done} lead nowhere: {reasons.of_waiting(rig.plant.cells[cell])}"
         for each in _until_seen(ways):
             done.append(str(in_words(each)))
             assert each.refusal is None, f"{done[-1]} is advised first and refused: {each.refusal}"

@@ -1,4 +1,4 @@
-"""Whether two things were made alike: a hash of all that they are made of, equal over starts of the plant.
+"""Hash of all that a thing is made of, equal over starts of the plant: it tells what was made alike.
 
 Functions count by their code and by what they have taken in, objects that are no data by their class alone.
 """
@@ -35,6 +35,7 @@ OF_NODES = frozenset(
         "parent",
         "logger",
         "context",
+        "failures",
         "blackboards",
         "qualified_name",
         "blackbox_level",
@@ -98,7 +99,7 @@ def _words(value: Any, seen: Seen) -> Iterator[str]:
 
 
 def _parts(value: Any) -> Iterator[Any]:
-    """What a thing is made of; nothing of what is no data."""
+    """The parts that a thing is made of; none of what is no data."""
     if isinstance(value, tuple | list):
         yield from value
     elif isinstance(value, Mapping):

@@ -21,7 +21,7 @@ class Handling:
 
     @property
     def unchecked(self) -> tuple[Check, ...]:
-        """What no device has confirmed so far, in the order of the work."""
+        """The checks that no device has confirmed so far, in the order of the work."""
         return tuple(check for check in Check if check in self._unchecked)
 
     def begin(self, taken: Mapping[str, int | None] | None = None, unchecked: Iterable[Check] = ()) -> None:
@@ -36,12 +36,12 @@ class Handling:
         self._unchecked.add(check)
 
     def senses_pieces(self, robot: str) -> bool:
-        """Whether a robot's board says whether a piece is at its effector."""
+        """True where a robot's board reports if a piece is at its effector."""
         return self._beliefs[robot].senses_pieces
 
     def note(self, hand: str, *, grips: bool) -> None:
-        """What holds parts has gripped, or let go, which its board has to say. Where that has booted in
-        between, it may have lost the part by that. Of an effector that is on, a piece sensor says the rest.
+        """Book a grip, or that a part was let go, which the board of `hand` has to report. A board that has
+        booted in between may have lost the part. Of an effector that is on, a piece sensor says the rest.
         """
         belief = self._beliefs[hand]
         holds = belief.held_in(belief)

@@ -1,4 +1,4 @@
-"""What of a cell's running task is kept for the next start of the plant, and put back by it."""
+"""Keeper of a cell's running task: writes down where it stands, and puts that back in the next start."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ class Keeping:
     def make(self, order: Order) -> Behaviour:
         """The tree of a task that begins."""
         self.walk = None
-        return self._grown(order, self._context.planned())
+        return self._grown(order, self._context.robots.planned())
 
     def revive(self, order: Order, kept: str) -> Sentence | None:
         """Take over a task that was at work; why it cannot go on at its step."""
@@ -68,14 +68,14 @@ class Keeping:
             self._context.take_over(found)
             return WAS_RECOVERING()
         try:
-            self._context.as_planned = found.begun.planned
+            self._context.robots.as_planned = found.begun.planned
             tree = self._grown(order, found.begun.planned)
             nodes = list(tree.iterate())
             begun = trail.put_back(nodes, found) if self._begun.made == found.begun.made else None
         except Exception:  # noqa: BLE001 - a recipe may be user code, and another one than it was
             begun = None
         finally:
-            self._context.as_planned = None
+            self._context.robots.as_planned = None
         self._context.take_over(found)
         if begun is None:
             return CHANGED()
@@ -84,12 +84,12 @@ class Keeping:
             if isinstance(step, Await | Dwell):
                 step.begin_anew()
             if isinstance(step, Act) and step.last is not None and step.last["effect"] == trail.SWITCH:
-                self._context.leave_unsettled(step.last["robot"], told=dict(step.last["sets"]))
+                self._context.parts.leave_unsettled(step.last["robot"], sets=dict(step.last["sets"]))
         self.walk = WalkBack(found, begun)
         return found.stranded
 
     def judge(self) -> Finding:
-        """What the devices say now of the steps at which an earlier start ended."""
+        """Judge by the devices' reports the steps at which an earlier start ended."""
         assert self.walk is not None
         return self.walk.judge(self._context)
 
@@ -106,12 +106,12 @@ class Keeping:
         """The task has ended, or goes on without its work."""
         self.walk, self._kept_of = None, ()
         self._context.settle()
-        self._context.forsake()
+        self._context.zones.forsake()
 
     def news(
         self, *, failure: Failure | None, cancels: bool, holds: bool, stranded: Sentence | None
     ) -> str | None:
-        """Where the task stands, to be kept; None where that is kept already."""
+        """The place of the task in its tree, to be kept; None where that is kept already."""
         if self.walk is not None:
             return self._stranded(self.walk, stranded)
         entries = [act.entry for act in self._run.acts if act.entry is not None]
@@ -132,19 +132,19 @@ class Keeping:
     def _trail(self, failure: Failure | None, *, cancels: bool, stranded: Sentence | None) -> Trail:
         context, recovers = self._context, self._run.recovering
         nodes = [] if recovers else self._run.nodes
-        names = context.used.union(self._begun.planned.positions, context.numbered)
+        names = context.commands.used.union(self._begun.planned.positions, context.robots.numbered)
         return Trail(
             begun=self._begun,
             statuses=trail.statuses(nodes),
             nodes=trail.kept_of(() if recovers else self._run.keepers),
-            carrier=context.carrier,
-            back={robot: pose.name for robot, pose in context.back.items()},
-            origins=sorted(context.origins),
-            used=sorted(context.used),
-            known={} if recovers else {name: context.known(name) for name in sorted(names)},
-            grips={} if recovers else {name: context.grip(name).value for name in context.cell.holders},
-            zones={name: sorted(context.zones_of(name)) for name in context.cell.interlocked},
-            failure=(failure or context.failure) if recovers else None,
+            carrier=context.parts.carrier,
+            back={robot: pose.name for robot, pose in context.parts.back.items()},
+            origins=sorted(context.parts.origins),
+            used=sorted(context.commands.used),
+            known={} if recovers else {name: context.robots.known(name) for name in sorted(names)},
+            grips={} if recovers else {name: context.parts.grip(name).value for name in context.cell.holders},
+            zones={name: sorted(context.zones.held_by(name)) for name in context.cell.interlocked},
+            failure=(failure or context.failures.first) if recovers else None,
             recovers=recovers,
             cancels=cancels,
             stranded=stranded,

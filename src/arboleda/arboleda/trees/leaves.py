@@ -10,11 +10,15 @@ from typing import Any
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
+from arboleda.dispatch.dispatcher import Make
 from arboleda.dispatch.ledger import Entry, State
 from arboleda.model.messages import Check, Failure, Notice, Reason
 from arboleda.model.sentence import NOTHING, OWN, Phrase, Sentence, as_sentence
 
-from .context import Context, Make
+from .cell_time import CellTime
+from .context import Context
+from .failures import Failures
+from .parts import Parts
 from .trail import Keeps, command_kept
 
 CANCELLED = Phrase("command.cancelled", "cancelled while {doing}")
@@ -123,6 +127,8 @@ class Act(Leaf):
     ) -> None:
         super().__init__(name)
         self.context = context
+        self.time = context.time
+        self.failures = context.failures
         self.then = then
         self.make = make
         self.anew = anew or make
@@ -139,7 +145,7 @@ class Act(Leaf):
 
     def initialise(self) -> None:
         self.tries, self.left, self.last, self.proven = 0, False, None, False
-        self.began = self.context.now
+        self.began = self.time.now
         self.send()
 
     def kept(self) -> Mapping[str, Any] | None:
@@ -159,14 +165,14 @@ class Act(Leaf):
         """Give the command, or give it anew."""
         self.told, self.last = self.doing, None
         self.again_at = None
-        self.patient_until = self.context.now + self.context.timing.stop_timeout_s
+        self.patient_until = self.time.now + self.context.timing.stop_timeout_s
         self._give()
 
     def _give(self) -> None:
-        self.entry = self.context.send(self.anew if self.left else self.make, self.doing)
+        self.entry = self.context.commands.send(self.anew if self.left else self.make, self.doing)
         self.left_before, self.left = self.left, self.left or self.entry.left
         if self.entry.too_early:
-            self.context.wake_at(self.patient_until)
+            self.time.wake_at(self.patient_until)
 
     def update(self) -> Status:
         if self.proven:
@@ -188,8 +194,8 @@ class Act(Leaf):
             self.tries += 1
             self.last_failure = failure.sentence
             self.told = AGAIN(why=failure.sentence, number=self.tries, most=retry.times)
-            self.again_at = self.context.now + retry.backoff_s
-            self.context.wake_at(self.again_at)
+            self.again_at = self.time.now + retry.backoff_s
+            self.time.wake_at(self.again_at)
             return Status.RUNNING
         return self._failed(failure)
 
@@ -206,30 +212,30 @@ class Act(Leaf):
         ended = self.entry.failure if self.entry is not None and not self.entry.open else None
         if ended is not None and ended.reason not in RETRYABLE:
             return None
-        return (self.guard() if self.guard is not None else None) or self.context.part_gone()
+        return (self.guard() if self.guard is not None else None) or self.failures.opened_effector()
 
     def _waits_for_the_robot(self, entry: Entry) -> bool:
-        """Whether the robot is still moving, and there is time; one that no longer is gets its command."""
-        if not entry.too_early or self.context.now >= self.patient_until:
+        """True while the robot still moves and there is time; once it rests, it gets its command."""
+        if not entry.too_early or self.time.now >= self.patient_until:
             return False
-        if not self.context.moves(entry.command.robot):
+        if not self.context.robots.belief(entry.command.robot).moves:
             self._give()
         return self.entry is not None and self.entry.too_early
 
     def _wait(self) -> Status:
-        if self.again_at is not None and self.context.now >= self.again_at:
+        if self.again_at is not None and self.time.now >= self.again_at:
             self.send()
             return self.update()
         return Status.RUNNING
 
     def _failed(self, failure: Failure) -> Status:
-        self.context.fail(failure, self)
+        self.failures.add(failure, self)
         self._halt()
         return self.failed(failure)
 
     def _halt(self) -> None:
         if self.entry is not None and self.entry.open:
-            self.context.cancel(self.entry)
+            self.context.commands.cancel(self.entry)
 
     def terminate(self, new_status: Status) -> None:
         if new_status is Status.INVALID:
@@ -237,21 +243,21 @@ class Act(Leaf):
 
 
 class Dwell(Leaf):
-    """Wait a fixed time."""
+    """Waits a fixed time."""
 
-    def __init__(self, name: Sentence | str, context: Context, seconds: float) -> None:
+    def __init__(self, name: Sentence | str, time: CellTime, seconds: float) -> None:
         super().__init__(name)
-        self.context = context
+        self.time = time
         self.seconds = seconds
         self.until = 0.0
 
     def initialise(self) -> None:
-        self.began = self.context.now
+        self.began = self.time.now
         self.until = self.began + self.seconds
-        self.context.wake_at(self.until)
+        self.time.wake_at(self.until)
 
     def update(self) -> Status:
-        return Status.SUCCESS if self.context.now >= self.until else Status.RUNNING
+        return Status.SUCCESS if self.time.now >= self.until else Status.RUNNING
 
 
 class Announce(Leaf):
@@ -270,16 +276,16 @@ class Announce(Leaf):
 class Require(Leaf):
     """A condition: SUCCESS where `obstacle()` returns None, else FAILURE with what it returns."""
 
-    def __init__(self, name: Sentence | str, context: Context, obstacle: Guard) -> None:
+    def __init__(self, name: Sentence | str, failures: Failures, obstacle: Guard) -> None:
         super().__init__(name)
-        self.context = context
+        self.failures = failures
         self.obstacle = obstacle
 
     def update(self) -> Status:
         failure = self.obstacle()
         if failure is None:
             return Status.SUCCESS
-        self.context.fail(failure, self)
+        self.failures.add(failure, self)
         return self.failed(failure)
 
 
@@ -308,7 +314,8 @@ class Await(Leaf):
         final: bool = True,
     ) -> None:
         super().__init__(name)
-        self.context = context
+        self.time = context.time
+        self.failures = context.failures
         self.arrived = arrived
         self.seconds = seconds
         self.otherwise = otherwise
@@ -316,18 +323,18 @@ class Await(Leaf):
         self.until = 0.0
 
     def initialise(self) -> None:
-        self.began = self.context.now
+        self.began = self.time.now
         self.until = self.began + self.seconds
-        self.context.wake_at(self.until)
+        self.time.wake_at(self.until)
 
     def update(self) -> Status:
         if self.arrived():
             return Status.SUCCESS
-        if self.context.now < self.until:
+        if self.time.now < self.until:
             return Status.RUNNING
         failure = self.otherwise()
         if self.final:
-            self.context.fail(failure, self)
+            self.failures.add(failure, self)
         return self.failed(failure)
 
 
@@ -349,15 +356,16 @@ class Piece(Await):
         final: bool = True,
     ) -> None:
         super().__init__(name, context, self._seen, seconds, lambda: failure, final=final)
+        self.handling = context.handling
+        self.sensors = context.sensors
         self.robot = robot
         self.needed = needed
 
     def _seen(self) -> bool:
-        handling = self.context.handling
-        if not (self.needed or handling.senses_pieces(self.robot)):
-            handling.miss(Check.GRIP)
+        if not (self.needed or self.handling.senses_pieces(self.robot)):
+            self.handling.miss(Check.GRIP)
             return True
-        return self.context.piece(self.robot, self.began) is True
+        return self.sensors.read(self.robot, self.began) is True
 
 
 class Note(Leaf):
@@ -375,13 +383,13 @@ class Note(Leaf):
 class Carry(Leaf):
     """Note which robot carries the checked part now; None: it has arrived."""
 
-    def __init__(self, name: Sentence | str, context: Context, robot: str | None) -> None:
+    def __init__(self, name: Sentence | str, parts: Parts, robot: str | None) -> None:
         super().__init__(name)
-        self.context = context
+        self.parts = parts
         self.robot = robot
 
     def update(self) -> Status:
-        self.context.carrier = self.robot
+        self.parts.carrier = self.robot
         return Status.SUCCESS
 
 
@@ -402,6 +410,7 @@ class TakeZones(Await):
         recovers: bool = False,
     ) -> None:
         super().__init__(name, context, self._taken, context.cell.zone_wait_s, self._not_free)
+        self.access = context.zones
         self.robot = robot
         self.needed = needed
         self.recovers = recovers
@@ -412,13 +421,13 @@ class TakeZones(Await):
         self.zones = self.needed()
 
     def update(self) -> Status:
-        due = self.context.now >= self.until
-        if due and self.recovers and self.context.will_come_free(self.robot):
+        due = self.time.now >= self.until
+        if due and self.recovers and self.access.will_come_free(self.robot):
             super().initialise()
         return super().update()
 
     def _taken(self) -> bool:
-        return self.context.take_zones(self.robot, self.zones, inside=self.recovers)
+        return self.access.take(self.robot, self.zones, inside=self.recovers)
 
     def _not_free(self) -> Failure:
         zones = tuple(sorted(self.zones))
@@ -428,7 +437,7 @@ class TakeZones(Await):
     def terminate(self, new_status: Status) -> None:
         # py_trees also ends what has long succeeded: the zones are in use then
         if new_status is Status.FAILURE or (self.status is Status.RUNNING and new_status is Status.INVALID):
-            self.context.leave_zones(self.robot)
+            self.access.leave(self.robot)
 
 
 class LeaveZones(Await):
@@ -436,7 +445,7 @@ class LeaveZones(Await):
 
     def __init__(self, name: Sentence | str, context: Context, robot: str) -> None:
         failure = Failure(reason=Reason.ZONE_UNAVAILABLE, sentence=NOT_OUTSIDE(arm=robot))
-        left = partial(context.leave_zones, robot)
+        left = partial(context.zones.leave, robot)
         super().__init__(name, context, left, context.timing.stop_timeout_s, lambda: failure)
 
 
@@ -445,20 +454,22 @@ class TakeDevices(Await):
 
     def __init__(self, name: Sentence | str, context: Context, devices: frozenset[str]) -> None:
         super().__init__(name, context, self._taken, context.cell.zone_wait_s, self._not_free)
+        self.cell = context.cell.name
+        self.shared = context.devices
         self.devices = devices
 
     def update(self) -> Status:
         status = super().update()
-        if status is Status.RUNNING and (awaited := self.context.awaited_device(self.devices)):
+        if status is Status.RUNNING and (awaited := self.shared.awaited(self.devices)):
             device, holder, holds = awaited
             self.told = (WAITS_FOR_DEVICE if holds else WAITS_FOR_TURN)(device=device, cell=holder)
         return status
 
     def _taken(self) -> bool:
-        return self.context.take_devices(self.devices)
+        return self.shared.take(self.devices)
 
     def _not_free(self) -> Failure:
-        cell, awaited = self.context.cell.name, self.context.awaited_device(self.devices)
+        cell, awaited = self.cell, self.shared.awaited(self.devices)
         sentence = DEVICE_NOT_FREE(cell=cell, devices=tuple(sorted(self.devices)), seconds=self.seconds)
         if awaited and awaited[2]:
             device, holder, _ = awaited
@@ -468,7 +479,7 @@ class TakeDevices(Await):
     def terminate(self, new_status: Status) -> None:
         # as with zones: what has long succeeded is in use
         if new_status is Status.FAILURE or (self.status is Status.RUNNING and new_status is Status.INVALID):
-            self.context.leave_devices(frozenset())
+            self.shared.leave(frozenset())
 
 
 class LeaveDevices(Await):
@@ -477,5 +488,5 @@ class LeaveDevices(Await):
     def __init__(self, name: Sentence | str, context: Context, devices: frozenset[str]) -> None:
         sentence = NOT_AT_REST(cell=context.cell.name, devices=tuple(sorted(devices)))
         failure = Failure(reason=Reason.ZONE_UNAVAILABLE, sentence=sentence)
-        left = partial(context.leave_devices, devices)
+        left = partial(context.devices.leave, devices)
         super().__init__(name, context, left, context.timing.stop_timeout_s, lambda: failure)

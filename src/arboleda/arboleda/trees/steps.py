@@ -18,8 +18,8 @@ from arboleda.model.messages import Check, Failure, Reason, SystemStart
 from arboleda.model.plant_model import Pose
 from arboleda.model.sentence import Phrase, Sentence
 
-from . import zone_plan
-from .context import PART_LOST, Context
+from . import parts, zone_plan
+from .context import Context
 from .leaves import (
     Act,
     Announce,
@@ -140,13 +140,13 @@ def is_frame(node: Behaviour) -> bool:
 def start(context: Context) -> Behaviour:
     """Tell that a task starts."""
     announce = Announce(ANNOUNCE(), context, SystemStart(cell=context.cell.name))
-    return sequence(SYSTEM_START(), announce, Dwell(DWELL(), context, context.timing.dwell_s))
+    return sequence(SYSTEM_START(), announce, Dwell(DWELL(), context.time, context.timing.dwell_s))
 
 
 def visit(context: Context, robot: str, way: Sequence[Pose], visits: Sequence[Visit]) -> list[Behaviour]:
     """Go from pose to pose and work there, holding the shared zones of each leg of the way."""
     space = context.cell.workspaces[robot]
-    legs = zone_plan.plan(space, way, context.way_back(robot)) if space.zones else []
+    legs = zone_plan.plan(space, way, context.parts.way_back(robot)) if space.zones else []
     steps: list[Behaviour] = []
     for index, (pose, work) in enumerate(visits):
         steps += [_take(context, robot, leg.zones) for leg in legs if leg.start == index and leg.zones]
@@ -165,15 +165,15 @@ def visit_from_anywhere(
     for zones while it holds others, whatever comes before and after.
     """
     space = context.cell.reach[robot]
-    origin = Note(NOTE_ORIGIN(), partial(_note_origin, context, robot, pose))
+    origin = Note(NOTE_ORIGIN(), partial(context.parts.note_origin, robot, pose))
     steps = _at(context, robot, pose, origin, *work)
     if not space.zones:
         return steps
 
     def needed() -> frozenset[str]:
-        way = (context.standing(robot), pose, *((space.home,) if pose.zones else ()))
-        legs = zone_plan.plan(space, way, context.way_back(robot))
-        return context.zones_between(robot, pose).union(*(leg.zones for leg in legs))
+        way = (context.robots.standing(robot), pose, *((space.home,) if pose.zones else ()))
+        legs = zone_plan.plan(space, way, context.parts.way_back(robot))
+        return context.zones.between(robot, pose).union(*(leg.zones for leg in legs))
 
     out = [_move(context, robot, space.home)] if pose.zones else []
     leave = LeaveZones(LEAVE_ZONES(), context, robot)
@@ -198,14 +198,6 @@ def with_devices(context: Context, devices: frozenset[str], parts: Sequence[Beha
     return [take, *parts, LeaveDevices(LEAVE_DEVICES(devices=named), context, devices)]
 
 
-def _note_origin(context: Context, robot: str, pose: Pose) -> None:
-    """A robot that holds nothing takes here what it will hold: a recovery brings that back."""
-    told = robot in context.back and robot not in context.origins  # the task has said where
-    if context.cell.reach[robot].hand.name not in context.holding and not told:
-        context.back[robot] = pose
-        context.origins.add(robot)
-
-
 def grip(context: Context, robot: str, pose: Pose, *, check: PieceCheck) -> list[Behaviour]:
     """Effector on; `check`: the piece sensor has to see the part before and after."""
     if not check:
@@ -218,7 +210,7 @@ def grip(context: Context, robot: str, pose: Pose, *, check: PieceCheck) -> list
     return [
         Piece(PIECE_THERE(), context, robot, patience_s, none, needed=needed),
         selector(GRIP(), *attempts),
-        Carry(CARRY(), context, robot),
+        Carry(CARRY(), context.parts, robot),
     ]
 
 
@@ -231,20 +223,20 @@ def unchecked_grip(context: Context, robot: str) -> Behaviour:
 
 def let_go(context: Context, robot: str, pose: Pose, *, check: PieceCheck) -> list[Behaviour]:
     """Effector off; what it held stays at the pose. `check`: the piece sensor has to see it until then."""
-    off = effector(context, robot, on=False, then=partial(context.store, pose))
+    off = effector(context, robot, on=False, then=partial(context.stations.store, pose))
     if not check:
         return [off]
-    lost = Failure(reason=Reason.PART_LOST, sentence=PART_LOST(arm=robot))
+    lost = Failure(reason=Reason.PART_LOST, sentence=parts.LOST(arm=robot))
     wait_s, needed = context.timing.piece_wait_s, check is True
     brought = Piece(PIECE_BROUGHT(), context, robot, wait_s, lost, needed=needed)
-    return [brought, Carry(ARRIVED(), context, None), off]
+    return [brought, Carry(ARRIVED(), context.parts, None), off]
 
 
 def _way_home(context: Context, robot: str, *, notes_origins: bool) -> list[Behaviour]:
     space = context.cell.workspaces[robot]
     steps = [*_opened(context, robot), *_rise(context, robot)]
     if space.zones:
-        needed = partial(context.recovery_zones, robot)
+        needed = partial(context.zones.for_recovery, robot)
         steps.append(TakeZones(TAKE_ZONES(), context, robot, needed, recovers=True))
     if space.hand.held_fact is not None:
         steps += _part_back(context, robot, notes_origins=notes_origins)
@@ -256,18 +248,18 @@ def _opened(context: Context, robot: str) -> list[Behaviour]:
     """A tool that was told to let go and may still do it ends that first, where it was told to."""
     if context.cell.workspaces[robot].tool is None:
         return []
-    settled = Unless(LETS_GO_OF_NOTHING(), lambda: context.opening_tool(robot) is None)
+    settled = Unless(LETS_GO_OF_NOTHING(), lambda: context.parts.opening_tool(robot) is None)
     return [selector(LET_GO_FIRST(), settled, effector(context, robot, on=False))]
 
 
 def _part_back(context: Context, robot: str, *, notes_origins: bool) -> list[Behaviour]:
     """Bring what the robot holds where it came from; where that is known only later, it is looked up then."""
     hand = context.cell.workspaces[robot].hand.name
-    back = context.back.get(robot) if notes_origins else context.way_back(robot)
+    back = context.parts.back.get(robot) if notes_origins else context.parts.way_back(robot)
     off = effector(context, robot, on=False)
     if back is not None:
-        context.back[robot] = back
-        empty = Unless(HOLDS_NOTHING(), lambda: hand not in context.holding)
+        context.parts.back[robot] = back
+        empty = Unless(HOLDS_NOTHING(), lambda: hand not in context.parts.holding)
         return [selector(PART_BACK(), empty, sequence(CARRY_BACK(), *_at(context, robot, back, off)))]
 
     found: list[Pose | None] = [None]  # once it lets go, nobody knows any more where that came from
@@ -276,8 +268,8 @@ def _part_back(context: Context, robot: str, *, notes_origins: bool) -> list[Beh
         return found[0]
 
     def kept() -> bool:
-        found[0] = context.way_back(robot)
-        return hand not in context.holding or found[0] is None
+        found[0] = context.parts.way_back(robot)
+        return hand not in context.parts.holding or found[0] is None
 
     def flat() -> bool:
         pose = origin()
@@ -298,31 +290,31 @@ def _go_where(context: Context, robot: str, where: Callable[[], Pose | None], *,
     def make(id: str) -> Command:
         pose = where() or context.cell.workspaces[robot].home
         goal = pose.above if above and pose.above is not None else pose.q
-        return device.go(id=id, way=device.route(context.position(robot), goal))
+        return device.go(id=id, way=device.route(context.robots.position(robot), goal))
 
     title, doing = (GO_OVER, GOING_OVER) if above else (GO_BACK, GOING_BACK)
     return Act(title(), context, make, doing())
 
 
 def _rise(context: Context, robot: str) -> list[Behaviour]:
-    """Where poses have an approach height, a robot that may stand low goes straight up first."""
+    """The first move, straight up, of a robot that may stand low; none without approach heights."""
     space = context.cell.workspaces[robot]
     if not any(pose.above for pose in space.poses):
         return []
 
     def make(id: str) -> Command:
-        return space.robot.go(id=id, way=(context.risen(robot),))
+        return space.robot.go(id=id, way=(context.robots.risen(robot),))
 
     return [Act(RISE(), context, make, RISING())]
 
 
 def _settle(context: Context, robots: Sequence[str]) -> Behaviour:
     def settled() -> bool:
-        ending = not all(entry.finishes for entry in context.open_commands())
-        return not ending and not any(context.obstacle(robot) for robot in robots)
+        ending = not all(entry.finishes for entry in context.commands.open())
+        return not ending and not any(context.robots.obstacle(robot) for robot in robots)
 
     def unsettled() -> Failure:
-        found = (context.obstacle(robot, was=True) for robot in robots)
+        found = (context.robots.obstacle(robot, was=True) for robot in robots)
         unended = UNENDED(arm=tuple(robots) or context.cell.name)
         ended = Failure(reason=Reason.STOP_UNCONFIRMED, sentence=unended)
         return next((failure for failure in found if failure), ended)
@@ -347,10 +339,10 @@ def _move(context: Context, robot: str, pose: Pose, *, above: bool = False) -> B
     device = context.cell.reach[robot].robot
 
     def make(id: str) -> Command:
-        return device.go(id=id, way=device.route(context.position(robot), goal))
+        return device.go(id=id, way=device.route(context.robots.position(robot), goal))
 
     title, doing = (MOVE_ABOVE, MOVING_ABOVE) if above else (MOVE, MOVING)
-    return Act(title(pose=pose.said), context, make, doing(pose=pose.said), guard=context.part_lost)
+    return Act(title(pose=pose.said), context, make, doing(pose=pose.said), guard=context.parts.lost)
 
 
 def effector(context: Context, robot: str, *, on: bool, then: Callable[[], None] | None = None) -> Behaviour:
@@ -362,7 +354,7 @@ def effector(context: Context, robot: str, *, on: bool, then: Callable[[], None]
         title, doing = (HAND_ON, GRIPPING) if on else (HAND_OFF, LETTING_GO)
         named = (title(device=hand.name), doing(device=hand.name))
     act = Act(SWITCH(), context, make, named[1], then=then)
-    return sequence(named[0], act, Dwell(DWELL(), context, context.timing.dwell_s))
+    return sequence(named[0], act, Dwell(DWELL(), context.time, context.timing.dwell_s))
 
 
 def _attempt(context: Context, robot: str, pose: Pose, number: int, *, needed: bool) -> Behaviour:
@@ -377,7 +369,7 @@ def _attempt(context: Context, robot: str, pose: Pose, number: int, *, needed: b
 
 
 def _again(context: Context, robot: str) -> list[Behaviour]:
-    """What a further attempt begins with; there is none after another failure than a missed grip."""
-    only_missed = Unless(ONLY_MISSED(), lambda: context.failure is None)
-    back_off = Dwell(BACK_OFF(), context, context.cell.retry.backoff_s)
+    """The steps that begin a further attempt; there is none after another failure than a missed grip."""
+    only_missed = Unless(ONLY_MISSED(), lambda: context.failures.first is None)
+    back_off = Dwell(BACK_OFF(), context.time, context.cell.retry.backoff_s)
     return [only_missed, effector(context, robot, on=False), back_off]

@@ -1,5 +1,5 @@
-"""Where a running task stands, as it is kept for the next start: the state of its tree, and what its devices
-had said by then. It is put back into a tree that is made anew, of the same recipe and plant file.
+"""Trail of a running task, kept for the next start: the state of its tree, and what its devices had reported
+by then. It is put back into a tree that is made anew, of the same recipe and plant file.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ class Keeps:
     """A node of ours: what is kept of it for the next start, and how it goes on then."""
 
     def kept(self) -> Mapping[str, Any] | None:
-        """What has to be known of it beside its status."""
+        """The state that has to be kept of it beside its status."""
         return None
 
     def restore(self, state: Mapping[str, Any]) -> None:
@@ -42,7 +42,7 @@ class Keeps:
 
 
 class Known(NamedTuple):
-    """What was known of a device; `more` commands may have reached it that it had not told of, by the start
+    """Knowledge of a device; `more` commands may have reached it that it had not told of, by the start
     of the bridge that had the epoch `bridge`.
     """
 
@@ -57,7 +57,7 @@ class Known(NamedTuple):
         return cls(boot=belief.boot_id, receipt=belief.receipt, more=more, bridge=belief.epoch)
 
     def explains(self, now: Receipt | None) -> bool:
-        """Whether it can have got there by the commands that were under way, and no others."""
+        """True where it can have got there by the commands that were under way, and no others."""
         before = self.receipt
         if now == before:
             return True
@@ -71,7 +71,7 @@ class Known(NamedTuple):
 
 @dataclass(frozen=True, kw_only=True)
 class Planned:
-    """Where robots stood when the tree was made, as its recipe may have planned by it."""
+    """Places of the robots when the tree was made, by which its recipe may have planned."""
 
     standing: Mapping[str, str]  # the zone-free poses of those with shared zones, by name
     positions: Mapping[str, Position]
@@ -79,7 +79,7 @@ class Planned:
 
 @dataclass(frozen=True, kw_only=True)
 class Begun:
-    """What stays the same while a task runs; `made` is what its tree was made of."""
+    """Start of a task, which stays the same while it runs; `made` is the hash of its tree."""
 
     made: str
     planned: Planned
@@ -156,7 +156,7 @@ def statuses(nodes: Iterable[Behaviour]) -> str:
 
 
 def kept_of(nodes: Iterable[tuple[int, Keeps]]) -> dict[int, Mapping[str, Any]]:
-    """What is kept of nodes beside their status, by number."""
+    """The state that is kept of nodes beside their status, by number."""
     return {number: state for number, node in nodes if (state := node.kept())}
 
 
@@ -184,7 +184,7 @@ def put_back(nodes: Sequence[Behaviour], trail: Trail) -> list[Keeps]:
 
 
 def command_kept(entry: Entry | None) -> dict[str, Any] | None:
-    """What is kept of the last command of a step; None where none may have left."""
+    """The record of the last command of a step; None where none may have left."""
     if entry is None or not entry.left:
         return None
     command = entry.command

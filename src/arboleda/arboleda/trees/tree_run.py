@@ -39,12 +39,12 @@ class TreeRun:
 
     @property
     def recovering(self) -> bool:
-        """Whether the recovery is what runs."""
+        """True while the recovery runs."""
         return any(node.status is Status.RUNNING for node in self._recoveries)
 
     def begin(self, make: Callable[[], Behaviour]) -> Status:
         """Build a tree and tick it until it rests: RUNNING, SUCCESS or FAILURE."""
-        self._began = self._context.now
+        self._began = self._context.time.now
         try:
             self.grow(make())
         except Exception as error:  # noqa: BLE001 - a recipe may be user code: it ends its task, not the plant
@@ -76,7 +76,7 @@ class TreeRun:
                 tree.stop(Status.INVALID)
         except Exception as error:  # noqa: BLE001 - a leaf may be user code: whatever moves is halted all the same
             self._tell(error)
-        self._context.cancel_all()  # py_trees does not terminate a leaf that raised
+        self._context.commands.cancel_all()  # py_trees does not terminate a leaf that raised
 
     @property
     def acts(self) -> list[Act]:
@@ -85,10 +85,10 @@ class TreeRun:
 
     @property
     def course(self) -> Course | None:
-        """How it went until now; None where an earlier start of the plant has begun it."""
+        """The course of the tree until now; None where an earlier start of the plant has begun it."""
         if self._began is None:
             return None
-        now = self._context.now
+        now = self._context.time.now
         begun = {step: round(at - self._began, 3) for step, at in self._begun() if at < now}
         return Course(seconds=round(now - self._began, 3), begun=begun)
 
@@ -99,7 +99,7 @@ class TreeRun:
         """
         if self.recovering:
             return []
-        now, in_order = self._context.now, sorted(self._begun(), key=lambda step: step[1])
+        now, in_order = self._context.time.now, sorted(self._begun(), key=lambda step: step[1])
         return [(step, now - at) for step, at in reversed(in_order)]
 
     def interrupted(self) -> list[Act]:
@@ -136,12 +136,12 @@ class TreeRun:
         raise ArboledaError(f"the tree did not come to rest in {TICK_BOUND} ticks")
 
     def _signature(self) -> tuple[object, ...]:
-        return (self._context.sent, [node.status for node in self.nodes])
+        return (self._context.commands.sent, [node.status for node in self.nodes])
 
     def _raised(self, error: Exception) -> Status:
         cell, kind = self._context.cell.name, type(error).__name__
         sentence = BROKE_IN_TREE(cell=cell, kind=kind, error=str(error))
-        self._context.fail(Failure(reason=Reason.INTERNAL, sentence=sentence))
+        self._context.failures.add(Failure(reason=Reason.INTERNAL, sentence=sentence))
         self._tell(error)
         return Status.FAILURE
 

@@ -1,4 +1,4 @@
-"""What became of the step at which a plant stopped, judged by what its devices say now.
+"""Way back into a task: judges by its devices what became of the step at which the plant stopped.
 
 Only a board that numbers commands can prove it: of the same boot, it has taken none that this plant does not
 know of, so whatever was done before is as it was left. Its last command is done, was never taken, or was a
@@ -37,7 +37,7 @@ NOBODY_KNOWS = Phrase("walk.nobody_knows", "nobody knows how far it came")
 
 
 class Fate(Enum):
-    """What became of a command."""
+    """Outcome of a command that was under way when the plant stopped."""
 
     DONE = "done"
     UNTAKEN = "untaken"
@@ -47,7 +47,7 @@ class Fate(Enum):
 
 @dataclass(frozen=True, kw_only=True)
 class Finding:
-    """What the devices say: what is still waited for, or why a person has to judge; `stranded` where nothing
+    """Judgement by the devices: what is still awaited, or why a person has to judge; `stranded` where nothing
     can go on from there. `fates` are those of the steps that were under way, as far as they are known.
     """
 
@@ -81,14 +81,14 @@ class WalkBack:
 
     def judge(self, context: Context) -> Finding:
         """By what the devices of the task say now."""
-        names = [name for name in self.trail.known if context.has(name)]
-        beliefs = {name: context.belief(name) for name in names}
+        names = [name for name in self.trail.known if context.devices.has(name)]
+        beliefs = {name: context.robots.belief(name) for name in names}
         troubles: dict[str, Trouble] = {}
         self.due = None
         for name, belief in beliefs.items():
             if belief.displaced:
                 self._displaced[name] = belief.boot_id
-            obstacle = context.obstacle(name)
+            obstacle = context.robots.obstacle(name)
             if obstacle is not None or belief.moves:
                 waits = obstacle.sentence if obstacle else STILL_MOVING(robot=name)
                 self._heard_since = None
@@ -96,14 +96,15 @@ class WalkBack:
             if (trouble := self._changed(belief)) is not None:
                 troubles[name] = trouble
         if self._heard_since is None:
-            self._heard_since = context.plant_now
+            self._heard_since = context.time.plant_now
         settled_at = self._heard_since + context.timing.effector_timeout_s
-        early = context.plant_now < settled_at
+        early = context.time.plant_now < settled_at
         fates: dict[Keeps, Fate] = {}
         for step in self.begun:
             if isinstance(step, Act) and step.last is not None:
                 name = str(step.last["robot"])
-                fates[step] = Fate.UNPROVEN if name in troubles else fate(step.last, context.belief(name))
+                belief = context.robots.belief(name)
+                fates[step] = Fate.UNPROVEN if name in troubles else fate(step.last, belief)
                 if fates[step] is Fate.UNPROVEN and early and name not in troubles:
                     self.due = settled_at
                     return Finding(waits=NOT_SAID(robot=name), fates={})
@@ -144,7 +145,7 @@ class WalkBack:
         return None
 
     def _is_numbered(self, belief: Belief) -> bool:
-        """Whether a device numbered its commands when this was kept, and does so now."""
+        """True for a device that numbered its commands when this was kept, and does so now."""
         return belief.numbers_commands and self.trail.known[belief.robot.name].boot is not None
 
     def _told_more(self, belief: Belief) -> Trouble | None:
@@ -174,7 +175,7 @@ class WalkBack:
 
 
 def fate(last: Mapping[str, Any], belief: Belief) -> Fate:
-    """What became of a command to a robot that stands still, and has taken none but those that are known."""
+    """The outcome of a command to a robot that stands still, and has taken none but those that are known."""
     if last["effect"] == QUERY:
         return Fate.CUT_SHORT  # to ask once more changes nothing
     if last["done"]:
@@ -195,7 +196,7 @@ def fate(last: Mapping[str, Any], belief: Belief) -> Fate:
 
 
 def _at(goal: Any, belief: Belief) -> bool:
-    """Whether a robot is where its command led; of one that led nowhere its facts say that."""
+    """True for a robot that is where its command led; of one that led nowhere its facts say that."""
     if goal is None:
         return True
     place = tuple(goal) if isinstance(goal, list) else goal

@@ -1,4 +1,4 @@
-"""Which shared zones a way of a robot needs, and from where to where it must hold them.
+"""Plan of the shared zones on a robot's way: which it needs, and from where to where it must hold them.
 
 A robot of a grid also comes by the nodes between two poses: each where a pose lies counts, wherever it halts.
 """
@@ -60,7 +60,7 @@ def passed(space: Workspace, start: Position | None, goal: Position) -> frozense
 
 
 def recovery_zones(space: Workspace, start: Pose | None, back: Pose | None) -> frozenset[str]:
-    """What the way from `start` to `back` and home needs; None: from wherever the robot may be."""
+    """The zones on the way from `start` to `back` and home; None: from wherever the robot may be."""
     way = (back, space.home) if back else (space.home,)
     starts = space.poses if start is None else (start,)
     moves = [(pose, goal) for pose in starts for goal in way]
@@ -91,5 +91,5 @@ def _lying(space: Workspace, spots: Collection[Position]) -> frozenset[str]:
 
 
 def lying(pose: Pose) -> str:
-    """Which zones a pose lies in, for a sentence."""
+    """The zones in which a pose lies, for a sentence."""
     return f"{pose.name} lies in zone {', '.join(sorted(pose.zones))}"

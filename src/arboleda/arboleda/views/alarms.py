@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from functools import reduce
 from typing import Any
 
+from arboleda.core import reasons
 from arboleda.core.advice import in_words
 from arboleda.core.cell import CellRun
 from arboleda.core.cell_states import CellState
@@ -49,7 +50,7 @@ def need_of(run: CellRun) -> Need | None:
         return Need(kind=CELL_HELD, of=run.state.value)
     if questions := _questions(run):
         return Need(kind=PERSON_ASKED, of=" ".join(each.id for each in questions))
-    if run.queue and run.not_ready is not None and not run.context.open_commands():
+    if run.queue and run.not_ready is not None and not run.context.commands.open():
         return Need(kind=CELL_BLOCKED, of="")
     return None
 
@@ -106,13 +107,13 @@ def _why(run: CellRun) -> Sentence:
         ASKED(person=each.robot, cell=run.cell.name, question=OWN(text=each.text)) for each in _questions(run)
     ]
     if not asked:
-        return run.waiting_for() or NOTHING
+        return reasons.of_waiting(run) or NOTHING
     return reduce(lambda first, second: BOTH(first=first, second=second), asked)
 
 
 def _questions(run: CellRun) -> list[Question]:
     """The open questions to people of the cell, the oldest first."""
-    open_ = (entry.command for entry in run.context.open_commands())
+    open_ = (entry.command for entry in run.context.commands.open())
     return [each for each in open_ if isinstance(each, Question)]
 
 

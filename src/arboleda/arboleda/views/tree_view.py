@@ -149,14 +149,14 @@ def _times(node: Behaviour, now: float) -> Times:
     if isinstance(node, Act):
         return _command_times(node, now)
     if isinstance(node, Await | Dwell):
-        left = node.until - node.context.now
+        left = node.until - node.time.now
         return node.seconds - left, max(left, 0.0)  # nobody ticks it while its cell is being held
     return UNKNOWN
 
 
 def _command_times(node: Act, now: float) -> Times:
     if node.again_at is not None:
-        return None, max(node.again_at - node.context.now, 0.0)
+        return None, max(node.again_at - node.time.now, 0.0)
     if node.entry is None or not node.entry.open:
         return UNKNOWN
     return now - node.entry.sent_at, node.entry.deadline - now

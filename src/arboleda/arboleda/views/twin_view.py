@@ -37,7 +37,7 @@ def in_parts(plant: Plant) -> Generator[None, None, Row]:
         robots.append(_robot(plant, belief))
         yield
     for name, cell in plant.cells.items():
-        parts[name], stored[name] = part(cell), sorted(cell.context.stored)
+        parts[name], stored[name] = part(cell), sorted(cell.context.stations.stored)
         yield
     return {"robots": robots, "parts": parts, "stored": stored, "zones": plant.zones.snapshot()}
 
@@ -62,7 +62,7 @@ def part(run: CellRun) -> Row | None:
     if cell.drawing is None:
         return None
     for holder in cell.holders:
-        grip = run.context.grip(holder)
+        grip = run.context.parts.grip(holder)
         if grip is not Grip.OFF:
             return {"at": "arm", "sure": grip is Grip.ON}
     if run.tree is None or run.task is None:

@@ -6,6 +6,7 @@ from collections.abc import Generator, Iterable, Iterator
 from dataclasses import replace
 from typing import Any
 
+from arboleda.core import reasons
 from arboleda.core.acts import OperatorAct
 from arboleda.core.advice import BY_HAND, Advice, Hand, in_words, sentence
 from arboleda.core.cell import CellRun
@@ -201,11 +202,11 @@ def _cell(plant: Plant, cell: CellRun) -> dict[str, Any]:
         "step": step_of(cell.tree),
         "progress": tree_view.progress_of(cell.tree),
         "queue": [task.id for task in cell.queue],
-        "paused": cell.queue_paused,
-        "waiting_for": cell.waiting_for() if cell.queue else None,
+        "paused": cell.queue.paused,
+        "waiting_for": reasons.of_waiting(cell) if cell.queue else None,
         "not_ready": _not_ready(cell, ways),
         "blocked_by": _blocked_by(plant, cell),
-        "held_by": cell.held_by,
+        "held_by": reasons.of_hold(cell),
         "advice": [_advice(each) for each in ways],
         "refused": _refused(plant, cell.cell.name, OF_CELLS),
         "tree": tree_view.rows(cell.tree, now) if cell.tree else [],
@@ -215,7 +216,7 @@ def _cell(plant: Plant, cell: CellRun) -> dict[str, Any]:
 def _not_ready(cell: CellRun, ways: tuple[Advice, ...]) -> Sentence | None:
     """The reason why an idle cell would start no task, and the remedy; a paused queue tells that itself."""
     why = cell.not_ready
-    if why is None or why == cell.why_paused or not ways:
+    if why is None or why == cell.queue.why_paused or not ways:
         return why
     return BOTH(first=why, second=sentence(ways))
 
@@ -328,7 +329,7 @@ def _robot(plant: Plant, belief: Belief) -> dict[str, Any]:
         "boot_id": belief.boot_id,
         "bridge_epoch": belief.epoch,
         "still": belief.still,
-        "holding": plant.dispatcher.grips.holding(robot.name) if robot.held_fact else None,
+        "holding": plant.dispatcher.effectors.grips.holding(robot.name) if robot.held_fact else None,
         "goal": twin_view.goal(last),
         "telemetry_hz": belief.rate_hz if belief.online else None,
         "command": _command(last, now),

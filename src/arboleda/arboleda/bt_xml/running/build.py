@@ -31,7 +31,7 @@ class Builder:
 
     forest: Forest
     leaf: Leaf
-    context: Clock
+    time: Clock
     kinds: Mapping[str, Kind] = field(default_factory=dict)  # of the leaves
     written: list[tuple[Scope, str]] = field(default_factory=list)  # every variable that may get a value
 
@@ -43,7 +43,7 @@ class Builder:
         made = self._subtree(node, scope) if node.is_subtree else self._made(node, scope)
         self.written.extend(scope.place(name) for name in self._writes(node))
         made.scope = scope
-        made.context = self.context
+        made.time = self.time
         scripts = {name: Script.of(node.own[name].value) for name in names.SCRIPTS if name in node.own}
         made.before = {name: script for name, script in scripts.items() if name in names.PRE}
         made.after = {name: script for name, script in scripts.items() if name in names.POST}

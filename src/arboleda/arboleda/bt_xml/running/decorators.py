@@ -115,8 +115,8 @@ class Timed(Decorator):
         """Begin to count the time."""
         self.started = True
         self.begin()
-        self.until = self.context.now + self.given.number(self.port, self.scope) / 1000
-        self.context.wake_at(self.until)
+        self.until = self.time.now + self.given.number(self.port, self.scope) / 1000
+        self.time.wake_at(self.until)
 
 
 class Timeout(Timed):
@@ -126,7 +126,7 @@ class Timeout(Timed):
         if not self.started:
             self.start()
         endless = self.given.number(self.port, self.scope) <= 0
-        if not endless and self.child.status is Status.RUNNING and self.context.now >= self.until:
+        if not endless and self.child.status is Status.RUNNING and self.time.now >= self.until:
             self.child.reset()
             self.started = False
             return FAILURE
@@ -143,7 +143,7 @@ class Delay(Timed):
     def work(self) -> Result:
         if not self.started:
             self.start()
-        if self.context.now < self.until:
+        if self.time.now < self.until:
             return RUNNING
         result = self.child.execute()
         if result in ENDED:
@@ -273,7 +273,7 @@ class RateController(Decorator):
         if self.begin():
             self.has_begun = False
             self._wait()
-        is_due = self.context.now >= self.until
+        is_due = self.time.now >= self.until
         if self.has_begun and self.child.status is not Status.RUNNING and not is_due:
             return RUNNING
         self.has_begun = True
@@ -286,8 +286,8 @@ class RateController(Decorator):
         hz = self.given.number("hz", self.scope, "10.0")
         if hz <= 0:
             raise ScriptError(NO_RATE(node=self.name))
-        self.until = self.context.now + 1 / hz
-        self.context.wake_at(self.until)
+        self.until = self.time.now + 1 / hz
+        self.time.wake_at(self.until)
 
 
 class SubTree(Decorator):

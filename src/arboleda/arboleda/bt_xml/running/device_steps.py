@@ -16,7 +16,7 @@ from arboleda.model.messages import Failure
 from arboleda.model.outside import quoted
 from arboleda.model.sentence import Phrase
 from arboleda.recipes.handles import Ask
-from arboleda.trees.context import Context
+from arboleda.trees.failures import Failures
 from arboleda.trees.leaves import Act, Await, Require
 
 from . import memory
@@ -127,12 +127,12 @@ class DeviceStep(Forgiving):
         self,
         name: str,
         step: Behaviour,
-        context: Context,
+        failures: Failures,
         causes: list[Failure],
         order: Order,
         built: Mapping[str, Value],
     ) -> None:
-        super().__init__(name, step, context, causes)
+        super().__init__(name, step, failures, causes)
         self.order = order
         self.built = built
         self.anew: dict[str, Value] = {}
@@ -164,13 +164,13 @@ class QuestionStep(DeviceStep):
         self,
         name: str,
         step: Ask,
-        context: Context,
+        failures: Failures,
         causes: list[Failure],
         order: Order,
         built: Mapping[str, Value],
         out: str,
     ) -> None:
-        super().__init__(name, step, context, causes, order, built)
+        super().__init__(name, step, failures, causes, order, built)
         self.ask = step
         self.out = out
 
@@ -188,11 +188,11 @@ class FactStep(Forgiving):
         self,
         name: str,
         step: Behaviour,
-        context: Context,
+        failures: Failures,
         causes: list[Failure],
         said: Mapping[str, Callable[[], Value | None]],
     ) -> None:
-        super().__init__(name, step, context, causes)
+        super().__init__(name, step, failures, causes)
         self.said = said  # by variable
 
     def work(self) -> Result:

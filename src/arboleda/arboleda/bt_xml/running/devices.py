@@ -89,16 +89,17 @@ class Devices:
         if not can_be_renewed(step):
             self._fix(order, node, scope)
             order = replace(order, variables={})
+        failures = self.context.failures
         if isinstance(step, Ask) and ANSWER in node.ports:
-            return QuestionStep(name, step, self.context, self.causes, order, built, _variable(node, ANSWER))
-        return DeviceStep(name, step, self.context, self.causes, order, built)
+            return QuestionStep(name, step, failures, self.causes, order, built, _variable(node, ANSWER))
+        return DeviceStep(name, step, failures, self.causes, order, built)
 
     def _written(
         self, node: forest.Node, kind: Kind, written: WrittenNode, below: list[Node], scope: Scope
     ) -> Node:
         """A node in Python; an error of its function gets the place of the node."""
         name = node.name or node.kind
-        inner = [WrapperNode(each, self.context, self.causes) for each in below]
+        inner = [WrapperNode(each, self.context.failures, self.causes) for each in below]
         with _placed(node):
             order = self._order(node, kind, scope, partial(written.build, self.context, inner))
             if not written.is_step:
@@ -106,7 +107,7 @@ class Devices:
                 return FunctionNode(name, written, order, outs)
             self._fix(order, node, scope)
             now = self._now(order, scope)
-        return Forgiving(name, framed(order.make(now)), self.context, self.causes)
+        return Forgiving(name, framed(order.make(now)), self.context.failures, self.causes)
 
     def _order(
         self, node: forest.Node, kind: Kind, scope: Scope, make: Callable[[dict[str, Value]], Step]
@@ -145,7 +146,7 @@ class Devices:
             self.fixed.append((place, key, node))
 
     def _telling(self, name: str, node: forest.Node, robot: str) -> Node:
-        said = {fact: partial(self.context.fact, robot, fact) for fact in node.ports}
+        said = {fact: partial(self.context.robots.fact, robot, fact) for fact in node.ports}
 
         def unsaid() -> Failure | None:
             missing = next((fact for fact, told in said.items() if told() is None), None)
@@ -153,9 +154,9 @@ class Devices:
                 return None
             return Failure(reason=Reason.PRECONDITION, sentence=UNSAID(robot=robot, fact=missing))
 
-        step = Require(leaves.TELLS, self.context, unsaid)
+        step = Require(leaves.TELLS, self.context.failures, unsaid)
         by_variable = {_variable(node, fact): told for fact, told in said.items()}
-        return FactStep(name, step, self.context, self.causes, by_variable)
+        return FactStep(name, step, self.context.failures, self.causes, by_variable)
 
 
 @contextmanager

@@ -81,15 +81,15 @@ class Sleep(Leaf):
         self.until = 0.0
 
     def begin_anew(self) -> None:
-        self.until = self.context.now + self.given.number("msec", self.scope) / 1000
-        self.context.wake_at(self.until)
+        self.until = self.time.now + self.given.number("msec", self.scope) / 1000
+        self.time.wake_at(self.until)
 
     def work(self) -> Result:
         if self.status is Status.FAILURE:
             return FAILURE  # by a condition that stands at it; it stays so until it is reset
         if self.begin():
             self.begin_anew()
-        return SUCCESS if self.context.now >= self.until else RUNNING
+        return SUCCESS if self.time.now >= self.until else RUNNING
 
 
 class Step(Leaf):

@@ -63,7 +63,7 @@ class Node(Keeps, Behaviour):
     def __init__(self, name: str, children: Sequence[Node] = ()) -> None:
         super().__init__(name)
         self.scope = Scope()
-        self.context: Clock = NoClock()
+        self.time: Clock = NoClock()
         self.before: Mapping[str, Script] = {}
         self.after: Mapping[str, Script] = {}
         for child in children:
@@ -113,7 +113,7 @@ class Node(Keeps, Behaviour):
 
     def again(self, *, after_s: float = TICK_S) -> Result:
         """Returns RUNNING, and asks for another tick after `after_s`."""
-        self.context.wake_at(self.context.now + after_s)
+        self.time.wake_at(self.time.now + after_s)
         return RUNNING
 
     def begin(self) -> bool:

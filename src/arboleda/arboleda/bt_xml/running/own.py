@@ -9,7 +9,7 @@ from py_trees.common import Status
 
 from arboleda.model.messages import Failure, Reason
 from arboleda.recipes.nodes import WrittenNode
-from arboleda.trees.context import Context
+from arboleda.trees.failures import Failures
 
 from .device_steps import Order, as_variable
 from .leaves import Leaf
@@ -18,13 +18,13 @@ from .root import FAILED
 
 
 class WrapperNode(Node):
-    """Node below a step in Python, which finds the cause of the node's failure in the context."""
+    """Node below a step in Python, which finds the cause of the node's failure in `failures`."""
 
     frame = True
 
-    def __init__(self, child: Node, context: Context, causes: list[Failure]) -> None:
+    def __init__(self, child: Node, failures: Failures, causes: list[Failure]) -> None:
         super().__init__(child.name, [child])
-        self.context: Context = context
+        self.failures = failures
         self.causes = causes
 
     def tick(self) -> Iterator[Behaviour]:
@@ -35,9 +35,9 @@ class WrapperNode(Node):
     def work(self) -> Result:
         self.begin()
         result = self.below[0].execute()
-        if result is FAILURE and self.context.failure is None:
+        if result is FAILURE and self.failures.first is None:
             generic = Failure(reason=Reason.REJECTED, sentence=FAILED(tree=self.name))
-            self.context.fail(self.causes[0] if self.causes else generic, self)
+            self.failures.add(self.causes[0] if self.causes else generic, self)
         return result
 
 

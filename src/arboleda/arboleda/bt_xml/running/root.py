@@ -12,7 +12,7 @@ from py_trees.common import Status
 from arboleda.model.messages import Failure, Reason
 from arboleda.model.sentence import Phrase
 from arboleda.recipes.authoring import FINAL
-from arboleda.trees.context import Context
+from arboleda.trees.failures import Failures
 
 from .leaves import Step
 from .node import FAILURE, Node, Result
@@ -27,29 +27,29 @@ class Forgiving(Step):
     The cause is kept until the whole tree fails; a cause that no recipe may recover from ends the tree.
     """
 
-    def __init__(self, name: str, step: Behaviour, context: Context, causes: list[Failure]) -> None:
+    def __init__(self, name: str, step: Behaviour, failures: Failures, causes: list[Failure]) -> None:
         super().__init__(name, step)
-        self.context: Context = context
+        self.failures = failures
         self.causes = causes
 
     def work(self) -> Result:
-        if self.context.failure is not None:
+        if self.failures.first is not None:
             self.halt_step()
             return FAILURE
         result = super().work()
-        cause = self.context.failure
+        cause = self.failures.first
         if result is FAILURE and cause is not None and cause.reason not in FINAL:
             self.causes[:] = [cause]
-            self.context.forgive()
+            self.failures.forgive()
         return result
 
 
 class Main(Node):
     """Whole tree, with the variables of its outermost scope."""
 
-    def __init__(self, name: str, tree: Node, context: Context, causes: list[Failure]) -> None:
+    def __init__(self, name: str, tree: Node, failures: Failures, causes: list[Failure]) -> None:
         super().__init__(name, [tree])
-        self.context: Context = context
+        self.failures = failures
         self.causes = causes
         self.scope = tree.scope
 
@@ -66,12 +66,12 @@ class Main(Node):
             self._halt_all()
             self.causes[:] = [Failure(reason=Reason.REJECTED, sentence=error.sentence)]
             result = FAILURE
-        if self.context.failure is not None:
+        if self.failures.first is not None:
             self._halt_all()
             return FAILURE
         if result is FAILURE:
             generic = Failure(reason=Reason.REJECTED, sentence=FAILED(tree=self.name))
-            self.context.fail(self.causes[0] if self.causes else generic, self)
+            self.failures.add(self.causes[0] if self.causes else generic, self)
         return result
 
     def _halt_all(self) -> None:

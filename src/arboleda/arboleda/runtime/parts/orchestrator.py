@@ -14,11 +14,12 @@ from typing import Any, NamedTuple, Protocol
 from uuid import uuid4
 
 from arboleda.adapters import clock
+from arboleda.core import reasons
 from arboleda.core.leading import Standing, may_leave
 from arboleda.core.leaving import SENT_TOO_LATE, StopLeft, departure, is_too_late, leaves_unkept, stop_left
 from arboleda.core.plant import Plant
 from arboleda.core.text import spelled
-from arboleda.dispatch.dispatcher import Memory
+from arboleda.dispatch.fact_memory import Memory
 from arboleda.model.commands import Command, Stop
 from arboleda.model.errors import ArboledaError
 from arboleda.model.facts import Value
@@ -213,10 +214,10 @@ class Orchestrator:
         if self._ros is not None and (self._store is None or self._store.renew_s is None):
             self._ros.check_alone()
         for run in self.plant.cells.values():
-            if run.found is not None:
-                TASKS.warning("%s", run.found)
-            if run.left_over:
-                TASKS.warning("%s", run.why_paused)
+            if reasons.of_earlier_task(run) is not None:
+                TASKS.warning("%s", reasons.of_earlier_task(run))
+            if run.queue.left_over:
+                TASKS.warning("%s", run.queue.why_paused)
         self._kept = self._first_view()
         self.stops.loop.start()
         self.loop.start()

@@ -49,7 +49,7 @@ class Urgency:
         if self._is_news(report):
             return 0.0
         run = self._runs.get(robot)
-        if run is None or (run.context.awaits_piece and report.piece is not None):
+        if run is None or (run.context.sensors.awaited and report.piece is not None):
             return 0.0
         may_end = self._state.get(robot) is not MotionState.MOVING and self._ledger.of_robot(robot)
         if may_end or run.state in PASSING:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from arboleda.core import reasons
+
 from .invariant import Look, Trigger, invariant
 
 ENOUGH = 6  # acts
@@ -14,7 +16,7 @@ def advice_leads_out(look: Look) -> Iterator[str]:
     """Once nothing goes wrong any more, the first advice leads each cell to work in at most six acts."""
     for name, acts in look.record.acts.of.items():
         if len(acts) > ENOUGH:
-            why = look.world.plant.cells[name].waiting_for()
+            why = reasons.of_waiting(look.world.plant.cells[name])
             yield f"{name} does not work after {', '.join(acts)}: {why}"
 
 

@@ -122,7 +122,7 @@ def _overrun(look: Look) -> Iterator[str]:
         yield from _moved_deadline(look, sent)
     for cell in record.cells.values():
         if cell.looked:
-            yield from _waits(cell.leaves, cell.run.context.now)
+            yield from _waits(cell.leaves, cell.run.context.time.now)
 
 
 def _too_long(look: Look, sent: SentCommand) -> str | None:

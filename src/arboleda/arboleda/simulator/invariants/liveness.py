@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
+from arboleda.core import reasons
 from arboleda.core.cell_states import CellState
 from arboleda.model.messages import Fact
 from arboleda.model.plant_model import Evidence, Link, MotionState, Workspace
@@ -30,7 +31,7 @@ def running_tree_has_waker(look: Look) -> Iterable[str]:
 def _sleeps(cell: KnownCell) -> bool:
     """True if no time will wake a tree that runs; a cell whose own time stands still has no such time."""
     runs = cell.tree is not None and cell.state is CellState.EXECUTE
-    return runs and cell.context.next_deadline is None
+    return runs and cell.context.time.next_deadline is None
 
 
 @invariant(Trigger.NEWS)
@@ -130,7 +131,7 @@ def at_rest_at_end(look: Look) -> Iterable[str]:
         yield f"task {task.id} of {task.cell} is {task.state.value}"
     for name, cell in plant.cells.items():
         if cell.state is not CellState.IDLE or cell.tree is not None:
-            yield f"{name} is {cell.state.value}; {cell.held_by or 'its tree runs'}"
+            yield f"{name} is {cell.state.value}; {reasons.of_hold(cell) or 'its tree runs'}"
     for sent in record.commands.open.values():
         yield f"{sent} is open"
     for zone in look.world.model.zones:
@@ -179,10 +180,10 @@ def nothing_waits_at_end(look: Look) -> Iterable[str]:
     """At the end every queue is empty, none is paused, and no arm holds anything."""
     for name, cell in look.world.plant.cells.items():
         if cell.queue:
-            yield f"{len(cell.queue)} tasks wait in {name}: {cell.waiting_for()}"
-        if cell.queue_paused:
+            yield f"{len(cell.queue)} tasks wait in {name}: {reasons.of_waiting(cell)}"
+        if cell.queue.paused:
             yield f"the queue of {name} is paused"
-        for robot in cell.context.holding:
+        for robot in cell.context.parts.holding:
             yield f"{robot} may hold a part"
 
 

@@ -53,7 +53,7 @@ def _effectors(look: Look) -> Iterator[str]:
     kept = look.world.memory.get(Fact.EFFECTOR, {})
     for cell in look.record.cells.values():
         for name in cell.cell.holders:
-            grip = cell.context.grip(name).value
+            grip = cell.context.parts.grip(name).value
             if kept.get(name, "off") != grip:
                 yield f"the effector of {name} is {grip}, kept is {kept.get(name)}"
 
@@ -74,7 +74,7 @@ def racks_hold_what_was_put(look: Look) -> Iterator[str]:
     for name, cell in look.record.cells.items():
         if name not in racks.cells or look.world.recipes:
             continue
-        stored, full, may_be_full = cell.context.stored, racks.full[name], racks.may_be_full(name)
+        stored, full, may_be_full = cell.context.stations.stored, racks.full[name], racks.may_be_full(name)
         if not full <= stored <= may_be_full:
             yield f"{name} has parts in {sorted(stored)}, and they were put into {sorted(full)}"
         if {int(number) for number in kept.get(name, "").split()} != stored:

@@ -50,7 +50,7 @@ def _plant(look: Look) -> Iterator[Row]:
     yield "waiting for zones", len(plant.zones.waiting), users
     for name, cell in plant.cells.items():
         yield f"queue of {name}", len(cell.queue), cell.cell.queue_limit
-        yield f"wakes of {name}", len(cell.context.wakes), WAKES
+        yield f"wakes of {name}", len(cell.context.time.wakes), WAKES
 
 
 def _bridge(look: Look) -> Iterator[Row]:

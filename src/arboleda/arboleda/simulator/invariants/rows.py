@@ -10,7 +10,7 @@ from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
 from arboleda.core.advice import Advice, sentence
-from arboleda.core.cell import HELD, HELD_STRANDED
+from arboleda.core.reasons import HELD, HELD_STRANDED
 from arboleda.dispatch.belief import FAULTY, FENCED, MOVING, OFFLINE, STOPPED, UNANSWERED, UNHEARD, UNHOMED
 from arboleda.dispatch.ledger import OPEN, State
 from arboleda.kinds.arm import MoveJoints

@@ -253,7 +253,7 @@ def _released(look: Look, request: OperatorRequest) -> Iterator[str]:
 def _emptied(look: Look, request: OperatorRequest) -> Iterator[str]:
     scope = look.record.scopes.robots(request.scope)
     held = [name for name in scope if look.world.model.robots[name].held_fact is not None]
-    left = [name for name in held if look.world.plant.dispatcher.grips.holding(name)]
+    left = [name for name in held if look.world.plant.dispatcher.effectors.grips.holding(name)]
     if left:
         yield f"{left} may still hold a part"
     if any(isinstance(each, Command) for each in look.moment.sent):
@@ -273,7 +273,7 @@ def _unloaded(look: Look, request: OperatorRequest) -> Iterator[str]:
     named = look.record.racks.named(request.scope)
     for before in look.record.asked.cells:
         left = before.stored - named.get(before.name, set())
-        stored = look.record.cells[before.name].context.stored
+        stored = look.record.cells[before.name].context.stations.stored
         if stored != left:
             yield f"{before.name} has parts in {sorted(stored)}, left were those in {sorted(left)}"
 

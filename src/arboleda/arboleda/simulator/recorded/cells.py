@@ -42,7 +42,7 @@ class KnownCell:
         """Begin anew with a plant that starts."""
         self.run, self.context = run, run.context
         self.state, self.task = run.state, run.task
-        self.paused, self.queued = run.queue_paused, len(run.queue)
+        self.paused, self.queued = run.queue.paused, len(run.queue)
         self.tree: Behaviour | None = None
         self.sends: dict[tuple[Behaviour, str], int] = {}
         self.again = 0
@@ -62,17 +62,17 @@ class KnownCell:
     def follow(self) -> bool:
         """Take over the present state of the cell; True if it differs from the one before."""
         run = self.run
-        self.wakes = self.context.wakes
+        self.wakes = self.context.time.wakes
         if (
             run.state is self.state
             and run.tree is self.tree
             and run.task is self.task
-            and run.queue_paused is self.paused
+            and run.queue.paused is self.paused
             and len(run.queue) == self.queued
         ):
             return False
         self.state, self.task = run.state, run.task
-        self.paused, self.queued = run.queue_paused, len(run.queue)
+        self.paused, self.queued = run.queue.paused, len(run.queue)
         if run.tree is not self.tree:
             self.tree = run.tree
             self.sends.clear()
@@ -84,14 +84,14 @@ class KnownCell:
         run = self.run
         if run.state is not self.state:
             yield f"{self.name} went from {self.state.value} to {run.state.value}"
-        if (run.queue_paused, len(run.queue)) != (self.paused, self.queued):
+        if (run.queue.paused, len(run.queue)) != (self.paused, self.queued):
             yield f"the queue of {self.name} changed"
         if run.task is not self.task or run.tree is not self.tree:
             yield f"the task of {self.name} changed"
 
     def woke(self) -> bool:
         """True if a time for which its tree waited after the last step has come."""
-        now = self.context.now
+        now = self.context.time.now
         return any(at <= now for at in self.wakes)
 
     def wait(self, seconds: float, *, behind_work: bool) -> None:
@@ -114,7 +114,7 @@ class KnownCell:
 
         Where the plant was `away`, that time does not pass for a cell at work.
         """
-        lag_s = now - self.context.now
+        lag_s = now - self.context.time.now
         self.frozen_s = 0.0 if away else max(lag_s - self._lag_s, 0.0)
         self._lag_s = math.inf if self.state in PAUSED else lag_s
 

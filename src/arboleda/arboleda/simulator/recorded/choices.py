@@ -82,7 +82,7 @@ class Choices:
         seen = self._courses.at_work.get(run.cell.name)
         if run.task is None or seen is None or seen.recovers:
             return None
-        now = run.context.now + (0.0 if run.state in STANDS else since_step_s)
+        now = run.context.time.now + (0.0 if run.state in STANDS else since_step_s)
         for alike in _alike(run.task.order, past)[:-1]:
             courses = [task.course for task in alike[-LAST:] if task.course]
             known = [step for step in seen.steps if any(step in course.begun for course in courses)]
@@ -93,7 +93,7 @@ class Choices:
         return None
 
     def _is_hindered(self, run: CellRun, world: World) -> bool:
-        if run.state not in WORKS or run.queue_paused or run.not_ready is not None:
+        if run.state not in WORKS or run.queue.paused or run.not_ready is not None:
             return True
         now, epoch = world.plant.now, world.plant.epoch
         displaced = world.disk.facts.get(Fact.DISPLACED, {})  # the disk knows more of these than reports say

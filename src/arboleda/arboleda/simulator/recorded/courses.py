@@ -124,13 +124,13 @@ class Courses:
         for name, run in plant.cells.items():
             seen = self._at_work.get(name)
             if seen is not None and seen.nodes is not run.run.nodes:
-                self.ended[seen.task], seen.ended_at = self._at_work.pop(name), run.context.now
+                self.ended[seen.task], seen.ended_at = self._at_work.pop(name), run.context.time.now
                 seen = None
             if seen is None and run.task is not None and run.run.nodes:
-                seen = TaskInProgress(run.task.id, run.run.nodes, run.context.now, whole=not born)
+                seen = TaskInProgress(run.task.id, run.run.nodes, run.context.time.now, whole=not born)
                 self._at_work[name] = seen
             if seen is not None:
-                seen.look(run.run.rested, run.context.now)
+                seen.look(run.run.rested, run.context.time.now)
 
 
 def _waits(step: Behaviour) -> bool:

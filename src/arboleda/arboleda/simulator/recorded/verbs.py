@@ -53,14 +53,14 @@ class EarlierState:
             CellSnapshot(
                 cell.name,
                 run.state,
-                run.queue_paused,
+                run.queue.paused,
                 len(run.queue),
                 run.task is not None,
                 run.trouble is not None,
                 run.stranded is not None,
                 run.awaits is not None,
-                bool(cell.context.holding),
-                cell.context.stored,
+                bool(cell.context.parts.holding),
+                cell.context.stations.stored,
             )
             for cell in cells
             for run in (cell.run,)

@@ -1,0 +1,100 @@
+"""Reasons, for the operator, why a cell stands still, and what leads on."""
+
+from __future__ import annotations
+
+from arboleda.model.sentence import BOTH, NOTHING, Phrase, Sentence
+from arboleda.trees.tree_run import step_of
+
+from . import advice
+from .cell import CellRun
+from .cell_states import CellState
+
+ENDING = Phrase("plant.ending", "the plant is ending")
+BUSY = Phrase("cell.busy", "{cell} is busy")
+STANDS = Phrase("cell.stands", "{cell} is {state}; {next}")
+STANDS_BECAUSE = Phrase("cell.stands_because", "{cell} is {state} ({why}); {next}")
+HELD = Phrase("cell.held", "{cell} is held ({why}); {next}")
+HELD_STRANDED = Phrase("cell.held_stranded", "{cell} is held ({why}); {stranded}: {next}")
+BY_OPERATOR = Phrase("cell.by_operator", "by the operator")
+WAS_AT_WORK = Phrase("walk.at_work", "task {task} was at work when the plant stopped")
+STANDS_AT = Phrase("walk.stands_at", 'task {task} was at work when the plant stopped; it stands at "{step}"')
+FOUND = Phrase(
+    "walk.found",
+    "{cell}: {found}; resume {cell} goes on if its devices prove what they did, abandon {cell} gives it up",
+)
+FOUND_STRANDED = Phrase("walk.found_stranded", "{cell}: {found}; {why}; abandon {cell} gives it up")
+WAIT = Phrase("next.wait", "wait")
+UNTIL_STILL = Phrase("next.until_still", "wait until it stands still")
+NEXT = {
+    CellState.HOLDING: UNTIL_STILL,
+    CellState.ABORTING: UNTIL_STILL,
+    CellState.CLEARING: Phrase("next.until_cleared", "wait until its robots have left their stop"),
+    CellState.RESETTING: WAIT,
+}
+
+
+def of_waiting(run: CellRun) -> Sentence | None:
+    """The reason why the next task does not start; None where nothing is in its way."""
+    name = run.cell.name
+    if run.closed:
+        return ENDING()
+    if run.state is CellState.EXECUTE:
+        return BUSY(cell=name)
+    if run.state is CellState.IDLE:
+        return run.not_ready
+    if run.trouble is None or run.state is CellState.HELD:
+        return of_hold(run) or STANDS(cell=name, state=run.state.said, next=_next(run))
+    why = run.trouble.sentence
+    return STANDS_BECAUSE(cell=name, state=run.state.said, why=why, next=_next(run))
+
+
+def of_hindrance(run: CellRun) -> Sentence | None:
+    """The reason why a task that came now would not start by itself after those before it; None where it
+    would.
+    """
+    if run.state is not CellState.EXECUTE:
+        return of_waiting(run)
+    if (obstacle := run.readiness.obstacle_at_work()) is not None:
+        return obstacle
+    return run.queue.why_paused if run.queue.paused else None
+
+
+def of_hold(run: CellRun) -> Sentence | None:
+    """The cause of a hold and what can be done about it; None where the cell is not held."""
+    if run.state is not CellState.HELD:
+        return None
+    name, why, ways = run.cell.name, cause_of_hold(run), _next(run)
+    if run.stranded:
+        return HELD_STRANDED(cell=name, why=why, stranded=run.stranded, next=ways)
+    return HELD(cell=name, why=why, next=ways)
+
+
+def cause_of_hold(run: CellRun) -> Sentence:
+    """The cause of a hold."""
+    why = run.trouble.sentence if run.trouble else None
+    if (at_work := _at_work(run)) is None:
+        return why or BY_OPERATOR()
+    return BOTH(first=at_work, second=why) if why else at_work
+
+
+def of_earlier_task(run: CellRun) -> Sentence | None:
+    """The place at which this start has found a task that was at work, and what to do; None without one."""
+    if (at_work := _at_work(run)) is None:
+        return None
+    found = FOUND if run.stranded is None else FOUND_STRANDED
+    return found(cell=run.cell.name, found=at_work, why=run.stranded or NOTHING)
+
+
+def _at_work(run: CellRun) -> Sentence | None:
+    """The step at which an earlier start ended, until somebody says how the task goes on."""
+    if run.keeping.walk is None or run.task is None:
+        return None
+    step = step_of(run.tree)
+    return WAS_AT_WORK(task=run.task.id) if step is None else STANDS_AT(task=run.task.id, step=step)
+
+
+def _next(run: CellRun) -> Sentence:
+    """The way out of the present state."""
+    if run.state in NEXT:
+        return NEXT[run.state]()
+    return advice.sentence(run.ways_out(run.cell.name)) or run.readiness.busy() or WAIT()

@@ -1,0 +1,66 @@
+"""Queue of one cell: the tasks that wait, at most as many as its plant file allows."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Sequence
+
+from arboleda.model.errors import QueueFull
+from arboleda.model.plant_model import Cell
+from arboleda.model.sentence import Phrase, Sentence
+from arboleda.model.task import Task
+
+FULL = Phrase("cell.full", "{cell} has {number:,} tasks waiting, its limit; send it again later")
+FULL_OF_ONE = Phrase("cell.full_of_one", "{cell} has {number} task waiting, its limit; send it again later")
+PAUSED = Phrase("cell.queue_paused", "the queue of {cell} is paused; resume {cell} starts it")
+LEFT_OVER = Phrase(
+    "cell.left_over", "{number:,} tasks of an earlier start wait in {cell}; resume {cell} starts them"
+)
+LEFT_OVER_ONE = Phrase(
+    "cell.left_over_one", "{number} task of an earlier start waits in {cell}; resume {cell} starts it"
+)
+
+
+class TaskQueue(deque[Task]):
+    """Tasks in the order of acceptance. While `paused` none of them starts; `left_over`: tasks of an earlier
+    start wait, since nobody said `resume`.
+    """
+
+    def __init__(self, cell: Cell) -> None:
+        super().__init__()
+        self.paused = False
+        self.left_over = False
+        self._cell = cell
+
+    @property
+    def is_full(self) -> bool:
+        """True where no further task has room."""
+        return len(self) >= self._cell.queue_limit
+
+    @property
+    def why_paused(self) -> Sentence:
+        """The sentence that says why no task starts while the queue is paused."""
+        if self.left_over and self:
+            one_or_more = LEFT_OVER_ONE if len(self) == 1 else LEFT_OVER
+            return one_or_more(cell=self._cell.name, number=len(self))
+        return PAUSED(cell=self._cell.name)
+
+    def add(self, task: Task) -> None:
+        """Take a task in; QueueFull at the limit."""
+        if self.is_full:
+            full = FULL_OF_ONE if len(self) == 1 else FULL
+            raise QueueFull(full(cell=self._cell.name, number=len(self)))
+        self.append(task)
+
+    def take_back(self, waiting: Sequence[Task], *, cut_off: bool) -> None:
+        """Take the tasks that waited here when an earlier start ended, be they more than the limit.
+
+        They start once somebody says so, or where the cell goes on by itself and none was cut off at work.
+        """
+        self.extend(waiting)
+        if waiting and (cut_off or not self._cell.goes_on):
+            self.paused = self.left_over = True
+
+    def resume(self) -> None:
+        """Let its tasks start."""
+        self.paused = self.left_over = False

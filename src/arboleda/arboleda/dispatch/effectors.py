@@ -1,0 +1,130 @@
+"""Effectors: what each robot may hold, by its commands and by its reports."""
+
+from __future__ import annotations
+
+from arboleda.model.commands import Command, Switch
+from arboleda.model.grips import Grip, Grips
+from arboleda.model.messages import Fact, Report
+from arboleda.model.plant_model import PlantModel
+from arboleda.model.sentence import BOTH, Phrase, Sentence
+
+from . import evidence
+from .belief import Belief
+from .evidence import Before
+from .fact_memory import FactMemory, Memory
+from .interference import Interferences
+from .ledger import Ledger
+
+OPENED = Phrase("effector.opened", "{arm}: the effector opened while it held a part, {how}")
+DEVICE_OPENED = Phrase("device.let_go", "{device} let go of the part that it held, {how}")
+UNBIDDEN = Phrase("effector.unbidden", "not commanded by this plant")
+AS_REBOOTED = Phrase("effector.as_rebooted", "as its board rebooted")
+EMPTIED = "true"
+
+
+class Effectors:
+    """Books of all effectors of a plant. `version` changes whenever a grip does.
+
+    `unopened` are the robots whose last command to let go failed. `opened` says of each that let go unbidden
+    since the last command to its effector how that went. `cut_off` may still be switching on a command of an
+    earlier start.
+    """
+
+    def __init__(
+        self, model: PlantModel, kept: Memory, memory: FactMemory, ledger: Ledger, others: Interferences
+    ) -> None:
+        holders = [robot.name for robot in model.robots.values() if robot.held_fact is not None]
+        spaces = [space for cell in model.cells for space in cell.reach.values()]
+        self._tools = {space.robot.name: space.tool.name for space in spaces if space.tool is not None}
+        self.grips = Grips(holders, kept.get(Fact.EFFECTOR, {}), self._tools.values())
+        self.unopened: set[str] = set()
+        self.opened: dict[str, Sentence] = {}
+        self.cut_off: set[str] = set()
+        self.version = 0
+        self._emptied = {name for name in holders if memory.value(Fact.EMPTIED, name) is not None}
+        self._memory = memory
+        self._ledger = ledger
+        self._others = others
+
+    def opening_tool(self, robot: str) -> str | None:
+        """The tool of a robot that may still let go of a part on an earlier command: the robot stays."""
+        tool = self._tools.get(robot)
+        return tool if tool in self.grips.opening else None
+
+    def command(self, command: Switch) -> None:
+        """Book a command to an effector, which leaves now."""
+        self.opened.pop(command.robot, None)
+        self._set_emptied(command.robot, emptied=False)
+        if not command.grips:
+            self.grips.open(command.robot, command.id)
+        self.set(command.robot, Grip.SWITCHING)
+
+    def declare_empty(self, belief: Belief) -> None:
+        """Book that a person has taken out what a device held: it holds nothing, even where it goes on
+        reporting so, until it has a command to grip or to let go, or reports itself that it is empty.
+        """
+        robot = belief.robot.name
+        self.cut_off.discard(robot)
+        if belief.held_in(belief):
+            self._set_emptied(robot, emptied=True)
+        self.set(robot, Grip.OFF)
+
+    def set(self, robot: str, grip: Grip) -> None:
+        """Book what an effector is known to be."""
+        if self.grips.set(robot, grip):
+            self.version += 1
+            self._memory.remember(Fact.EFFECTOR, robot, grip.value)
+        if grip is Grip.OFF:
+            self.unopened.discard(robot)
+
+    def note_opening(self, belief: Belief, *, rebooted: bool) -> None:
+        """Book that an effector that was on is off; where no command of this plant is open for it, that is
+        news.
+        """
+        arm = belief.robot.name
+        if self.grips[arm] is not Grip.ON or self._switches(arm):
+            return
+        how = AS_REBOOTED if rebooted else UNBIDDEN
+        opened = OPENED(arm=arm, how=how()) if belief.robot.has_effector else None
+        sentence = opened or DEVICE_OPENED(device=arm, how=how())
+        others = None if rebooted else self._others.lately_obeyed(arm, belief.heard_at or 0.0)
+        self.opened[arm] = BOTH(first=sentence, second=others) if others else sentence
+
+    def settle_cut_off(self, belief: Belief) -> None:
+        """Believe the report about what an earlier start was switching."""
+        self.cut_off.discard(belief.robot.name)
+        if (held := belief.held_in(belief)) is not None:
+            self.settle(belief.robot.name, Grip.ON if held else Grip.OFF)
+
+    def settle(self, robot: str, grip: Grip) -> None:
+        """Believe the report of an effector that nobody is switching, and that does not open late.
+
+        One that a person has emptied stays empty until it reports that itself.
+        """
+        if robot in self._emptied:
+            if grip is not Grip.OFF:
+                return
+            self._set_emptied(robot, emptied=False)
+        if self.grips[robot] is grip or self._switches(robot):
+            return
+        if grip is not Grip.ON or robot not in self.grips.opening:
+            self.set(robot, grip)
+
+    def settle_opening(self, before: Before, belief: Belief, report: Report) -> None:
+        """Forget commands to let go that a tool has lost by a reboot, or reports as not obeyed."""
+        tool = belief.robot.name
+        if evidence.rebooted(before, belief, report):
+            self.grips.forget_opening(tool)
+        self.grips.will_not_open(tool, report.rejected, report.failed)
+
+    def _set_emptied(self, robot: str, *, emptied: bool) -> None:
+        (self._emptied.add if emptied else self._emptied.discard)(robot)
+        self._memory.remember(Fact.EMPTIED, robot, EMPTIED if emptied else None)
+
+    def _switches(self, arm: str) -> bool:
+        return arm in self.cut_off or any(_grips(entry.command) for entry in self._ledger.of_robot(arm))
+
+
+def _grips(command: Command) -> bool:
+    """True for a command to do with what its robot holds."""
+    return isinstance(command, Switch) and command.grips is not None

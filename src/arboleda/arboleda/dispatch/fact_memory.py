@@ -1,0 +1,44 @@
+"""Facts that outlive the plant: stops, grips, occupied zones, stations with a part, steps of tasks."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+
+from arboleda.model.commands import Command
+from arboleda.model.messages import Fact, Notice, Remember
+
+Memory = Mapping[Fact, Mapping[str, str]]
+
+
+class FactMemory:
+    """Memory of a plant: a change goes to the outbox, to be kept before anything sent later leaves."""
+
+    def __init__(self, kept: Memory, outbox: list[Command | Notice]) -> None:
+        self._facts: dict[tuple[Fact, str], str | None] = {
+            (fact, name): value for fact, values in kept.items() for name, value in values.items()
+        }
+        self._outbox = outbox
+
+    def remember(self, fact: Fact, name: str, value: str | None) -> None:
+        """Have a fact kept before anything sent after it leaves; what is kept already is not told again."""
+        if self._facts.get((fact, name)) != value:
+            self._facts[fact, name] = value
+            self._outbox.append(Remember(fact=fact, name=name, value=value))
+
+    def value(self, fact: Fact, name: str) -> str | None:
+        """The value that is kept of a fact; None where nothing is."""
+        return self._facts.get((fact, name))
+
+    def names(self, fact: Fact) -> set[str]:
+        """The names of everybody of whom a fact is kept."""
+        return {name for (kind, name), value in self._facts.items() if kind is fact and value is not None}
+
+    def occupy(self, zones: Iterable[str], robot: str) -> None:
+        """Remember that a robot may be in these zones."""
+        for zone in sorted(zones):
+            self.remember(Fact.QUARANTINE, zone, robot)
+
+    def vacate(self, zones: Iterable[str]) -> None:
+        """Remember that nobody is in these zones any more."""
+        for zone in sorted(zones):
+            self.remember(Fact.QUARANTINE, zone, None)

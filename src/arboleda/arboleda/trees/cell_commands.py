@@ -1,0 +1,62 @@
+"""Commands of one cell: sent where nothing objects, halted, and looked up while they are open."""
+
+from __future__ import annotations
+
+from arboleda.dispatch.dispatcher import Dispatcher, Make
+from arboleda.dispatch.ledger import Entry
+from arboleda.model.commands import Command, Query
+from arboleda.model.messages import Failure
+from arboleda.model.sentence import Sentence
+
+from .cell_devices import CellDevices
+from .cell_time import CellTime
+from .cell_zones import CellZones
+
+
+class CellCommands:
+    """Sender of one cell. `sent` counts its commands; `used` are the robots that the task has commanded."""
+
+    def __init__(
+        self, cell: str, dispatcher: Dispatcher, time: CellTime, zones: CellZones, devices: CellDevices
+    ) -> None:
+        self.sent = 0
+        self.used: set[str] = set()
+        self._cell = cell
+        self._dispatcher = dispatcher
+        self._time = time
+        self._zones = zones
+        self._devices = devices
+
+    def send(self, make: Make, doing: Sentence) -> Entry:
+        """Send the command that `make(id=...)` returns; an already failed entry where it may not leave."""
+        self.sent += 1
+        now = self._time.plant_now
+        entry = self._dispatcher.send(make, self._cell, doing, now, barrier=self._objection)
+        if not isinstance(entry.command, Query):
+            self.used.add(entry.command.robot)
+        return entry
+
+    def cancel(self, entry: Entry) -> None:
+        """Halt an open command."""
+        self._dispatcher.cancel(entry, self._time.plant_now)
+
+    def cancel_all(self) -> None:
+        """Ask every command of the cell to end; what moves is halted."""
+        self._dispatcher.cancel_all(self._cell, self._time.plant_now)
+
+    def cancel_motions(self) -> None:
+        """Halt what can be halted; an effector may finish switching, a machine its work."""
+        for entry in self.open():
+            if entry.halts and entry.cancelled_at is None:
+                self.cancel(entry)
+
+    def open(self) -> list[Entry]:
+        """The cell's commands that have not ended."""
+        return self._dispatcher.ledger.of_cell(self._cell)
+
+    def first_of(self, robot: str) -> Entry | None:
+        """The first command that a robot has not ended, of whichever cell."""
+        return next(iter(self._dispatcher.ledger.of_robot(robot)), None)
+
+    def _objection(self, command: Command) -> Failure | None:
+        return self._devices.objection(command.robot) or self._zones.objection(command)

@@ -1,0 +1,114 @@
+"""Robots of a cell as its devices report them: where each is, what it says, what keeps it from a command."""
+
+from __future__ import annotations
+
+from arboleda.dispatch.belief import Belief, Moment
+from arboleda.dispatch.dispatcher import Dispatcher
+from arboleda.model.commands import Position
+from arboleda.model.facts import Value
+from arboleda.model.messages import Failure
+from arboleda.model.plant_model import Cell, Evidence, MotionState, Pose
+
+from .cell_devices import CellDevices
+from .cell_time import CellTime
+from .trail import Known, Planned
+
+
+class CellRobots:
+    """Beliefs about the robots of one cell, and what follows from them for a plan or a command.
+
+    `as_planned`: the robots count as standing there while the tree of an earlier start is made anew.
+    """
+
+    def __init__(self, cell: Cell, dispatcher: Dispatcher, time: CellTime, devices: CellDevices) -> None:
+        self.as_planned: Planned | None = None
+        self._cell = cell
+        self._dispatcher = dispatcher
+        self._time = time
+        self._devices = devices
+
+    def belief(self, robot: str) -> Belief:
+        """The evidence that a robot has given."""
+        return self._dispatcher.beliefs[robot]
+
+    def fact(self, robot: str, name: str) -> Value | None:
+        """The value that a robot reports for a fact; None where it reports none, or is not heard."""
+        belief = self._dispatcher.beliefs[robot]
+        return belief.fact(name) if belief.online else None
+
+    def position(self, robot: str) -> Position | None:
+        """The known position of a robot."""
+        if self.as_planned is not None:
+            return self.as_planned.positions.get(robot)
+        return self._dispatcher.beliefs[robot].known_position
+
+    def standing(self, robot: str) -> Pose:
+        """The zone-free pose at which a robot's next way begins: where it is seen, else home."""
+        space = self._cell.workspaces[robot]
+        if self.as_planned is not None:
+            name = self.as_planned.standing.get(robot)
+            return next((pose for pose in space.poses if pose.name == name), space.home)
+        return self._dispatcher.place(space) or space.home
+
+    def planned(self) -> Planned:
+        """The places of the robots now, by which a recipe may plan."""
+        standing = {robot: self.standing(robot).name for robot in self._cell.workspaces}
+        known = {robot: self.position(robot) for robot in self._cell.reach}
+        return Planned(
+            standing=standing, positions={name: at for name, at in known.items() if at is not None}
+        )
+
+    def risen(self, robot: str) -> Position:
+        """The position of a robot, lifted as high as its highest approach; home where it is unknown."""
+        space, here = self._cell.workspaces[robot], self.position(robot)
+        heights = [pose.above for pose in space.poses if pose.above]
+        return space.robot.lifted(here, heights) if here is not None and heights else space.home.q
+
+    def obstacle(self, robot: str, *, was: bool = False) -> Failure | None:
+        """The reason for which a robot takes no command now; `was`: in words that stay true.
+
+        That a shared device moves is none: another cell may be using it.
+        """
+        shares = robot in self._cell.shared and robot not in self._dispatcher.latched
+        if shares and (stop := self._devices.not_reset(robot)) is not None:
+            return stop
+        if shares and self._dispatcher.beliefs[robot].moves:
+            return None
+        return self._dispatcher.obstacle(robot, was=was)
+
+    def obstacle_besides_stop(self, robot: str) -> Failure | None:
+        """The reason that would remain, were the robot not stopped."""
+        return self._dispatcher.beliefs[robot].obstacle_besides_stop()
+
+    def homes_by_routine(self, robot: str) -> bool:
+        """True for a robot that finds its reference by itself; another one is put there by somebody."""
+        belief = self._dispatcher.beliefs[robot]
+        return belief.robot.evidence is Evidence.IDS and (belief.robot.says_homed or belief.says_unhomed)
+
+    @property
+    def numbered(self) -> list[str]:
+        """The robots of the cell whose boards number their commands, and have been heard."""
+        beliefs = [self._dispatcher.beliefs[robot.name] for robot in self._cell.reached]
+        return [each.robot.name for each in beliefs if each.numbers_commands]
+
+    def known(self, robot: str) -> Known:
+        """The robot's report of its commands, in the form in which it is kept."""
+        return Known.of(self._dispatcher.beliefs[robot], self._dispatcher.unnamed.of(robot))
+
+    def moments(self) -> dict[str, Moment]:
+        """Now, as each robot of the cell tells the time, for `moving_since`."""
+        beliefs, now = self._dispatcher.beliefs, self._time.plant_now
+        return {robot.name: beliefs[robot.name].moment(now) for robot in self._cell.robots}
+
+    def moving_since(self, moments: dict[str, Moment]) -> list[str]:
+        """The online robots of the cell not seen still since then; who finishes its work may move."""
+        ending = [name for name in moments if not self._dispatcher.finishes(name)]
+        beliefs = {name: self._dispatcher.beliefs[name] for name in ending}
+        return [name for name, b in beliefs.items() if b.online and not b.still_since(moments[name])]
+
+    def reports_a_latch(self) -> bool:
+        """True while an online robot of the cell still reports that it is stopped and latched."""
+        stopped = self._dispatcher.latched  # by another cell, where a cell that was cleared shares them
+        names = [robot.name for robot in self._cell.robots if robot.name not in stopped]
+        beliefs = [self._dispatcher.beliefs[name] for name in names]
+        return any(belief.online and belief.state is MotionState.STOP_LATCHED for belief in beliefs)

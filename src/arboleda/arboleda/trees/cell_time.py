@@ -1,0 +1,74 @@
+"""Time of one cell, which stands still while the cell is held, and the alarm clock of its tree."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+
+class CellTime:
+    """Clock of a cell: what waits in its tree waits on while the cell is held.
+
+    `wakes` are the instants at which the tree is to be ticked again, s of `now`. `next_deadline` is the first
+    of them, s of the plant's time; None while held.
+    """
+
+    def __init__(self, clock: Callable[[], float]) -> None:
+        self.wakes: list[float] = []
+        self.next_deadline: float | None = None
+        self.paused_s = 0.0  # for how long the cell was held until it went on last
+        self._clock = clock
+        self._paused_at: float | None = None
+
+    @property
+    def now(self) -> float:
+        """The cell's time, s."""
+        at = self._clock() if self._paused_at is None else self._paused_at
+        return at - self.paused_s
+
+    @property
+    def plant_now(self) -> float:
+        """The plant's time, s; it never stands still."""
+        return self._clock()
+
+    def pause(self, at: float | None = None) -> None:
+        """Let the cell's time stand still from now on, or since `at`, s of the plant's time."""
+        if self._paused_at is None:
+            self._paused_at = self._clock() if at is None else at
+            self._plan()
+
+    def go_on(self) -> None:
+        """Let the cell's time pass again."""
+        if self._paused_at is not None:
+            self.paused_s += self._clock() - self._paused_at
+            self._paused_at = None
+            self._plan()
+
+    def woken(self) -> bool:
+        """Take the wakes that are due; True where there was one. While held none is due."""
+        if self.next_deadline is None or min(self.wakes) > self.now:
+            return False
+        now = self.now
+        self.wakes = [at for at in self.wakes if at > now]
+        self._plan()
+        return True
+
+    def wake_at(self, at: float) -> None:
+        """Have the tree ticked again at `at`, s of `now`."""
+        self.wakes.append(at)
+        self._plan()
+
+    def forget_wakes(self) -> None:
+        """Drop what the last tree waited for."""
+        self.wakes = []
+        self._plan()
+
+    def _plan(self) -> None:
+        """Work out the next deadline; rounding must not wake the plant an instant before `now` gets there."""
+        if self._paused_at is not None or not self.wakes:
+            self.next_deadline = None
+            return
+        at = min(self.wakes)
+        self.next_deadline = at + self.paused_s
+        while self.next_deadline - self.paused_s < at:
+            self.next_deadline = math.nextafter(self.next_deadline, math.inf)

@@ -1,0 +1,196 @@
+"""Shared zones as one cell uses them: asked for before a way, given back once its robot is seen outside."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+
+from arboleda.dispatch.dispatcher import Dispatcher
+from arboleda.dispatch.zones import Zones
+from arboleda.model.commands import Command, Motion
+from arboleda.model.messages import Failure, Reason
+from arboleda.model.plant_model import Cell, Pose
+from arboleda.model.sentence import Phrase
+
+from . import zone_plan
+from .cell_robots import CellRobots
+from .interlocks import Interlocks
+from .parts import Parts
+
+NOT_HELD = Phrase(
+    "zone.not_held", "{robot} does not hold zone {zones}, into which this leads; nothing was sent"
+)
+ASTRAY = Phrase("zone.astray", "{arm} is not seen at a pose outside the shared zones; home {arm} mends that")
+ASTRAY_BY_HAND = Phrase(
+    "zone.astray_by_hand",
+    "{arm} is not seen at a pose outside the shared zones; "
+    "home {arm} --by-hand, once it stands at its reference, mends that",
+)
+
+
+class CellZones:
+    """Zones of the robots and machines of one cell; `at_work(holder)`: its work comes to an end by itself."""
+
+    def __init__(
+        self,
+        cell: Cell,
+        dispatcher: Dispatcher,
+        zones: Zones,
+        robots: CellRobots,
+        parts: Parts,
+        at_work: Callable[[str], bool],
+    ) -> None:
+        self.interlocks = Interlocks(cell, dispatcher)
+        self._cell = cell
+        self._dispatcher = dispatcher
+        self._zones = zones
+        self._robots = robots
+        self._parts = parts
+        self._at_work = at_work
+        self._occupied: dict[str, frozenset[str]] = {}  # by interlocked device, as it was seen last
+
+    def held_by(self, robot: str) -> frozenset[str]:
+        """The zones that a robot, or a machine, holds."""
+        return self._zones.held_by(robot)
+
+    def take(self, robot: str, zones: frozenset[str], *, inside: bool = False) -> bool:
+        """Ask for zones, all at once; True once the robot has them.
+
+        `inside`: a robot that stands in a zone may go on with what it holds, to get out, unless an operator
+        has freed a part of that meanwhile.
+        """
+        held = self._zones.held_by(robot)
+        if not held:
+            taken = self._zones.request(robot, zones)
+        elif robot not in self._cell.workspaces and not zones <= held:
+            heard = not any(map(self._zones.is_quarantined, held))
+            taken = heard and self._zones.request(robot, zones, moves_over=True)
+        else:
+            taken = self._zones.regain(robot, zones) if inside else zones <= held
+        if taken:
+            self._remember(robot)
+        return taken
+
+    def claim(self, robot: str) -> None:
+        """Take every zone a robot may get into, for a way from an unknown place; all must be free."""
+        self._claim(robot, self._cell.workspaces[robot].zones)
+
+    def leave(self, robot: str) -> bool:
+        """Stop waiting for zones, and give back those that the robot is seen outside of; True once it holds
+        none.
+        """
+        granted = self._zones.withdraw(robot)
+        held = self._left(robot, self._zones.held_by(robot))
+        if held:
+            granted += self._zones.give_back(held)
+            self._dispatcher.memory.vacate(held)
+            self._dispatcher.wake(self._zones.robbed)
+        self._dispatcher.wake(granted)
+        return not self._zones.held_by(robot)
+
+    def objection(self, command: Command) -> Failure | None:
+        """Objection to a command, whatever the tree says: it leads into a zone that is not held."""
+        missing = self._needed(command) - self._zones.held_by(command.robot)
+        if not missing:
+            return None
+        sentence = NOT_HELD(robot=command.robot, zones=tuple(sorted(missing)))
+        return Failure(reason=Reason.ZONE_UNAVAILABLE, sentence=sentence)
+
+    def between(self, robot: str, *goals: Pose) -> frozenset[str]:
+        """The zones that a robot comes by to each of these poses from where it is, which may be no pose."""
+        space, here = self._cell.reach[robot], self._robots.position(robot)
+        return frozenset[str]().union(*(zone_plan.passed(space, here, goal.q) for goal in goals))
+
+    def for_recovery(self, robot: str) -> frozenset[str]:
+        """The zones that a recovery needs on its way, from where the robot stands now."""
+        space = self._cell.workspaces[robot]
+        place, back = self._dispatcher.place(space), self._parts.way_back(robot)
+        between = self.between(robot, *((back,) if back else ()), space.home)
+        return zone_plan.recovery_zones(space, place, back) | between
+
+    def astray(self) -> tuple[str, Failure] | None:
+        """A robot that shares zones and is not seen outside them, so that no way of it may begin; and why."""
+        for robot in self._cell.zone_users:
+            space, belief = self._cell.workspaces[robot], self._dispatcher.beliefs[robot]
+            unknown = not belief.supervised and robot not in self._dispatcher.reached
+            if unknown or self._dispatcher.place(space) is not None:
+                continue
+            astray = ASTRAY if belief.robot.says_homed else ASTRAY_BY_HAND
+            return robot, Failure(reason=Reason.ZONE_UNAVAILABLE, sentence=astray(arm=robot))
+        return None
+
+    def awaited(self, robot: str, zones: Iterable[str]) -> dict[str, str]:
+        """Those of the zones that somebody else holds, each with its holder."""
+        holders = {zone: self._zones.holder(zone) for zone in zones}
+        return {zone: other for zone, other in holders.items() if other is not None and other != robot}
+
+    def awaited_by_recovery(self) -> dict[str, str]:
+        """The zones that a recovery would wait for, and their holders; inside its zones it needs none."""
+        awaited: dict[str, str] = {}
+        for robot in self._cell.zone_users:
+            if not self._zones.held_by(robot) or robot in self._zones.robbed:
+                awaited |= self.awaited(robot, self.for_recovery(robot))
+        return awaited
+
+    def will_come_free(self, robot: str) -> bool:
+        """True where all that a robot waits for comes free without help: everybody before it is at work.
+
+        A holder that waits itself, for another arm of its cell, may wait for this one.
+        """
+        asked = dict(self._zones.waiting)
+        zones = asked.get(robot)
+        if zones is None or any(self._zones.is_quarantined(zone) for zone in zones):
+            return False
+        holders = self.awaited(robot, zones).values()
+        cells_of = self._dispatcher.model.cells_of
+        cells = [cell for holder in holders for cell in cells_of.get(holder, ())]
+        waits = any(user in asked for cell in cells for user in (cell.name, *cell.zone_users))
+        return not waits and all(map(self._at_work, (*holders, *self._zones.ahead_of(robot))))
+
+    def is_quarantined(self, zone: str) -> bool:
+        """True while a silent robot may be in a zone."""
+        return self._zones.is_quarantined(zone)
+
+    def follow(self, device: str) -> None:
+        """Give an interlocked device the free zones that it is in the way of, and take back those it left."""
+        occupied, before = self.interlocks.occupied_by(device), self._occupied.get(device, frozenset())
+        self._occupied[device] = occupied
+        if self._dispatcher.beliefs[device].online:
+            self._zones.is_heard(device)
+        free = frozenset(zone for zone in occupied if self._zones.holder(zone) is None)
+        if free:
+            self._claim(device, free)
+        if before - occupied:
+            self.leave(device)
+
+    def is_for_task(self, zone: str) -> bool:
+        """True for a zone held for the task of this cell alone, by a machine that is not in its way."""
+        holder = self._zones.holder(zone)
+        return holder in self._cell.interlocked and zone not in self.interlocks.occupied_by(holder)
+
+    def forsake(self) -> None:
+        """Give back what machines hold for a task that cannot go on, where they are not in the way."""
+        self.interlocks.reserved = {}
+        for machine in self._cell.interlocked:
+            self.leave(machine)
+
+    def _needed(self, command: Command) -> frozenset[str]:
+        """The zones that its robot has to hold for a command."""
+        space = self._cell.workspaces.get(command.robot)
+        if space is not None and isinstance(command, Motion) and command.way:
+            return zone_plan.entered(space, self._dispatcher.place(space), command.way)
+        locks = self._cell.interlocks_of(command.robot)
+        return frozenset(each.zone for each in locks if each.is_ended_by(command))
+
+    def _left(self, robot: str, held: frozenset[str]) -> frozenset[str]:
+        """Those of the zones that a robot, or a machine, is seen outside of."""
+        space = self._cell.workspaces.get(robot)
+        if space is None:
+            return self.interlocks.left_by(robot, held)
+        return held if self._dispatcher.place(space) is not None else frozenset()
+
+    def _claim(self, robot: str, zones: frozenset[str]) -> None:
+        self._zones.claim(robot, zones)
+        self._remember(robot)
+
+    def _remember(self, robot: str) -> None:
+        self._dispatcher.memory.occupy(self._zones.held_by(robot), robot)

@@ -1,0 +1,56 @@
+"""Interlocks: the zones that a device without a workspace of its own may be in the way of."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+
+from arboleda.dispatch.dispatcher import Dispatcher
+from arboleda.model.facts import shown
+from arboleda.model.plant_model import Cell, MotionState
+
+
+class Interlocks:
+    """Reader of the interlocks of one cell; `reserved` has what a task of an earlier start took for them."""
+
+    def __init__(self, cell: Cell, dispatcher: Dispatcher) -> None:
+        self.reserved: Mapping[str, Sequence[str]] = {}
+        self._cell = cell
+        self._dispatcher = dispatcher
+
+    def occupied_by(self, device: str) -> frozenset[str]:
+        """The zones that a device may be in the way of: it does not report the contrary, or has a command
+        that leads there.
+
+        What moves without a command of this plant may be on its way there.
+        """
+        belief = self._dispatcher.beliefs[device]
+        open_commands = [entry.command for entry in self._dispatcher.ledger.of_robot(device)]
+        return frozenset(
+            each.zone
+            for each in self._cell.interlocks_of(device)
+            if not belief.online
+            or (belief.state is MotionState.MOVING and self._dispatcher.work_of(device) is None)
+            or any(belief.fact(name) != value for name, value in each.free_while)
+            or any(map(each.is_ended_by, open_commands))
+        )
+
+    def left_by(self, device: str, held: frozenset[str]) -> frozenset[str]:
+        """Those of the zones that a device is not in the way of, and no task has reserved."""
+        return held - self.occupied_by(device) - frozenset(self.reserved.get(device, ()))
+
+    def in_the_way(self, device: str, zones: Iterable[str]) -> tuple[str, ...] | None:
+        """The facts that a device at rest does not report, so that it keeps one of the zones; None where it
+        is not heard, works, or keeps none of them.
+        """
+        belief = self._dispatcher.beliefs[device]
+        wanted = self.occupied_by(device).intersection(zones)
+        if not belief.online or belief.moves or self._dispatcher.ledger.of_robot(device) or not wanted:
+            return None
+        unsaid = [
+            f"{name} {shown(value)}"
+            for each in self._cell.interlocks_of(device)
+            if each.zone in wanted
+            for name, value in each.free_while
+            if belief.fact(name) != value
+        ]
+        return tuple(dict.fromkeys(unsaid)) or None

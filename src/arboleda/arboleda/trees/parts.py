@@ -1,0 +1,131 @@
+"""Parts in the effectors of a cell: held, carried, lost, and where each belongs."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from arboleda.dispatch.dispatcher import Dispatcher
+from arboleda.model.facts import Value
+from arboleda.model.grips import Grip
+from arboleda.model.messages import Failure, Reason
+from arboleda.model.plant_model import Cell, Pose
+from arboleda.model.sentence import Phrase, Sentence
+
+from .cell_robots import CellRobots
+from .piece_sensors import PieceSensors
+from .trail import Trail
+
+LOST = Phrase("part.lost", "{arm}: the part was lost on the way")
+
+
+class Parts:
+    """Books of the parts that the effectors of one cell hold.
+
+    `carrier` is the robot on its way with a part that its sensor has seen. `back` has the pose from which
+    each robot's part came, as far as that is known; `origins` are the robots for which that is the place
+    where they last went empty. While `delivers`, work runs; a recovery does the rest without the part, too.
+    """
+
+    def __init__(self, cell: Cell, dispatcher: Dispatcher, robots: CellRobots, sensors: PieceSensors) -> None:
+        self.carrier: str | None = None
+        self.delivers = True
+        self.back: dict[str, Pose] = {}
+        self.origins: set[str] = set()
+        self._cell = cell
+        self._dispatcher = dispatcher
+        self._effectors = dispatcher.effectors
+        self._robots = robots
+        self._sensors = sensors
+
+    def begin(self) -> None:
+        """Open the books for another tree."""
+        self.carrier, self.delivers = None, True
+        for robot in self._cell.holders:
+            self._effectors.opened.pop(robot, None)
+
+    def recover(self) -> None:
+        """Go on as a recovery, which delivers nothing."""
+        self.carrier, self.delivers = None, False
+
+    def take_over(self, trail: Trail) -> None:
+        """Take the books of a task of an earlier start."""
+        self.carrier, self.origins = trail.carrier, set(trail.origins)
+        reach = self._cell.reach
+        poses = {robot: {pose.name: pose for pose in space.poses} for robot, space in reach.items()}
+        named = {robot: poses.get(robot, {}).get(name) for robot, name in trail.back.items()}
+        self.back = {robot: pose for robot, pose in named.items() if pose is not None}
+
+    def forget_origins(self) -> None:
+        """Let a recipe say anew where its parts come from."""
+        self.back, self.origins = {}, set()
+
+    def set_origin(self, robot: str, pose: Pose) -> None:
+        """Let a recipe say where the next part of a robot comes from, whatever an earlier one has noted."""
+        self.origins.discard(robot)
+        self.back[robot] = pose
+
+    def note_origin(self, robot: str, pose: Pose) -> None:
+        """Note that a robot that holds nothing takes here what it will hold: a recovery brings that back."""
+        given = robot in self.back and robot not in self.origins  # the recipe has set it
+        if self._cell.reach[robot].hand.name not in self.holding and not given:
+            self.back[robot] = pose
+            self.origins.add(robot)
+
+    def way_back(self, robot: str) -> Pose | None:
+        """The pose to which a recovery brings what a robot holds: its origin, else as the cell says."""
+        if robot in self.origins and self._cell.workspaces[robot].hand.name not in self.holding:
+            return None  # it went there, and took nothing
+        return self.back.get(robot) or self._cell.back(robot, self._robots.position)
+
+    def grip(self, robot: str) -> Grip:
+        """The known state of a robot's effector."""
+        return self._effectors.grips[robot]
+
+    @property
+    def holding(self) -> list[str]:
+        """The robots of the cell in whose effector a part may hang."""
+        return [robot for robot in self._cell.holders if self._effectors.grips.holding(robot)]
+
+    @property
+    def unopened(self) -> list[str]:
+        """Those of them whose last command was to let go, and failed."""
+        return [robot for robot in self.holding if robot in self._effectors.unopened]
+
+    def obstacle_to_opening(self, robot: str) -> Failure | None:
+        """The reason for which a robot cannot let go now."""
+        return self._dispatcher.obstacle_to_opening(robot)
+
+    def opening_tool(self, robot: str) -> str | None:
+        """The tool of a robot that may still let go of a part on an earlier command."""
+        return self._effectors.opening_tool(robot)
+
+    def lost(self) -> Failure | None:
+        """The loss of the part that is being carried, by the piece sensor."""
+        robot = self.carrier
+        if robot is None or self._sensors.read(robot, 0.0) is not False:
+            return None
+        return Failure(reason=Reason.PART_LOST, sentence=LOST(arm=robot))
+
+    @property
+    def opened_by(self) -> str | None:
+        """The robot whose effector opened with a part in it without a command of this plant."""
+        return next((robot for robot in self._cell.holders if robot in self._effectors.opened), None)
+
+    def opening(self, robot: str) -> Sentence:
+        """The sentence about that."""
+        return self._effectors.opened[robot]
+
+    def leave_unsettled(self, robot: str, *, sets: Mapping[str, Value]) -> None:
+        """Expect a change of what a robot holds: an earlier start was switching it, to `sets`.
+
+        A tool that was told to grip does not let go late.
+        """
+        if robot in self._cell.holders:
+            self._effectors.cut_off.add(robot)
+            if sets.get(self._dispatcher.model.robots[robot].held_fact or ""):
+                self._effectors.grips.forget_opening(robot)
+
+    def settle(self) -> None:
+        """Believe the reports about what was being switched when an earlier start ended."""
+        for robot in self._effectors.cut_off.intersection(self._cell.holders):
+            self._effectors.settle_cut_off(self._robots.belief(robot))
