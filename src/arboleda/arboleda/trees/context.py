@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+from py_trees.behaviour import Behaviour
+
 from arboleda.dispatch.dispatcher import Dispatcher
 from arboleda.dispatch.zones import Zones
-from arboleda.model.messages import Notice, TaskAnswer
+from arboleda.model.messages import Failure, Notice, TaskAnswer
 from arboleda.model.plant_model import Cell, Timing
 
 from .cell_commands import CellCommands
@@ -85,3 +87,11 @@ class Context:
     def notify(self, notice: Notice) -> None:
         """Tell the outside."""
         self._outbox.append(notice)
+
+    def wake_at(self, at: float) -> None:
+        """Former name of `time.wake_at`, for leaves of one's own; it goes with version 0.3."""
+        self.time.wake_at(at)
+
+    def fail(self, failure: Failure, leaf: Behaviour | None = None) -> None:
+        """Former name of `failures.add`, for leaves of one's own; it goes with version 0.3."""
+        self.failures.add(failure, leaf)
