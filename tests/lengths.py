@@ -6,7 +6,7 @@ import os
 from collections.abc import Iterable
 from typing import TypeVar
 
-T = TypeVar("T")
+S, T = TypeVar("S"), TypeVar("T")
 
 WHOLE = os.environ.get("ARBOLEDA_LENGTH") == "whole"
 
@@ -17,6 +17,6 @@ def sample(cases: Iterable[T], every: int) -> list[T]:
     return found if WHOLE else found[::every]
 
 
-def length(short: T, whole: T) -> T:
+def length(short: S, whole: T) -> S | T:
     """The one that is asked for."""
     return whole if WHOLE else short

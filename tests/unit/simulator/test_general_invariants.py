@@ -125,16 +125,18 @@ def run(
     *,
     only: str = "",
     cycles: int = 4,
+    seconds: float | None = None,
     model: PlantModel | None = None,
 ) -> BrokenInvariant | None:
-    """What breaks; `only`: by this invariant alone."""
+    """What breaks; `only`: by this invariant alone; `seconds`: so long, however many cycles that are."""
     model = model or shop(load, both, careless)
     if isinstance(weather, str):
         climate = Climate.draw(model, seed, weather)
     else:
         climate = Climate.from_file(model, seed, {"rates": weather})
     judges = tuple(each for each in judged_by(model) if only in ("", each.name))
-    return Simulation(model, seed, climate.faults, invariants=judges).run(cycles=cycles).broken
+    simulation = Simulation(model, seed, climate.faults, invariants=judges)
+    return simulation.run(cycles=cycles, seconds=seconds).broken
 
 
 @pytest.mark.parametrize("seed", sample(range(1, 5), every=4))
@@ -146,7 +148,7 @@ def test_all_of_them_hold_in_bad_weather(seed: int) -> None:
 @pytest.mark.parametrize("kind", FAULTS_OF_DEVICES)
 def test_all_of_them_hold_where_devices_fail_in_this_way_alone(kind: str) -> None:
     assert kind in JUDGED
-    assert run(1, {kind: 12.0}, cycles=length(1, whole=3)) is None
+    assert run(1, {kind: 12.0}, cycles=3, seconds=length(25.0, whole=None)) is None
 
 
 def machine_of(watched: JudgedWorld, name: str = "mill") -> MachineBody:
