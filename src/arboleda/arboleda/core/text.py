@@ -137,16 +137,6 @@ def _named_cells(word: str, plant: PlantModel) -> list[str]:
     return names
 
 
-def compose(
-    *, text: str = "", cell: str = "", recipe: str = "", path: str = "", station: str = "", id: str = ""
-) -> str:
-    """The text that filled-in fields spell, for `parse` to judge; without a recipe it is storage."""
-    stored = recipe.strip().lower() in ("", "storage")
-    number = id.strip() and f"#{id.strip().removeprefix('#')}"
-    words = [text, cell, "" if stored else recipe, path, station, number]
-    return " ".join(word.strip() for word in words if word.strip())
-
-
 def _order(cell: Cell, recipe: Recipe, words: Mapping[str, str], id: str | None) -> Order:
     head = [cell.name] if recipe.is_default else [cell.name, recipe.name]
     return Order(

@@ -7,7 +7,7 @@ from typing import Any
 
 from arboleda_interfaces.msg import Task
 
-from arboleda.core import text
+from .fields import compose
 
 _TASK = ("id", "text", "cell", "state", "reason", "sentence")
 _ASKED = ("text", "cell", "recipe", "path", "station", "id")
@@ -20,4 +20,4 @@ def task_message(plain: Mapping[str, Any]) -> Task:
 
 def text_of(asked: Any) -> str:
     """The task text in a goal or a request."""
-    return text.compose(**{key: getattr(asked, key) for key in _ASKED})
+    return compose(**{key: getattr(asked, key) for key in _ASKED})
