@@ -68,9 +68,9 @@ def test_a_breach_shows_the_line_of_the_test_the_rule_and_the_timeline(project: 
     result = run(
         project,
         """
-        from arboleda.simulator.invariants.invariant import When, invariant
+        from arboleda.simulator.invariants.invariant import Trigger, invariant
 
-        @invariant(When.EXECUTED)
+        @invariant(Trigger.EXECUTED)
         def arms_rest(look):
             "No arm does anything."
             yield from (f"{board} moves" for board, _ in look.moment.executed if board == "arm_1")

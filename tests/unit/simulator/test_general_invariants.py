@@ -11,6 +11,7 @@ import pytest
 from arboleda.core.plant import Plant
 from arboleda.dispatch import evidence
 from arboleda.dispatch.dispatcher import Dispatcher
+from arboleda.dispatch.effectors import Effectors
 from arboleda.dispatch.evidence import Verdict
 from arboleda.dispatch.ledger import Feed
 from arboleda.kinds.declared import Device, DeviceKind, DeviceVerb, Effect, FactType
@@ -29,7 +30,10 @@ from arboleda.simulator.general import GENERAL, OF_DEVICES
 from arboleda.simulator.judged import judged_by
 from arboleda.simulator.judged_world import BrokenInvariant, JudgedWorld
 from arboleda.simulator.run import Simulation
-from arboleda.trees.context import Context
+from arboleda.trees.cell_commands import CellCommands
+from arboleda.trees.cell_devices import CellDevices
+from arboleda.trees.cell_zones import CellZones
+from arboleda.trees.interlocks import Interlocks
 from arboleda.wire.bridge import Bridge
 from arboleda.wire.payloads import OrderGoal, encode
 from arboleda.wire.transport import Publication
@@ -206,24 +210,24 @@ def believed_on_its_word(patch: Patch) -> None:
 
 def moves_while_its_tool_may_open(patch: Patch) -> None:
     """An arm moves although its gripper may still let go, late, as it was told to."""
-    patch.setattr(Dispatcher, "opening_tool", lambda self, robot: None)
+    patch.setattr(Effectors, "opening_tool", lambda self, robot: None)
 
 
 def zones_for_all(patch: Patch) -> None:
     """Zones are given to whoever asks, and nothing guards them."""
-    patch.setattr(Context, "take_zones", lambda self, robot, zones, *, inside=False: True)
+    patch.setattr(CellZones, "take", lambda self, robot, zones, *, inside=False: True)
     unguarded(patch)
 
 
 def unguarded(patch: Patch) -> None:
     """Nothing is looked at before a command leaves, whatever the tree says."""
-    patch.setattr(Context, "_barrier", lambda self, command: None)
+    patch.setattr(CellCommands, "_objection", lambda self, command: None)
 
 
 def forgets_doors(patch: Patch) -> None:
     """A machine that shuts its door takes no zone."""
-    patch.setattr(Context, "keep_interlocks", lambda self, device: None)
-    patch.setattr(Context, "occupied_by", lambda self, device: frozenset())
+    patch.setattr(CellZones, "follow", lambda self, device: None)
+    patch.setattr(Interlocks, "occupied_by", lambda self, device: frozenset())
     zones_for_all(patch)
 
 
@@ -301,7 +305,7 @@ def halts_nothing(patch: Patch) -> None:
 
 def forgets_grips(patch: Patch) -> None:
     """What a device holds is not kept for the next start."""
-    patch.setattr(Dispatcher, "_grip", lambda self, arm, grip: self.grips.set(arm, grip))
+    patch.setattr(Effectors, "set", lambda self, robot, grip: self.grips.set(robot, grip))
 
 
 def told_twice(patch: Patch) -> None:
@@ -332,7 +336,7 @@ def advises_nothing(patch: Patch) -> None:
 
 def shared_with_all(patch: Patch) -> None:
     """What cells share is given to whoever asks, and nothing guards it."""
-    patch.setattr(Context, "take_devices", lambda self, devices: True)
+    patch.setattr(CellDevices, "take", lambda self, devices: True)
     unguarded(patch)
 
 
@@ -414,7 +418,7 @@ LIKELY = {  # seeds that found them, tried first
 def test_it_bites(monkeypatch: Patch, name: str, bug: Bug, how: Scenario | Weather) -> None:
     bug(monkeypatch)
     monkeypatch.setattr("arboleda.simulator.run.PATIENCE", 1)  # a cell that is held does not wait for long
-    monkeypatch.setattr("arboleda.simulator.watched.REST_S", 60.0)
+    monkeypatch.setattr("arboleda.simulator.judged_world.REST_S", 60.0)
     if callable(how):
         watched = JudgedWorld(shop(*RECIPES), invariants=[each for each in GENERAL if each.name == name])
         with pytest.raises(BrokenInvariant, match=name):

@@ -30,9 +30,13 @@ from arboleda.simulator.truth import Truth
 from arboleda.simulator.world import World
 from arboleda.testing.plants import shipped
 from arboleda.trees import steps
+from arboleda.trees.cell_commands import CellCommands
+from arboleda.trees.cell_zones import CellZones
 from arboleda.trees.context import Context
+from arboleda.trees.failures import Failures
 from arboleda.trees.handling import Handling
 from arboleda.trees.leaves import Piece
+from arboleda.trees.parts import Parts
 from arboleda.wire.payloads import EffectorGoal, Goal, JointsGoal, encode
 from arboleda.wire.rivals import Rivals
 from arboleda.wire.topics import Channel, topic
@@ -148,8 +152,8 @@ def test_nothing_is_found_when_a_fault_is_handled(fault: str, after_s: float) ->
 
 
 def everybody_gets_it(patch: Patch) -> Watch:
-    patch.setattr(Context, "take_zones", lambda self, robot, zones, *, inside=False: True)
-    patch.setattr(Context, "_barrier", lambda self, command: None)
+    patch.setattr(CellZones, "take", lambda self, robot, zones, *, inside=False: True)
+    patch.setattr(CellCommands, "_objection", lambda self, command: None)
     watch = Watch(zoned())
     for cell in watch.world.model.cells:
         watch.world.request_task(f"{cell.name} palletizing")
@@ -166,7 +170,7 @@ def freed_at_a_stop(patch: Patch) -> Watch:
 
 
 def entered_unasked(patch: Patch) -> Watch:
-    patch.setattr(Context, "_barrier", lambda self, command: None)
+    patch.setattr(CellCommands, "_objection", lambda self, command: None)
     patch.setattr(Zones, "request", lambda self, robot, zones: True)
     watch = Watch(zoned())
     watch.task()
@@ -257,7 +261,7 @@ def gripped_at_home(patch: Patch) -> Watch:
 
 
 def began_with_the_effector_on(patch: Patch) -> Watch:
-    patch.setattr(Context, "holding", [])
+    patch.setattr(Parts, "holding", [])
     watch = Watch()
     watch.body.switch_effector(True)
     watch.wait(1.0)
@@ -328,7 +332,7 @@ def mobile_runs_on(patch: Patch) -> Watch:
 
 
 def robbed_unnoticed(patch: Patch) -> Watch:
-    patch.setattr(Context, "part_gone", lambda self: None)
+    patch.setattr(Failures, "opened_effector", lambda self: None)
     watch = misses_no_part(patch)
     watch.world.request_task("sis_a 0B 7")
     watch.wait(60.0, until=lambda: watch.body.holding and watch.body.moving)
@@ -339,7 +343,7 @@ def robbed_unnoticed(patch: Patch) -> Watch:
 
 def misses_no_part(patch: Patch) -> Watch:
     """Nobody looks for a part on the way, nor where it belongs."""
-    patch.setattr(Context, "part_lost", lambda self: None)
+    patch.setattr(Parts, "lost", lambda self: None)
     patch.setattr(Piece, "_seen", lambda self: True)
     return Watch()
 

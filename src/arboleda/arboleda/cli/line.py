@@ -11,8 +11,7 @@ from arboleda.model.errors import ArboledaError, QueueFull, TextError
 from arboleda.model.outside import plain, said_by
 from arboleda.runtime.endpoints import Place
 from arboleda.web.limits import BEAT_S
-from arboleda.web.plant_api import COMMAND_LINE
-from arboleda.web.request import PLANT
+from arboleda.web.plant_api import COMMAND_LINE, PLANT
 
 if TYPE_CHECKING:  # slow to load, and only needed to ask a plant
     import httpx

@@ -35,7 +35,6 @@ OF_NODES = frozenset(
         "parent",
         "logger",
         "context",
-        "failures",
         "blackboards",
         "qualified_name",
         "blackbox_level",

@@ -16,7 +16,8 @@ from . import limits
 from .auth import LOCAL, Door, Login
 from .limits import Buckets
 from .names import Names
-from .request import LOGIN, PLANT, ClientGone, HttpError, RequestHead, with_headers
+from .plant_api import PLANT
+from .request import LOGIN, ClientGone, HttpError, RequestHead, with_headers
 
 
 async def whole_body(asked: RequestHead, receive: Receive) -> Receive:

@@ -12,6 +12,7 @@ from arboleda.store.oee_rows import OeeQuery
 from arboleda.store.task_rows import TaskQuery, TaskRow
 from arboleda.views.oee import Oee
 
+PLANT = "arboleda-plant"  # header by which a client names the plant it means
 COMMAND_LINE = "arboleda"  # the User-Agent of our own command, before its version
 Snapshot = dict[str, Any]
 
