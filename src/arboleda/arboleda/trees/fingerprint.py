@@ -5,7 +5,7 @@ Functions count by their code and by what they have taken in, objects that are n
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import fields, is_dataclass
 from enum import Enum
 from functools import partial
@@ -64,7 +64,10 @@ def joined(*words: str) -> str:
 def of_cell(cell: Cell, recipe: str, seen: Seen) -> str:
     """The hash of what the tasks of a recipe go by: its code, the devices of its cell, where they go."""
     build = next((each.build for each in cell.recipes if each.name == recipe), None)
-    return joined(*_words(cell, seen), *_words(build, seen))
+    words: list[str] = []
+    _spell(cell, seen, words)
+    _spell(build, seen, words)
+    return joined(*words)
 
 
 def of_tree(root: Behaviour, seen: Seen) -> str:
@@ -78,56 +81,50 @@ def of_tree(root: Behaviour, seen: Seen) -> str:
         words += (type(node).__qualname__, node.name, str(len(node.children)))
         for key, value in vars(node).items():
             if key not in OF_NODES:
-                words += (key, *_words(value, seen))
+                words.append(key)
+                _spell(value, seen, words)
     return joined(*words)
 
 
-def _words(value: Any, seen: Seen) -> Iterator[str]:
+def _spell(value: Any, seen: Seen, words: list[str]) -> None:
+    """Append the words of a value: one call for each, where nested generators take many."""
     if isinstance(value, Enum):
-        yield f"{type(value).__qualname__}.{value.name}"
+        words.append(f"{type(value).__qualname__}.{value.name}")
     elif isinstance(value, PLAIN):
-        yield repr(value)
+        words.append(repr(value))
     elif id(value) in seen:
-        yield f"see {seen[id(value)][0]}"
+        words.append(f"see {seen[id(value)][0]}")
     else:
         seen[id(value)] = len(seen), value
-        yield type(value).__qualname__
+        words.append(type(value).__qualname__)
         for part in _parts(value):
-            yield from _words(part, seen)
-        yield "."
+            _spell(part, seen, words)
+        words.append(".")
 
 
-def _parts(value: Any) -> Iterator[Any]:
+def _parts(value: Any) -> Iterable[Any]:
     """The parts that a thing is made of; none of what is no data."""
     if isinstance(value, tuple | list):
-        yield from value
-    elif isinstance(value, Mapping):
-        for key, each in value.items():
-            yield key
-            yield each
-    elif isinstance(value, set | frozenset):
-        yield from sorted(value, key=repr)
-    elif isinstance(value, Sentence):
-        yield value.key
-        yield value.values
-    elif isinstance(value, Cell):
-        yield from (getattr(value, each.name) for each in fields(value) if each.name not in NO_MATTER)
-    elif is_dataclass(value) and not isinstance(value, type):
-        yield from (getattr(value, each.name) for each in fields(value))
-    elif isinstance(value, FunctionType):
-        yield value.__code__
-        yield value.__defaults__
-        yield from (_content(cell) for cell in value.__closure__ or ())
-    elif isinstance(value, MethodType):
-        yield value.__func__
-    elif isinstance(value, partial):
-        yield value.func
-        yield value.args
-        yield value.keywords
-    elif isinstance(value, CodeType):
-        yield value.co_code
-        yield value.co_names
-        yield value.co_consts
+        return value
+    if isinstance(value, Mapping):
+        return [part for pair in value.items() for part in pair]
+    if isinstance(value, set | frozenset):
+        return sorted(value, key=repr)
+    if isinstance(value, Sentence):
+        return value.key, value.values
+    if isinstance(value, Cell):
+        return [getattr(value, each.name) for each in fields(value) if each.name not in NO_MATTER]
+    if is_dataclass(value) and not isinstance(value, type):
+        return [getattr(value, each.name) for each in fields(value)]
+    if isinstance(value, FunctionType):
+        return value.__code__, value.__defaults__, *map(_content, value.__closure__ or ())
+    if isinstance(value, MethodType):
+        return (value.__func__,)
+    if isinstance(value, partial):
+        return value.func, value.args, value.keywords
+    if isinstance(value, CodeType):
+        return value.co_code, value.co_names, value.co_consts
+    return ()
 
 
 def _content(cell: Any) -> Any:
