@@ -140,7 +140,7 @@ def test_over_mqtt_an_alarm_waits_for_the_broker_and_comes_again_after_it(
 
 
 @pytest.fixture
-def plant(hooked: Hooked, tmp_path: Path) -> Iterator[App]:
+def running(hooked: Hooked, tmp_path: Path) -> Iterator[App]:
     """The shipped plant on virtual boards, with its API, whose alarms go to both."""
     alarms = AlarmOptions(hook=hooked.hook(), topic="arboleda/alarms")
     options = Options(state_dir=tmp_path / "state", page=False, rate=10.0, alarms=alarms)
@@ -159,30 +159,30 @@ def at(app: App, state: str) -> None:
 
 
 def test_a_stop_of_a_plant_that_runs_arrives_by_both_ways(
-    plant: App, hooked: Hooked, peer: Callable[..., Any]
+    running: App, hooked: Hooked, peer: Callable[..., Any]
 ) -> None:
-    address = plant._broker.address
+    address = running._broker.address
     reader = peer("reader", address, subscriptions=["arboleda/alarms"]).up()
-    at(plant, "idle")
-    plant.submit("sis_a 0B 7 #t1").result(PATIENCE_S)
-    at(plant, "execute")
-    plant.operate(Verb.STOP).result(PATIENCE_S)
+    at(running, "idle")
+    running.plant.submit("sis_a 0B 7 #t1").result(PATIENCE_S)
+    at(running, "execute")
+    running.plant.operate(Verb.STOP).result(PATIENCE_S)
     hooked.posts.wait(lambda posts: len(posts) == 2)
     by_kind = {post["kind"]: post for post in hooked.posts}
     assert by_kind.keys() == {"task_failed", "cell_held"}
     failed, held = by_kind["task_failed"], by_kind["cell_held"]
     assert failed["task"] == {"id": "t1", "text": "sis_a 0B 7"} and failed["reason"] == "stopped"
-    assert held["state"] == "aborted" and held["plant"] == plant.model.name and held["advice"]
+    assert held["state"] == "aborted" and held["plant"] == running.model.name and held["advice"]
     reader.inbox.wait(lambda inbox: len(inbox.payloads) == 2)
     told = [json.loads(each) for each in reader.inbox.payloads]
     assert {each["id"] for each in told} == {failed["id"], held["id"]}
 
 
-def test_a_receiver_that_hangs_costs_the_plant_nothing(plant: App, hooked: Hooked) -> None:
+def test_a_receiver_that_hangs_costs_the_plant_nothing(running: App, hooked: Hooked) -> None:
     hooked.gate.clear()
-    at(plant, "idle")
-    plant.operate(Verb.STOP).result(PATIENCE_S)
+    at(running, "idle")
+    running.plant.operate(Verb.STOP).result(PATIENCE_S)
     began = time.monotonic()
-    plant.operate(Verb.CLEAR).result(PATIENCE_S)
-    plant.operate(Verb.STOP).result(PATIENCE_S)
+    running.plant.operate(Verb.CLEAR).result(PATIENCE_S)
+    running.plant.operate(Verb.STOP).result(PATIENCE_S)
     assert time.monotonic() - began < webhook.TIMEOUT_S / 2

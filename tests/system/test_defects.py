@@ -24,13 +24,13 @@ for key in [key for key, rule in evidence.RULES.items() if rule is sound]:
     evidence.RULES[key] = broken
 """,
     "a leaf": """
-from arboleda.trees.leaves import Dwell
-sound = Dwell.update
+from arboleda.trees.leaves import Announce
+sound = Announce.update
 def broken(self):
     if self.context.cell.name == "sis_a":
         raise KeyError("by design")
     return sound(self)
-Dwell.update = broken
+Announce.update = broken
 """,
 }
 

@@ -113,6 +113,7 @@ def test_who_has_turned_it_on_hears_it_once_for_a_cell_that_needs_somebody_also_
     client.operate(Verb.STOP, "sis_a")
     in_trouble(page)
     page.wait_for_function("tones === 3 && loudest > 0.1")
+    page.wait_for_selector('[data-live="sis_a.state"][data-s=aborted]')
     client.operate(Verb.CLEAR, "sis_a")
     page.wait_for_selector('[data-live="sis_a.state"][data-s=stopped]')
     assert page.evaluate("tones") == 3  # it is the same cell that needs somebody
