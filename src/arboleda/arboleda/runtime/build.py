@@ -10,6 +10,7 @@ import threading
 import time
 from collections.abc import Callable, Collection
 from dataclasses import asdict, dataclass, field
+from functools import cached_property
 from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -248,20 +249,20 @@ class App:
             recorded=None if options.recording is None else self._state.path,
             report=self.report,
         )
-        mount = page.mounting(sources) if options.page else None
+        paged = page.PagePlant(self.plant, self._history, sources) if options.page else None
         metrics = self._metrics = Metrics(self.plant.snapshot, self.links)
         return WebPart(
-            self.local,
+            paged or self.local,
             self.model.name,
             self._state.path,
             self._announce,
             options.web,
-            mount,
+            paged and paged.mount,
             connections=self._shares.http,
             counts=metrics.text,
         )
 
-    @property
+    @cached_property
     def local(self) -> LocalPlant:
         """PlantApi of the plant of this process; ArboledaError where it has none."""
         return LocalPlant(self.plant, self._history)

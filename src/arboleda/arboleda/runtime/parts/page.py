@@ -14,9 +14,11 @@ from arboleda.model.plant_model import PlantModel
 from arboleda.model.sentence import Phrase
 from arboleda.plant_file.urdf import robot_urdf
 from arboleda.recorder.errors import NoRecord
+from arboleda.store.task_rows import History
 from arboleda.views import view
 
 from .local_plant import LocalPlant
+from .orchestrator import Orchestrator
 
 if TYPE_CHECKING:  # slow to load, and only needed for a record
     from arboleda.dashboard.past.past import Past
@@ -40,27 +42,27 @@ class Sources:
     end_demo: Callable[[], None] | None = None  # None: this start is no demonstration
 
 
-class PageSide:
-    """PageSide: a plant as `arboleda.dashboard.page_api.PageApi`."""
+class PagePlant(LocalPlant):
+    """PageApi of the plant in this process: LocalPlant with what only the page shows."""
 
-    def __init__(self, plant: LocalPlant, sources: Sources) -> None:
+    def __init__(self, plant: Orchestrator, history: History, sources: Sources) -> None:
+        super().__init__(plant, history)
         self._model = sources.model
         self._layout = view.layout(sources.model) | {
             "recorded": sources.recorded is not None,
             "demo": sources.end_demo is not None,
         }
         self._sources = sources
-        self.snapshot = plant.snapshot
-        self.submit = plant.submit
-        self.operate = plant.operate
-        self.act = plant.act
-        self.history = plant.history
-        self.oee = plant.oee
-        self.watch = plant.watch
         self.links = sources.links
         self.positions = sources.positions
         self.past_acts = sources.past_acts
         self.report = sources.report
+
+    def mount(self, app: FastAPI) -> None:
+        """Put the page on the server's application."""
+        from arboleda.dashboard import page  # it takes most of a second, and not all plants have a page
+
+        page.mount(app, self)
 
     def layout(self) -> dict[str, Any]:
         return self._layout
@@ -93,14 +95,3 @@ class PageSide:
 
     def urdf(self, robot: str) -> str:
         return robot_urdf(self._model, robot)
-
-
-def mounting(sources: Sources) -> Callable[[FastAPI, LocalPlant], None]:
-    """The function that puts the page on the server's application."""
-
-    def mount(app: FastAPI, plant: LocalPlant) -> None:
-        from arboleda.dashboard import page  # it takes most of a second, and not all plants have a page
-
-        page.mount(app, PageSide(plant, sources))
-
-    return mount

@@ -31,7 +31,7 @@ class Announce(Protocol):
 
 
 class WebPart:
-    """Serves the API, and the pages that `mount(app, side)` adds; has its address announced."""
+    """Serves the API, and the pages that `mount(app)` adds; has its address announced."""
 
     def __init__(
         self,
@@ -40,7 +40,7 @@ class WebPart:
         state: Path,
         announce: Announce,
         options: WebOptions,
-        mount: Callable[[FastAPI, LocalPlant], None] | None = None,
+        mount: Callable[[FastAPI], None] | None = None,
         *,
         connections: int = limits.CONNECTIONS,
         counts: Callable[[], bytes] | None = None,
@@ -53,7 +53,7 @@ class WebPart:
         self._shows_page = mount is not None
         app = make_app(self.plant, streams=limits.lasting(limits.STREAMS, connections), counts=counts)
         if mount is not None:
-            mount(app, self.plant)
+            mount(app)
         sockets = limits.lasting(limits.SOCKETS, connections)
         names = names_for(options.address, options.public_url, scheme=options.scheme)
         guarded = Guard(SecondLoop(app), names, options.door_of(state), sockets=sockets, plant=name)
