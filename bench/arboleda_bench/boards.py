@@ -14,8 +14,8 @@ from arboleda.adapters.mqtt import MqttClient
 from arboleda.kinds.arm import Arm, MoveJoints, SetEffector
 from arboleda.kinds.mobile import FollowPath, Mobile
 from arboleda.model.commands import Command
-from arboleda.model.plant_model import MotionState, PlantModel, Robot
-from arboleda.recipes.storage_cell import StorageCell
+from arboleda.model.plant_model import Cell, MotionState, PlantModel, Robot
+from arboleda.recipes.storage_layout import StorageLayout
 from arboleda.wire.payloads import (
     EffectorGoal,
     Goal,
@@ -88,14 +88,14 @@ class Board:
     def __init__(
         self,
         robot: Robot,
-        cell: StorageCell,
+        cell: Cell,
         clockwork: Clockwork,
         move_s: Callable[[], float],
         say: Callable[[Publication], None],
         moments: list[Moment],
     ) -> None:
         self._robot = robot
-        self._cell = cell
+        self._layout = StorageLayout(cell)
         self._clockwork = clockwork
         self._move_s = move_s
         self._say = say
@@ -104,7 +104,7 @@ class Board:
         self._number = count(1)
         self._moving: Goal | None = None
         self._q = (0.0,) * self._axes if self._axes else None
-        self._node = cell.path(steps.PATH).nodes[-1] if isinstance(robot, Mobile) else None
+        self._node = cell.paths[steps.PATH].nodes[-1] if isinstance(robot, Mobile) else None
         self._effector = False if self._axes else None
         self._epoch: int | None = None
         self._ack: int | None = None
@@ -145,7 +145,7 @@ class Board:
         else:
             self._node = goal.nodes[-1]
         command, telemetry = self._command(goal), self._telemetry()
-        home = isinstance(command, MoveJoints) and self._cell.arm.reached(command.q, self._cell.home.q)
+        home = isinstance(command, MoveJoints) and self._layout.arm.reached(command.q, self._layout.home.q)
         self._moments.append(Moment(at=now(), command=command, ended=True, last=home))
         self._say(telemetry)
 

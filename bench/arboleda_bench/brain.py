@@ -12,15 +12,14 @@ from rclpy.publisher import Publisher
 from std_msgs.msg import String
 
 from arboleda.model.commands import Command
-from arboleda.model.plant_model import PlantModel
+from arboleda.model.plant_model import Cell, PlantModel
 from arboleda.plant_file.loader import load
-from arboleda.recipes.storage_cell import StorageCell
 from arboleda.wire.hop import PLAIN
 from arboleda_ros import convert, qos
 from arboleda_ros.link import connect
 
 
-def stand(name: str, make: Callable[[Node, PlantModel, StorageCell], object]) -> None:
+def stand(name: str, make: Callable[[Node, PlantModel, Cell], object]) -> None:
     """Run a node for the cell that the command line names, in Arboleda's executor, until the input ends."""
     file, cell = sys.argv[1:3]
     model = load(Path(file))
@@ -36,7 +35,7 @@ def stand(name: str, make: Callable[[Node, PlantModel, StorageCell], object]) ->
     del made
 
 
-def voices(node: Node, cell: StorageCell) -> dict[tuple[str, type[Command]], Publisher]:
+def voices(node: Node, cell: Cell) -> dict[tuple[str, type[Command]], Publisher]:
     """The publishers for all commands to the cell's robots."""
     return {
         (robot.name, kind): node.create_publisher(
@@ -47,7 +46,7 @@ def voices(node: Node, cell: StorageCell) -> dict[tuple[str, type[Command]], Pub
     }
 
 
-def on_task(node: Node, cell: StorageCell, begin: Callable[[], None]) -> None:
+def on_task(node: Node, cell: Cell, begin: Callable[[], None]) -> None:
     """Call `begin` at each task for the cell."""
     node.create_subscription(String, f"{cell.name}/task_request", _ignoring(begin), qos.COMMAND)
 

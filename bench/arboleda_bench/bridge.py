@@ -30,6 +30,7 @@ from dataclasses import dataclass, field
 from statistics import median
 
 from arboleda.plant_file.loader import load
+from arboleda.recipes.storage_layout import StorageLayout
 from arboleda_ros.link import connect
 
 from . import plants
@@ -74,7 +75,7 @@ def run(scene: Scene) -> Result:
             "arboleda_bench.floor_bridge", str(plant), brokers[1], "--ros-args", "-r", "__ns:=/floor"
         ),
     )
-    arms, link = [cell.arm for cell in load(plant).cells], connect()
+    arms, link = [StorageLayout(cell).arm for cell in load(plant).cells], connect()
     ends: list[Ends] = []
     try:
         node = link.node("ends")

@@ -24,6 +24,7 @@ from std_msgs.msg import Bool, Float32MultiArray, UInt8, UInt32
 from arboleda.kinds.arm import Arm
 from arboleda.model.plant_model import PlantModel
 from arboleda.plant_file.loader import load
+from arboleda.recipes.storage_layout import StorageLayout
 from arboleda.wire.joints import joint_names, joint_states_topic
 from arboleda_ros import qos
 from arboleda_ros.link import connect
@@ -111,8 +112,8 @@ def main(plant: str, broker: str) -> None:
 
 
 def _join(node: Node, model: PlantModel, client: Client) -> None:
-    voices = [Voice(node, cell.arm, client) for cell in model.cells]
-    client.on_connect = partial(_subscribe, [f"{cell.arm.mqtt}/sensores" for cell in model.cells])
+    voices = [Voice(node, StorageLayout(cell).arm, client) for cell in model.cells]
+    client.on_connect = partial(_subscribe, [f"{cell.roles['arm'].mqtt}/sensores" for cell in model.cells])
     node.create_subscription(
         UInt32, "plant/heartbeat", lambda _: [voice.beat() for voice in voices], qos.COMMAND
     )

@@ -14,8 +14,7 @@ from rclpy.publisher import Publisher
 from std_msgs.msg import Float32MultiArray, UInt8, UInt32
 
 from arboleda.kinds.arm import Arm, SetEffector
-from arboleda.model.plant_model import PlantModel
-from arboleda.recipes.storage_cell import StorageCell
+from arboleda.model.plant_model import Cell, PlantModel
 from arboleda.wire.hop import COMMAND
 from arboleda_ros import convert, qos
 
@@ -30,7 +29,7 @@ Ready = tuple[Publisher, object, str | None]  # a message, and what the effector
 class Echo(Walker[Ready]):
     """One cell's robots, step by step; it takes tasks once the bridge hears it and its robots are there."""
 
-    def __init__(self, node: Node, model: PlantModel, cell: StorageCell) -> None:
+    def __init__(self, node: Node, model: PlantModel, cell: Cell) -> None:
         self._voices = {
             robot.name: node.create_publisher(Float32MultiArray, f"{robot.name}/{COMMAND}", qos.COMMAND)
             for robot in cell.robots
@@ -81,7 +80,7 @@ class Echo(Walker[Ready]):
     def _on_beat(self, message: UInt32) -> None:
         self._epoch = message.data
 
-    def _open(self, node: Node, cell: StorageCell) -> None:
+    def _open(self, node: Node, cell: Cell) -> None:
         heard = all(voice.get_subscription_count() for voice in self._voices.values())
         if heard and self._epoch and not self._silent:
             self._opening.cancel()

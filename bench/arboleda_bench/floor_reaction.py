@@ -16,8 +16,7 @@ from std_msgs.msg import Bool, UInt8
 from arboleda.kinds.arm import Arm, MoveJoints
 from arboleda.kinds.mobile import FollowPath
 from arboleda.model.commands import Command
-from arboleda.model.plant_model import PlantModel, Robot
-from arboleda.recipes.storage_cell import StorageCell
+from arboleda.model.plant_model import Cell, PlantModel, Robot
 from arboleda.wire.joints import joint_states_topic
 from arboleda_ros import convert, qos
 
@@ -31,7 +30,7 @@ Ready = tuple[Publisher, object, str, float | None]  # a message, its robot, and
 class BareNode(Walker[Ready]):
     """One cell's robots, step by step."""
 
-    def __init__(self, node: Node, model: PlantModel, cell: StorageCell) -> None:
+    def __init__(self, node: Node, model: PlantModel, cell: Cell) -> None:
         voices = brain.voices(node, cell)
         ready = [
             (voices[step.robot, type(step)], convert.command_message(step), step.robot, _goal(cell, step))
@@ -76,7 +75,7 @@ class BareNode(Walker[Ready]):
             self.go_on()
 
 
-def _goal(cell: StorageCell, step: Command) -> float | None:
+def _goal(cell: Cell, step: Command) -> float | None:
     """The first coordinate of a move's end; None for a step that is no move."""
     return steps.end(cell, step)[0] if isinstance(step, FollowPath | MoveJoints) else None
 

@@ -16,8 +16,8 @@ from arboleda.kinds.arm import Arm, MoveJoints
 from arboleda.kinds.mobile import FollowPath, Mobile
 from arboleda.model.commands import Command, Stop
 from arboleda.model.messages import Report
-from arboleda.model.plant_model import MotionState, PlantModel, Robot
-from arboleda.recipes.storage_cell import StorageCell
+from arboleda.model.plant_model import Cell, MotionState, PlantModel, Robot
+from arboleda.recipes.storage_layout import StorageLayout
 from arboleda.wire.hop import PLAIN
 from arboleda.wire.joints import joint_states_topic
 from arboleda_ros import convert, qos
@@ -67,14 +67,14 @@ class Body:
     def __init__(
         self,
         node: Node,
-        cell: StorageCell,
+        cell: Cell,
         robot: Robot,
         clockwork: Clockwork,
         move_s: Callable[[], float],
         moments: list[Moment],
     ) -> None:
         self._node = node
-        self._cell = cell
+        self._layout = StorageLayout(cell)
         self._robot = robot
         self._clockwork = clockwork
         self._move_s = move_s
@@ -133,7 +133,7 @@ class Body:
             return
         self._moving = None
         self._here = self._seen_at(_goal(command))
-        last = isinstance(command, MoveJoints) and self._cell.arm.reached(command.q, self._cell.home.q)
+        last = isinstance(command, MoveJoints) and self._layout.arm.reached(command.q, self._layout.home.q)
         self._joints.publish(self._here)
         stopped = UInt8(data=int(MotionState.STOPPED))
         at = now()
@@ -157,8 +157,8 @@ class Body:
         return message
 
 
-def _resting_place(cell: StorageCell, robot: Robot) -> Sequence[float] | int:
-    return cell.path(steps.PATH).nodes[-1] if isinstance(robot, Mobile) else cell.home.q
+def _resting_place(cell: Cell, robot: Robot) -> Sequence[float] | int:
+    return cell.paths[steps.PATH].nodes[-1] if isinstance(robot, Mobile) else cell.reach[robot.name].home.q
 
 
 def _goal(command: Command) -> Sequence[float] | int:

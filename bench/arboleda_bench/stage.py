@@ -11,7 +11,7 @@ from rclpy.publisher import Publisher
 from std_msgs.msg import String, UInt32
 
 from arboleda.model.errors import ArboledaError
-from arboleda.recipes.storage_cell import StorageCell
+from arboleda.model.plant_model import Cell
 from arboleda_ros import qos
 from arboleda_ros.link import connect
 
@@ -39,7 +39,7 @@ class Stage:
     """Robots that `make` makes, commanded by `others`, between `with`; cell OURS is asked as users ask."""
 
     def __init__(
-        self, cells: Sequence[StorageCell], make: Callable[[Node], Robots], others: Sequence[Process]
+        self, cells: Sequence[Cell], make: Callable[[Node], Robots], others: Sequence[Process]
     ) -> None:
         self.cells = cells
         self._others = others
@@ -77,7 +77,7 @@ class Stage:
         for sentence in self._failed:
             raise ArboledaError(f"a task of the benchmark was not done: {sentence}")
 
-    def play(self, cycles: int, *cells: StorageCell) -> None:
+    def play(self, cycles: int, *cells: Cell) -> None:
         """Have each of the cells carry out so many storage tasks, and wait for their end."""
         wanted = {cell.name: self.played(cell) + cycles for cell in cells}
         for cell in cells:
@@ -87,15 +87,15 @@ class Stage:
             what = f"the end of {cycles} tasks in cell {cell.name}"
             wait_for(lambda at=cell: self.played(at) >= wanted[at.name], what, self.check, cycles * CYCLE_S)
 
-    def played(self, cell: StorageCell) -> int:
+    def played(self, cell: Cell) -> int:
         """The number of tasks that the cell has ended."""
         return sum(moment.last for moment in self.moments(cell))
 
-    def moments(self, cell: StorageCell) -> list[Moment]:
+    def moments(self, cell: Cell) -> list[Moment]:
         """The moments in a cell so far."""
         return list(self.robots.moments[cell.name])
 
-    def _asking(self, number: int, cell: StorageCell) -> Publisher:
+    def _asking(self, number: int, cell: Cell) -> Publisher:
         topic = "task_request" if number == OURS else f"{cell.name}/task_request"
         return self.node.create_publisher(String, topic, qos.COMMAND)
 

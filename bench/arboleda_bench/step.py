@@ -31,6 +31,7 @@ from arboleda.model.commands import Command
 from arboleda.model.messages import Report
 from arboleda.model.plant_model import PlantModel
 from arboleda.plant_file.loader import load
+from arboleda.recipes.storage_layout import StorageLayout
 from arboleda.views import view
 
 from . import plants
@@ -161,7 +162,7 @@ def go_on(yard: Yard, command: Command | None) -> list[Any]:
 
 def leads_on(yard: Yard, command: Command) -> bool:
     """True if a command is a move that another command follows at once."""
-    home = yard.plant.model.cells[0].home
+    home = StorageLayout(yard.plant.model.cells[0]).home
     return isinstance(command, FollowPath) or (isinstance(command, MoveJoints) and command.q != home.q)
 
 

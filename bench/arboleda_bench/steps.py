@@ -8,41 +8,43 @@ from itertools import count
 from arboleda.kinds.arm import MoveJoints, SetEffector
 from arboleda.kinds.mobile import FollowPath
 from arboleda.model.commands import Command
-from arboleda.recipes.storage_cell import StorageCell
+from arboleda.model.plant_model import Cell
+from arboleda.recipes.storage_layout import StorageLayout
 
 PATH, STATION = "0B", 1
 GOLDEN = 0.6180339887498949  # its multiples fall evenly into any interval
 
 
-def task(cell: StorageCell) -> str:
+def task(cell: Cell) -> str:
     """The task that all benchmarks give."""
     return f"{cell.name} {PATH} {STATION}"
 
 
-def storage(cell: StorageCell, epoch: int = 1) -> list[Command]:
+def storage(cell: Cell, epoch: int = 1) -> list[Command]:
     """The commands of one storage task; the mobile robot stands where the last one ended.
 
     The pauses of the recipe are left out: one after the task's start and one after each effector command.
     """
-    arm, mobile, path = cell.arm.name, cell.mobile.name, cell.path(PATH)
-    back = cell.mobile.grid.route(path.nodes[-1], path.nodes[0])
+    layout, path = StorageLayout(cell), cell.paths[PATH]
+    arm, mobile = layout.arm.name, layout.mobile.name
+    back = layout.mobile.grid.route(path.nodes[-1], path.nodes[0])
     names = (f"{epoch}-{number}" for number in range(1, 8))
     return [
         FollowPath(id=next(names), robot=mobile, nodes=back),
         FollowPath(id=next(names), robot=mobile, nodes=path.nodes),
-        MoveJoints(id=next(names), robot=arm, q=cell.pickup.q),
+        MoveJoints(id=next(names), robot=arm, q=layout.pickup.q),
         SetEffector(id=next(names), robot=arm, on=True),
         MoveJoints(id=next(names), robot=arm, q=cell.stations[STATION].q),
         SetEffector(id=next(names), robot=arm, on=False),
-        MoveJoints(id=next(names), robot=arm, q=cell.home.q),
+        MoveJoints(id=next(names), robot=arm, q=layout.home.q),
     ]
 
 
-def end(cell: StorageCell, step: FollowPath | MoveJoints) -> tuple[float, ...]:
+def end(cell: Cell, step: FollowPath | MoveJoints) -> tuple[float, ...]:
     """The end of a move in the robot's joint states: rad and m."""
     if isinstance(step, FollowPath):
-        return cell.mobile.grid.position(step.nodes[-1])
-    return cell.arm.quantised(step.q)
+        return StorageLayout(cell).mobile.grid.position(step.nodes[-1])
+    return StorageLayout(cell).arm.quantised(step.q)
 
 
 def lengths(shortest_s: float, longest_s: float) -> Callable[[], float]:

@@ -18,8 +18,7 @@ from sensor_msgs.msg import JointState
 from std_msgs.msg import UInt8
 
 from arboleda.kinds.arm import SetEffector
-from arboleda.model.plant_model import PlantModel, Robot
-from arboleda.recipes.storage_cell import StorageCell
+from arboleda.model.plant_model import Cell, PlantModel, Robot
 from arboleda.wire.joints import joint_states_topic
 from arboleda_ros import convert, qos
 
@@ -95,7 +94,7 @@ class Pause(Behaviour):
 class Ticked:
     """A cell's tree and its timer; the third word of the command line is how often per second it ticks."""
 
-    def __init__(self, node: Node, model: PlantModel, cell: StorageCell) -> None:
+    def __init__(self, node: Node, model: PlantModel, cell: Cell) -> None:
         self._waiting = 0
         self._tree = _storage(node, model, cell)
         brain.on_task(node, cell, self._task)
@@ -112,7 +111,7 @@ class Ticked:
             self._waiting -= 1
 
 
-def _storage(node: Node, model: PlantModel, cell: StorageCell) -> Sequence:
+def _storage(node: Node, model: PlantModel, cell: Cell) -> Sequence:
     timing, voices = model.timing, brain.voices(node, cell)
     heard = {robot.name: Heard(node, robot) for robot in cell.robots}
     leaves: list[Behaviour] = [Pause("system start", timing.dwell_s)]

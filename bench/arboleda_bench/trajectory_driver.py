@@ -19,6 +19,7 @@ from arboleda.drivers import MotionState, MoveJoints, Report
 from arboleda.drivers.joint_trajectory.settings import Settings
 from arboleda.kinds.arm import Arm
 from arboleda.model.errors import ArboledaError
+from arboleda.recipes.storage_layout import StorageLayout
 from arboleda.testing.plants import shipped
 
 from .result import Aim, Figure, Result, percentile
@@ -39,7 +40,7 @@ def run(scene: Scene) -> Result:
     times = 100 if scene.quick else 1000
     scene.say("starting")
     scene.python("arboleda_bench.trajectory_server")
-    arm = shipped("sis_c").cells[0].arm
+    arm = StorageLayout(shipped("sis_c").cells[0]).arm
     ours, floor = Driven(arm), Bare()
     try:
         scene.say("goals in turns")

@@ -10,7 +10,7 @@ from arboleda.kinds.arm import MoveJoints
 from arboleda.model.commands import Command
 from arboleda.model.messages import Reason, Report
 from arboleda.model.plant_model import Evidence, Link, MotionState, PlantModel, Robot
-from arboleda.recipes.storage_cell import StorageCell
+from arboleda.recipes.storage_layout import StorageLayout
 from arboleda.virtual.dobot.faults import FAULTS
 from arboleda.virtual.dobot.machine import VirtualDobot
 
@@ -53,9 +53,14 @@ CAUSES: dict[str, set[Reason]] = {
 
 def plant_of(shipped: PlantModel) -> PlantModel:
     """The shipped plant's cell whose arm is a Dobot behind a driver."""
-    cell = next(each for each in shipped.cells if isinstance(each, StorageCell) and len(each.arm.joints) == 6)
-    arm = replace(cell.arm, link=Link.DRIVER, evidence=Evidence.IDS)
-    return replace(shipped, cells=(replace(cell, arm=arm),))
+    layouts = [StorageLayout(cell) for cell in shipped.cells if cell.handover]
+    layout = next(each for each in layouts if len(each.arm.joints) == 6)
+
+    def driven(robot: Robot) -> Robot:
+        is_arm = robot.name == layout.arm.name
+        return replace(robot, link=Link.DRIVER, evidence=Evidence.IDS) if is_arm else robot
+
+    return replace(shipped, cells=(layout.cell.with_robots(driven),))
 
 
 class DobotTrial(Trial):
@@ -69,22 +74,25 @@ class DobotTrial(Trial):
         super().__init__(FAULTS)
         self.model = plant_of(shipped)
         (cell,) = self.model.cells
-        assert isinstance(cell, StorageCell)
-        self._cell = cell
+        self._layout = StorageLayout(cell)
         self._dobot = VirtualDobot(self.faults, enabled=True, frame_s=FRAME_S)
         self._driver: MoveCounter | None = None
-        spots = {"home": cell.home, "pick": cell.palletizing.pick, "place": cell.palletizing.place}
+        spots = {
+            "home": self._layout.home,
+            "pick": self._layout.palletizing.pick,
+            "place": self._layout.palletizing.place,
+        }
         self._spots = {name: _degrees(pose.joints) for name, pose in spots.items()}
 
     @property
     def robots(self) -> Sequence[Robot]:
-        return [self._cell.arm]
+        return [self._layout.arm]
 
     def task(self, number: int) -> str:
-        return f"{self._cell.name} palletizing #{number}"
+        return f"{self._layout.name} palletizing #{number}"
 
     def join(self, hear: Hear, now: float) -> Loopback:
-        self._driver = MoveCounter(self._cell.arm, self._dobot, hear, now)
+        self._driver = MoveCounter(self._layout.arm, self._dobot, hear, now)
         return self._driver
 
     def seen(self) -> tuple[str, bool] | None:
@@ -100,7 +108,7 @@ class DobotTrial(Trial):
 
     def bystanders(self, now: float) -> list[Report]:
         """The reports of the mobile robot, which stands still."""
-        name, still = self._cell.mobile.name, MotionState.STOPPED
+        name, still = self._layout.mobile.name, MotionState.STOPPED
         return [
             Report(at=now, robot=name, epoch=EPOCH, plant=EPOCH, boot_id=1, state=still, node=0, homed=True)
         ]

@@ -56,7 +56,7 @@ class CarryTrial(ActionTrial):
         return f"{self.cell.name} carry slot_1 slot_2 #{number}"
 
     def seen(self) -> tuple[str | None, bool]:
-        spots = {name: pose.q for name, pose in self.cell.spots("arm").items()}
+        spots = {name: pose.q for name, pose in self.cell.reach["arm"].targets.items()}
         return (
             spot(spots, self.bodies["arm"].position),
             near(self.bodies["jaw"].position, (PART_M,)),

@@ -20,7 +20,7 @@ from arboleda.adapters.broker_login import Address
 from arboleda.adapters.mqtt import MqttClient, NotConnected
 from arboleda.model.plant_model import PlantModel
 from arboleda.plant_file import loader
-from arboleda.recipes.storage_cell import StorageCell
+from arboleda.recipes.storage_layout import StorageLayout
 from arboleda.runtime.loop import Loop
 from arboleda.runtime.rate import at_rate
 from arboleda.sim.arm import ArmBody
@@ -78,9 +78,8 @@ class WatchedDevices:
 
     def _place(self, robot: str, body: ArmBody) -> str:
         """The pose at which the arm truly stands, to the step of its motors."""
-        cell = self._model.cell_of[robot]
-        assert isinstance(cell, StorageCell)
-        for pose in cell.workspaces[robot].poses:
+        cell = StorageLayout(self._model.cell_of[robot])
+        for pose in cell.space.poses:
             assert isinstance(pose.q, tuple)
             rows = zip(cell.arm.joints, body.true_place, pose.q, strict=True)
             if all(abs(here - there) <= joint.step for joint, here, there in rows):
@@ -88,7 +87,7 @@ class WatchedDevices:
                 return f"{pose.name}{ALONE}" if alone else pose.name
         return NOWHERE
 
-    def _offered(self, cell: StorageCell) -> str | None:
+    def _offered(self, cell: StorageLayout) -> str | None:
         """The pick-up of the exit at which the mobile robot stands."""
         node = self.devices.boards[cell.mobile.mqtt].body.true_place
         exits = {path.nodes[-1] for path in cell.paths}

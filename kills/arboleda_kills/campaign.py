@@ -13,7 +13,6 @@ from typing import Any
 import httpx
 
 from arboleda.plant_file import loader
-from arboleda.recipes.storage_cell import StorageCell
 from arboleda.runtime.state import STORE
 from arboleda.store.task_rows import TaskHistory, TaskQuery, TaskRow
 
@@ -63,7 +62,7 @@ class Campaign:
         self._wanted, self._say = kills, say
         self._dice = random.Random(seed)
         self._boards = Boards(rate, folder / "boards.log")
-        cells = [cell for cell in loader.load(None).cells if isinstance(cell, StorageCell)]
+        cells = [cell for cell in loader.load(None).cells if cell.handover]
         self._customers = Customers(cells, self._dice, f"s{seed}")
         self._attendant = Attendant(self._boards)
         self._outcome = Outcome()

@@ -10,7 +10,7 @@ from typing import Any
 
 from arboleda.core.advice import Hand
 from arboleda.model.messages import Verb
-from arboleda.recipes.storage_cell import StorageCell
+from arboleda.model.plant_model import Cell
 
 from .processes import Boards, Plant
 
@@ -41,7 +41,7 @@ class Customers:
     change; `contradictions` says where it did.
     """
 
-    def __init__(self, cells: Sequence[StorageCell], dice: random.Random, name: str) -> None:
+    def __init__(self, cells: Sequence[Cell], dice: random.Random, name: str) -> None:
         self._cells = cells
         self._dice = dice
         self._name = name
@@ -73,10 +73,10 @@ class Customers:
             while len(self._of_cell[cell.name]) < WAITING:
                 self._ask(plant, self._next(cell))
 
-    def _next(self, cell: StorageCell) -> str:
+    def _next(self, cell: Cell) -> str:
         self._count += 1
         id = f"{self._name}-{self._count}"
-        path, station = self._dice.choice(cell.paths).code, self._count % len(cell.stations)
+        path, station = self._dice.choice([*cell.paths]), self._count % len(cell.stations)
         self._asked[id] = f"{cell.name} {path} {station}"
         self._of_cell[cell.name].add(id)
         return id

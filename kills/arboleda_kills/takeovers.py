@@ -27,7 +27,6 @@ import psycopg
 
 from arboleda.adapters.broker import EmbeddedBroker
 from arboleda.plant_file import loader
-from arboleda.recipes.storage_cell import StorageCell
 from arboleda.store.postgres.history import PostgresHistory
 from arboleda.store.postgres.leadership import Leadership
 from arboleda.store.task_rows import TaskQuery
@@ -51,7 +50,7 @@ class Takeovers:
         self._dice = random.Random(seed)
         self.boards = Boards(RATE, folder / "boards.log")
         self.boards.broker("127.0.0.1", port)
-        cells = [cell for cell in loader.load(None).cells if isinstance(cell, StorageCell)]
+        cells = [cell for cell in loader.load(None).cells if cell.handover]
         self.customers = Customers(cells, self._dice, f"s{seed}-{int(time.time())}")
         self.attendant = Attendant(self.boards)
         self._others = Leadership(store, NAME)

@@ -22,6 +22,7 @@ from arboleda.kinds.gripper import gripper
 from arboleda.kinds.mobile import Grid, Mobile
 from arboleda.model.commands import Command
 from arboleda.model.plant_model import Evidence, Link, Robot
+from arboleda.recipes.storage_layout import StorageLayout
 from arboleda.testing.plants import shipped
 from arboleda.virtual.faults import Faults
 from arboleda.virtual.gripper.machine import FAULTS as GRIPPER_FAULTS
@@ -32,7 +33,7 @@ from ..patience import PATIENCE_S
 
 pytestmark = pytest.mark.system
 
-ARM = shipped("sis_c").cells[0].arm
+ARM = StorageLayout(shipped("sis_c").cells[0]).arm
 NAMES = tuple(joint.name for joint in ARM.joints)
 GOAL = ARM.quantised(tuple(math.radians(each) for each in (4, 2, -3, 0, 1, 0)))
 JAW = Device(

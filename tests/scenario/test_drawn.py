@@ -11,14 +11,16 @@ from arboleda.model.messages import Report, TaskState, Verb
 from arboleda.model.plant_model import Evidence, Link, MotionState
 from arboleda.testing import Rig, shipped
 
+from ..cells import with_robot
+
 
 @pytest.fixture(params=list(Evidence), ids=lambda evidence: evidence.value)
 def rig(request: pytest.FixtureRequest) -> Rig:
     """One cell whose mobile robot is only drawn, whatever evidence it declares."""
     model = shipped("sis_a")
     cell = model.cell("sis_a")
-    drawn = replace(cell.mobile, link=Link.NONE, evidence=request.param)
-    rig = Rig(replace(model, cells=(replace(cell, mobile=drawn),)))
+    drawn = with_robot(cell, "mobile", link=Link.NONE, evidence=request.param)
+    rig = Rig(replace(model, cells=(drawn,)))
     rig.wait(0.5)
     return rig
 

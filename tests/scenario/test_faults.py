@@ -18,6 +18,7 @@ from arboleda.core import reasons
 from arboleda.core.cell_states import CellState
 from arboleda.model.messages import Reason, TaskState
 from arboleda.model.plant_model import Evidence
+from arboleda.recipes.storage_layout import StorageLayout
 from arboleda.sim.arm import ArmBody
 from arboleda.testing import Rig, Witness, faults, shipped, slowed
 from arboleda.trees import steps
@@ -79,8 +80,9 @@ def stale(rig: Rig, spot: Spot) -> float:
 def deadline(rig: Rig, spot: Spot) -> float:
     """Of the robot's longest possible command."""
     timing, robot = rig.model.timing, rig.model.robots[spot.robot]
-    cell = rig.model.cell("sis_a")
-    travel_s = cell.mobile.travel_s(None, cell.path("0B").nodes) if robot is cell.mobile else longest_s(rig)
+    layout = StorageLayout(rig.model.cell("sis_a"))
+    drives_s = layout.mobile.travel_s(None, layout.path("0B").nodes)
+    travel_s = drives_s if robot is layout.mobile else longest_s(rig)
     return max(robot.timeout_s, travel_s * timing.deadline_factor + timing.deadline_floor_s)
 
 
@@ -112,10 +114,9 @@ def never(rig: Rig, spot: Spot) -> float:
 
 def longest_s(rig: Rig) -> float:
     """The longest way between two poses of the arm, s."""
-    cell = rig.model.cell("sis_a")
-    return max(
-        cell.arm.travel_s(cell.arm.quantised(one.q), [other.q]) for one in cell.poses for other in cell.poses
-    )
+    layout = StorageLayout(rig.model.cell("sis_a"))
+    arm, poses = layout.arm, layout.space.poses
+    return max(arm.travel_s(arm.quantised(one.q), [other.q]) for one in poses for other in poses)
 
 
 def rest_s(rig: Rig, outcome: Outcome) -> float:

@@ -16,6 +16,7 @@ from arboleda.model.commands import Home
 from arboleda.model.messages import Journal, TaskState, Verb
 from arboleda.model.plant_model import Evidence, PlantModel, Retry
 from arboleda.plant_file.loader import load
+from arboleda.recipes.storage_layout import StorageLayout
 from arboleda.sim.arm import ArmBody
 from arboleda.sim.freshness import Freshness
 from arboleda.simulator.faults import Fault
@@ -25,6 +26,7 @@ from arboleda.testing import Rig, Witness, faults, shipped
 from arboleda.wire.board import Board, Message
 from arboleda.wire.hop import FromPlant
 
+from ..cells import with_poses
 from ..lengths import length
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
@@ -498,8 +500,8 @@ def in_one_centre() -> PlantModel:
     """The shipped sis_a and sis_b, their pick-ups in one zone."""
     cells = []
     for cell in shipped("sis_a", "sis_b").cells:
-        pickup = replace(cell.pickup, zones=frozenset({"centre"}))
-        cells.append(replace(cell, pickup=pickup, palletizing=replace(cell.palletizing, pick=pickup)))
+        pickup = replace(StorageLayout(cell).pickup, zones=frozenset({"centre"}))
+        cells.append(with_poses(cell, pickup=pickup))
     return replace(shipped("sis_a", "sis_b"), zones=("centre",), cells=tuple(cells))
 
 

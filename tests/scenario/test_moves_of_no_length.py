@@ -10,7 +10,10 @@ from arboleda.core.plant import Plant
 from arboleda.kinds.arm import MoveJoints
 from arboleda.model.messages import Event, Reason, Report, TaskChanged, TaskRequest, TaskState
 from arboleda.model.plant_model import Evidence, Link, MotionState, PlantModel
+from arboleda.recipes.storage_layout import StorageLayout
 from arboleda.testing import Rig, shipped
+
+from ..cells import with_palletizing, with_poses, with_robot
 
 MOVING, STOPPED = MotionState.MOVING, MotionState.STOPPED
 PERIOD_S, LATE_S, SPEED_RAD_S = 0.1, 0.2, 2.0
@@ -22,11 +25,9 @@ def equal_neighbours(evidence: Evidence, link: Link) -> PlantModel:
     """One arm whose place is its home pose: every task begins with a move of no length."""
     model = shipped("sis_a", evidence=evidence, link=link)
     (cell,) = model.cells
-    place = replace(cell.stations[0], q=cell.home.q)
-    drawn = replace(cell.mobile, link=Link.NONE)
-    palletizing = replace(cell.palletizing, place=place)
-    stations = (place, *cell.stations[1:])
-    return replace(model, cells=(replace(cell, mobile=drawn, stations=stations, palletizing=palletizing),))
+    place = replace(cell.stations[0], q=StorageLayout(cell).home.q)
+    cell = with_palletizing(with_poses(cell, station_0=place), "pickup", "station_0")
+    return replace(model, cells=(with_robot(cell, "mobile", link=Link.NONE),))
 
 
 class Glued:
@@ -69,7 +70,7 @@ class Glued:
         return due
 
     def _obey(self, move: MoveJoints) -> None:
-        self.goal = self.plant.model.cells[0].arm.quantised(move.q)
+        self.goal = StorageLayout(self.plant.model.cells[0]).arm.quantised(move.q)
         way = max(abs(a - b) for a, b in zip(self.goal, self.q, strict=True))
         self.moves_until = self.now + (way / SPEED_RAD_S or self.pulse_s)
 

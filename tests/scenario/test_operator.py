@@ -16,6 +16,7 @@ from arboleda.model.plant_model import Evidence, Link, PlantModel
 from arboleda.testing import Rig, Witness, faults, shipped, slowed
 from arboleda.wire.transport import Publication
 
+from ..cells import with_robot
 from .restarts import crash_without_trail
 
 Stage = Callable[..., tuple[Rig, Witness]]
@@ -488,7 +489,7 @@ def test_a_rebooted_arm_is_homed_by_the_verb(stage: Stage) -> None:
 @pytest.mark.parametrize("asked", [True, False], ids=["home_at_start", "not asked for"])
 def test_an_arm_that_is_not_homed_at_start_is_homed_where_the_plant_file_says_so(asked: bool) -> None:
     model = shipped("sis_a")
-    cells = [replace(each, arm=replace(each.arm, home_at_start=asked)) for each in model.cells]
+    cells = [with_robot(each, "arm", home_at_start=asked) for each in model.cells]
     rig = Rig(replace(model, cells=tuple(cells)))
     rig.stop_bridge()
     rig.crash("ra_1")
@@ -650,7 +651,7 @@ def drawn_mobile(**changes: Any) -> PlantModel:
     """sis_a with a mobile robot that is only drawn."""
     model = shipped("sis_a", **changes)
     (only,) = model.cells
-    return replace(model, cells=(replace(only, mobile=replace(only.mobile, link=Link.NONE)),))
+    return replace(model, cells=(with_robot(only, "mobile", link=Link.NONE),))
 
 
 @pytest.mark.parametrize("scope", ["sis_a", "plant"])

@@ -13,6 +13,7 @@ from arboleda.model.errors import ConfigError
 from arboleda.model.plant_model import PlantModel
 from arboleda.plant_file import loader
 from arboleda.plant_file.robot_models import mobile_models
+from arboleda.recipes.storage_layout import StorageLayout
 from arboleda.simulator.plants import draw
 from arboleda.testing import Sim
 
@@ -53,15 +54,15 @@ def drawn(folder: Path, seed: int) -> PlantModel:
 @pytest.mark.parametrize("seed", sample([*SEEDS, HALTED_AT_ONCE], every=4))
 def test_whatever_goes_wrong_nothing_breaks_with_arms_of_ones_own(folder: Path, seed: int) -> None:
     plant = drawn(folder, seed)
-    assert {cell.arm.model for cell in plant.cells} <= set(NAMES)
+    assert {StorageLayout(cell).arm.model for cell in plant.cells} <= set(NAMES)
     setting = Setting(plants=PlantRotation(plants=(Plant(declared=plant),)), cycles=3, level="normal")
     assert setting.run(seed).broken is None
 
 
 def test_the_plants_that_are_drawn_have_all_of_them(folder: Path) -> None:
     cells = [cell for seed in SEEDS for cell in drawn(folder, seed).cells]
-    assert {cell.arm.model for cell in cells} == set(NAMES)
-    assert any(pose.above for cell in cells for pose in cell.poses)
+    assert {StorageLayout(cell).arm.model for cell in cells} == set(NAMES)
+    assert any(pose.above for cell in cells for pose in StorageLayout(cell).space.poses)
 
 
 def test_a_part_is_stored_by_an_arm_of_ones_own(sim: Sim) -> None:

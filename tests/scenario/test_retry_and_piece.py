@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
 from typing import Any, cast
 
 import pytest
@@ -12,6 +11,7 @@ from arboleda.core.cell_states import CellState
 from arboleda.kinds.mobile import FollowPath
 from arboleda.model.messages import Reason, TaskChanged, TaskState, Verb
 from arboleda.model.plant_model import Evidence, Retry
+from arboleda.recipes.storage_layout import StorageLayout
 from arboleda.sim.arm import ArmBody
 from arboleda.sim.mobile import MobileBody
 from arboleda.testing import Rig, Witness, faults
@@ -64,7 +64,7 @@ def test_a_lost_goal_is_sent_again_after_the_back_off(stage: Stage, evidence: Ev
     rig.submit(TASK)
     assert ended(rig).state is TaskState.DONE
     first, second, third = goals[:3]
-    timeout_s = rig.model.cell("sis_a").arm.timeout_s
+    timeout_s = StorageLayout(rig.model.cell("sis_a")).arm.timeout_s
     assert second - first >= timeout_s + TWICE.backoff_s and third - second >= timeout_s + TWICE.backoff_s
     assert honest(witness)
 
@@ -357,9 +357,7 @@ def test_a_value_from_before_the_arm_arrived_does_not_count(stage: Stage, eviden
 def test_a_sensor_that_speaks_at_changes_only_is_believed_at_any_age(
     stage: Stage, evidence: Evidence
 ) -> None:
-    rig, witness = stage(evidence, piece_check=True)
-    arm = replace(rig.model.cell("sis_a").arm, piece_on_change=True)
-    rig, witness = stage(evidence, piece_check=True, arm=arm)
+    rig, witness = stage(evidence, piece_check=True, arm={"piece_on_change": True})
     usual, last = rig.carry, [b""]
 
     def carry(publication: Publication) -> Any:

@@ -15,7 +15,7 @@ from ..lengths import sample
 def test_each_task_of_a_cell_is_done(cell: str) -> None:
     rig = Rig(shipped())
     where = rig.model.cell(cell)
-    texts = [f"{cell} {path.code} {station}" for path in where.paths for station in sample(range(9), every=4)]
+    texts = [f"{cell} {path} {station}" for path in where.paths for station in sample(range(9), every=4)]
     for text in texts:
         assert rig.submit(text).state in (TaskState.QUEUED, TaskState.RUNNING)
     rig.wait(81 * 60, until=lambda: rig.plant.at_rest and not rig.plant.cells[cell].queue)

@@ -10,10 +10,12 @@ from arboleda.model.messages import TaskRequest, TaskState
 from arboleda.model.plant_model import PlantModel
 from arboleda.testing import Rig, shipped
 
+from ..cells import with_robot
+
 
 def refusing() -> PlantModel:
     """The shipped plant, whose arms refuse a trigger during their own cycle."""
-    cells = (replace(cell, arm=replace(cell.arm, queue_triggers=False)) for cell in shipped().cells)
+    cells = (with_robot(cell, "arm", queue_triggers=False) for cell in shipped().cells)
     return replace(shipped(), cells=tuple(cells))
 
 

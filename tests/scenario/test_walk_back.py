@@ -14,10 +14,12 @@ from arboleda.core.cell_states import CellState
 from arboleda.model.commands import Command, Stop
 from arboleda.model.messages import Fact, Reason, Remember, Shutdown, TaskState, Verb
 from arboleda.model.plant_model import Evidence, PlantModel
+from arboleda.recipes.storage_layout import StorageLayout
 from arboleda.testing import Rig, Witness, faults, shipped
 from arboleda.wire.payloads import EffectorGoal, encode
 from arboleda.wire.transport import Publication
 
+from ..cells import with_poses
 from .restarts import ENDED, Mortal, restart
 
 Stage = Callable[..., tuple[Rig, Witness]]
@@ -118,7 +120,7 @@ def test_a_command_that_never_reached_its_board_is_given_again_as_it_was(stage: 
     rig.wait(1.0)
     assert rig.operate(Verb.RESUME, CELL) is None
     path = json.loads([each.payload for _, each in rig.to_boards if each.topic == topic][-1])
-    assert path["nodos"][0] == rig.model.cells[0].paths[0].nodes[0], "the whole path"
+    assert path["nodos"][0] == StorageLayout(rig.model.cells[0]).paths[0].nodes[0], "the whole path"
     assert outcome(rig) is TaskState.DONE
 
 
@@ -155,8 +157,7 @@ def test_a_board_that_has_booted_meanwhile_leaves_only_the_recovery(stage: Stage
 
 
 def test_who_cannot_say_that_it_booted_is_put_right_by_hand_once(stage: Stage) -> None:
-    arm = replace(shipped(CELL).cell(CELL).arm, assume_homed=True)
-    rig, _ = stage(arm=arm)
+    rig, _ = stage(arm={"assume_homed": True})
     at(rig, "effector off/switch")
     restart(rig)
     rig.crash("ra_1")
@@ -313,8 +314,9 @@ def test_a_recovery_that_was_cut_off_is_only_done_anew(stage: Stage) -> None:
 def moved(model: PlantModel) -> PlantModel:
     """The plant, whose pick-up lies elsewhere."""
     (cell,) = model.cells
-    pickup = replace(cell.pickup, q=tuple(value + 0.05 for value in cell.pickup.q))
-    return replace(model, cells=(replace(cell, pickup=pickup, pickups=()),))
+    layout = StorageLayout(cell)
+    pickup = replace(layout.pickup, q=tuple(value + 0.05 for value in layout.pickup.q))
+    return replace(model, cells=(with_poses(cell, pickup=pickup, pickup_a=pickup, pickup_c=pickup),))
 
 
 def test_another_pose_in_the_plant_file_leaves_only_the_recovery(stage: Stage) -> None:

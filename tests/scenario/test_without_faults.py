@@ -8,9 +8,11 @@ from itertools import product
 import pytest
 
 from arboleda.model.plant_model import Evidence, PlantModel
+from arboleda.recipes.storage_layout import StorageLayout
 from arboleda.simulator.run import Simulation
 from arboleda.testing import shipped, slowed
 
+from ..cells import with_palletizing, with_poses
 from ..lengths import sample
 
 SEEDS = (1, 2, 3, 4)  # robots say where they are and that they move together, apart, or of two instants
@@ -21,17 +23,11 @@ def plant(evidence: Evidence, place: str, slower: float) -> PlantModel:
     """One cell whose palletizing puts the part at its home pose, where it picked it up, or somewhere else."""
     model = slowed(shipped("sis_a", evidence=evidence, assume_homed=evidence is not Evidence.IDS), slower)
     (cell,) = model.cells
-    poses = {
-        "at home": replace(cell.stations[0], q=cell.home.q),
-        "at the pick-up": cell.pickup,
-        "elsewhere": cell.stations[8],
-    }
-    palletizing = replace(cell.palletizing, place=poses[place])
-    stations = (poses["at home"], *cell.stations[1:])
-    return replace(model, cells=(replace(cell, stations=stations, palletizing=palletizing),))
+    cell = with_poses(cell, station_0=replace(cell.stations[0], q=StorageLayout(cell).home.q))
+    return replace(model, cells=(with_palletizing(cell, "pickup", PLACES[place]),))
 
 
-PLACES = ("at home", "at the pick-up", "elsewhere")
+PLACES = {"at home": "station_0", "at the pick-up": "pickup", "elsewhere": "station_8"}
 CASES = product(Evidence, PLACES, (1.0, 4.0), SEEDS)
 
 

@@ -20,6 +20,7 @@ from typing import Any
 from arboleda.kinds.arm import Arm
 from arboleda.model.plant_model import Link, MotionState
 from arboleda.plant_file import loader
+from arboleda.recipes.storage_layout import StorageLayout
 from arboleda.wire.payloads import Channel, JointsGoal, Presence, StopGoal, Telemetry, decode, encode
 from arboleda.wire.topics import topic
 from arboleda.wire.units import from_wire, to_wire
@@ -169,7 +170,11 @@ def play_mqtt(arms: list[Glued], port: int) -> None:
 def main(how: str, plant: str, port: str = "0") -> None:
     link = Link.ROS if how == "ros" else Link.MQTT
     cells = loader.load(Path(plant)).cells
-    arms = [Glued(cell.arm, number) for number, cell in enumerate(cells) if cell.arm.link is link]
+    arms = [
+        Glued(StorageLayout(cell).arm, number)
+        for number, cell in enumerate(cells)
+        if StorageLayout(cell).arm.link is link
+    ]
     if how == "ros":
         play_ros(arms)
     else:

@@ -12,7 +12,6 @@ from typing import Any
 
 from arboleda.model.errors import ArboledaError
 from arboleda.plant_file import loader
-from arboleda.recipes.storage_cell import StorageCell
 from arboleda.store.postgres.history import PostgresHistory
 from arboleda.store.postgres.leadership import Leader, Leadership
 from arboleda.store.postgres.schema import schema_of
@@ -47,7 +46,7 @@ class Run:
     def __init__(self, folder: Path, *, seed: int, rate: float) -> None:
         self._dice = random.Random(seed)
         model = loader.load(None)
-        cells = [cell for cell in model.cells if isinstance(cell, StorageCell)]
+        cells = [cell for cell in model.cells if cell.handover]
         self._cells = [cell.name for cell in cells]
         self.network = Network(HOSTS, folder)
         self.cast = Cast(self.network, folder, rate, list(model.robots))

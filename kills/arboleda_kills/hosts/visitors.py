@@ -9,7 +9,7 @@ import time
 from collections import Counter
 from collections.abc import Mapping, Sequence
 
-from arboleda.recipes.storage_cell import StorageCell
+from arboleda.model.plant_model import Cell
 
 from ..people import OVER
 from .ways import Way
@@ -25,7 +25,7 @@ class Visitors:
     way. `refused`: how often, by way and sentence.
     """
 
-    def __init__(self, cells: Sequence[StorageCell], ways: Mapping[str, Way]) -> None:
+    def __init__(self, cells: Sequence[Cell], ways: Mapping[str, Way]) -> None:
         self._cells = cells
         self.bring = True
         self.accepted: dict[str, str] = {}
@@ -50,7 +50,7 @@ class Visitors:
         while self.bring:
             count += 1
             cell = dice.choice(self._cells)
-            text = f"{cell.name} {dice.choice(cell.paths).code} {count % len(cell.stations)}"
+            text = f"{cell.name} {dice.choice([*cell.paths])} {count % len(cell.stations)}"
             self._bring(name, way, f"{prefix}-{count}", text)
             time.sleep(PACE_S)
 

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from arboleda.model.errors import StartError
-from arboleda.model.plant_model import Link, PlantModel
+from arboleda.model.plant_model import Link, PlantModel, Robot
 from arboleda.testing import shipped
 from arboleda_bringup.arguments import ARGUMENTS
 from arboleda_bringup.choice import read
@@ -90,7 +90,11 @@ def test_every_robot_stands_where_the_plant_file_says() -> None:
 
 def test_joints_are_published_only_for_robots_that_are_only_drawn() -> None:
     cell = shipped().cell("sis_a")
-    plant = replace(shipped(), cells=(replace(cell, arm=replace(cell.arm, link=Link.NONE)),))
+
+    def drawn(robot: Robot) -> Robot:
+        return replace(robot, link=Link.NONE) if robot is cell.roles["arm"] else robot
+
+    plant = replace(shipped(), cells=(cell.with_robots(drawn),))
     spoken = [row.namespace for row in rows(plant) if row.package == "joint_state_publisher"]
     assert spoken == ["r1"]
     assert not any(row.package == "joint_state_publisher" for row in rows())

@@ -11,6 +11,7 @@ import pytest
 from arboleda.drivers import DriverError
 from arboleda.drivers.joint_trajectory.settings import Settings as ArmSettings
 from arboleda.drivers.nav2.settings import ToPose
+from arboleda.recipes.storage_layout import StorageLayout
 from arboleda.testing.plants import shipped
 from arboleda_ros.joint_trajectory import FollowJointTrajectory
 from arboleda_ros.nav2 import NavigateToPose
@@ -21,8 +22,8 @@ CELL = shipped("sis_c").cells[0]
 @pytest.mark.parametrize(
     ("driver", "device", "package"),
     [
-        (FollowJointTrajectory(ArmSettings()), CELL.arm, "control_msgs"),
-        (NavigateToPose(ToPose()), CELL.mobile, "nav2_msgs"),
+        (FollowJointTrajectory(ArmSettings()), StorageLayout(CELL).arm, "control_msgs"),
+        (NavigateToPose(ToPose()), StorageLayout(CELL).mobile, "nav2_msgs"),
     ],
 )
 def test_a_missing_message_package_is_named_in_one_sentence(

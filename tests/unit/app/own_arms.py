@@ -7,6 +7,7 @@ from pathlib import Path
 from arboleda.kinds.arm import Arm
 from arboleda.model.plant_model import PlantModel
 from arboleda.plant_file import loader
+from arboleda.recipes.storage_layout import StorageLayout
 
 ROOT = Path(__file__).parents[3]
 TENDER = ROOT / "examples/machine_tending/models/tender.urdf"
@@ -89,4 +90,4 @@ def tender(folder: Path, model: str | None = None, more: str = "") -> PlantModel
 
 
 def arm(plant: PlantModel) -> Arm:
-    return plant.cells[0].arm
+    return StorageLayout(plant.cells[0]).arm

@@ -11,6 +11,7 @@ import pytest
 from arboleda.model.errors import ConfigError
 from arboleda.model.plant_model import Evidence, Link, MqttVersion, PlantModel, Timing
 from arboleda.plant_file import loader
+from arboleda.recipes.storage_layout import StorageLayout
 
 EXAMPLES = Path(__file__).parents[3] / "examples" / "plants"
 PATHS = {
@@ -38,7 +39,7 @@ def shipped() -> PlantModel:
 
 def wire_values(plant: PlantModel, cell: str, q: tuple[float, ...]) -> list[float]:
     """Degrees and millimetres, as the design's table gives poses."""
-    joints = plant.cell(cell).arm.joints
+    joints = StorageLayout(plant.cell(cell)).arm.joints
     return [v * 1000 if j.unit == "m" else math.degrees(v) for j, v in zip(joints, q, strict=True)]
 
 
@@ -46,22 +47,32 @@ def wire_values(plant: PlantModel, cell: str, q: tuple[float, ...]) -> list[floa
 def test_a_shipped_cell_is_the_one_of_the_design(shipped: PlantModel, name: str) -> None:
     arm, mqtt, twin, model, mobile, home, pickup = CELLS[name]
     cell = shipped.cell(name)
-    assert (cell.arm.name, cell.arm.mqtt, cell.arm.twin, cell.arm.model) == (arm, mqtt, twin, model)
-    assert (cell.mobile.name, cell.mobile.mqtt) == (mobile, mobile)
-    assert wire_values(shipped, name, cell.home.q) == list(home)
-    assert cell.pickup_of(cell.path("0B")) is cell.pickup
-    assert wire_values(shipped, name, cell.pickup.q)[: len(pickup)] == pytest.approx(list(pickup))
-    assert {path.code: path.nodes for path in cell.paths} == PATHS
+    layout = StorageLayout(cell)
+    assert (
+        layout.arm.name,
+        layout.arm.mqtt,
+        layout.arm.twin,
+        layout.arm.model,
+    ) == (arm, mqtt, twin, model)
+    assert (layout.mobile.name, layout.mobile.mqtt) == (mobile, mobile)
+    assert wire_values(shipped, name, layout.home.q) == list(home)
+    assert layout.pickup_of(layout.path("0B")) is layout.pickup
+    assert wire_values(shipped, name, layout.pickup.q)[: len(pickup)] == pytest.approx(list(pickup))
+    assert {path.code: path.nodes for path in layout.paths} == PATHS
 
 
 @pytest.mark.parametrize("name", CELLS)
 def test_a_station_takes_q1_from_its_column_and_q2_from_its_row(shipped: PlantModel, name: str) -> None:
     cell = shipped.cell(name)
+    layout = StorageLayout(cell)
     assert [pose.name for pose in cell.stations] == [f"station {number}" for number in range(9)]
     for number, pose in enumerate(cell.stations):
         q1, q2, *_ = wire_values(shipped, name, pose.q)
         assert (q1, q2) == pytest.approx((10 * (number % 3), 10 * (number // 3)))
-    assert (cell.palletizing.pick, cell.palletizing.place) == (cell.pickup, cell.stations[8])
+    assert (layout.palletizing.pick, layout.palletizing.place) == (
+        layout.pickup,
+        cell.stations[8],
+    )
 
 
 def test_shipped_robots_prove_motion_by_ids_over_mqtt(shipped: PlantModel) -> None:
@@ -75,9 +86,10 @@ def test_shipped_robots_prove_motion_by_ids_over_mqtt(shipped: PlantModel) -> No
 def test_shipped_times_and_limits_of_the_queue_are_the_defaults(shipped: PlantModel) -> None:
     assert (shipped.name, shipped.timing, shipped.mqtt_version) == ("arboleda", Timing(), MqttVersion.V3_1_1)
     for cell in shipped.cells:
-        assert (cell.arm.timeout_s, cell.mobile.timeout_s) == (10, 20)
+        layout = StorageLayout(cell)
+        assert (layout.arm.timeout_s, layout.mobile.timeout_s) == (10, 20)
         assert (cell.queue_limit, cell.drive_to_start) == (100, True)
-        assert cell.mobile.grid.size == 9
+        assert layout.mobile.grid.size == 9
 
 
 def test_the_shipped_plant_loads_in_far_less_than_100_ms(shipped: PlantModel) -> None:
@@ -92,7 +104,7 @@ def test_the_shipped_plant_loads_in_far_less_than_100_ms(shipped: PlantModel) ->
 def test_the_example_by_hand_listens_to_typed_motion_states() -> None:
     plant = loader.load(EXAMPLES / "by_hand.yaml")
     assert [(r.link, r.evidence) for r in plant.robots.values()] == [(Link.ROS, Evidence.STATE)] * 2
-    assert plant.cell("sis_a").palletizing.place.name == "station 8"
+    assert StorageLayout(plant.cell("sis_a")).palletizing.place.name == "station 8"
 
 
 def test_a_robot_may_be_only_drawn(tmp_path: Path) -> None:
@@ -108,7 +120,7 @@ def test_the_example_joints_has_numbered_stations_with_an_approach() -> None:
     assert [pose.name for pose in cell.stations] == ["station 0", "station 1", "station 2"]
     assert cell.stations[1].q[2] == 0.04
     assert cell.stations[1].above == pytest.approx((*cell.stations[1].q[:2], 0.02))
-    assert cell.arm.joints[0].lower == math.radians(-20)
+    assert StorageLayout(cell).arm.joints[0].lower == math.radians(-20)
 
 
 def test_a_board_without_stop_is_a_warning(tmp_path: Path, shipped: PlantModel) -> None:

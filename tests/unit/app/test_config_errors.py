@@ -9,6 +9,7 @@ import pytest
 from arboleda.model.errors import ConfigError
 from arboleda.model.plant_model import PlantModel
 from arboleda.plant_file import loader
+from arboleda.recipes.storage_layout import StorageLayout
 
 PLANT = """\
 name: small
@@ -165,10 +166,10 @@ def problems(tmp_path: Path, text: str) -> list[str]:
 
 def test_the_plant_of_these_tests_is_valid(tmp_path: Path) -> None:
     plant = load(tmp_path, PLANT)
-    arm = plant.cell("sis_a").arm
+    arm = StorageLayout(plant.cell("sis_a")).arm
     assert (arm.joints[2].speed, arm.timeout_s, arm.tolerance and arm.tolerance[2]) == (0.03, 12, 0.001)
     assert (plant.cell("sis_a").queue_limit, plant.cell("sis_a").drive_to_start) == (5, False)
-    assert plant.cell("sis_c").arm.twin == plant.cell("sis_c").arm.mqtt == "ra3"
+    assert StorageLayout(plant.cell("sis_c")).arm.twin == StorageLayout(plant.cell("sis_c")).arm.mqtt == "ra3"
 
 
 @pytest.mark.parametrize("mistake", MISTAKES.values(), ids=MISTAKES)
@@ -231,7 +232,11 @@ def test_a_rack_may_give_the_sliding_joint_and_an_approach(tmp_path: Path) -> No
 
 def test_without_palletizing_the_place_is_the_last_station(tmp_path: Path) -> None:
     cell = load(tmp_path, f"{ONE_CELL}stations: {{0: {{deg: [0, 10], mm: 0}}}}\n").cell("sis_a")
-    assert (cell.palletizing.pick, cell.palletizing.place) == (cell.pickup, cell.stations[0])
+    layout = StorageLayout(cell)
+    assert (layout.palletizing.pick, layout.palletizing.place) == (
+        layout.pickup,
+        cell.stations[0],
+    )
 
 
 ROUND_TRIP = ONE_CELL.replace("[0, 3, 4, 7]", "[0, 3, 0]")

@@ -7,8 +7,9 @@ from pathlib import Path
 import pytest
 
 from arboleda.model.errors import ConfigError
+from arboleda.model.plant_model import Cell
 from arboleda.plant_file import loader
-from arboleda.recipes.storage_cell import StorageCell
+from arboleda.recipes.storage_layout import StorageLayout
 
 TEXT = """\
 name: p
@@ -25,27 +26,36 @@ TWO = "    pickups:\n      A: {deg: [40, 5], mm: 0}\n      c: {deg: [50, 5], mm:
 B = "      B: {deg: [1, 1], mm: 0}\n"
 
 
-def cell(tmp_path: Path, text: str) -> StorageCell:
+def cell(tmp_path: Path, text: str) -> Cell:
     file = tmp_path / "p.yaml"
     file.write_text(TEXT + text, "utf-8")
     return loader.load(file).cells[0]
 
 
-def taken_at(of: StorageCell) -> dict[str, str]:
-    return {path.code: of.pickup_of(path).name for path in of.paths}
+def taken_at(of: Cell) -> dict[str, str]:
+    layout = StorageLayout(of)
+    return {path.code: layout.pickup_of(path).name for path in layout.paths}
 
 
 def test_one_pick_up_serves_all_exits(tmp_path: Path) -> None:
     read = cell(tmp_path, ONE)
+    layout = StorageLayout(read)
     assert taken_at(read) == dict.fromkeys(("0A", "1B", "2C"), "pick-up")
-    assert read.every_pickup == (read.pickup,)
+    assert layout.pickups == (layout.pickup,)
 
 
 def test_an_exit_with_a_pick_up_of_its_own_uses_that(tmp_path: Path) -> None:
     read = cell(tmp_path, ONE + TWO)
+    layout = StorageLayout(read)
     assert taken_at(read) == {"0A": "pick-up A", "1B": "pick-up", "2C": "pick-up C"}
-    assert [pose.name for pose in read.poses] == ["home", "pick-up", "pick-up A", "pick-up C", "station 0"]
-    assert dict(read.pickups)["C"].above is not None
+    assert [pose.name for pose in layout.space.poses] == [
+        "home",
+        "pick-up",
+        "pick-up A",
+        "pick-up C",
+        "station 0",
+    ]
+    assert layout.pickup_of(layout.path("2C")).above is not None
     assert [read.pickup_over(node).name for node in (6, 7, 8, 3, None)] == [
         "pick-up A",
         "pick-up",
@@ -58,16 +68,16 @@ def test_an_exit_with_a_pick_up_of_its_own_uses_that(tmp_path: Path) -> None:
 def test_where_every_exit_is_named_no_other_pick_up_is_needed(tmp_path: Path) -> None:
     read = cell(tmp_path, TWO + B)
     assert taken_at(read) == {"0A": "pick-up A", "1B": "pick-up B", "2C": "pick-up C"}
-    assert read.palletizing.pick.name == "pick-up A"
-    assert [pose.name for pose in read.every_pickup] == ["pick-up A", "pick-up C", "pick-up B"]
+    assert StorageLayout(read).palletizing.pick.name == "pick-up A"
+    assert [pose.name for pose in StorageLayout(read).pickups] == ["pick-up A", "pick-up C", "pick-up B"]
 
 
 def test_palletizing_and_zones_name_the_pick_up_of_an_exit(tmp_path: Path) -> None:
     more = "palletizing: {pick: Pickup c, place: station 0}\nzones: {z: {poses: [a pickup A]}}\n"
     read = cell(tmp_path, ONE + TWO + more)
-    assert read.palletizing.pick.name == "pick-up C"
-    assert {pose.name for pose in read.poses if pose.zones} == {"pick-up A"}
-    assert read.zones == {"z"}
+    assert StorageLayout(read).palletizing.pick.name == "pick-up C"
+    assert {pose.name for pose in StorageLayout(read).space.poses if pose.zones} == {"pick-up A"}
+    assert StorageLayout(read).space.zones == {"z"}
 
 
 MISTAKES = {

@@ -8,9 +8,9 @@ from pathlib import Path
 import pytest
 
 from arboleda.model.errors import ConfigError
-from arboleda.model.plant_model import Crossing, PlantModel, Pose, Retry, Timing
+from arboleda.model.plant_model import Cell, Crossing, PlantModel, Pose, Retry, Timing
 from arboleda.plant_file import loader
-from arboleda.recipes.storage_cell import StorageCell
+from arboleda.recipes.storage_layout import StorageLayout
 
 DOCS = Path(__file__).parents[3] / "docs" / "how-to" / "plant-file.md"
 PLANT = files("arboleda").joinpath("plants", "plant.yaml").read_text("utf-8")
@@ -29,7 +29,7 @@ MISTAKES = {  # id: (text in ZONES, put in its place, the sentence starts with, 
     "unknown cell": ("sis_a pickup", "sis_aa pickup", "3:13: zones.centre.poses[0]", 'did you mean "sis_a"?'),
     "no cell": ("sis_a pickup", "''", "3:13: ", 'must be a cell and one of its poses, as "sis_a pickup"'),
     "unknown pose": ("sis_a pickup", "sis_a pick-up", "3:13: ", 'did you mean "pickup"?'),
-    "no pose": ("sis_a pickup", "sis_a", "3:13: ", '"pickup", "pickup a", "pickup c" and "station 0" to'),
+    "no pose": ("sis_a pickup", "sis_a", "3:13: ", "targets of sis_a are home, pickup"),
     "unknown station": ("sis_b station 4]", "sis_b station 9]", "3:27: ", 'is "sis_b station 9"'),
     "pose in a move": ("[sis_a home", "[sis_a hom", "4:14: zones.centre.moves[0][0]", 'mean "home"?'),
     "pose twice": ("sis_b station 4]\n    moves: ", "SIS_A pickup]\n    moves: ", "3:27: ", "is there twice"),
@@ -84,18 +84,37 @@ def problems(tmp_path: Path, text: str) -> list[str]:
     return [problem.removeprefix(f"{tmp_path / 'plant.yaml'}:") for problem in refusal.value.problems]
 
 
-def poses(cell: StorageCell) -> list[Pose]:
-    return [cell.home, cell.pickup, *cell.stations, cell.palletizing.pick, cell.palletizing.place]
+def poses(cell: Cell) -> list[Pose]:
+    layout = StorageLayout(cell)
+    return [
+        layout.home,
+        layout.pickup,
+        *cell.stations,
+        layout.palletizing.pick,
+        layout.palletizing.place,
+    ]
 
 
 def test_the_shipped_plant_shares_nothing_and_has_the_defaults() -> None:
     plant = loader.load()
     assert (plant.zones, plant.timing.piece_wait_s, plant.timing.piece_debounce_s) == ((), 2.0, 0.1)
     for cell in plant.cells:
+        layout = StorageLayout(cell)
         assert not any(pose.zones for pose in poses(cell))
-        assert (cell.crossings, cell.zone_wait_s, cell.retry, cell.piece_check) == ((), 30.0, Retry(), "auto")
-        assert (cell.arm.piece_on_change, cell.arm.queue_triggers) == (False, True)
-        assert (cell.arm.home_at_start, cell.mobile.home_at_start) == (False, False)
+        assert (layout.space.crossings, cell.zone_wait_s, cell.retry, cell.piece_check) == (
+            (),
+            30.0,
+            Retry(),
+            "auto",
+        )
+        assert (layout.arm.piece_on_change, layout.arm.queue_triggers) == (
+            False,
+            True,
+        )
+        assert (layout.arm.home_at_start, layout.mobile.home_at_start) == (
+            False,
+            False,
+        )
 
 
 def test_poses_lie_in_their_zones(tmp_path: Path) -> None:
@@ -109,15 +128,20 @@ def test_poses_lie_in_their_zones(tmp_path: Path) -> None:
 
 def test_palletizing_knows_the_zones_of_its_poses(tmp_path: Path) -> None:
     cell = load(tmp_path, ZONES + PLANT).cell("sis_a")
-    assert cell.palletizing.pick == cell.pickup
+    layout = StorageLayout(cell)
+    assert layout.palletizing.pick == layout.pickup
 
 
 def test_a_crossing_names_every_zone_between_its_ends(tmp_path: Path) -> None:
     plant = load(tmp_path, ZONES + PLANT)
     both, rack = frozenset({"centre", "rack"}), frozenset({"rack"})
-    assert plant.cell("sis_a").crossings == (Crossing(a="home", b="station 2", zones=both),)
-    assert plant.cell("sis_b").crossings == (Crossing(a="home", b="pick-up", zones=rack),)
-    assert plant.cell("sis_c").crossings == ()
+    assert StorageLayout(plant.cell("sis_a")).space.crossings == (
+        Crossing(a="home", b="station 2", zones=both),
+    )
+    assert StorageLayout(plant.cell("sis_b")).space.crossings == (
+        Crossing(a="home", b="pick-up", zones=rack),
+    )
+    assert StorageLayout(plant.cell("sis_c")).space.crossings == ()
 
 
 def test_the_zones_of_the_page_are_some(tmp_path: Path) -> None:
@@ -156,8 +180,13 @@ def test_what_a_cell_and_its_robots_do_in_trouble_can_be_chosen(tmp_path: Path) 
     text = PLANT.replace("    pickup:", "".join(f"    {key}\n" for key in of_cell).rstrip(), 1)
     text = text.replace("      twin:", "".join(f"      {key}\n" for key in of_arm).rstrip(), 1)
     cell = load(tmp_path, text).cell("sis_a")
+    layout = StorageLayout(cell)
     assert (cell.retry, cell.piece_check, cell.zone_wait_s) == (Retry(times=2, backoff_s=0.5), True, 5)
-    assert (cell.arm.piece_on_change, cell.arm.queue_triggers, cell.arm.home_at_start) == (True, False, True)
+    assert (
+        layout.arm.piece_on_change,
+        layout.arm.queue_triggers,
+        layout.arm.home_at_start,
+    ) == (True, False, True)
 
 
 @pytest.mark.parametrize(("word", "check"), [("auto", "auto"), ("true", True), ("false", False)])
@@ -205,9 +234,12 @@ def test_a_zone_that_the_tolerance_blurs_is_refused(tmp_path: Path, zones: str, 
 )
 def test_poses_that_look_the_same_and_lie_in_the_same_zones_are_taken(tmp_path: Path, zones: str) -> None:
     cell = load(tmp_path, TOLERANT.format(tolerance=WIDE) + f"zones:\n  z: {zones}\n").cell("a")
+    layout = StorageLayout(cell)
     named = {"station 0", "station 1"}
-    assert {pose.name for pose in cell.poses if pose.zones} in (set(), named)
-    assert {each.a for each in cell.crossings} | {each.b for each in cell.crossings} <= named | {"pick-up"}
+    assert {pose.name for pose in layout.space.poses if pose.zones} in (set(), named)
+    assert {each.a for each in layout.space.crossings} | {
+        each.b for each in layout.space.crossings
+    } <= named | {"pick-up"}
 
 
 def test_a_pose_in_a_zone_beyond_twice_the_tolerance_is_taken(tmp_path: Path) -> None:

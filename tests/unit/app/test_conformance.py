@@ -13,6 +13,7 @@ from arboleda.board_kit.conformance.judge import CHECKS, Judge
 from arboleda.kinds.arm import Arm, Joint
 from arboleda.model.commands import StopMode
 from arboleda.model.plant_model import Evidence
+from arboleda.recipes.storage_layout import StorageLayout
 from arboleda.sim.arm import ArmBody
 from arboleda.sim.board import Board
 from arboleda.testing import shipped
@@ -26,7 +27,7 @@ PLANT = shipped("sis_a", "sis_c")
 
 
 def trial(kind: Callable[..., Board] = Board, cell: str = "sis_a", **declared: Any) -> Judge:
-    arm = replace(PLANT.cell(cell).arm, **declared)
+    arm = replace(StorageLayout(PLANT.cell(cell)).arm, **declared)
     board = kind(arm, ArmBody(arm, start=arm.reference, pickups=()), boot_id=9, now_us=1_000_000_000)
     return Trial(arm, board).run()
 
@@ -254,7 +255,7 @@ def test_a_board_that_says_only_its_code_reaches_state() -> None:
 
 
 def test_silence_is_one_finding_and_no_level() -> None:
-    arm = PLANT.cell("sis_a").arm
+    arm = StorageLayout(PLANT.cell("sis_a")).arm
     judge, now = Judge(arm, epoch=50, now=0.0), 0.0
     while not judge.over:
         judge.step(now, [])

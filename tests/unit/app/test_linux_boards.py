@@ -10,6 +10,7 @@ import pytest
 from arboleda.adapters.broker_login import Address, Credentials
 from arboleda.model.errors import StartError
 from arboleda.model.plant_model import Evidence, Link, PlantModel
+from arboleda.recipes.storage_layout import StorageLayout
 from arboleda.runtime.parts.linux_boards import LinuxBoards, on_linux
 from arboleda.testing import shipped
 
@@ -47,7 +48,7 @@ def test_a_board_is_told_where_its_arm_stands_and_parts_lie(
     program.touch(mode=0o755)
     monkeypatch.setenv("ARBOLEDA_BOARD", str(program))
     plant = shipped("sis_a", evidence=Evidence.JOINTS)
-    robot = replace(plant.cell("sis_a").arm, assume_homed=True)
+    robot = replace(StorageLayout(plant.cell("sis_a")).arm, assume_homed=True)
     boards = LinuxBoards(plant, [robot], Broker(), lambda *_: None, scout=False)
     assert list(boards._arguments(robot)) == [
         *("--robot", "ra_1", "--broker", "127.0.0.1:1884", "--until-eof", "--level", "joints"),

@@ -17,6 +17,7 @@ from arboleda.model.plant_model import MotionState, PlantModel
 from arboleda.plant_file import layout_check, loader
 from arboleda.plant_file.robot_models import arm_models
 from arboleda.plant_file.urdf import robot_urdf, root_link
+from arboleda.recipes.storage_layout import StorageLayout
 from arboleda.wire import payloads, units
 from arboleda.wire.values import Telemetry
 
@@ -71,8 +72,9 @@ def test_the_plant_file_says_it_better(tmp_path: Path) -> None:
 def test_sliding_joints_have_their_millimetres_in_a_list(tmp_path: Path) -> None:
     plant = gantry(tmp_path)
     cell = plant.cells[0]
-    assert cell.pickup.q == pytest.approx((0.1, 0.2, -0.25))
-    assert units.to_wire(cell.arm.joints[0], 0.25) == pytest.approx(250), "on MQTT a millimetre is a degree"
+    layout = StorageLayout(cell)
+    assert layout.pickup.q == pytest.approx((0.1, 0.2, -0.25))
+    assert units.to_wire(layout.arm.joints[0], 0.25) == pytest.approx(250), "on MQTT a millimetre is a degree"
 
 
 def test_an_approach_lifts_by_the_last_joint_that_slides_up_and_down(tmp_path: Path) -> None:

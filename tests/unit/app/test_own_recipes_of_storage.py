@@ -104,7 +104,7 @@ def test_a_part_is_carried_from_station_to_station() -> None:
     rig = Rig(own())
     assert do(rig, "sis_a sort station_1 station_5") is TaskState.DONE
     arm = own().cell("sis_a").roles["arm"]
-    assert arm.stands_at(arm_of(rig).true_place, own().cell("sis_a").spots(arm.name)["home"].q)
+    assert arm.stands_at(arm_of(rig).true_place, own().cell("sis_a").reach[arm.name].targets["home"].q)
     assert rig.plant.cells["sis_a"].context.stations.stored == {5}
 
 
@@ -124,7 +124,7 @@ def test_what_is_held_when_a_task_fails_goes_back_where_it_was_taken() -> None:
     rig = Rig(own())
     rig.submit("sis_a sort station_1 station_5")
     assert rig.wait(60.0, lambda: arm_of(rig).effector and rig.runs("sis_a", "move to station 5"))
-    spot = own().cell("sis_a").spots("ra1")["station_1"].q
+    spot = own().cell("sis_a").reach["ra1"].targets["station_1"].q
     assert rig.operate(Verb.CANCEL, "sis_a") is None
     let_go_at: list[object] = []
     while rig.changes[-1].state not in ENDED:
@@ -162,7 +162,7 @@ def test_its_ways_take_the_zones_that_they_lead_into() -> None:
     for cell in ("left", "right"):
         rig.submit(f"{cell} take station_0")
     arms = {cell: rig.model.cell(cell).roles["arm"] for cell in ("left", "right")}
-    spots = {cell: rig.model.cell(cell).spots(arm.name)["pickup"].q for cell, arm in arms.items()}
+    spots = {cell: rig.model.cell(cell).reach[arm.name].targets["pickup"].q for cell, arm in arms.items()}
     inside = set()
     while len([each for each in rig.changes if each.state in ENDED]) < 2:
         rig.wait(0.05)

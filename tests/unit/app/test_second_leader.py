@@ -26,7 +26,7 @@ def test_it_has_made_no_page_of_which_a_process_has_one(
         raise OtherLeader("another process leads")
 
     monkeypatch.setattr(building, "memory_of", led_by_another)
-    monkeypatch.setattr("arboleda.runtime.parts.page.mounting", pages.append)
+    monkeypatch.setattr("arboleda.runtime.parts.page.PagePlant.mount", lambda *page: pages.append(page))
     for _ in range(2):
         with pytest.raises(OtherLeader):
             build(shipped("sis_a"), {"orchestrator", "web"}, Options(state_dir=tmp_path))

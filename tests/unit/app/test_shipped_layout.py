@@ -15,15 +15,15 @@ from arboleda.dashboard.twin.parts import PART_HEIGHT_M, PART_RADIUS_M
 from arboleda.dashboard.twin.scene import deck
 from arboleda.kinds.arm import Arm, Joint
 from arboleda.kinds.mobile import Mobile
-from arboleda.model.plant_model import Pose
+from arboleda.model.plant_model import Cell, Pose
 from arboleda.plant_file.urdf import robot_urdf
-from arboleda.recipes.storage_cell import StorageCell
+from arboleda.recipes.storage_layout import StorageLayout
 from arboleda.testing import shipped
 
 from ...lengths import sample
 
 CELLS = {cell.name: cell for cell in shipped().cells}
-TASKS = [f"{cell} {path.code} {n}" for cell in CELLS for path in CELLS[cell].paths for n in range(9)]
+TASKS = [f"{cell} {path} {n}" for cell in CELLS for path in CELLS[cell].paths for n in range(9)]
 FEW_MM = 0.003
 STEP_S = 0.02
 BASE_M = 0.15  # the largest foot of an arm
@@ -63,9 +63,9 @@ def carried(mobile: Mobile, node: int) -> kinematics.Point:
     return kinematics.at(floor, (x, y, deck(drawn(mobile.name)) + PART_HEIGHT_M))
 
 
-def stored(cell: StorageCell) -> dict[str, kinematics.Point]:
+def stored(cell: Cell) -> dict[str, kinematics.Point]:
     """The middle of the part in each station."""
-    return {station.name: held(cell.arm, station)[1] for station in cell.stations}
+    return {station.name: held(StorageLayout(cell).arm, station)[1] for station in cell.stations}
 
 
 def on_the_way(arm: Arm, start: Pose, goal: Pose) -> Iterator[Q]:
@@ -105,20 +105,24 @@ def test_these_are_all_tasks() -> None:
 def test_a_task_takes_the_part_from_the_mobile_and_puts_it_into_its_station(task: str) -> None:
     order = text.parse(task, shipped())
     cell = CELLS[order.cell]
-    pickup, tool = cell.pickup_of(order.values["path"]), held(cell.arm, cell.pickup_of(order.values["path"]))
-    top = carried(cell.mobile, order.values["path"].nodes[-1])
+    layout = StorageLayout(cell)
+    pickup, tool = (
+        layout.pickup_of(order.values["path"]),
+        held(layout.arm, layout.pickup_of(order.values["path"])),
+    )
+    top = carried(layout.mobile, order.values["path"].nodes[-1])
     assert math.dist(tool[0], top) < FEW_MM
     assert tool[1][2] < tool[0][2], "the part hangs below the tool"
-    station = held(cell.arm, order.values["station"])
+    station = held(layout.arm, order.values["station"])
     assert station[0][2] - station[2][2] == pytest.approx(PART_HEIGHT_M, abs=1e-4), "it stands upright"
     assert station[2][2] > 0
     others = [middle for name, middle in stored(cell).items() if name != order.values["station"].name]
-    for q in on_the_way(cell.arm, pickup, order.values["station"]):
-        _, middle, low = part_at(cell.arm, q)
+    for q in on_the_way(layout.arm, pickup, order.values["station"]):
+        _, middle, low = part_at(layout.arm, q)
         assert low[2] > 0
         assert not any(strikes(middle, other) for other in others)
-    for q in on_the_way(cell.arm, order.values["station"], cell.home):
-        tip, _, _ = part_at(cell.arm, q)
+    for q in on_the_way(layout.arm, order.values["station"], layout.home):
+        tip, _, _ = part_at(layout.arm, q)
         assert all(tip[2] > z + PART_HEIGHT_M / 2 - FEW_MM or away(tip, (x, y)) for x, y, z in others)
 
 
@@ -135,17 +139,20 @@ def test_stations_are_at_least_a_part_apart(name: str) -> None:
 @pytest.mark.parametrize("name", CELLS)
 def test_nothing_of_an_arm_is_below_the_floor_at_a_pose(name: str) -> None:
     cell = CELLS[name]
-    for pose in cell.poses:
-        assert all(frame[2][3] >= 0 for frame in frames(cell.arm, cell.arm.quantised(pose.q)).values())
+    layout = StorageLayout(cell)
+    for pose in layout.space.poses:
+        assert all(frame[2][3] >= 0 for frame in frames(layout.arm, layout.arm.quantised(pose.q)).values())
 
 
 @pytest.mark.parametrize(("one", "other"), list(permutations(CELLS, 2)), ids=str)
 def test_no_arm_reaches_through_the_base_of_another(one: str, other: str) -> None:
-    cell, arm = CELLS[one], CELLS[one].arm
-    spot = (CELLS[other].arm.base.x, CELLS[other].arm.base.y)
+    layout = StorageLayout(CELLS[one])
+    arm = layout.arm
+    foot = StorageLayout(CELLS[other]).arm.base
+    spot = (foot.x, foot.y)
     if math.dist((arm.base.x, arm.base.y), spot) > REACH_M[arm.model] + BASE_M:
         return
-    goals = [cell.home, *cell.every_pickup, *cell.stations]
+    goals = [layout.home, *layout.pickups, *layout.stations]
     for start, goal in product(goals, repeat=2):
         for q in list(on_the_way(arm, start, goal))[::10]:
             assert all(math.dist((f[0][3], f[1][3]), spot) > 2 * BASE_M for f in frames(arm, q).values())
@@ -153,10 +160,13 @@ def test_no_arm_reaches_through_the_base_of_another(one: str, other: str) -> Non
 
 def test_no_pose_of_an_arm_is_over_the_grid_or_the_rack_of_another() -> None:
     for cell in CELLS.values():
+        layout = StorageLayout(cell)
         for other in CELLS.values():
             if other is cell:
                 continue
-            spots = [carried(other.mobile, node) for node in range(9)] + list(stored(other).values())
-            for pose in cell.poses:
-                middle = held(cell.arm, pose)[1]
+            spots = [carried(StorageLayout(other).mobile, node) for node in range(9)] + list(
+                stored(other).values()
+            )
+            for pose in layout.space.poses:
+                middle = held(layout.arm, pose)[1]
                 assert all(math.dist(middle[:2], spot[:2]) > 0.2 for spot in spots), (cell.name, pose.name)

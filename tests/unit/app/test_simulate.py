@@ -19,6 +19,7 @@ from arboleda.campaigns.request import Request, shared
 from arboleda.cli.main import main
 from arboleda.model.plant_model import Evidence
 from arboleda.plant_file import loader
+from arboleda.recipes.storage_layout import StorageLayout
 from arboleda.simulator import judged
 from arboleda.simulator.faults import KINDS
 from arboleda.simulator.invariants import Invariant
@@ -342,11 +343,11 @@ def test_without_a_plant_file_odd_seeds_are_the_shipped_plant_and_even_ones_the_
 
 def test_the_shared_plant_is_what_the_shipped_one_is_not() -> None:
     plant = shared()
-    cells, arms = plant.cells, [cell.arm for cell in plant.cells]
+    cells, arms = plant.cells, [StorageLayout(cell).arm for cell in plant.cells]
     assert loader.warnings(plant) == ()
-    assert plant.zones and any(cell.crossings for cell in cells)
-    assert any(len([pose for pose in cell.poses if pose.zones]) > 1 for cell in cells)
-    assert any(pose.above for cell in cells for pose in cell.poses)
+    assert plant.zones and any(StorageLayout(cell).space.crossings for cell in cells)
+    assert any(len([pose for pose in StorageLayout(cell).space.poses if pose.zones]) > 1 for cell in cells)
+    assert any(pose.above for cell in cells for pose in StorageLayout(cell).space.poses)
     assert any(cell.retry.times for cell in cells) and any(cell.piece_check for cell in cells)
     assert not all(cell.drive_to_start for cell in cells) and not all(arm.queue_triggers for arm in arms)
     assert Evidence.JOINTS in {robot.evidence for robot in plant.robots.values()}

@@ -85,7 +85,7 @@ def load(tmp_path: Path, text: str = TEXT) -> PlantModel:
 
 def test_targets_lie_row_by_row_between_the_corners(tmp_path: Path) -> None:
     (cell,) = load(tmp_path).cells
-    poses = cell.spots("loader")
+    poses = cell.reach["loader"].targets
     assert cell.groups["pallet"] == tuple(f"pallet_{number}" for number in range(1, 13))
     assert cell.groups["bins"] == ("bin", "pallet_12")
     first, second, last = (poses[f"pallet_{number}"] for number in (1, 6, 12))
@@ -100,7 +100,7 @@ def test_targets_lie_row_by_row_between_the_corners(tmp_path: Path) -> None:
 
 def test_a_single_row_of_a_mobile_robot_has_its_two_ends_on_nodes(tmp_path: Path) -> None:
     (cell,) = load(tmp_path).cells
-    assert [cell.spots("cart")[name].q for name in cell.groups["stops"]] == [3, 4, 5]
+    assert [cell.reach["cart"].targets[name].q for name in cell.groups["stops"]] == [3, 4, 5]
 
 
 def test_check_says_how_far_interpolated_joints_are_beside_an_even_grid(tmp_path: Path) -> None:

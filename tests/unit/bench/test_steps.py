@@ -9,8 +9,9 @@ from arboleda.kinds.arm import MoveJoints
 from arboleda.kinds.mobile import FollowPath
 from arboleda.model.commands import Command
 from arboleda.model.messages import TaskState
+from arboleda.model.plant_model import Cell
 from arboleda.plant_file.loader import load
-from arboleda.recipes.storage_cell import StorageCell
+from arboleda.recipes.storage_layout import StorageLayout
 from arboleda.testing.rig import Rig
 from arboleda_bench import plants, steps
 
@@ -51,12 +52,12 @@ def test_lengths_fall_evenly_into_every_part_of_their_interval():
 
 def test_a_plant_for_short_moves_has_cells_that_are_alike(tmp_path):
     cells = load(plants.write(tmp_path / "two.yaml", 2, near=True, link="ros", evidence="joints")).cells
-    assert [(cell.name, cell.arm.name, cell.mobile.name) for cell in cells] == [
+    assert [(cell.name, StorageLayout(cell).arm.name, StorageLayout(cell).mobile.name) for cell in cells] == [
         ("c1", "a1", "m1"),
         ("c2", "a2", "m2"),
     ]
     assert _poses(cells[0]) == _poses(cells[1])
 
 
-def _poses(cell: StorageCell) -> list[tuple[float, ...]]:
-    return [pose.q for pose in cell.poses]
+def _poses(cell: Cell) -> list[tuple[float, ...]]:
+    return [pose.q for pose in StorageLayout(cell).space.poses]

@@ -8,6 +8,7 @@ import pytest
 from arboleda.core.plant import Plant
 from arboleda.model.messages import Report, TaskChanged, TaskRequest
 from arboleda.model.plant_model import Evidence, MotionState, PlantModel
+from arboleda.recipes.storage_layout import StorageLayout
 from arboleda.testing import shipped
 
 
@@ -49,8 +50,12 @@ class Hand:
     def awake(self, **standing: tuple[float, ...]) -> None:
         """Have every robot report that it stands still, at home unless `standing` says where."""
         for cell in self.plant.model.cells:
-            self._awake(cell.arm.name, q=standing.get(cell.arm.name, cell.home.q))
-            self._awake(cell.mobile.name, node=0)
+            layout = StorageLayout(cell)
+            self._awake(
+                layout.arm.name,
+                q=standing.get(layout.arm.name, layout.home.q),
+            )
+            self._awake(layout.mobile.name, node=0)
 
     def _awake(self, robot: str, **where: Any) -> None:
         by_ids = self.plant.model.robots[robot].evidence is Evidence.IDS

@@ -31,6 +31,7 @@ from arboleda.model.messages import (
     Verb,
 )
 from arboleda.model.plant_model import Evidence, MotionState
+from arboleda.recipes.storage_layout import StorageLayout
 from arboleda.trees.leaves import Act
 
 MOVING, STILL = MotionState.MOVING, MotionState.STOPPED
@@ -82,9 +83,10 @@ def exploding(hand: Make, *leaves: Callable[[Any], Behaviour]) -> Any:
 def moving(context: Any) -> Behaviour:
     """A leaf that drives the arm."""
     cell = context.cell
+    layout = StorageLayout(cell)
 
     def make(id: str) -> MoveJoints:
-        return MoveJoints(id=id, robot=cell.arm.name, q=cell.pickup.q)
+        return MoveJoints(id=id, robot=layout.arm.name, q=layout.pickup.q)
 
     return Act("move", context, make, "moving")
 
@@ -98,7 +100,7 @@ def driving(hand: Make, level: Evidence = Evidence.IDS) -> Any:
     plant = hand(level)
     plant.awake()
     for cell in ("sis_a", "sis_b"):
-        plant.submit(f"{cell} {plant.plant.model.cell(cell).paths[0].code} 3")
+        plant.submit(f"{cell} {StorageLayout(plant.plant.model.cell(cell)).paths[0].code} 3")
     plant.wait(0.2)
     assert len(plant.commands(FollowPath)) == 2
     return plant
@@ -175,7 +177,7 @@ def test_a_cell_that_is_held_for_a_defect_can_be_got_going_again(
     for _ in range(2):
         plant.tell("rm_sis_a", state=STILL, node=0)
     assert operate(plant, verb, "sis_a") is None
-    home = plant.plant.model.cell("sis_a").home.q
+    home = StorageLayout(plant.plant.model.cell("sis_a")).home.q
     for _ in range(30):
         last = plant.commands(MoveJoints)[-1].id if plant.commands(MoveJoints) else None
         plant.tell("ra1", after=0.1, state=STILL, q=home, accepted=last, done=last)

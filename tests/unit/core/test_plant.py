@@ -27,6 +27,7 @@ from arboleda.model.messages import (
     Verb,
 )
 from arboleda.model.plant_model import Evidence, MotionState, Timing
+from arboleda.recipes.storage_layout import StorageLayout
 from arboleda.testing import shipped
 from arboleda.trees import leaves
 from arboleda.views import view
@@ -39,7 +40,7 @@ def driven_to_the_arm(
 ) -> tuple[Any, MoveJoints]:
     """A storage task whose mobile arrived and whose arm was just sent to its pick-up pose."""
     plant = hand(evidence)
-    pickup = plant.plant.model.cell("sis_a").pickup.q
+    pickup = StorageLayout(plant.plant.model.cell("sis_a")).pickup.q
     plant.awake(**({"ra1": pickup} if at_goal else {}))
     plant.submit("sis_a 0B 7")
     plant.wait(0.2)
@@ -84,7 +85,12 @@ def test_a_storage_task_sends_its_commands_in_order(hand: Any) -> None:
     assert plant.states() == ["queued", "running", "done"]
     assert [command.on for command in plant.commands(SetEffector)] == [True, False]
     cell = plant.plant.model.cell("sis_a")
-    assert (q, away.q, home.q) == (cell.pickup.q, cell.stations[7].q, cell.home.q)
+    layout = StorageLayout(cell)
+    assert (q, away.q, home.q) == (
+        layout.pickup.q,
+        cell.stations[7].q,
+        layout.home.q,
+    )
     assert len(plant.commands(SystemStart)) == 1 and not plant.commands(Stop)
 
 

@@ -11,6 +11,7 @@ from arboleda.campaigns.request import shared
 from arboleda.core.plant import SHORTEST_ABSENCE_S, Plant
 from arboleda.model.messages import Fact, MotionState, Notice, Remember, Report, Verb
 from arboleda.model.plant_model import Evidence, PlantModel
+from arboleda.recipes.storage_layout import StorageLayout
 from arboleda.testing import shipped
 from arboleda.testing.rig import Rig
 from arboleda.trees.leaves import Act
@@ -65,16 +66,21 @@ def test_who_was_not_put_right_since_its_boot_is_not_after_a_restart_either() ->
 @pytest.mark.parametrize("evidence", [Evidence.IDS, Evidence.JOINTS])
 def test_what_an_arm_said_just_after_a_start_does_not_free_the_zone_that_it_held(evidence: Evidence) -> None:
     model = shared()
-    cell = next(each for each in model.cells if each.zones and each.arm.evidence is evidence)
-    zone = min(cell.zones)
-    memory = {Fact.QUARANTINE: {zone: cell.arm.name}}
+    layouts = map(StorageLayout, model.cells)
+    layout = next(each for each in layouts if each.space.zones and each.arm.evidence is evidence)
+    zone = min(layout.space.zones)
+    memory = {Fact.QUARANTINE: {zone: layout.arm.name}}
     plant = Plant(model, epoch=2, now=0.0, memory=memory)
-    said = {"q": cell.home.q, "boot_id": 1, **({"homed": True} if cell.arm.says_homed else {})}
+    said = {
+        "q": layout.home.q,
+        "boot_id": 1,
+        **({"homed": True} if layout.arm.says_homed else {}),
+    }
     for number in range(1, 10):
-        hear(plant, number * SHORTEST_ABSENCE_S / 10, cell.arm.name, **said)
-        assert plant.zones.holder(zone) == cell.arm.name
+        hear(plant, number * SHORTEST_ABSENCE_S / 10, layout.arm.name, **said)
+        assert plant.zones.holder(zone) == layout.arm.name
     for number in range(10, 15):
-        hear(plant, number * SHORTEST_ABSENCE_S / 10, cell.arm.name, **said)
+        hear(plant, number * SHORTEST_ABSENCE_S / 10, layout.arm.name, **said)
     assert plant.zones.holder(zone) is None
 
 

@@ -12,6 +12,8 @@ from arboleda.model.plant_model import Link
 from arboleda.model.task import Order
 from arboleda.testing import shipped
 
+from ...cells import with_robot
+
 SHIPPED = shipped()
 
 
@@ -65,7 +67,7 @@ def test_a_wrong_text_is_refused_naming_word_and_choice(text: str, names: list[s
         assert name in str(refusal.value)
 
 
-DRAWN = replace(SHIPPED.cell("sis_a"), mobile=replace(SHIPPED.cell("sis_a").mobile, link=Link.NONE))
+DRAWN = with_robot(SHIPPED.cell("sis_a"), "mobile", link=Link.NONE)
 
 
 def test_a_task_that_needs_a_robot_which_is_only_drawn_is_refused() -> None:

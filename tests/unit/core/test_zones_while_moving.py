@@ -10,6 +10,7 @@ from arboleda.kinds.arm import MoveJoints
 from arboleda.model.messages import OperatorRequest, Verb
 from arboleda.model.plant_model import MotionState
 from arboleda.plant_file.loader import load
+from arboleda.recipes.storage_layout import StorageLayout
 
 from .conftest import Hand
 
@@ -39,8 +40,9 @@ def test_an_arm_whose_move_failed_at_once_may_be_anywhere_until_it_could_have_an
         hand.wait(0.05)
     hand.tell("arm_right", after=0.0, state=MotionState.NO_LINK, epoch=1, plant=7)
     cell = hand.plant.model.cell("right")
+    layout = StorageLayout(cell)
     places = []
     for _ in range(3):
-        hand.tell("arm_right", after=0.15, state=MotionState.STOPPED, epoch=1, plant=7, q=cell.home.q)
+        hand.tell("arm_right", after=0.15, state=MotionState.STOPPED, epoch=1, plant=7, q=layout.home.q)
         places.append(hand.plant.dispatcher.place(cell.workspaces["arm_right"]))
-    assert places == [None, cell.home, cell.home]
+    assert places == [None, layout.home, layout.home]

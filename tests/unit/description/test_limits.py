@@ -14,6 +14,7 @@ from arboleda.kinds.mobile import Mobile
 from arboleda.model.plant_model import PlantModel
 from arboleda.plant_file.robot_models import arm_models, mobile_models
 from arboleda.plant_file.urdf import prefix, robot_urdf
+from arboleda.recipes.storage_layout import StorageLayout
 from arboleda.sim.devices import Devices
 from arboleda.testing import shipped
 from arboleda.wire import units
@@ -59,7 +60,7 @@ def test_a_drawing_by_itself_has_the_limits_of_its_model(model: str) -> None:
 
 
 def test_a_mobile_by_itself_stays_on_the_grid_that_a_plant_file_has_by_default() -> None:
-    far, speed = shipped().cells[2].mobile.grid.position(8), mobile_models()["mobile"].speed
+    far, speed = StorageLayout(shipped().cells[2]).mobile.grid.position(8), mobile_models()["mobile"].speed
     assert limits(render("mobile", prefix="")) == [
         ("x_joint", 0, far[0], speed),
         ("y_joint", 0, far[1], speed),

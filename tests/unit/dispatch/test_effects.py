@@ -14,6 +14,7 @@ from arboleda.kinds.arm import MoveJoints
 from arboleda.model.commands import Command, Home, Motion, Position, Stop, StopMode
 from arboleda.model.messages import Reason, Report
 from arboleda.model.plant_model import Evidence, MotionState
+from arboleda.recipes.storage_layout import StorageLayout
 from arboleda.testing import shipped
 
 MOVING, STOPPED = MotionState.MOVING, MotionState.STOPPED
@@ -43,7 +44,7 @@ class Sweep(Motion):
 
 def proven(command: Command, level: Evidence, *said: dict[str, Any]) -> list[tuple[Feed, Reason | None]]:
     """What these reports, half a second apart, prove about a command to an arm that stands at HERE."""
-    belief = Belief(shipped("sis_a", evidence=level).cell("sis_a").arm, 1.5, 1)
+    belief = Belief(StorageLayout(shipped("sis_a", evidence=level).cell("sis_a")).arm, 1.5, 1)
     belief.merge(Report(at=-0.1, robot="ra1", state=STOPPED, q=HERE))
     entry = Entry(command, cell="sis_a", doing="moving", sent_at=0.0, deadline=60.0)
     entry.origin = belief.position

@@ -14,11 +14,12 @@ from arboleda.kinds.arm import MoveJoints
 from arboleda.kinds.mobile import FollowPath
 from arboleda.model.messages import Reason, Report
 from arboleda.model.plant_model import Evidence, MotionState
+from arboleda.recipes.storage_layout import StorageLayout
 from arboleda.testing import shipped
 
 MOVING, STOPPED = MotionState.MOVING, MotionState.STOPPED
 CELL = shipped("sis_a", evidence=Evidence.JOINTS).cell("sis_a")
-HOME, GOAL, HALFWAY = (CELL.arm.quantised((q1, 0.0, 0.0)) for q1 in (0.0, 0.2, 0.1))
+HOME, GOAL, HALFWAY = (StorageLayout(CELL).arm.quantised((q1, 0.0, 0.0)) for q1 in (0.0, 0.2, 0.1))
 PERIOD_S = 0.1
 
 
@@ -26,7 +27,7 @@ class Judged:
     """One command that left at 0 s; its robot stood still at `origin` before, as it said."""
 
     def __init__(self, command: MoveJoints | FollowPath, origin: Any) -> None:
-        robot = CELL.arm if isinstance(command, MoveJoints) else CELL.mobile
+        robot = StorageLayout(CELL).arm if isinstance(command, MoveJoints) else StorageLayout(CELL).mobile
         self.belief = Belief(robot, 1.5, 1)
         self.key = "q" if isinstance(command, MoveJoints) else "node"
         self._hear(-0.01, state=STOPPED, **{self.key: origin})
@@ -234,7 +235,7 @@ def test_a_halt_is_not_proven_by_what_was_said_before_the_robot_heard_it() -> No
 def test_who_is_elsewhere_than_it_had_come_to_after_a_silence_has_strayed(
     online: bool, place: tuple[float, ...], is_astray: bool
 ) -> None:
-    belief = Belief(CELL.arm, 1.5, 1)
+    belief = Belief(StorageLayout(CELL).arm, 1.5, 1)
     report = Report(at=9.0, robot="ra1", q=place, state=STOPPED)
     before = Before.of(belief)._replace(online=online)
     belief.merge(report)

@@ -8,10 +8,11 @@ from arboleda.dispatch.underway import PATIENCE_S, UnderWay, Unnamed
 from arboleda.kinds.arm import MoveJoints
 from arboleda.model.messages import Report
 from arboleda.model.plant_model import Evidence
+from arboleda.recipes.storage_layout import StorageLayout
 from arboleda.testing import shipped
 
 MODEL = shared()
-ARM = next(cell.arm.name for cell in MODEL.cells if cell.zones)
+ARM = next(StorageLayout(cell).arm.name for cell in MODEL.cells if StorageLayout(cell).space.zones)
 MUTE = next(each.name for cell in MODEL.cells for each in cell.robots if each.evidence is Evidence.JOINTS)
 MOVES = [MoveJoints(id=f"7-{number}", robot=ARM, q=(0.0, 0.0, 0.0)) for number in (1, 2)]
 

@@ -8,6 +8,7 @@ from dataclasses import replace
 
 from arboleda.drivers import MoveJoints, Report
 from arboleda.model.plant_model import Evidence, Link
+from arboleda.recipes.storage_layout import StorageLayout
 from arboleda.testing.plants import shipped
 from arboleda.virtual.dobot.faults import FAULTS
 from arboleda.virtual.dobot.machine import VirtualDobot
@@ -15,7 +16,7 @@ from arboleda.virtual.faults import Faults
 from arboleda_driver_faults.dobot_loopback import Loopback as Pair
 
 START_S = 100.0
-ARM = replace(shipped("sis_c").cells[0].arm, link=Link.DRIVER, evidence=Evidence.IDS)
+ARM = replace(StorageLayout(shipped("sis_c").cells[0]).arm, link=Link.DRIVER, evidence=Evidence.IDS)
 GOAL = tuple(math.radians(each) for each in (10, 20, -30, 0, 5, 0))
 GO = MoveJoints(id="9-1", robot=ARM.name, q=GOAL)
 

@@ -27,6 +27,7 @@ from arboleda.kinds.declared import Device
 from arboleda.kinds.gripper import GripperSettings, gripper
 from arboleda.model.commands import Command
 from arboleda.model.plant_model import Evidence, Link
+from arboleda.recipes.storage_layout import StorageLayout
 from arboleda.testing.plants import shipped
 
 JAW = Device(
@@ -220,7 +221,7 @@ def test_a_width_within_the_tolerance_is_the_one_that_was_told(rig: Rig) -> None
 
 
 def test_settings_that_do_not_fit_are_said() -> None:
-    arm = replace(shipped("sis_c").cells[0].arm, evidence=Evidence.IDS)
+    arm = replace(StorageLayout(shipped("sis_c").cells[0]).arm, evidence=Evidence.IDS)
     assert [said for _, said in SETTINGS.problems(arm)] == [
         f"{arm.name} is of no declared kind; a gripper is, as kind: gripper"
     ]

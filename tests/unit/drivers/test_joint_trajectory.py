@@ -26,9 +26,10 @@ from arboleda.drivers.ros_action.events import (
 )
 from arboleda.drivers.ros_action.joints import JointStateEvent
 from arboleda.model.plant_model import Evidence, Link
+from arboleda.recipes.storage_layout import StorageLayout
 from arboleda.testing.plants import shipped
 
-ARM = replace(shipped("sis_c").cells[0].arm, link=Link.DRIVER, evidence=Evidence.IDS)
+ARM = replace(StorageLayout(shipped("sis_c").cells[0]).arm, link=Link.DRIVER, evidence=Evidence.IDS)
 NAMES = tuple(joint.name for joint in ARM.joints)
 ZERO = (0.0,) * 6
 GOAL = ARM.quantised(tuple(math.radians(each) for each in (10, 20, -30, 0, 5, 0)))

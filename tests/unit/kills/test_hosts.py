@@ -9,7 +9,6 @@ import time
 
 import pytest
 
-from arboleda.recipes.storage_cell import StorageCell
 from arboleda.testing import shipped
 from arboleda_kills.hosts.cable import Cable
 from arboleda_kills.hosts.run import two_leaders
@@ -45,7 +44,7 @@ def brought(monkeypatch: pytest.MonkeyPatch, *answers: Answer) -> Visitors:
         return left.pop(0)
 
     before = set(threading.enumerate())
-    visitors = Visitors([cell for cell in shipped().cells if isinstance(cell, StorageCell)], {"on foot": way})
+    visitors = Visitors(shipped().cells, {"on foot": way})
     started = set(threading.enumerate()) - before
     there.set()
     for thread in started:

@@ -18,6 +18,7 @@ from arboleda.kinds.arm import MoveJoints, SetEffector
 from arboleda.model.commands import Home
 from arboleda.model.messages import Verb
 from arboleda.model.plant_model import Evidence, PlantModel
+from arboleda.recipes.storage_layout import StorageLayout
 from arboleda.sim.arm import ArmBody
 from arboleda.sim.mobile import MobileBody
 from arboleda.simulator.invariants.grip import GRIP
@@ -42,6 +43,7 @@ from arboleda.wire.rivals import Rivals
 from arboleda.wire.topics import Channel, topic
 from arboleda.wire.transport import Publication
 
+from ...cells import with_poses
 from ...lengths import sample
 
 INVARIANTS = (*ZONES, *MOTION, *GRIP, *STOP)
@@ -99,8 +101,8 @@ def zoned() -> PlantModel:
     plant = shipped()
     cells = []
     for cell in plant.cells:
-        pickup = replace(cell.pickup, zones=frozenset({"centre"}))
-        cells.append(replace(cell, pickup=pickup, palletizing=replace(cell.palletizing, pick=pickup)))
+        pickup = replace(StorageLayout(cell).pickup, zones=frozenset({"centre"}))
+        cells.append(with_poses(cell, pickup=pickup))
     return replace(plant, zones=("centre",), cells=tuple(cells))
 
 
@@ -162,7 +164,7 @@ def everybody_gets_it(patch: Patch) -> Watch:
 
 
 def freed_at_a_stop(patch: Patch) -> Watch:
-    patch.setattr(Dispatcher, "place", lambda self, cell: cell.home)
+    patch.setattr(Dispatcher, "place", lambda self, space: space.home)
     watch = Watch(zoned())
     watch.carry()
     watch.verb(Verb.STOP)
@@ -285,13 +287,14 @@ def a_part_from_nowhere(patch: Patch) -> Watch:
 
 def twice(order: Any, context: Context) -> Any:
     """A storage recipe that stores two parts."""
-    cell, arm, station = context.cell, context.cell.arm.name, order.values["station"]
+    layout, station = StorageLayout(context.cell), order.values["station"]
+    arm, pickup = layout.arm.name, layout.pickup
 
     def once() -> list[Any]:
-        gripped = steps.grip(context, arm, cell.pickup, check=False)
-        return [(cell.pickup, gripped), (station, steps.let_go(context, arm, station, check=False))]
+        gripped = steps.grip(context, arm, pickup, check=False)
+        return [(pickup, gripped), (station, steps.let_go(context, arm, station, check=False))]
 
-    way = (cell.home, cell.pickup, station, cell.pickup, station)
+    way = (layout.home, pickup, station, pickup, station)
     return steps.task("storage", steps.visit(context, arm, way, [*once(), *once()]), context)
 
 

@@ -15,6 +15,7 @@ from arboleda.model.errors import ConfigError
 from arboleda.model.plant_model import Evidence, Link, PlantModel
 from arboleda.plant_file import shapes
 from arboleda.plant_file.robot_models import arm_models, mobile_models
+from arboleda.recipes.storage_layout import StorageLayout
 from arboleda.simulator.plants import NOT_DRAWN, draw, smaller
 
 SEEDS = range(120)
@@ -104,32 +105,53 @@ def _is_named(key: str) -> bool:
 
 
 def test_every_level_link_and_model_is_drawn_in_mixtures(plants: list[PlantModel]) -> None:
-    arms = {(cell.arm.evidence, cell.arm.link, cell.arm.model) for plant in plants for cell in plant.cells}
+    arms = {
+        (StorageLayout(cell).arm.evidence, StorageLayout(cell).arm.link, StorageLayout(cell).arm.model)
+        for plant in plants
+        for cell in plant.cells
+    }
     assert arms == {(level, link, model) for level in Evidence for link in LINKS for model in ARMS}
-    mixed = {(cell.arm.evidence, cell.mobile.evidence) for plant in plants for cell in plant.cells}
+    mixed = {
+        (StorageLayout(cell).arm.evidence, StorageLayout(cell).mobile.evidence)
+        for plant in plants
+        for cell in plant.cells
+    }
     assert mixed == {(one, other) for one in Evidence for other in Evidence}
 
 
 def test_odd_plants_are_drawn(plants: list[PlantModel]) -> None:
     cells = [cell for plant in plants for cell in plant.cells]
     assert {len(plant.cells) for plant in plants} == {1, 2, 3, 4}
-    assert any(cell.arm.reached(a.q, b.q) for cell in cells for a, b in combinations(cell.poses, 2))
-    assert any(len(path.nodes) == 1 for cell in cells for path in cell.paths)
-    assert any(path.nodes[0] == path.nodes[-1] and path.nodes[1:] for cell in cells for path in cell.paths)
+    assert any(
+        StorageLayout(cell).arm.reached(a.q, b.q)
+        for cell in cells
+        for a, b in combinations(StorageLayout(cell).space.poses, 2)
+    )
+    assert any(len(path.nodes) == 1 for cell in cells for path in StorageLayout(cell).paths)
+    assert any(
+        path.nodes[0] == path.nodes[-1] and path.nodes[1:]
+        for cell in cells
+        for path in StorageLayout(cell).paths
+    )
     assert any(cell.queue_limit == 1 for cell in cells)
     assert any(cell.retry.times and cell.retry.backoff_s == 0 for cell in cells)
-    assert any(cell.piece_check and cell.arm.piece_on_change for cell in cells)
+    assert any(cell.piece_check and StorageLayout(cell).arm.piece_on_change for cell in cells)
     assert not all(robot.has_stop for plant in plants for robot in plant.robots.values())
     assert any(plant.timing.dwell_s == 0 for plant in plants)
     assert any(plant.timing.stop_timeout_s < 0.1 and plant.timing.deadline_floor_s < 0.3 for plant in plants)
     assert any(cell.zone_wait_s < 0.1 for cell in cells)
     assert any(robot.timeout_s < 0.1 for cell in cells for robot in cell.robots)
     assert any(len(_sharing(plant, zone)) > 1 for plant in plants for zone in plant.zones)
-    assert any(pose.zones for cell in cells if cell.crossings for pose in cell.poses)
+    assert any(
+        pose.zones
+        for cell in cells
+        if StorageLayout(cell).space.crossings
+        for pose in StorageLayout(cell).space.poses
+    )
 
 
 def _sharing(plant: PlantModel, zone: str) -> list[str]:
-    return [cell.name for cell in plant.cells if zone in cell.zones]
+    return [cell.name for cell in plant.cells if zone in StorageLayout(cell).space.zones]
 
 
 def test_each_smaller_file_lacks_something(files: list[dict[str, Any]]) -> None:

@@ -20,6 +20,7 @@ from arboleda.model.commands import Command, Home, Stop, StopMode
 from arboleda.model.messages import Fact, Heartbeat, OperatorRequest, TaskState, Verb
 from arboleda.model.plant_model import Evidence, ForeignCommands, PlantModel, Retry
 from arboleda.model.sentence import Phrase, as_sentence
+from arboleda.recipes.storage_layout import StorageLayout
 from arboleda.sim.board import Board
 from arboleda.sim.freshness import Freshness
 from arboleda.sim.receipts import Receipts
@@ -38,6 +39,8 @@ from arboleda.wire import board as wire_board
 from arboleda.wire.bridge import PLANT_GONE_S
 from arboleda.wire.hop import FromPlant
 from arboleda.wire.transport import Publication
+
+from ...cells import with_poses
 
 INVARIANTS = (*COMMANDS, *TASKS, *WIRE, *LIVENESS, *BOOKS)
 TASK = "sis_a 0B 7"
@@ -754,9 +757,8 @@ def zoned() -> PlantModel:
     zone = frozenset({"table"})
     cells = []
     for each in model.cells:
-        pickup = replace(each.pickup, zones=zone)
-        fixed = replace(each.palletizing, pick=pickup)
-        cells.append(replace(each, pickup=pickup, palletizing=fixed, zone_wait_s=3.0))
+        pickup = replace(StorageLayout(each).pickup, zones=zone)
+        cells.append(replace(with_poses(each, pickup=pickup), zone_wait_s=3.0))
     return replace(model, cells=tuple(cells), zones=("table",))
 
 

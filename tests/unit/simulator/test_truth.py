@@ -10,6 +10,7 @@ from arboleda.dispatch.belief import APART_S
 from arboleda.model.commands import StopMode
 from arboleda.model.messages import Fact, Report, Verb
 from arboleda.model.plant_model import Crossing, Evidence, PlantModel
+from arboleda.recipes.storage_layout import StorageLayout
 from arboleda.simulator.truth import Truth
 from arboleda.simulator.truth.arm import ArmTruth
 from arboleda.simulator.world import PLANT, World
@@ -18,6 +19,8 @@ from arboleda.wire.payloads import HomeGoal, JointsGoal, StopGoal, encode
 from arboleda.wire.topics import Channel, topic
 from arboleda.wire.transport import Publication
 from arboleda.wire.units import to_wire
+
+from ...cells import with_poses, with_robot
 
 ARM, MOBILE = "ra_1", "rm_sis_a"
 
@@ -29,11 +32,10 @@ def zoned() -> PlantModel:
 
 
 def _zoned(cell):
-    pickup = replace(cell.pickup, zones=frozenset({"centre"}))
-    palletizing = replace(cell.palletizing, pick=pickup)
+    pickup = replace(StorageLayout(cell).pickup, zones=frozenset({"centre"}))
     crossings = (Crossing(a="home", b="station 7", zones=frozenset({"aisle"})),)
     crossings = crossings if cell.name == "sis_a" else ()
-    return replace(cell, pickup=pickup, palletizing=palletizing, crossings=crossings)
+    return with_poses(cell, *crossings, pickup=pickup)
 
 
 class Stage:
@@ -109,12 +111,12 @@ def test_an_arm_that_lost_a_few_steps_counts_as_where_it_would_be(stage):
     stage.ask("sis_a palletizing")
     stage.until(lambda: stage.arm.here == {"pick-up"})
     assert stage.arm.true[1] == stage.arm.intended[1] - 2
-    assert stage.arm.stands_at(stage.arm.cell.pickup.q)
+    assert stage.arm.stands_at(StorageLayout(stage.arm.cell).pickup.q)
 
 
 def drive_beside(stage: Stage, steps: int) -> None:
     """Have ra1 stand so many steps of its first joint beside its pick-up, by its own count."""
-    joints, (first, *others) = stage.arm.arm.joints, stage.arm.cell.pickup.q
+    joints, (first, *others) = stage.arm.arm.joints, StorageLayout(stage.arm.cell).pickup.q
     goal = (first + steps * joints[0].step, *others)
     degrees = tuple(to_wire(joint, value) for joint, value in zip(joints, goal, strict=True))
     stage.body.start(round(stage.world.now * 1e6), JointsGoal(q=degrees, seq=None, epoch=None))
@@ -127,8 +129,9 @@ def drive_beside(stage: Stage, steps: int) -> None:
 def test_an_arm_stands_at_a_pose_within_its_tolerance(beside, here):
     model = shipped("sis_a")
     (cell,) = model.cells
-    tolerance = (3 * cell.arm.joints[0].step, *cell.arm.tolerances[1:])
-    stage = Stage(replace(model, cells=(replace(cell, arm=replace(cell.arm, tolerance=tolerance)),)))
+    layout = StorageLayout(cell)
+    tolerance = (3 * layout.arm.joints[0].step, *layout.arm.tolerances[1:])
+    stage = Stage(replace(model, cells=(with_robot(cell, "arm", tolerance=tolerance),)))
     drive_beside(stage, beside)
     assert stage.arm.here == here
 
@@ -175,11 +178,12 @@ def test_a_halted_arm_is_in_all_that_it_may_have_swept_until_it_stands_at_a_pose
 def test_an_arm_that_is_halted_near_a_pose_on_its_way_is_where_the_way_is():
     plant = shipped("sis_a")
     cell = plant.cells[0]
-    arm = replace(cell.arm, tolerance=(0.35, *cell.arm.tolerances[1:]))
-    home, pickup = replace(cell.home, q=(0.0, 0.0, 0.0)), replace(cell.pickup, q=(1.0, 0.0, 0.0))
+    layout = StorageLayout(cell)
+    arm = layout.arm
+    home, pickup = replace(layout.home, q=(0.0, 0.0, 0.0)), replace(layout.pickup, q=(1.0, 0.0, 0.0))
     between = replace(cell.stations[4], q=(0.5, 0.0, 0.0), zones=frozenset({"rack"}))
-    stations = (*cell.stations[:4], between, *cell.stations[5:])
-    cell = replace(cell, arm=arm, home=home, pickup=pickup, stations=stations)
+    cell = with_robot(cell, "arm", tolerance=(0.35, *arm.tolerances[1:]))
+    cell = with_poses(cell, home=home, pickup=pickup, station_4=between)
     stage = Stage(replace(plant, zones=("rack",), cells=(cell,)))
     stage.ask("sis_a 0B 7")
     stage.until(lambda: stage.body.true_position[0] * arm.joints[0].step > 0.2)
@@ -297,7 +301,7 @@ def test_who_came_home_before_its_board_hears_a_stop_is_homed(
         world.advance(0.1)
         world.stall(board, stalled_s)
     world.advance(60.0)
-    robot = next(each for each in stage.truth.cells["sis_a"].cell.robots if each.mqtt == board)
+    robot = next(each for each in stage.world.model.cell("sis_a").robots if each.mqtt == board)
     assert stage.truth.robot(robot.name).homed is at_home is world.boards[board].homed
 
 

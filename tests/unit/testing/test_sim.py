@@ -11,6 +11,7 @@ from py_trees.composites import Sequence
 from arboleda.model.task import Order
 from arboleda.recipes import Kit, recipe, work
 from arboleda.recipes import storage as recipes
+from arboleda.recipes.storage_layout import StorageLayout
 from arboleda.simulator.invariants.invariant import Look, Trigger, invariant
 from arboleda.testing import Misuse, Sim, shipped
 from arboleda.trees.context import Context
@@ -105,7 +106,7 @@ def test_a_robot_is_where_it_is_and_not_where_it_is_believed_to_be(sim: Sim) -> 
 
 def test_a_prismatic_joint_is_in_millimetres() -> None:
     sim = Sim()
-    pickup = sim.plant().cell("sis_a").pickup
+    pickup = StorageLayout(sim.plant().cell("sis_a")).pickup
     assert pickup.q[2] == 0.0
     assert sim.snapshot()["robots"][0]["units"] == ["rad", "rad", "m"]
     sim.fault("lost_steps", "ra1", word="q3", amount=1)

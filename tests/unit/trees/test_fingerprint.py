@@ -16,9 +16,12 @@ from arboleda.testing import shipped
 from arboleda.trees import fingerprint, steps
 from arboleda.trees.leaves import Unless
 
+from ...cells import with_poses, with_robot
+
 SHOWN = """
 from arboleda.trees import fingerprint
 from arboleda.testing import shipped
+
 print(fingerprint.of_cell(shipped().cells[0], "storage", {}))
 """
 
@@ -74,13 +77,13 @@ def test_a_number_that_is_written_in_a_function_counts() -> None:
 def test_what_a_cell_is_made_of_counts_and_what_only_its_queue_needs_does_not() -> None:
     cell = shipped("sis_a").cells[0]
 
-    def made(**changes: Any) -> str:
-        return fingerprint.of_cell(replace(cell, **changes), "storage", {})
+    def storage(cell: Cell) -> str:
+        return fingerprint.of_cell(cell, "storage", {})
 
-    same = made()
-    assert made(queue_limit=99, goes_on=True) == same
-    assert made(arm=replace(cell.arm, timeout_s=77.0)) != same
-    assert made(home=replace(cell.home, q=(0.1, 0.1, 0.0))) != same
+    same, home = storage(cell), cell.reach["ra1"].home
+    assert storage(replace(cell, queue_limit=99, goes_on=True)) == same
+    assert storage(with_robot(cell, "arm", timeout_s=77.0)) != same
+    assert storage(with_poses(cell, home=replace(home, q=(0.1, 0.1, 0.0)))) != same
     assert fingerprint.of_cell(cell, "palletizing", {}) != same
 
 

@@ -11,15 +11,17 @@ import pytest
 from arboleda.model.errors import ConfigError
 from arboleda.model.plant_model import Crossing, Pose, Workspace
 from arboleda.recipes.storage import palletizing_way, plan_problems, storage_way
-from arboleda.recipes.storage_cell import Palletizing, StorageCell
+from arboleda.recipes.storage_layout import StorageLayout
 from arboleda.testing import shipped
 from arboleda.trees.zone_plan import Leg, entered, passed, plan, recovery_zones
+
+from ...cells import with_poses
 
 NONE = frozenset[str]()
 STATION, OTHER, PLACE = 7, 4, 8  # PLACE is where the shipped cell palletizes to
 
 
-def cell(*crossings: tuple[str, str, str], **zones: str) -> StorageCell:
+def cell(*crossings: tuple[str, str, str], **zones: str) -> StorageLayout:
     """The shipped cell with poses in zones (`pickup="x y"`) and moves through one (from, to, zone)."""
     plain = shipped("sis_a").cells[0]
 
@@ -27,19 +29,14 @@ def cell(*crossings: tuple[str, str, str], **zones: str) -> StorageCell:
         names = zones.get(pose.name.replace("-", "").replace(" ", ""), "")
         return replace(pose, zones=frozenset(names.split()))
 
-    return replace(
-        plain,
-        home=placed(plain.home),
-        pickup=placed(plain.pickup),
-        stations=tuple(map(placed, plain.stations)),
-        palletizing=Palletizing(pick=placed(plain.palletizing.pick), place=placed(plain.palletizing.place)),
-        crossings=tuple(Crossing(a=a, b=b, zones=frozenset({zone})) for a, b, zone in crossings),
-    )
+    poses = {target: placed(pose) for target, pose in plain.reach["ra1"].targets.items()}
+    ways = [Crossing(a=a, b=b, zones=frozenset({zone})) for a, b, zone in crossings]
+    return StorageLayout(with_poses(plain, *ways, **poses))
 
 
-def storage(made: StorageCell) -> list[Any]:
+def storage(made: StorageLayout) -> list[Any]:
     way = storage_way(made, made.pickup, made.stations[STATION], made.home)
-    return [(leg.start, leg.end, leg.zones) for leg in plan(made.workspaces["ra1"], way, made.pickup)]
+    return [(leg.start, leg.end, leg.zones) for leg in plan(made.space, way, made.pickup)]
 
 
 LEGS = {  # poses of the way: home 0, pick-up 1, station 7 2, home 3
@@ -69,7 +66,7 @@ LEGS = {  # poses of the way: home 0, pick-up 1, station 7 2, home 3
 
 
 @pytest.mark.parametrize("case", LEGS.values(), ids=LEGS)
-def test_a_storage_way_has_these_legs(case: tuple[StorageCell, list[Any]]) -> None:
+def test_a_storage_way_has_these_legs(case: tuple[StorageLayout, list[Any]]) -> None:
     made, legs = case
     assert storage(made) == legs
 
@@ -77,7 +74,7 @@ def test_a_storage_way_has_these_legs(case: tuple[StorageCell, list[Any]]) -> No
 def test_a_part_that_may_have_to_go_back_needs_the_zone_of_the_pick_up() -> None:
     made = cell(pickup="x", station4="y")
     pick, place = made.stations[OTHER], made.stations[PLACE]
-    assert plan(made.workspaces["ra1"], (made.home, pick, place), made.pickup) == [
+    assert plan(made.space, (made.home, pick, place), made.pickup) == [
         Leg(start=0, end=2, zones=frozenset({"x", "y"}))
     ]
 
@@ -85,11 +82,9 @@ def test_a_part_that_may_have_to_go_back_needs_the_zone_of_the_pick_up() -> None
 def test_an_arm_that_stands_at_a_station_starts_there() -> None:
     made = cell(("station 8", "pick-up", "x"), ("home", "station 8", "y"))
     start = made.palletizing.place
-    legs = plan(
-        made.workspaces["ra1"], storage_way(made, made.pickup, made.stations[STATION], start), made.pickup
-    )
+    legs = plan(made.space, storage_way(made, made.pickup, made.stations[STATION], start), made.pickup)
     assert legs[0] == Leg(start=0, end=1, zones=frozenset({"x", "y"}))
-    legs = plan(made.workspaces["ra1"], palletizing_way(made, start), made.pickup)
+    legs = plan(made.space, palletizing_way(made, start), made.pickup)
     assert [(leg.start, leg.end) for leg in legs] == [(0, 1), (1, 2), (2, 3)]
     assert "y" in legs[0].zones
 
@@ -98,22 +93,21 @@ def test_an_arm_that_stands_at_a_station_starts_there() -> None:
 def test_a_way_starts_and_ends_outside(name: str) -> None:
     made = cell(**{name.replace(" ", ""): "x"})
     with pytest.raises(ConfigError, match=f"{name} lies in zone x, so no way may start or end there"):
-        plan(made.workspaces["ra1"], palletizing_way(made, made.home), made.pickup)
+        plan(made.space, palletizing_way(made, made.home), made.pickup)
 
 
 def test_no_problem_with_poses_outside_or_passed_through() -> None:
-    assert plan_problems(cell()) == plan_problems(cell(pickup="x", station7="x y")) == {}
+    assert plan_problems(cell().cell) == plan_problems(cell(pickup="x", station7="x y").cell) == {}
 
 
-def test_a_home_or_a_place_in_a_zone_is_a_problem_with_its_pose() -> None:
-    assert plan_problems(cell(home="x", station8="y")) == {
-        "home": "cell sis_a: home lies in zone x; the arm waits there, so it must be outside all zones",
+def test_a_place_in_a_zone_is_a_problem_with_its_pose() -> None:
+    assert plan_problems(cell(station8="y").cell) == {
         "station 8": "cell sis_a: station 8 lies in zone y; "
         "palletizing ends and waits there, so it must be outside all zones",
     }
 
 
-MOBILE = shipped("sis_a").cells[0].mobile
+MOBILE = StorageLayout(shipped("sis_a").cells[0]).mobile
 
 
 def on_grid(home: int, goal: int, zoned: int) -> Workspace:
@@ -160,5 +154,5 @@ def test_what_lies_between_two_nodes_is_that_of_the_ways_there_and_back_without_
 
 def test_nothing_lies_between_two_poses_of_an_arm_but_what_is_named() -> None:
     made = cell(("home", "pick-up", "x"))
-    space = made.workspaces["ra1"]
+    space = made.space
     assert passed(space, made.home.q, made.pickup.q) == NONE

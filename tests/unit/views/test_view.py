@@ -10,6 +10,7 @@ from py_trees.common import Status
 from arboleda.model.messages import OperatorRequest, Verb
 from arboleda.model.plant_model import Evidence, MotionState
 from arboleda.model.sentence import in_json
+from arboleda.recipes.storage_layout import StorageLayout
 from arboleda.testing import Rig, shipped
 from arboleda.views import tree_view, view
 
@@ -52,7 +53,8 @@ def test_a_running_command_says_what_it_was_sent_with_and_how_long_it_has_left(r
     rig.wait(0.25)
     move = row(rig.snapshot(), "move to pick-up")
     assert (
-        move["parameters"]["robot"] == "ra1" and move["parameters"]["q"] == rig.plant.model.cells[0].pickup.q
+        move["parameters"]["robot"] == "ra1"
+        and move["parameters"]["q"] == StorageLayout(rig.plant.model.cells[0]).pickup.q
     )
     assert move["since_s"] == pytest.approx(0.25, abs=0.06)
     assert move["since_s"] + move["deadline_s"] == pytest.approx(10.0)  # timeout_s of an arm

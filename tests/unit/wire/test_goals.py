@@ -5,10 +5,11 @@ from __future__ import annotations
 import pytest
 
 from arboleda.kinds.arm import MoveJoints
+from arboleda.recipes.storage_layout import StorageLayout
 from arboleda.testing import shipped
 from arboleda.wire.goals import refusal
 
-ARM = shipped("sis_a").cell("sis_a").arm
+ARM = StorageLayout(shipped("sis_a").cell("sis_a")).arm
 
 
 @pytest.mark.parametrize(("beyond", "word"), [(0.0, None), (0.9e-6, None), (1.1e-6, "limite")])

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from arboleda.kinds.arm import MoveJoints
 from arboleda.model.plant_model import Evidence, MotionState
+from arboleda.recipes.storage_layout import StorageLayout
 from arboleda.testing import shipped
 from arboleda.wire.motion import LINGER_S, OpenMotion
 from arboleda.wire.values import Telemetry
@@ -16,7 +17,7 @@ def said(state: MotionState) -> Telemetry:
 
 
 def test_a_board_that_names_no_command_has_stood_still_for_as_long_as_it_drives_on() -> None:
-    arm = shipped("sis_a", evidence=Evidence.JOINTS).cells[0].arm
+    arm = StorageLayout(shipped("sis_a", evidence=Evidence.JOINTS).cells[0]).arm
     motion = OpenMotion(robot=arm, command=MoveJoints(id="1-1", robot=arm.name, q=GOAL), seq=1)
     heard = [
         (10.0, MotionState.STOPPED, False),  # it has not begun

@@ -6,6 +6,7 @@ import pytest
 
 from arboleda.kinds.mobile import FollowPath
 from arboleda.model.commands import Home
+from arboleda.recipes.storage_layout import StorageLayout
 from arboleda.testing.plants import shipped
 from arboleda.wire.payloads import REFUSALS
 from arboleda.wire.rejections import refused
@@ -13,13 +14,13 @@ from arboleda.wire.rejections import refused
 
 @pytest.mark.parametrize("word", sorted(REFUSALS))
 def test_each_word_of_a_board_is_explained(word: str) -> None:
-    robot = shipped().cells[0].arm
+    robot = StorageLayout(shipped().cells[0]).arm
     said = refused(robot, Home(id="1-1", robot=robot.name), word, "", by_board=True)
     assert said.values["robot"] == robot.name and str(said.values["why"]) not in ("", word)
 
 
 def test_only_of_a_path_a_mobile_robot_says_that_it_leads_off_the_grid() -> None:
-    robot = shipped().cells[0].mobile
+    robot = StorageLayout(shipped().cells[0]).mobile
     commands = (FollowPath(id="1-1", robot=robot.name, nodes=(0, 999)), Home(id="1-2", robot=robot.name))
     said = [str(refused(robot, each, "limite", "", by_board=False)) for each in commands]
     assert [f"0 to {robot.grid.size - 1}" in each for each in said] == [True, False]

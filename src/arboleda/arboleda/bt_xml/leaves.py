@@ -64,7 +64,11 @@ def _of_device(cell: Cell, role: str, device: Robot) -> Iterator[Kind]:
 
 def _of_robot(cell: Cell, role: str, robot: Robot) -> Iterator[Kind]:
     target = Port(
-        name="target", type="string", is_needed=True, words=tuple(cell.spots(robot.name)), about="where to"
+        name="target",
+        type="string",
+        is_needed=True,
+        words=tuple(cell.reach[robot.name].targets),
+        about="where to",
     )
     yield _kind(Category.ACTION, f"{role}_go", target)
     yield _kind(Category.DECORATOR, f"{role}_visit", target)

@@ -285,8 +285,8 @@ def _form(plant: PlantModel) -> Sentence:
 
 
 def _cell_or_robot(roles: Iterable[str], plant: PlantModel) -> Sentence:
-    owners = {role: cell for cell in reversed(plant.cells) for role in cell.roles}
-    robots = tuple(owners[role].role_said(role) for role in roles)
+    phrases = {each.alone: each.alone_called for each in plant.recipes}
+    robots = tuple(phrase() if (phrase := phrases[role]) else role for role in roles)
     return CELL_OR_ROBOT(robot=robots) if robots else CELL()
 
 

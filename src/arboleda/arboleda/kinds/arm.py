@@ -109,7 +109,6 @@ class Arm(Robot):
     base: Placement
     joints: tuple[Joint, ...]
     tolerance: tuple[float, ...] | None = None
-    queue_triggers: bool = True  # False: a start trigger during the arm's own cycle is refused
     description: Description | None = None  # None: the model comes with arboleda_description
     position_key: ClassVar[str | None] = "q"
 

@@ -78,6 +78,10 @@ class Mobile(Robot):
     def kind_name(self) -> str:
         return "mobile"
 
+    @property
+    def floor_grid(self) -> Grid:
+        return self.grid
+
     def drawn(self) -> dict[str, object]:
         nodes = [list(self.grid.position(node)) for node in range(self.grid.size)]
         at, speeds = self.grid.origin.on_floor, [self.speed, self.speed]

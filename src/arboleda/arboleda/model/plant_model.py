@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass, field, replace
 from enum import Enum
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 from .commands import Command, Position
 from .facts import Facts
@@ -16,8 +16,12 @@ from .sentence import NOTHING, OWN, Sentence
 if TYPE_CHECKING:
     from .messages import Report
 
+STATIONS = "stations"
+"""The group of targets at which a cell with a handover leaves parts."""
 Positions = Callable[[str], "Position | None"]
-"""Where a robot of this name is known to be."""
+"""Function that returns the known position of the robot of this name."""
+PieceCheck = bool | Literal["auto"]
+"""A look at the piece sensor around grips; auto: where the robot's board reports what that sees."""
 
 
 class Evidence(str, Enum):
@@ -90,6 +94,7 @@ class Robot:
     has_stop: bool = True
     driver: DriverUse | None = None  # with `Link.DRIVER`
     piece_on_change: bool = False  # True: its piece sensor speaks only when the value changes
+    queue_triggers: bool = True  # False: a start trigger during the robot's own cycle is refused
     position_key: ClassVar[str | None] = None  # the key of a report that has its position, if any
 
     @property
@@ -106,6 +111,11 @@ class Robot:
     def on_grid(self) -> bool:
         """Whether its position is a node of a grid."""
         return self.position_key == "node"
+
+    @property
+    def floor_grid(self) -> Any:
+        """The grid of nodes that it drives over; None for one that goes to other positions, or nowhere."""
+        return None
 
     @property
     def goes(self) -> bool:
@@ -276,6 +286,37 @@ class Crossing:
 
 
 @dataclass(frozen=True, kw_only=True)
+class Path:
+    """A coded way of a robot over its grid, node by node."""
+
+    code: str
+    nodes: tuple[int, ...]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Handover:
+    """Poses at which one robot of a cell, the `taker`, takes the parts that another one, the `giver`, brings.
+
+    Robots and poses go by their names. `by_path` has the poses of the giver's paths by code; `otherwise` is
+    the pose for all other paths.
+    """
+
+    taker: str
+    giver: str
+    otherwise: str
+    by_path: tuple[tuple[str, str], ...] = ()
+
+    @property
+    def poses(self) -> tuple[str, ...]:
+        """The poses, each once; `otherwise` comes first."""
+        return tuple(dict.fromkeys((self.otherwise, *(pose for _, pose in self.by_path))))
+
+    def after(self, code: str) -> str:
+        """The pose at which the taker meets a giver that has come on this path."""
+        return dict(self.by_path).get(code, self.otherwise)
+
+
+@dataclass(frozen=True, kw_only=True)
 class Retry:
     """How often a failed step is tried again, where that can help, and the pause before each, s."""
 
@@ -285,13 +326,37 @@ class Retry:
 
 @dataclass(frozen=True, kw_only=True)
 class Workspace:
-    """Where one robot goes in its cell, which shared zones lie on its ways, and what it takes parts with."""
+    """Places of one robot in its cell, the shared zones on its ways, and what it takes parts with.
+
+    `target_names` are pairs of a target, as recipes name it, and the name of its pose; without them each pose
+    is a target of its own name. `supplies` are the names of the poses where parts lie ready for a virtual
+    robot; without them all poses are.
+    """
 
     robot: Robot
     tool: Robot | None = None  # a device of its own at the robot's end; None: what the robot itself has
-    home: Pose  # where it waits, and where a recovery ends
+    home: Pose  # where it waits
+    returns: bool = True  # a recovery brings it home
     poses: tuple[Pose, ...]  # home is one of them
+    target_names: tuple[tuple[str, str], ...] = ()
+    supplies: tuple[str, ...] = ()
+    paths: tuple[Path, ...] = ()
     crossings: tuple[Crossing, ...] = ()
+
+    @cached_property
+    def by_name(self) -> dict[str, Pose]:
+        """The poses by their names."""
+        return {pose.name: pose for pose in self.poses}
+
+    @cached_property
+    def targets(self) -> dict[str, Pose]:
+        """The poses by the names that recipes and tasks have for them."""
+        named = {target: self.by_name[pose] for target, pose in self.target_names}
+        return named or self.by_name
+
+    def path(self, code: str) -> Path:
+        """The path with this code."""
+        return next(path for path in self.paths if path.code == code)
 
     @cached_property
     def zones(self) -> frozenset[str]:
@@ -342,42 +407,24 @@ class Interlock:
 
 @dataclass(frozen=True, kw_only=True)
 class Cell:
-    """Robots that carry out one task at a time, each in a role of its own."""
-
-    is_storage: ClassVar[bool] = False  # whether it is one of an arm, a mobile robot and a rack
+    """Robots and other devices that carry out one task at a time, each in a role of its own."""
 
     name: str
     members: tuple[tuple[str, Robot], ...] = ()  # by role
     spaces: tuple[Workspace, ...] = ()  # of those that go from pose to pose
+    handover: Handover | None = None
     queue_limit: int
     goes_on: bool = False  # after a restart the queue of an idle cell goes on by itself
     goes_on_after_absence: bool = False  # what was at work, too, once its devices prove what they did
     retry: Retry = Retry()
+    piece_check: PieceCheck = False  # of recipes that say nothing else
+    drive_to_start: bool = True  # False: a robot known to be elsewhere than its path begins fails the task
     zone_wait_s: float = 30.0
     recipes: tuple[Recipe, ...] = ()
     interlocks: tuple[Interlock, ...] = ()
-    stations: tuple[Pose, ...] = ()  # by number: where parts stay until somebody takes them out
     arrays: tuple[tuple[str, tuple[str, ...]], ...] = ()  # groups of targets by name, in order
     grids: tuple[tuple[str, int, int], ...] = ()  # of those that are made of corners: rows and columns
     shared: tuple[str, ...] = ()  # the names of those devices that other cells have, too
-    keyed_roles: ClassVar[tuple[str, ...]] = ()  # in data for clients these are keys of the cell as well
-
-    def described(self) -> dict[str, object]:
-        """What clients are told of it besides its devices and recipes."""
-        return {}
-
-    @property
-    def drawing(self) -> dict[str, object] | None:
-        """Which of its robots works where, for drawings of its work; None where that is not drawn."""
-        return None
-
-    def role_said(self, role: str) -> Sentence | str:
-        """What a role is called in sentences."""
-        return role
-
-    def part_waits(self, recipe: str) -> Pose | None:
-        """At which pose the part of a task waits until it is gripped; None: on the mobile robot."""
-        return None
 
     @cached_property
     def roles(self) -> dict[str, Robot]:
@@ -385,49 +432,71 @@ class Cell:
         return dict(self.members)
 
     @cached_property
-    def workspaces(self) -> dict[str, Workspace]:
-        """By the name of each robot that goes from pose to pose."""
+    def reach(self) -> dict[str, Workspace]:
+        """The workspaces, by the name of each robot that goes from pose to pose."""
         return {space.robot.name: space for space in self.spaces}
 
     @cached_property
-    def reach(self) -> dict[str, Workspace]:
-        """The same of all that recipes send somewhere; a recovery brings home those of `workspaces`."""
-        return self.workspaces
-
-    def spots(self, robot: str) -> dict[str, Pose]:
-        """Where a robot can be sent, by the names that recipes and tasks have for it."""
-        return {pose.name: pose for pose in self.reach[robot].poses}
+    def workspaces(self) -> dict[str, Workspace]:
+        """Those of the robots that a recovery brings home."""
+        return {space.robot.name: space for space in self.spaces if space.returns}
 
     @cached_property
     def targets(self) -> tuple[str, ...]:
         """The names of the places that one of its robots goes to; a place has one name for all of them."""
-        return tuple(dict.fromkeys(name for robot in self.reach for name in self.spots(robot)))
+        return tuple(dict.fromkeys(name for space in self.spaces for name in space.targets))
 
     @cached_property
     def groups(self) -> dict[str, tuple[str, ...]]:
         """Targets that are chosen from together, by the name of their group."""
         return dict(self.arrays)
 
+    @cached_property
+    def stations(self) -> tuple[Pose, ...]:
+        """The poses, by number, where the taker of the handover leaves parts until people take them out."""
+        if self.handover is None:
+            return ()
+        targets = self.reach[self.handover.taker].targets
+        return tuple(targets[name] for name in self.groups.get(STATIONS, ()))
+
+    @cached_property
+    def paths(self) -> dict[str, Path]:
+        """The paths of its robots by code."""
+        return {path.code: path for space in self.spaces for path in space.paths}
+
     def recipe(self, name: str) -> Recipe:
         return next(recipe for recipe in self.recipes if recipe.name == name)
 
-    def refuses_triggers(self, at_work: Sequence[str]) -> str | None:
-        """Whose own cycle keeps start signals of machines away, while tasks of these recipes run or wait."""
-        return None
+    def refuses_triggers(self, at_work: Collection[str]) -> str | None:
+        """The robot whose own cycle keeps start signals of machines away, while tasks of these recipes run
+        or wait; None where none does.
+        """
+        alone = (self.roles[each.alone] for each in self.recipes if each.alone and each.name in at_work)
+        return next((robot.name for robot in alone if not robot.queue_triggers), None)
 
     def start_of(self, robot: str) -> Position | None:
-        """Where a virtual robot stands at first; None where it has no place."""
-        space = self.workspaces.get(robot)
+        """The position of a virtual robot at first; None for one that has no place."""
+        space = self.reach.get(robot)
         return space.home.q if space else None
 
     def supplies(self, robot: str) -> tuple[Pose, ...]:
-        """Where parts lie ready for a virtual robot."""
-        space = self.workspaces.get(robot)
-        return space.poses if space else ()
+        """The poses at which parts lie ready for a virtual robot."""
+        space = self.reach.get(robot)
+        if space is None or not space.supplies:
+            return space.poses if space else ()
+        return tuple(space.by_name[name] for name in space.supplies)
 
     def back(self, robot: str, positions: Positions) -> Pose | None:
-        """Where a recovery brings a part whose origin nobody knows; None: the robot keeps it."""
-        return None
+        """The pose to which a recovery brings a part whose origin nobody knows; None: the robot keeps it."""
+        if self.handover is None or robot != self.handover.taker:
+            return None
+        return self.pickup_over(positions(self.handover.giver))
+
+    def pickup_over(self, position: Position | None) -> Pose:
+        """The pose at which the taker meets a giver that stands there, by the first path with this end."""
+        assert self.handover is not None
+        ends = (path.code for path in self.reach[self.handover.giver].paths if path.nodes[-1] == position)
+        return self.reach[self.handover.taker].by_name[self.handover.after(next(ends, ""))]
 
     @cached_property
     def robots(self) -> tuple[Robot, ...]:

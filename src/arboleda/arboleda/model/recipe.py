@@ -89,7 +89,8 @@ class Recipe:
 
     `about`: what it does, in a line. `is_default`: a task that names no recipe means this one. `alone`: the
     role of the one robot that works in it, whose name may stand for that of the cell; None where the whole
-    cell works.
+    cell works. `alone_called`: that role in sentences, where they exist in several languages. `part_from`:
+    the group of targets at whose first one the part of a task waits; None where a robot brings it.
     """
 
     name: str
@@ -98,6 +99,8 @@ class Recipe:
     about: str = ""
     is_default: bool = False
     alone: str | None = None
+    alone_called: Phrase | None = None
+    part_from: str | None = None
 
     def form(self) -> str:
         """How a task of it is written."""

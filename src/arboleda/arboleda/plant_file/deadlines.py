@@ -33,8 +33,9 @@ def check_arrivals_show(document: Document, cells: Iterable[Cell], timing: Timin
             _check_patience(document, robot, timing)
             spare_s, needed_s = _spare_s(robot, _longest_s(cell, robot), timing), _shown_s(robot)
             if spare_s < needed_s - ROUNDING_S:
-                key: Place = (role,) if cell.is_storage else ("devices", role)
-                document.problem(("cells", cell.name, *key), _sentence(robot, timing, spare_s, needed_s))
+                place: Place = ("cells", cell.name)
+                key: Place = ("devices", role) if document.has((*place, "devices")) else (role,)
+                document.problem((*place, *key), _sentence(robot, timing, spare_s, needed_s))
 
 
 def _shown_s(robot: Robot) -> float:
@@ -61,14 +62,12 @@ def _spare_s(robot: Robot, longest_s: float, timing: Timing) -> float:
 def _longest_s(cell: Cell, robot: Arm | Mobile) -> float:
     if robot.has_joints:
         return robot.travel_s(None, [robot.reference])
-    if cell.is_storage:
-        ways = [path.nodes for path in cell.paths]
-        if cell.drive_to_start:  # a drive that is given anew leads to the start of its path and over it
-            nodes = range(robot.grid.size)
-            ways = [(*robot.grid.route(node, way[0]), *way[1:]) for way in ways for node in nodes]
-    else:
-        goals = [pose.q for pose in cell.workspaces[robot.name].poses if isinstance(pose.q, int)]
-        ways = [robot.grid.route(node, goal) for goal in goals for node in range(robot.grid.size)]
+    space, nodes = cell.reach[robot.name], range(robot.grid.size)
+    ways = [path.nodes for path in space.paths]
+    if ways and cell.drive_to_start:  # a drive that is given anew leads to the start of its path and over it
+        ways = [(*robot.grid.route(node, way[0]), *way[1:]) for way in ways for node in nodes]
+    goals = [pose.q for pose in space.poses if isinstance(pose.q, int)]
+    ways += [robot.grid.route(node, goal) for goal in goals for node in nodes]
     return max(robot.travel_s(None, way) for way in ways)
 
 

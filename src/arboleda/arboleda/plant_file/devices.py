@@ -9,7 +9,7 @@ from functools import partial
 from arboleda.kinds import WrittenKind
 from arboleda.kinds.declared import Device, DeviceKind, DeviceVerb, Effect
 from arboleda.model.plant_model import Cell, Evidence, Retry, Robot
-from arboleda.recipes.storage_cell import StorageCell
+from arboleda.recipes.storage_layout import ARM, MOBILE
 
 from . import own_kinds, shared, targets
 from .arrays import arrays
@@ -65,9 +65,7 @@ class Kinds:
 def is_of_devices(document: Document, place: Place) -> bool:
     """True if a cell is one of devices, going by its keys."""
     has = document.keys(place)
-    return "devices" in has or (
-        document.has(("kinds",)) and not any(key in has for key in StorageCell.keyed_roles)
-    )
+    return "devices" in has or (document.has(("kinds",)) and ARM not in has and MOBILE not in has)
 
 
 def shared_devices(document: Document, kinds: Kinds) -> dict[str, Robot]:
@@ -86,7 +84,7 @@ def device_cell(document: Document, place: Place, kinds: Kinds, common: Mapping[
 
     `common` are the devices that it may share with others, by name.
     """
-    both = [key for key in StorageCell.keyed_roles if document.has((*place, key))]
+    both = [key for key in (ARM, MOBILE) if document.has((*place, key))]
     for key in both:
         rule = 'a cell has either "arm" and "mobile" or "devices"'
         what = f'{rule}; as one of its devices, it is "{key}: {{kind: {key}, ...}}"'

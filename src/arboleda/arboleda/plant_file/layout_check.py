@@ -17,8 +17,8 @@ from arboleda.kinds.arm import Arm
 from arboleda.kinds.floor import Placement
 from arboleda.kinds.mobile import Mobile
 from arboleda.model.errors import ArboledaError
-from arboleda.model.plant_model import PlantModel, Pose, Robot
-from arboleda.recipes.storage_cell import StorageCell
+from arboleda.model.plant_model import Cell, PlantModel, Pose, Robot
+from arboleda.recipes.storage_layout import StorageLayout
 
 from .arrays import Array
 from .urdf import robot_urdf
@@ -33,12 +33,20 @@ Outline = Sequence[Sequence[float]]  # counterclockwise corners of a convex shap
 def warnings(plant: PlantModel) -> tuple[str, ...]:
     """The places that cannot be as the file says, or the reason for which they could not be checked."""
     try:
-        cells = [Stand.of(plant, cell) for cell in plant.cells if cell.is_storage]
+        cells = [Stand.of(plant, StorageLayout(cell)) for cell in plant.cells if _stores(cell)]
         uneven = [*_uneven(plant)]
     except ArboledaError as error:
         return (f"nobody has looked where things stand: {error}",)
     found = [each for cell in cells for each in (*_pickups(cell), *_stations(cell), *_below(cell))]
     return (*found, *_crowded(cells), *uneven)
+
+
+def _stores(cell: Cell) -> bool:
+    """True if an arm of the cell takes parts from a mobile robot."""
+    if cell.handover is None:
+        return False
+    taker, giver = (cell.reach[name].robot for name in (cell.handover.taker, cell.handover.giver))
+    return taker.has_joints and giver.on_grid
 
 
 def _uneven(plant: PlantModel) -> Iterator[str]:
@@ -68,14 +76,14 @@ def _uneven_of(plant: PlantModel, arm: Robot, array: Array, poses: Sequence[Pose
 class Stand:
     """One cell as it stands in the world, in m: its arm's body, and the outlines of what is on the floor."""
 
-    cell: StorageCell
+    cell: StorageLayout
     body: Body
     deck_m: float
     base: Outline
     grid: Outline
 
     @classmethod
-    def of(cls, plant: PlantModel, cell: StorageCell) -> Stand:
+    def of(cls, plant: PlantModel, cell: StorageLayout) -> Stand:
         arm, mobile = (_body(plant, name) for name in (cell.arm.name, cell.mobile.name))
         x, y = cell.arm.base.x, cell.arm.base.y
         return cls(
@@ -149,7 +157,7 @@ def _stations(stand: Stand) -> Iterator[str]:
 
 def _below(stand: Stand) -> Iterator[str]:
     """The poses at which a part, or at home the tool, would be below the floor."""
-    for pose in stand.cell.poses:
+    for pose in stand.cell.space.poses:
         tool = stand.tool(pose)
         points = [kinematics.at(tool)]
         if pose.name != stand.cell.home.name:

@@ -8,37 +8,29 @@ from dataclasses import replace
 from functools import partial
 from importlib.resources import files
 from pathlib import Path
-from typing import Any
 
 from arboleda.model.errors import ConfigError
-from arboleda.model.plant_model import Cell, ForeignCommands, MqttVersion, PlantModel, Retry, Robot, Timing
+from arboleda.model.plant_model import Cell, ForeignCommands, MqttVersion, PlantModel, Robot, Timing
 from arboleda.model.recipe import Recipe
 from arboleda.recipes.storage import RECIPES
-from arboleda.recipes.storage_cell import ARM, MOBILE, StorageCell
-from arboleda.recipes.storage_cell import Path as Route
 from arboleda.recorder.preamble import Limits, PlantFiles, Recording
 from arboleda.store.address import has_password, is_address
 
-from . import drivers, own_kinds, own_recipes, rack, user_file
+from . import drivers, own_kinds, own_recipes, user_file
 from .deadlines import check_arrivals_show
 from .devices import CELLS, Kinds, device_cell, is_of_devices, shared_devices
 from .document import Document, Place, shown
 from .kinds import kinds
 from .names import check_names
-from .paths import check_nodes_show, paths
-from .pickups import default_pickup, pickups
-from .poses import PoseReader
 from .python_uses import PythonUses, Watch
 from .recipe_check import MOST, Trial, combinations
 from .recipe_trial import Verdict, brought
-from .robot_models import ArmModel
-from .robots import arm, arm_model, check_absence, mobile
-from .shapes import CellShape, FileShape, PoseShape, PositionShape, RecordShape, RetryShape, TimingShape
+from .shapes import FileShape, RecordShape, TimingShape
+from .storage_form import check_sections, storage_cell
 from .yaml_marks import LARGEST
-from .zones import with_zones, with_zones_of_targets, zones
+from .zones import with_zones, zones
 
 Offers = Callable[[Sequence[Cell]], Mapping[str, tuple[Recipe, ...]]]
-SHARED = ("paths", "stations", "palletizing")
 SHIPPED = "plant.yaml"
 RECORD: Place = ("record",)
 REPORTS: Place = ("reports",)
@@ -202,16 +194,12 @@ def _plant(document: Document, used: PythonUses, recipes: Offers) -> PlantModel 
     cells = [_cell(document, name, known, common) for name in document.keys(("cells",))]
     timing = _timing(document)
     check_names(document, partial(known.has_twin, document))
-    _check_sections(document)
+    of_form = [(*CELLS, name) for name in document.keys(CELLS)]
+    check_sections(document, [place for place in of_form if not is_of_devices(document, place)])
     whole = [cell for cell in cells if cell is not None]
     regions = zones(document, whole)
     _check_ports(document, shape)
-    zoned: dict[str, Cell] = {
-        cell.name: with_zones(document, cell, regions)
-        if cell.is_storage
-        else with_zones_of_targets(document, cell, regions)
-        for cell in whole
-    }
+    zoned = {cell.name: with_zones(document, cell, regions) for cell in whole}
     offers = recipes(list(zoned.values()))
     if timing is None:
         return None
@@ -268,76 +256,7 @@ def _timing(document: Document) -> TimingShape | None:
 
 
 def _cell(document: Document, name: str, kinds: Kinds, common: Mapping[str, Robot]) -> Cell | None:
-    place: Place = ("cells", name)
+    place: Place = (*CELLS, name)
     if is_of_devices(document, place):
         return device_cell(document, place, kinds, common)
-    shape = document.read(CellShape, place)
-    kind = arm_model(document, (*place, ARM))
-    the_arm = arm(document, (*place, ARM), kind)
-    the_mobile = mobile(document, (*place, MOBILE))
-    routes = paths(document, _section(document, place, "paths"))
-    poses = _poses(document, place, kind, routes)
-    retry = document.read(RetryShape, (*place, "retry")) if document.has((*place, "retry")) else RetryShape()
-    if the_mobile and routes:
-        check_nodes_show(document, (*place, MOBILE), routes, the_mobile)
-    if not (shape and retry and the_arm and the_mobile and routes and poses):
-        return None
-    check_absence(document, place, shape.on_absence, (the_arm, the_mobile))
-    return StorageCell(
-        name=name,
-        recipes=RECIPES,
-        arm=the_arm,
-        mobile=the_mobile,
-        paths=routes,
-        queue_limit=shape.queue_limit,
-        goes_on=shape.on_restart == "go_on",
-        goes_on_after_absence=shape.on_absence == "go_on",
-        drive_to_start=shape.drive_to_start,
-        retry=Retry(**retry.model_dump()),
-        piece_check=shape.piece_check,
-        zone_wait_s=shape.zone_wait_s,
-        **poses,
-    )
-
-
-def _poses(
-    document: Document, place: Place, kind: ArmModel | None, routes: tuple[Route, ...]
-) -> dict[str, Any]:
-    """The poses of an arm's places; empty, with the problems kept, if one is wrong."""
-    if kind is None:
-        document.read(PositionShape, (*place, "home"))
-        document.read(PoseShape, (*place, "pickup"))
-        for exit in document.keys((*place, "pickups")):
-            document.read(PoseShape, (*place, "pickups", exit))
-        return {}
-    reader = PoseReader(document=document, cell=str(place[1]), model=kind.name, joints=kind.joints)
-    home = reader.home((*place, "home"))
-    by_exit = pickups(reader, place, routes)
-    pickup = default_pickup(reader, place)
-    if pickup is None and by_exit and not document.has((*place, "pickup")):
-        pickup = by_exit[0][1]
-    stations = rack.stations(reader, _section(document, place, "stations"), home)
-    section = _section(document, place, "palletizing", needed=False)
-    palletizing = rack.palletizing(reader, section, pickup, by_exit or (), stations)
-    whole = home and pickup and by_exit is not None and stations and palletizing
-    poses = {"home": home, "pickup": pickup, "stations": stations, "palletizing": palletizing}
-    return {**poses, "pickups": by_exit} if whole else {}
-
-
-def _section(document: Document, place: Place, key: str, *, needed: bool = True) -> Place:
-    """The place of this section for a cell: its own, else the one at the top that cells share."""
-    if document.has((*place, key)):
-        return (*place, key)
-    if needed and not document.has((key,)) and document.has(place):
-        document.problem(place, f'the key "{key}" is missing, here and at the top of the file')
-    return (key,)
-
-
-def _check_sections(document: Document) -> None:
-    cells = [(*CELLS, name) for name in document.keys(CELLS)]
-    names = [place[-1] for place in cells if not is_of_devices(document, place)]
-    for key in SHARED:
-        unused = all(document.has(("cells", name, key)) for name in names)
-        if cells and unused and document.has((key,)):
-            why = "every cell has its own" if names else "no cell has an arm and a mobile robot"
-            document.problem((key,), f"{why}, so this section has no effect; delete it")
+    return storage_cell(document, place)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from arboleda.recipes.storage_cell import ARM, MOBILE
+from arboleda.recipes.storage_layout import ARM, MOBILE
 
 from .document import Document, Place, dotted, shown
 from .shapes import NAME_RULE, is_name

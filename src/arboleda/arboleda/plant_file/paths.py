@@ -9,8 +9,7 @@ from itertools import pairwise
 from arboleda.dispatch.belief import APART_S
 from arboleda.kinds.floor import Placement
 from arboleda.kinds.mobile import Grid, Mobile
-from arboleda.model.plant_model import Evidence
-from arboleda.recipes.storage_cell import Path
+from arboleda.model.plant_model import Evidence, Path
 
 from .document import Document, Place, choice
 from .shapes import MAPPING, NODES
@@ -18,6 +17,11 @@ from .shapes import MAPPING, NODES
 GRID = Grid(origin=Placement(x=0.0, y=0.0), pitch=1.0)
 ROUNDING_S = 1e-6
 CODE = re.compile(r"[0-9A-Za-z]{2}", re.ASCII)
+
+
+def exit_of(path: Path) -> str:
+    """The exit at which a path ends, as its code calls it: the second character."""
+    return path.code[1]
 
 
 def paths(document: Document, place: Place) -> tuple[Path, ...]:

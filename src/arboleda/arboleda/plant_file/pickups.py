@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from arboleda.model.plant_model import Pose
-from arboleda.recipes.storage_cell import Path
+from arboleda.model.plant_model import Path, Pose
 
 from .document import Document, Place, choice
+from .paths import exit_of
 from .poses import PICKUP, PICKUP_AT, PoseReader
 from .shapes import MAPPING
 
@@ -26,7 +26,7 @@ def pickups(reader: PoseReader, cell: Place, paths: Sequence[Path]) -> Pickups |
         document.read_plain(MAPPING, place)
     elif not document.has((*cell, "pickup")):
         document.problem(cell, 'the key "pickup" is missing')
-    exits = sorted({path.exit for path in paths})
+    exits = sorted({exit_of(path) for path in paths})
     seen: dict[str, str] = {}
     found = []
     for key in document.keys(place):

@@ -7,7 +7,6 @@ from itertools import product
 
 from arboleda.model.counting import counted
 from arboleda.model.plant_model import Pose
-from arboleda.recipes.storage_cell import Palletizing
 
 from .document import Place, shown
 from .pickups import Pickups, pickup_names
@@ -15,6 +14,8 @@ from .poses import STATION, PoseReader
 from .robot_models import TO_SI
 from .shapes import PalletizingShape, RackShape
 
+Targets = tuple[str, str]
+"""The targets of the arm's own cycle: where it takes a part, and where it puts it."""
 MOST = 9  # task texts name stations 0 to 8
 NUMBER = re.compile(r"[0-9]+", re.ASCII)
 
@@ -29,21 +30,23 @@ def stations(reader: PoseReader, place: Place, home: Pose | None) -> tuple[Pose,
 
 def palletizing(
     reader: PoseReader, place: Place, pickup: Pose | None, pickups: Pickups, rack: tuple[Pose, ...]
-) -> Palletizing | None:
+) -> Targets | None:
     """The named pick and place; without the section the pick-up and the last station."""
     shape = reader.document.read(PalletizingShape, place)
     if pickup is None or not rack:
         return None
     if not reader.document.has(place):
-        return Palletizing(pick=pickup, place=rack[-1])
+        return "pickup", target_of(rack[-1].name)
     if shape is None:
         return None
     poses = pickup_names(pickup, pickups) | {pose.name: pose for pose in rack}
     pick = _named(reader, shape.pick, poses, (*place, "pick"))
     target = _named(reader, shape.place, poses, (*place, "place"))
-    if pick is not None and pick is target:
+    if pick is None or target is None:
+        return None
+    if poses[pick] is poses[target]:
         reader.problem((*place, "place"), "must be another pose than pick")
-    return Palletizing(pick=pick, place=target) if pick and target else None
+    return target_of(pick), target_of(target)
 
 
 def _by_number(reader: PoseReader, place: Place, keys: tuple[str, ...]) -> list[Pose | None]:
@@ -95,10 +98,17 @@ def _has_columns_and_rows(reader: PoseReader, place: Place) -> bool:
     return turns
 
 
-def _named(reader: PoseReader, text: str, poses: dict[str, Pose], place: Place) -> Pose | None:
-    pose = poses.get(" ".join(text.lower().split()))
-    if pose is None:
+def target_of(name: str) -> str:
+    """The target for a name of the short form: `station_7` for `station 7`."""
+    return name.replace(" ", "_")
+
+
+def _named(reader: PoseReader, text: str, poses: dict[str, Pose], place: Place) -> str | None:
+    """The name of a pose as its text spells it; None, with the problem kept, if it is none."""
+    name = " ".join(text.lower().split())
+    if name not in poses:
         pickups = ", ".join(f'"{name}"' for name in poses if name.startswith("pickup"))
         allowed = f'{pickups}, or "station 0" to "{list(poses)[-1]}"'
         reader.problem(place, f"must be {allowed}, is {shown(text)}")
-    return pose
+        return None
+    return name

@@ -11,7 +11,6 @@ from pydantic_core import PydanticCustomError
 from arboleda.kinds.declared import Effect
 from arboleda.model.commands import OnStop
 from arboleda.model.plant_model import Cell, Evidence, PlantModel, Retry, Timing
-from arboleda.recipes.storage_cell import StorageCell
 from arboleda.recorder.preamble import Limits
 
 from .robot_models import Number, Pair, Positive, Shape, Triple
@@ -133,8 +132,8 @@ class CellShape(Shape):
     on_absence: OnAbsence = "hold"
     drive_to_start: bool = True
     retry: Any = None
-    piece_check: Annotated[Any, AfterValidator(_piece_check)] = StorageCell.piece_check
-    zone_wait_s: Duration = StorageCell.zone_wait_s
+    piece_check: Annotated[Any, AfterValidator(_piece_check)] = "auto"
+    zone_wait_s: Duration = Cell.zone_wait_s
 
 
 class DeviceCellShape(Shape):

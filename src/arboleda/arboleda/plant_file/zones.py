@@ -9,15 +9,14 @@ from typing import TypeVar
 from arboleda.kinds.declared import UseError
 from arboleda.model.plant_model import Cell, Crossing, Interlock, Pose, Workspace
 from arboleda.recipes.storage import plan_problems
-from arboleda.recipes.storage_cell import StorageCell
+from arboleda.trees import zone_plan
 
 from .document import Document, Place, choice, nearest, shown
-from .pickups import pickup_names
 from .pose_confusion import alike_crossings, confusions
 from .shapes import MAPPING, NAME_RULE, ZoneShape, is_name
 
 SECTION: Place = ("zones",)
-WAITS = "home lies in a zone; robots wait there, so it must be outside all zones"
+WAITS = "robots wait there, so it must be outside all zones"
 T = TypeVar("T")
 
 
@@ -58,37 +57,16 @@ def zones(document: Document, cells: Sequence[Cell]) -> tuple[Zone, ...]:
     return tuple(_zone(document, name, cells) for name in document.keys(SECTION))
 
 
-def with_zones(document: Document, cell: StorageCell, all_zones: Sequence[Zone]) -> StorageCell:
-    """The cell with the zones of its poses and moves; a problem is kept if no way can be planned."""
+def with_zones(document: Document, cell: Cell, all_zones: Sequence[Zone]) -> Cell:
+    """The cell with the zones of its targets, and the devices that occupy zones by themselves.
 
-    def placed(pose: Pose) -> Pose:
-        return _placed(cell, pose, all_zones)
-
-    palletizing = replace(
-        cell.palletizing, pick=placed(cell.palletizing.pick), place=placed(cell.palletizing.place)
-    )
-    zoned = replace(
-        cell,
-        home=placed(cell.home),
-        pickup=placed(cell.pickup),
-        pickups=tuple((exit, placed(pose)) for exit, pose in cell.pickups),
-        stations=tuple(placed(pose) for pose in cell.stations),
-        palletizing=palletizing,
-        crossings=_crossings(cell, all_zones),
-    )
-    if zoned.zones:
-        zoned = replace(zoned, crossings=alike_crossings(zoned.workspaces[zoned.arm.name]))
-    unplanned = plan_problems(zoned)
-    _keep_unplanned(document, cell, unplanned, all_zones)
-    if not unplanned:
-        _keep_confusions(document, cell, zoned.workspaces[zoned.arm.name], all_zones)
-    return zoned
-
-
-def with_zones_of_targets(document: Document, cell: Cell, all_zones: Sequence[Zone]) -> Cell:
-    """A cell of devices with the zones of its targets, and the devices that occupy zones by themselves."""
+    Poses of a robot with paths lie in no zone: nobody plans which zones its paths cross.
+    """
     spaces = []
     for space in cell.spaces:
+        if space.paths:
+            spaces.append(space)
+            continue
         poses = tuple(_placed(cell, pose, all_zones) for pose in space.poses)
         names = {pose.name for pose in poses}
         crossings = tuple(each for each in _crossings(cell, all_zones) if {each.a, each.b} <= names)
@@ -98,12 +76,14 @@ def with_zones_of_targets(document: Document, cell: Cell, all_zones: Sequence[Zo
         if not home.zones:
             _keep_confusions(document, cell, zoned, all_zones)
         spaces.append(zoned)
-    lying = {space.home.name: f"cell {cell.name}: {WAITS}" for space in spaces if space.home.zones}
-    _keep_unplanned(document, cell, lying, all_zones)
+    zoned_cell = replace(cell, spaces=tuple(spaces))
+    homes = [space.home for space in spaces if space.home.zones]
+    lying = {home.name: f"cell {cell.name}: {zone_plan.lying(home)}; {WAITS}" for home in homes}
+    _keep_unplanned(document, cell, lying | plan_problems(zoned_cell), all_zones)
     locks = tuple(
         lock for zone in all_zones for lock in zone.interlocks if lock.device in _device_names(cell)
     )
-    return replace(cell, spaces=tuple(spaces), interlocks=locks)
+    return replace(zoned_cell, interlocks=locks)
 
 
 def _device_names(cell: Cell) -> set[str]:
@@ -201,26 +181,17 @@ def _spot(document: Document, place: Place, text: str, cells: Sequence[Cell]) ->
     cell = next((cell for cell in cells if cell.name == name), None)
     if cell is None:
         return None
-    poses, pose = _poses(cell), " ".join(words)
-    if pose not in poses and not cell.is_storage:
+    poses, pose = _poses(cell), "_".join(words)  # "station 7" and "station_7" are the same target
+    if pose not in poses:
         known = f"targets of {name} are {choice(poses)}" if poses else f"{name} has no targets"
-        document.problem(place, f"{known}, is {shown(text)}{nearest(pose, poses)}")
-        return None
-    if pose not in poses and cell.is_storage:
-        stations = f'"station 0" to "station {len(cell.stations) - 1}"'
-        pickups = ", ".join(f'"{word}"' for word in pickup_names(cell.pickup, cell.pickups))
-        known = f'poses of {name} are "home", {pickups} and {stations}'
         document.problem(place, f"{known}, is {shown(text)}{nearest(pose, poses)}")
         return None
     return Spot(cell=name, pose=poses[pose].name)
 
 
 def _poses(cell: Cell) -> dict[str, Pose]:
-    """The poses of a cell by the names they have in a plant file."""
-    if not cell.is_storage:
-        return {pose.name: pose for space in cell.spaces for pose in space.poses}
-    pickups = pickup_names(cell.pickup, cell.pickups)
-    return {"home": cell.home} | pickups | {pose.name: pose for pose in cell.stations}
+    """The poses of a cell that may lie in zones, by the names they have in a plant file."""
+    return {name: pose for space in cell.spaces if not space.paths for name, pose in space.targets.items()}
 
 
 def _move(

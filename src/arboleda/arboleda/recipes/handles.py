@@ -226,7 +226,7 @@ class RobotHandle(Handle):
         self._context.parts.back[self._device.name] = self._pose(target)
 
     def _pose(self, target: str) -> Pose:
-        poses = self._context.cell.spots(self._device.name)
+        poses = self._context.cell.reach[self._device.name].targets
         if target not in poses:
             raise RecipeError(f"{self._device.name} has no target {quoted(target)}; {among(target, poses)}")
         return poses[target]

@@ -8,11 +8,12 @@ from py_trees.behaviour import Behaviour
 
 from arboleda.kinds.mobile import FollowPath
 from arboleda.model.messages import Failure, Reason
-from arboleda.model.plant_model import Cell, Pose
+from arboleda.model.plant_model import Cell, Path, Pose
 from arboleda.model.recipe import Parameter, Recipe
 from arboleda.model.sentence import Phrase, Sentence
 from arboleda.model.task import Order
-from arboleda.recipes.storage_cell import Path, StorageCell
+from arboleda.recipes.storage_layout import PALLETIZING as PALLETIZING_TARGETS
+from arboleda.recipes.storage_layout import StorageLayout
 from arboleda.trees import steps, zone_plan
 from arboleda.trees.context import Context
 from arboleda.trees.leaves import Act, Require
@@ -28,14 +29,15 @@ NOT_AT_START = Phrase(
     "path.not_at_start", "{mobile} stands on node {node}, path {path} starts at node {start}"
 )
 PATH = Phrase("text.path", "path")
+ARM = Phrase("text.arm", "arm")
 STATION = Phrase("text.station", "station")
 
 
 def storage(order: Order, context: Context) -> Behaviour:
     """Drive the mobile, pick the part up, put it into its station, go home."""
     path, station = order.values["path"], order.values["station"]
-    cell = _as_storage(context.cell)
-    arm, check = cell.arm.name, cell.piece_check
+    cell = StorageLayout(context.cell)
+    arm, check = cell.arm.name, context.cell.piece_check
     pickup = cell.pickup_of(path)
     context.parts.set_origin(arm, pickup)
     way = storage_way(cell, pickup, station, context.robots.standing(arm))
@@ -50,8 +52,8 @@ def storage(order: Order, context: Context) -> Behaviour:
 
 def palletizing(order: Order, context: Context) -> Behaviour:
     """Home, pick, place: the arm alone."""
-    cell = _as_storage(context.cell)
-    arm, check = cell.arm.name, cell.piece_check
+    cell = StorageLayout(context.cell)
+    arm, check = cell.arm.name, context.cell.piece_check
     pick, place = cell.palletizing.pick, cell.palletizing.place
     context.parts.set_origin(arm, cell.pickup)
     way = palletizing_way(cell, context.robots.standing(arm))
@@ -63,39 +65,31 @@ def palletizing(order: Order, context: Context) -> Behaviour:
     return steps.task(CYCLE(), steps.visit(context, arm, way, visits), context)
 
 
-def storage_way(cell: StorageCell, pickup: Pose, station: Pose, start: Pose) -> tuple[Pose, ...]:
+def storage_way(cell: StorageLayout, pickup: Pose, station: Pose, start: Pose) -> tuple[Pose, ...]:
     """The poses of the storage recipe for an arm that stands at `start`."""
     return (start, pickup, station, cell.home)
 
 
-def palletizing_way(cell: StorageCell, start: Pose) -> tuple[Pose, ...]:
+def palletizing_way(cell: StorageLayout, start: Pose) -> tuple[Pose, ...]:
     """The poses of the palletizing recipe for an arm that stands at `start`; it stays at the last one."""
     return (start, cell.home, cell.palletizing.pick, cell.palletizing.place)
 
 
-def plan_problems(cell: StorageCell) -> dict[str, str]:
-    """Why no recipe of the cell can be planned: a sentence by the name of the pose that is in the way."""
-    problems = {}
-    if (place := cell.palletizing.place).zones:
-        rule = "palletizing ends and waits there, so it must be outside all zones"
-        problems[place.name] = f"cell {cell.name}: {zone_plan.lying(place)}; {rule}"
-    if cell.home.zones:
-        rule = "the arm waits there, so it must be outside all zones"
-        problems[cell.home.name] = f"cell {cell.name}: {zone_plan.lying(cell.home)}; {rule}"
-    return problems
-
-
-def _as_storage(cell: Cell) -> StorageCell:
-    assert isinstance(cell, StorageCell)
-    return cell
+def plan_problems(cell: Cell) -> dict[str, str]:
+    """Problems of planning the arm's own cycle: a sentence by the name of the pose that is in the way."""
+    if PALLETIZING_TARGETS not in cell.groups:
+        return {}
+    place = StorageLayout(cell).palletizing.place
+    rule = "palletizing ends and waits there, so it must be outside all zones"
+    return {place.name: f"cell {cell.name}: {zone_plan.lying(place)}; {rule}"} if place.zones else {}
 
 
 def _codes(cell: Cell) -> Sequence[str]:
-    return [path.code for path in _as_storage(cell).paths]
+    return list(cell.paths)
 
 
 def _path(cell: Cell, code: str) -> Path:
-    return _as_storage(cell).path(code)
+    return cell.paths[code]
 
 
 def _numbers(cell: Cell) -> Sequence[str]:
@@ -115,35 +109,37 @@ STORAGE = Recipe(
     ),
     is_default=True,
 )
-PALLETIZING = Recipe(name="palletizing", build=palletizing, alone="arm")
+PALLETIZING = Recipe(
+    name="palletizing", build=palletizing, alone="arm", alone_called=ARM, part_from=PALLETIZING_TARGETS
+)
 RECIPES = (STORAGE, PALLETIZING)
 
 
 def only_stores(cell: Cell) -> bool:
-    """Whether a cell of an arm, a mobile robot and a rack offers nothing but what comes with that."""
-    return cell.is_storage and {*cell.recipes} <= {*RECIPES}
+    """True if a cell offers nothing but these recipes."""
+    return bool(cell.recipes) and {*cell.recipes} <= {*RECIPES}
 
 
 def _drive(context: Context, path: Path) -> list[Behaviour]:
-    cell, start = _as_storage(context.cell), path.nodes[0]
+    cell, start = StorageLayout(context.cell), path.nodes[0]
     code = path.code
     follow = _follow(context, DRIVE(path=code), DRIVING(path=code), path.nodes, whole=True)
     known = _node(context)
     if known is None or known == start:
         return [follow]
-    if not cell.drive_to_start:
+    if not context.cell.drive_to_start:
         return [Require(AT_START(), context.failures, lambda: _not_at_start(context, path)), follow]
     way = cell.mobile.grid.route(known, start)
     return [_follow(context, DRIVE_TO(node=start), DRIVING_TO(node=start), way), follow]
 
 
 def _node(context: Context) -> int | None:
-    known = context.robots.position(_as_storage(context.cell).mobile.name)
+    known = context.robots.position(StorageLayout(context.cell).mobile.name)
     return known if isinstance(known, int) else None
 
 
 def _not_at_start(context: Context, path: Path) -> Failure | None:
-    start, mobile, known = path.nodes[0], _as_storage(context.cell).mobile.name, _node(context)
+    start, mobile, known = path.nodes[0], StorageLayout(context.cell).mobile.name, _node(context)
     if known == start:
         return None
     node = "?" if known is None else known
@@ -163,7 +159,7 @@ def _follow(
     `whole`: given for the first time all of them, as the robot stands where they begin: the last node that
     it told may be older than the end of its last drive, and a round trip comes by there once more.
     """
-    cell = _as_storage(context.cell)
+    cell = StorageLayout(context.cell)
     mobile = cell.mobile
 
     def all_of_it(id: str) -> FollowPath:
@@ -173,7 +169,7 @@ def _follow(
         known = _node(context)
         if known in nodes:
             rest = nodes[nodes.index(known) :]
-        elif known is None or not cell.drive_to_start:
+        elif known is None or not context.cell.drive_to_start:
             rest = nodes
         elif whole:
             rest = (*mobile.grid.route(known, nodes[0]), *nodes[1:])

@@ -160,8 +160,8 @@ def text_of(cell: Cell, dice: Dice) -> str:
         return any_text(cell, dice)
     if dice.chance(0.2):
         return f"{cell.name} palletizing"
-    path, station = dice.pick(cell.paths), dice.below(len(cell.stations))
-    return f"{cell.name} {path.code} {station}"
+    path, station = dice.pick([*cell.paths]), dice.below(len(cell.stations))
+    return f"{cell.name} {path} {station}"
 
 
 def any_text(cell: Cell, dice: Dice) -> str:

@@ -87,7 +87,7 @@ class Record:
         self.others = ForeignCommands()
         storage = {name: known for name, known in self.cells.items() if only_stores(known.cell)}
         self._storage = tuple(storage.values())
-        self.racks = Racks([known.cell for known in self._storage], self.scopes)
+        self.racks = Racks([known.layout for known in self._storage], self.scopes)
         self._people = [robot.name for robot in model.robots.values() if robot.link is Link.SCREEN]
         self.works = Works(storage, self.robots, model.timing.dwell_s)
         self.asked = EarlierState()
@@ -343,8 +343,8 @@ class Record:
         """True if all who have, or get earlier, the zones that this cell's arm wants were at work."""
         zones, asked = self._plant.zones, dict(self._requests)
         arms = list(asked)
-        wanted = asked[cell.cell.arm.name]
-        before = {arm for arm in arms[: arms.index(cell.cell.arm.name)] if wanted & asked[arm]}
+        wanted = asked[cell.layout.arm.name]
+        before = {arm for arm in arms[: arms.index(cell.layout.arm.name)] if wanted & asked[arm]}
         before |= {holder for zone in wanted if (holder := zones.holder(zone)) is not None}
         working = (each for each in self._cells if CellState.EXECUTE in (each.state, each.run.state))
         at_work = {user for each in working for user in each.cell.zone_users}
@@ -451,7 +451,7 @@ class Record:
         requests = plant.zones.waiting
         if requests != self._requests:
             self._requests, robots = requests, dict(requests)
-            self.waiting = [cell for cell in self._storage if cell.cell.arm.name in robots]
+            self.waiting = [cell for cell in self._storage if cell.layout.arm.name in robots]
         for cell in self.waiting if not self.away else ():
             cell.wait(plant.now - self.stepped_at, behind_work=self._is_behind_work(cell))
         moves: dict[str, list[SentCommand]] = {}
@@ -463,7 +463,7 @@ class Record:
         for cell in self._storage:
             if cell.name in moves:
                 cell.watch_recovery(moves[cell.name])
-            cell.holds_zones = cell.cell.arm.name in holders
+            cell.holds_zones = cell.layout.arm.name in holders
 
     def _look_at_cells(self) -> bool:
         """Take over the states of the cells; True if any of them changed."""

@@ -6,32 +6,33 @@ from dataclasses import replace
 from functools import cache
 from typing import Any
 
-from arboleda.kinds.arm import Arm
-from arboleda.model.plant_model import PlantModel
+from arboleda.model.plant_model import PlantModel, Robot
 from arboleda.plant_file.loader import load
-from arboleda.recipes.storage_cell import StorageCell
 
 
 def shipped(*cells: str, **declared: Any) -> PlantModel:
     """The shipped plant, or only these cells of it; every robot gets `declared`, such as `link=Link.ROS`."""
     plant = _loaded()
     by_name = {cell.name: cell for cell in plant.cells}
-    return replace(plant, cells=tuple(_declaring(by_name[name], declared) for name in cells or by_name))
+    chosen = [by_name[name] for name in cells or by_name]
+    return replace(
+        plant,
+        cells=tuple(cell.with_robots(lambda robot: replace(robot, **declared)) for cell in chosen),
+    )
 
 
 def slowed(plant: PlantModel, times: float) -> PlantModel:
     """The plant with arms so many times slower, for tests of what must happen in the middle of a move."""
-    return replace(plant, cells=tuple(replace(cell, arm=_slower(cell.arm, times)) for cell in plant.cells))
 
+    def slower(robot: Robot) -> Robot:
+        if not robot.has_joints:
+            return robot
+        joints = tuple(replace(joint, speed=joint.speed / times) for joint in robot.joints)
+        return replace(robot, joints=joints)
 
-def _slower(arm: Arm, times: float) -> Arm:
-    return replace(arm, joints=tuple(replace(joint, speed=joint.speed / times) for joint in arm.joints))
+    return replace(plant, cells=tuple(cell.with_robots(slower) for cell in plant.cells))
 
 
 @cache
 def _loaded() -> PlantModel:
     return load()
-
-
-def _declaring(cell: StorageCell, declared: dict[str, Any]) -> StorageCell:
-    return replace(cell, arm=replace(cell.arm, **declared), mobile=replace(cell.mobile, **declared))

@@ -6,8 +6,7 @@ from collections.abc import Sequence
 
 from hypothesis import strategies as st
 
-from arboleda.model.plant_model import PlantModel
-from arboleda.recipes.storage_cell import StorageCell
+from arboleda.model.plant_model import Cell, PlantModel
 from arboleda.simulator.faults import KINDS, Fault
 
 WITHIN_S = 60.0
@@ -35,14 +34,14 @@ def faults(draw: st.DrawFn, model: PlantModel, *, within_s: float = WITHIN_S) ->
     )
 
 
-def _storage(cell: StorageCell) -> st.SearchStrategy[str]:
-    paths = st.sampled_from([path.code for path in cell.paths])
+def _storage(cell: Cell) -> st.SearchStrategy[str]:
+    paths = st.sampled_from([*cell.paths])
     stations = st.integers(0, len(cell.stations) - 1)
     return st.builds(lambda path, station: f"{cell.name} {path} {station}", paths, stations)
 
 
-def _palletizing(cell: StorageCell) -> st.SearchStrategy[str]:
-    names = st.sampled_from([cell.name, cell.arm.name])
+def _palletizing(cell: Cell) -> st.SearchStrategy[str]:
+    names = st.sampled_from([cell.name, cell.roles["arm"].name])
     return names.map(lambda name: f"{name} palletizing")
 
 

@@ -21,6 +21,7 @@ from arboleda.model.sentence import Sentence
 Seen = dict[int, tuple[int, object]]
 """What was met, by its identity: its number, and itself, so that nothing else gets that identity."""
 PLAIN = (str, int, float, bool, bytes, type(None))
+PLAIN_TYPES = frozenset(PLAIN)
 # What py_trees keeps in a node, what only shows how far it came, and what says the same as its name.
 OF_NODES = frozenset(
     [
@@ -90,7 +91,7 @@ def _spell(value: Any, seen: Seen, words: list[str]) -> None:
     """Append the words of a value: one call for each, where nested generators take many."""
     if isinstance(value, Enum):
         words.append(f"{type(value).__qualname__}.{value.name}")
-    elif isinstance(value, PLAIN):
+    elif isinstance(value, PLAIN) or (type(value) is tuple and PLAIN_TYPES.issuperset(map(type, value))):
         words.append(repr(value))
     elif id(value) in seen:
         words.append(f"see {seen[id(value)][0]}")

@@ -8,14 +8,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from functools import partial
-from typing import Literal
 
 from py_trees import common, composites
 from py_trees.behaviour import Behaviour
 
 from arboleda.model.commands import Command
 from arboleda.model.messages import Check, Failure, Reason, SystemStart
-from arboleda.model.plant_model import Pose
+from arboleda.model.plant_model import PieceCheck, Pose
 from arboleda.model.sentence import Phrase, Sentence
 
 from . import parts, zone_plan
@@ -88,7 +87,6 @@ UNENDED = Phrase("recovery.unended", "{arm} had commands that did not end")
 NO_PIECE = Phrase("part.none", "{arm}: no piece at {pose}")
 NOT_GRIPPED = Phrase("part.not_gripped", "{arm}: the piece at {pose} was not gripped")
 SETTLE_S = 1.0  # after the last stop was confirmed or given up
-PieceCheck = bool | Literal["auto"]  # auto: where the board of the robot says what its piece sensor sees
 Visit = tuple[Pose, list[Behaviour]]  # a pose of a robot, and the work to do there
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from arboleda.model.commands import Position
-from arboleda.model.plant_model import PlantModel, Pose, Workspace
+from arboleda.model.plant_model import Cell, PlantModel, Pose, Workspace
 
 Row = dict[str, Any]
 
@@ -16,7 +16,7 @@ def places(model: PlantModel) -> Row:
     Robots and cells that offer no drawing are left out.
     """
     robots = [(cell, robot, robot.drawn()) for cell in model.cells for robot in cell.robots]
-    cells = [(cell.name, cell.drawing) for cell in model.cells]
+    cells = [(cell.name, handover(cell)) for cell in model.cells]
     return {
         "robots": [
             {"name": robot.name, "cell": cell.name, "kind": robot.kind_name, **drawn}
@@ -25,6 +25,24 @@ def places(model: PlantModel) -> Row:
         ],
         "cells": [{"name": name, **drawing} for name, drawing in cells if drawing is not None],
         "zones": [{"zone": zone, "spots": _spots(model, zone)} for zone in model.zones],
+    }
+
+
+def handover(cell: Cell) -> Row | None:
+    """The robots that hand parts over, the poses at which they do, and the stations; None where none do."""
+    if cell.handover is None:
+        return None
+    taker, giver = cell.reach[cell.handover.taker], cell.reach[cell.handover.giver]
+    grid = giver.robot.floor_grid
+    if grid is None or not taker.robot.has_joints:
+        return None
+    return {
+        "arm": taker.robot.name,
+        "mobile": giver.robot.name,
+        "pitch": grid.pitch,
+        "columns": grid.columns,
+        "pickups": [list(taker.by_name[name].joints) for name in cell.handover.poses],
+        "stations": [list(station.joints) for station in cell.stations],
     }
 
 

@@ -59,7 +59,7 @@ def part(run: CellRun) -> Row | None:
     what the tree has done so far. None where nobody draws the work of such a cell.
     """
     cell = run.cell
-    if cell.drawing is None:
+    if cell.handover is None:
         return None
     for holder in cell.holders:
         grip = run.context.parts.grip(holder)
@@ -71,8 +71,11 @@ def part(run: CellRun) -> Row | None:
     gripped = [entry for entry in sent if _grips(entry) is not None]
     if gripped:
         return _put_down(sent, gripped[-1], cell)
-    pose = cell.part_waits(run.task.order.recipe)
-    return {"at": "mobile"} if pose is None else {"at": "pose", "q": list(pose.joints)}
+    group = cell.recipe(run.task.order.recipe).part_from
+    if group is None:
+        return {"at": "mobile"}
+    pose = cell.reach[cell.handover.taker].targets[cell.groups[group][0]]
+    return {"at": "pose", "q": list(pose.joints)}
 
 
 def _put_down(sent: list[Entry], let_go: Entry, cell: Cell) -> Row | None:

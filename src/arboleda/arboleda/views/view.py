@@ -92,17 +92,30 @@ def layout(model: PlantModel) -> dict[str, Any]:
 def _cell_layout(cell: Cell) -> dict[str, Any]:
     return {
         "name": cell.name,
-        **_by_role(cell),
+        **_handover(cell),
         "devices": _devices(cell),
         "stations": len(cell.stations),
-        **cell.described(),
+        **_paths(cell),
         "recipes": forms.recipes(cell),
     }
 
 
-def _by_role(cell: Cell) -> dict[str, str]:
-    """The devices that clients also find under their roles."""
-    return {role: cell.roles[role].name for role in cell.keyed_roles}
+def _handover(cell: Cell) -> dict[str, str]:
+    """The two robots of a handover, which clients also find under their roles."""
+    meet = (cell.handover.taker, cell.handover.giver) if cell.handover else ()
+    return {role: robot.name for role, robot in cell.members if robot.name in meet}
+
+
+def _paths(cell: Cell) -> dict[str, Any]:
+    """The paths of a cell, and the grid of the robot that drives over them."""
+    space = next((space for space in cell.spaces if space.paths), None)
+    grid = space.robot.floor_grid if space else None
+    if space is None or grid is None:
+        return {}
+    return {
+        "grid": {"rows": grid.rows, "columns": grid.columns},
+        "paths": {path.code: list(path.nodes) for path in space.paths},
+    }
 
 
 def _devices(cell: Cell) -> list[dict[str, Any]]:
@@ -196,7 +209,7 @@ def _cell(plant: Plant, cell: CellRun) -> dict[str, Any]:
     return {
         "name": cell.cell.name,
         "state": cell.state.value,
-        **_by_role(cell.cell),
+        **_handover(cell.cell),
         "devices": _devices(cell.cell),
         "task": _task(cell.task, now) if cell.task else None,
         "step": step_of(cell.tree),

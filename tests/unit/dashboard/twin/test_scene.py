@@ -13,8 +13,11 @@ from arboleda.dashboard.twin.bodies import Body
 from arboleda.dashboard.twin.hull import hull
 from arboleda.dashboard.twin.scene import MARGIN, scene
 from arboleda.model.plant_model import Cell, Crossing, PlantModel, Pose, Workspace
+from arboleda.recipes.storage_layout import StorageLayout
 from arboleda.testing import shipped
 from arboleda.views.geometry import places
+
+from ....cells import with_poses
 
 
 def zoned() -> PlantModel:
@@ -22,8 +25,8 @@ def zoned() -> PlantModel:
     plant = shipped("sis_a")
     cell = plant.cells[0]
     ways = (Crossing(a="home", b="station 2", zones=frozenset({"way"})),)
-    pickup = replace(cell.pickup, zones=frozenset({"spot"}))
-    return replace(plant, cells=(replace(cell, pickup=pickup, crossings=ways),), zones=("spot", "way"))
+    pickup = replace(StorageLayout(cell).pickup, zones=frozenset({"spot"}))
+    return replace(plant, cells=(with_poses(cell, *ways, pickup=pickup),), zones=("spot", "way"))
 
 
 def at(frame: list[float]) -> list[float]:
@@ -73,12 +76,13 @@ def test_a_zone_is_around_the_tool_at_its_poses(drawings: dict[str, Body]) -> No
 def test_a_zone_of_a_mobile_robot_is_around_its_node(drawings: dict[str, Body]) -> None:
     plant = zoned()
     (cell,) = plant.cells
+    layout = StorageLayout(cell)
     pose = Pose(name="dock", q=5, zones=frozenset({"dock"}))
-    space = Workspace(robot=cell.mobile, home=Pose(name="home", q=0), poses=(pose,))
-    driven = Cell(name="drive", queue_limit=1, members=(("mobile", cell.mobile),), spaces=(space,))
+    space = Workspace(robot=layout.mobile, home=Pose(name="home", q=0), poses=(pose,))
+    driven = Cell(name="drive", queue_limit=1, members=(("mobile", layout.mobile),), spaces=(space,))
     made = scene(places(replace(plant, cells=(driven,), zones=("dock", "lid"))), drawings)
     (zone,) = made["zones"]  # what no robot that is drawn gets into has no place
-    grid = cell.mobile.grid
+    grid = layout.mobile.grid
     turn = (math.cos(grid.origin.yaw), math.sin(grid.origin.yaw))
     x, y = grid.position(5)
     point = (
@@ -92,9 +96,10 @@ def test_a_zone_of_a_move_covers_the_way_between_its_ends(drawings: dict[str, Bo
     plant = zoned()
     way = scene(places(plant), drawings)["zones"][1]
     cell = plant.cells[0]
-    middle = [a / 2 + b / 2 for a, b in zip(cell.home.q, cell.stations[2].q, strict=True)]
-    base = kinematics.floor((cell.arm.base.x, cell.arm.base.y, cell.arm.base.yaw))
-    for q in (cell.home.q, middle, cell.stations[2].q):
+    layout = StorageLayout(cell)
+    middle = [a / 2 + b / 2 for a, b in zip(layout.home.q, cell.stations[2].q, strict=True)]
+    base = kinematics.floor((layout.arm.base.x, layout.arm.base.y, layout.arm.base.yaw))
+    for q in (layout.home.q, middle, cell.stations[2].q):
         x, y, _ = kinematics.at(kinematics.tool(drawings["ra1"], q, base))
         assert inside((x, y), way["outline"])
 

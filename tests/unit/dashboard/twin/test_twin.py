@@ -13,6 +13,7 @@ from arboleda.dashboard.twin.bodies import Body
 from arboleda.dashboard.twin.twin import Twin
 from arboleda.model.messages import Report, TaskRequest, Verb
 from arboleda.model.plant_model import Cell, Evidence, MotionState, PlantModel
+from arboleda.recipes.storage_layout import StorageLayout
 from arboleda.testing import Rig, shipped
 from arboleda.views import twin_view
 from arboleda.views.geometry import places
@@ -55,7 +56,7 @@ def test_what_is_drawn_solid_is_the_last_report_all_the_time(watched: Watched) -
 def test_a_move_shows_where_it_leads_until_it_ends(watched: Watched) -> None:
     watched.rig.submit("sis_a 0B 7")
     watched.rig.wait_for("sis_a", "move to pick-up")
-    assert watched.robot("ra1")["goal"] == list(watched.rig.plant.model.cells[0].pickup.q)
+    assert watched.robot("ra1")["goal"] == list(StorageLayout(watched.rig.plant.model.cells[0]).pickup.q)
     watched.rig.wait_for("sis_a", "effector on/dwell")
     assert watched.robot("ra1")["goal"] is None
 
@@ -141,7 +142,7 @@ def test_a_robot_that_only_says_whether_it_moves_is_estimated(drawings: dict[str
     assert drawn("rm_sis_a", 6.0)["estimate"] == [0.1, 0.2]
     told(6.1, "ra1", MotionState.MOVING)
     told(8.0, "ra1", MotionState.STOPPED)
-    pickup = list(model.cells[0].pickup.q)
+    pickup = list(StorageLayout(model.cells[0]).pickup.q)
     assert drawn("ra1", 8.0) == {
         "kind": "estimated",
         "q": None,

@@ -95,10 +95,11 @@ class LinuxBoards:
 
     def _arguments(self, robot: Arm) -> Iterator[str]:
         cell = self._model.cell_of[robot.name]
+        home = cell.reach[robot.name].home
         yield from ("--robot", robot.mqtt, "--broker", str(self._broker.address), "--until-eof")
         yield from ("--level", robot.evidence.value)
-        yield f"--at={_pose(robot, cell.home.q)}"
-        for place in dict.fromkeys(pose.q for pose in (*cell.every_pickup, cell.palletizing.pick)):
+        yield f"--at={_pose(robot, home.joints)}"
+        for place in dict.fromkeys(pose.joints for pose in cell.supplies(robot.name)):
             yield f"--place={_pose(robot, place)}"
         if robot.assume_homed:
             yield "--assume-homed"

@@ -6,10 +6,9 @@ from collections.abc import Callable
 
 from arboleda.core.intake import HISTORY
 from arboleda.model.messages import TaskState, Verb
-from arboleda.model.plant_model import PlantModel
+from arboleda.model.plant_model import Cell, PlantModel
 from arboleda.model.task import Task
 from arboleda.recipes.storage import only_stores
-from arboleda.recipes.storage_cell import StorageCell
 
 from ..chance import Dice
 from ..people import any_text
@@ -105,7 +104,7 @@ def _text(world: World, fault: Fault, dice: Dice) -> str:
     cell = world.model.cell(fault.target)
     if not only_stores(cell):
         return any_text(cell, dice)
-    return f"{cell.name} {dice.pick(cell.paths).code} {dice.below(len(cell.stations))}"
+    return f"{cell.name} {dice.pick([*cell.paths])} {dice.below(len(cell.stations))}"
 
 
 def _same_text(world: World, fault: Fault) -> list[str]:
@@ -138,17 +137,17 @@ AGAIN: dict[str, Callable[[World, Fault], list[str]]] = {
     "known id": _known_id,
 }
 
-BAD_TEXTS: dict[str, Callable[[StorageCell], str]] = {
+BAD_TEXTS: dict[str, Callable[[Cell], str]] = {
     "nothing": lambda cell: "",
     "blanks": lambda cell: " \t\n ",
     "a cell": lambda cell: cell.name,
     "no cell": lambda cell: "nobody palletizing",
     "no path": lambda cell: f"{cell.name} ?? 0",
-    "no station": lambda cell: f"{cell.name} {cell.paths[0].code} 999999",
-    "a foreign digit": lambda cell: f"{cell.name} {cell.paths[0].code} \uff10",
+    "no station": lambda cell: f"{cell.name} {next(iter(cell.paths))} 999999",
+    "a foreign digit": lambda cell: f"{cell.name} {next(iter(cell.paths))} \uff10",
     "no such id": lambda cell: f"{cell.name} palletizing #t-1-1",
     "an empty id": lambda cell: f"{cell.name} palletizing #",
-    "too many words": lambda cell: f"{cell.name} {cell.paths[0].code} 0 now",
+    "too many words": lambda cell: f"{cell.name} {next(iter(cell.paths))} 0 now",
     "too long": lambda cell: f"{cell.name} palletizing " * 100,
     "a control character": lambda cell: f"{cell.name}\x00 palletizing",
 }

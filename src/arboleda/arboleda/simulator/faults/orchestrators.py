@@ -87,11 +87,11 @@ def _move(model: PlantModel, robot: str, id: str, dice: Dice) -> Command:
 
 
 def _path(model: PlantModel, robot: str, id: str, dice: Dice) -> Command:
-    cell = model.cell_of[robot]
-    if not cell.is_storage:
-        goals = [pose.q for pose in cell.workspaces[robot].poses] if robot in cell.workspaces else [0]
-        return model.robots[robot].go(id=id, way=(dice.pick(goals),))
-    return FollowPath(id=id, robot=robot, nodes=dice.pick(cell.paths).nodes)
+    space = model.cell_of[robot].reach.get(robot)
+    if space is not None and space.paths:
+        return FollowPath(id=id, robot=robot, nodes=dice.pick(space.paths).nodes)
+    goals = [pose.q for pose in space.poses] if space else [0]
+    return model.robots[robot].go(id=id, way=(dice.pick(goals),))
 
 
 def _verb(model: PlantModel, robot: str, id: str, dice: Dice) -> Command:

@@ -103,7 +103,7 @@ def unchecked_is_as_said(look: Look) -> Iterator[str]:
             continue
         silent = ended.cell.arm.robot.evidence is not Evidence.IDS
         booted = ended.cell.arm.booted_us / 1e6 >= ended.began_at
-        if (Check.GRIP in ended.unchecked) is not (silent or ended.cell.cell.piece_check is False):
+        if (Check.GRIP in ended.unchecked) is not (silent or ended.cell.cell.cell.piece_check is False):
             yield f"{ended.task} is done, and its grip is {_checked(ended, Check.GRIP)}"
         if (Check.RELEASE in ended.unchecked) is not silent and not booted:
             yield f"{ended.task} is done, and its release is {_checked(ended, Check.RELEASE)}"

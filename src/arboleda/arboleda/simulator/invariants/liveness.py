@@ -120,7 +120,7 @@ def zone_requests_end(look: Look) -> Iterable[str]:
 def _overdue(look: Look) -> Iterator[str]:
     for cell in look.record.waiting:
         if cell.waited_s > cell.cell.zone_wait_s + SLACK_S:
-            yield f"{cell.cell.arm.name} waits for its zones for {cell.waited_s:.3f} s"
+            yield f"{cell.layout.arm.name} waits for its zones for {cell.waited_s:.3f} s"
 
 
 @invariant(Trigger.END)

@@ -18,7 +18,7 @@ from arboleda.kinds.mobile import FollowPath
 from arboleda.model.messages import ENDED, Reason, TaskChanged, Verb
 from arboleda.model.plant_model import MotionState, Robot
 from arboleda.model.sentence import Phrase, Sentence
-from arboleda.recipes.storage_cell import StorageCell
+from arboleda.recipes.storage_layout import StorageLayout
 from arboleda.trees.tree_run import IN_RECOVERY
 from arboleda.views.verb_words import ABOUT
 
@@ -242,7 +242,7 @@ def waits_at(cell: KnownCell, text: str, part: Row | None) -> Iterator[str]:
         stored = any(goals[-1] == station.q for station in cell.cell.stations) if goals else True
         expected = None if stored else {"at": "pose", "q": list(goals[-1])}
     elif text.endswith(" palletizing"):
-        expected = {"at": "pose", "q": list(cell.cell.palletizing.pick.q)}
+        expected = {"at": "pose", "q": list(cell.layout.palletizing.pick.q)}
     else:
         expected = {"at": "mobile"}
     if part != expected:
@@ -254,13 +254,13 @@ def _acts(cell: KnownCell) -> Iterator[Any]:
     return (each for each in nodes if type(each).__name__ == "Act")
 
 
-def place(cell: StorageCell) -> Row:
+def place(cell: StorageLayout) -> Row:
     """The values of a cell that never change."""
     return {
         "arm": cell.arm.name,
         "mobile": cell.mobile.name,
         "pitch": cell.mobile.grid.pitch,
         "columns": cell.mobile.grid.columns,
-        "pickups": [list(pose.q) for pose in cell.poses if pose.name.startswith("pick-up")],
+        "pickups": [list(pose.q) for pose in cell.space.poses if pose.name.startswith("pick-up")],
         "stations": [list(station.q) for station in cell.stations],
     }

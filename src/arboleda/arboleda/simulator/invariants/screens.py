@@ -17,6 +17,7 @@ from arboleda.model.errors import PayloadError
 from arboleda.model.messages import OperatorRequest
 from arboleda.model.plant_model import Evidence
 from arboleda.model.sentence import OWN
+from arboleda.recipes.storage_layout import StorageLayout
 from arboleda.views import diagnostics, geometry, twin_view, view
 from arboleda.wire import status
 
@@ -154,9 +155,9 @@ def _cell(look: Look, cell: KnownCell) -> Row:
     tasks, run, now = look.record.tasks, cell.run, look.record.stepped_at
     expected: Row = {
         "state": cell.state.value,
-        "arm": cell.cell.arm.name,
-        "mobile": cell.cell.mobile.name,
-        "devices": [_device("arm", cell.cell.arm, "effector"), _device("mobile", cell.cell.mobile, None)],
+        "arm": cell.layout.arm.name,
+        "mobile": cell.layout.mobile.name,
+        "devices": [_device("arm", cell.layout.arm, "effector"), _device("mobile", cell.layout.mobile, None)],
         "queue": list(tasks.queues[cell.name]),
         "paused": cell.paused,
     }
@@ -306,7 +307,7 @@ def _drawn(look: Look, drawn: Row) -> Iterator[str]:
         yield from _unlike(f"{row['name']} as drawn", row, {**wanted, "heard_at": known.heard_at})
         yield from _ends(look, known, row)
     for name, part in drawn["parts"].items():
-        kept = look.record.effector_of(look.record.cells[name].cell.arm.name)
+        kept = look.record.effector_of(look.record.cells[name].layout.arm.name)
         if (part is not None and part["at"] == "arm") is not (kept != "off"):
             yield f"the part of {name} is drawn at {part}, its effector is {kept}"
         if kept != "off" and part is not None and part.get("sure") is not (kept == "on"):
@@ -405,21 +406,22 @@ def plans_show_the_model(look: Look) -> Iterator[str]:
         {"plant": model.name, "zones": list(model.zones), "no_stop": without_stop, "places": placed},
     )
     for cell in model.cells:
-        grid = cell.mobile.grid
+        layout = StorageLayout(cell)
+        grid = layout.mobile.grid
         yield from _unlike(
             cell.name,
             shown[cell.name],
             {
-                "arm": cell.arm.name,
-                "mobile": cell.mobile.name,
+                "arm": layout.arm.name,
+                "mobile": layout.mobile.name,
                 "grid": {"rows": grid.rows, "columns": grid.columns},
-                "paths": {path.code: list(path.nodes) for path in cell.paths},
+                "paths": {path.code: list(path.nodes) for path in layout.paths},
                 "stations": len(cell.stations),
             },
         )
         for robot in cell.robots:
             yield from _unlike(robot.name, stand[robot.name], PLACED[type(robot)](cell, robot))
-        yield from _unlike(f"the place of {cell.name}", around[cell.name], rows.place(cell))
+        yield from _unlike(f"the place of {cell.name}", around[cell.name], rows.place(layout))
     for row in placed["zones"]:
         yield from _spots(look, row)
 
@@ -448,8 +450,9 @@ def _mobile_placed(cell: Any, mobile: Mobile) -> Row:
 
 def _spots(look: Look, row: Row) -> Iterator[str]:
     cells, zone = look.world.model.cells, row["zone"]
-    inside = sum(zone in pose.zones for cell in cells for pose in cell.poses)
-    ways = sum(zone in way.zones for cell in cells for way in cell.crossings)
+    spaces = [space for cell in cells for space in cell.spaces]
+    inside = sum(zone in pose.zones for space in spaces for pose in space.poses)
+    ways = sum(zone in way.zones for space in spaces for way in space.crossings)
     if len(row["spots"]) != inside + ways:
         yield f"zone {zone} is shown with {len(row['spots'])} spots"
 

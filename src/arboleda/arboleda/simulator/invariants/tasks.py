@@ -20,6 +20,7 @@ from arboleda.model.messages import (
 )
 from arboleda.model.plant_model import Evidence
 from arboleda.model.sentence import Sentence
+from arboleda.recipes.storage_layout import StorageLayout
 
 from ..recorded.cells import KnownCell
 from ..recorded.robots import StopProgress
@@ -283,12 +284,13 @@ def _cannot_be_done(look: Look, said: TaskChanged) -> bool:
     """
     order = look.world.plant.intake.tasks[said.task].order
     cell = look.world.model.cell(order.cell)
-    mobile = look.truth.robot(cell.mobile.name)
+    layout = StorageLayout(cell)
+    mobile = look.truth.robot(layout.mobile.name)
     if said.reason is Reason.ZONE_UNAVAILABLE:
         return look.record.cells[order.cell].behind_work
-    if said.reason in PIECES and cell.arm.evidence is not Evidence.IDS:
+    if said.reason in PIECES and layout.arm.evidence is not Evidence.IDS:
         return True
-    led_there = cell.drive_to_start and cell.mobile.evidence is not Evidence.STATE
+    led_there = cell.drive_to_start and layout.mobile.evidence is not Evidence.STATE
     if led_there or "path" not in order.values or not isinstance(mobile, MobileTruth):
         return False
     return mobile.node != order.values["path"].nodes[0]

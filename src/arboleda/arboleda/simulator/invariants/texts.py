@@ -93,11 +93,11 @@ def _meant(model: PlantModel, text: str) -> tuple[str, str, str | None] | None:
     name, *rest = (word.lower() for word in words[:2])
     cell = next((each for each in model.cells if each.name.lower() == name), None)
     if len(words) == 2 and rest == ["palletizing"]:
-        cell = cell or next((each for each in model.cells if each.arm.name.lower() == name), None)
+        cell = cell or next((each for each in model.cells if each.roles["arm"].name.lower() == name), None)
         return (cell.name, f"{cell.name} palletizing", id) if cell else None
     if cell is None or len(words) != 3:
         return None
-    code = next((path.code for path in cell.paths if path.code.lower() == rest[0]), None)
+    code = next((code for code in cell.paths if code.lower() == rest[0]), None)
     if code is None:
         return None
     if words[2] not in map(str, range(len(cell.stations))):

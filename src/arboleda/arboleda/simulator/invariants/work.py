@@ -8,7 +8,7 @@ from itertools import dropwhile
 from arboleda.dispatch.ledger import State
 from arboleda.kinds.arm import Arm, MoveJoints
 from arboleda.model.plant_model import Evidence, Pose
-from arboleda.recipes.storage_cell import StorageCell
+from arboleda.recipes.storage_layout import StorageLayout
 
 from ..recorded.cells import KnownCell
 from ..recorded.commands import SentCommand
@@ -26,31 +26,27 @@ def recovery_takes_its_zones(look: Look) -> Iterator[str]:
     """An arm that recovers from where nobody knows moves only while it holds all that its way may cross."""
     for sent in look.record.commands.new:
         cell = look.record.cells[sent.entry.cell] if sent.entry else None
-        if cell is None or not cell.cell.zones or not isinstance(sent.command, MoveJoints):
+        if cell is None or not cell.layout.space.zones or not isinstance(sent.command, MoveJoints):
             continue
-        if cell.run.run.recovering and _sets_out(cell, sent) and not _is_seen(look, cell.cell):
+        if cell.run.run.recovering and _sets_out(cell, sent) and not _is_seen(look, cell.layout):
             yield from _lacking(look, cell, sent)
 
 
 def _lacking(look: Look, cell: KnownCell, sent: SentCommand) -> Iterator[str]:
-    held = look.world.plant.zones.held_by(cell.cell.arm.name)
+    held = look.world.plant.zones.held_by(cell.layout.arm.name)
     if cell.held_before_recovery:
         return  # it stands in zones that it holds already
-    pickups = _pickups(cell.cell)
+    pickups = cell.layout.pickups
     goals = [pickup for pickup in pickups if sent.command.q in (pickup.q, pickup.above)] or pickups
-    lacking = min((_of_any_way(cell.cell, pickup) - held for pickup in goals), key=len)
+    lacking = min((_of_any_way(cell.layout, pickup) - held for pickup in goals), key=len)
     if lacking:
         yield f"{sent} leaves from an unknown place without zone {', '.join(sorted(lacking))}"
 
 
-def _pickups(cell: StorageCell) -> list[Pose]:
-    return [cell.pickup, *(pose for _, pose in cell.pickups)]
-
-
-def _of_any_way(cell: StorageCell, pickup: Pose) -> frozenset[str]:
+def _of_any_way(cell: StorageLayout, pickup: Pose) -> frozenset[str]:
     """The zones of a pick-up and home, and of every move that leads there."""
     ends = {pickup.name, cell.home.name}
-    crossed = (each.zones for each in cell.crossings if {each.a, each.b} & ends)
+    crossed = (each.zones for each in cell.space.crossings if {each.a, each.b} & ends)
     return pickup.zones.union(cell.home.zones, *crossed)
 
 
@@ -60,19 +56,19 @@ def _sets_out(cell: KnownCell, sent: SentCommand) -> bool:
     With approach heights the arm rises first: its first move, and all that repeat that one, do not count.
     """
     moves = cell.recovery_moves
-    if any(pose.above for pose in cell.cell.poses):
+    if any(pose.above for pose in cell.layout.space.poses):
         moves = [*dropwhile(lambda each: each.state is not State.DONE, moves)][1:]
     goals = [each.command.q for each in moves if isinstance(each.command, MoveJoints)]
-    ends = [cell.cell.home.q, *(spot for each in _pickups(cell.cell) for spot in (each.q, each.above))]
+    ends = [cell.layout.home.q, *(spot for each in cell.layout.pickups for spot in (each.q, each.above))]
     return [goal for goal in goals if goal in ends] == [sent.command.q]
 
 
-def _is_seen(look: Look, cell: StorageCell) -> bool:
+def _is_seen(look: Look, cell: StorageLayout) -> bool:
     """True if the arm was last seen at, or above, a pose outside of all zones; at `state` nobody sees it."""
     arm, q = cell.arm, look.record.robots[cell.arm.name].q
     if arm.evidence is Evidence.STATE:
         return True
-    spots = [spot for pose in cell.poses if not pose.zones for spot in (pose.q, pose.above) if spot]
+    spots = [spot for pose in cell.space.poses if not pose.zones for spot in (pose.q, pose.above) if spot]
     return q is not None and any(_near(arm, q, spot) for spot in (*spots, (0.0,) * len(arm.joints)))
 
 

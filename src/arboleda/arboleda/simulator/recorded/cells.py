@@ -11,7 +11,8 @@ from py_trees.common import Status
 
 from arboleda.core.cell import CellRun
 from arboleda.core.cell_states import CellState
-from arboleda.recipes.storage_cell import StorageCell
+from arboleda.model.plant_model import Cell
+from arboleda.recipes.storage_layout import StorageLayout
 from arboleda.trees.leaves import Act, TakeZones
 
 from .commands import SentCommand
@@ -32,8 +33,9 @@ class KnownCell:
     pass since the last news although the cell was not held.
     """
 
-    def __init__(self, cell: StorageCell) -> None:
+    def __init__(self, cell: Cell) -> None:
         self.cell = cell
+        self.layout = StorageLayout(cell)
         self.name = cell.name
         self.stopped = False
         self.retries = 0

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 
 from arboleda.model.messages import OperatorAnswer, TaskState, Verb
-from arboleda.recipes.storage_cell import StorageCell
+from arboleda.recipes.storage_layout import StorageLayout
 
 from .scopes import Scopes
 from .tasks import KnownTask, Tasks
@@ -16,7 +16,7 @@ Stations = set[int]
 class Racks:
     """Stations of each cell that are `full`, and those that may be, as a task began to fill them."""
 
-    def __init__(self, cells: Iterable[StorageCell], scopes: Scopes) -> None:
+    def __init__(self, cells: Iterable[StorageLayout], scopes: Scopes) -> None:
         self.cells = {cell.name: cell for cell in cells}
         self.full: dict[str, Stations] = {name: set() for name in self.cells}
         self._begun: dict[str, Stations] = {name: set() for name in self.cells}
@@ -53,7 +53,7 @@ class Racks:
         """The stations of a scope, as `sis_a 7` or `sis_a`, by their cells; the scope may be any word."""
         name, _, station = scope.partition(" ")
         robots = self._scopes.robots(name)
-        cells = [cell for cell in self.cells.values() if not {*cell.holders}.isdisjoint(robots)]
+        cells = [cell for cell in self.cells.values() if not {*cell.cell.holders}.isdisjoint(robots)]
         return {
             cell.name: {n for n in range(len(cell.stations)) if station in ("", str(n))} for cell in cells
         }

@@ -12,7 +12,7 @@ from arboleda.kinds.mobile import FollowPath
 from arboleda.model.commands import Command
 from arboleda.model.messages import TaskState, Verb
 from arboleda.model.plant_model import Pose
-from arboleda.recipes.storage_cell import StorageCell
+from arboleda.recipes.storage_layout import StorageLayout
 
 from .commands import SentCommand
 from .robots import KnownRobot
@@ -71,7 +71,7 @@ class Works:
         for change in tasks.changes:
             said = change.said
             if said.state is TaskState.RUNNING and not change.answer and said.cell in self._cells:
-                cell = self._cells[said.cell].cell
+                cell = self._cells[said.cell].layout
                 steps = list(_steps(cell, said.text.split(), self._robots[cell.mobile.name], now))
                 self._works[said.cell] = Work(said.task, steps, now)
         for sent in new:
@@ -166,16 +166,16 @@ def _is_again(step: Step | None, expected: Step) -> bool:
     return _fits(step, expected) or (step is not None and step[0] == "path" and expected[0] == "path")
 
 
-def _steps(cell: StorageCell, words: list[str], mobile: KnownRobot, now: float) -> Iterator[Step]:
+def _steps(cell: StorageLayout, words: list[str], mobile: KnownRobot, now: float) -> Iterator[Step]:
     """The steps that a task of this text commands if it begins now, in order."""
     if words[1] == "palletizing":
         yield "move", cell.home.q
         yield from _at(cell.palletizing.pick, list(_grip(cell)))
         yield from _at(cell.palletizing.place, [("effector", False)])
         return
-    nodes = next(path.nodes for path in cell.paths if path.code == words[1])
-    pickup = next((pose for exit, pose in cell.pickups if words[1].endswith(exit)), cell.pickup)
-    if cell.drive_to_start and _stands_on(mobile, now) not in (None, nodes[0]):
+    nodes = cell.path(words[1]).nodes
+    pickup = cell.pickup_of(cell.path(words[1]))
+    if cell.cell.drive_to_start and _stands_on(mobile, now) not in (None, nodes[0]):
         yield TO_START, nodes[0]
     yield "path", nodes
     yield from _at(pickup, list(_grip(cell)))
@@ -193,8 +193,8 @@ def _at(pose: Pose, work: list[Step]) -> Iterator[Step]:
     yield from (*above, ("move", pose.q), *work, *above)
 
 
-def _grip(cell: StorageCell) -> Iterator[Step]:
+def _grip(cell: StorageLayout) -> Iterator[Step]:
     yield "effector", True
-    for _ in range(cell.retry.times if cell.piece_check is not False else 0):
+    for _ in range(cell.cell.retry.times if cell.cell.piece_check is not False else 0):
         yield OPTIONAL, ("effector", False)
         yield OPTIONAL, ("effector", True)

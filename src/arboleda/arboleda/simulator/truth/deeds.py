@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from arboleda.model.messages import Check
 from arboleda.model.plant_model import Evidence, Pose
 from arboleda.model.task import Order
-from arboleda.recipes.storage_cell import StorageCell
+from arboleda.recipes.storage_layout import StorageLayout
 from arboleda.wire.payloads import EffectorGoal, PathGoal
 
 from .arm import NOWHERE, ArmTruth
@@ -71,7 +71,7 @@ class CellTruth:
     `puts_down`: its effector was opened for one of these in this step.
     """
 
-    def __init__(self, cell: StorageCell, arm: ArmTruth | None, mobile: MobileTruth | None) -> None:
+    def __init__(self, cell: StorageLayout, arm: ArmTruth | None, mobile: MobileTruth | None) -> None:
         self.cell = cell
         self.arm = arm
         self.mobile = mobile
@@ -98,13 +98,13 @@ class CellTruth:
         """The pose at which the part of the last task is gripped."""
         if self.order is None or "station" not in self.order.values:
             return self.cell.pickup if self.order is None else self.cell.palletizing.pick
-        code = path.code if (path := self.order.values.get("path")) else ""
-        return next((pose for exit, pose in self.cell.pickups if code.endswith(exit)), self.cell.pickup)
+        path = self.order.values.get("path")
+        return self.cell.pickup_of(path) if path else self.cell.pickup
 
     @property
     def pick_poses(self) -> tuple[Pose, ...]:
         """All poses at which a part of the cell may be gripped."""
-        return (self.cell.pickup, *(pose for _, pose in self.cell.pickups), self.cell.palletizing.pick)
+        return (*self.cell.pickups, self.cell.palletizing.pick)
 
     @property
     def place(self) -> Pose | None:

@@ -8,6 +8,7 @@ from arboleda.core import text
 from arboleda.model.commands import Command, Switch
 from arboleda.model.messages import OperatorAnswer, TaskChanged, TaskState, Verb
 from arboleda.model.task import Order
+from arboleda.recipes.storage_layout import StorageLayout
 
 from ..world import World
 from .deeds import CellTruth, EndedTask
@@ -37,7 +38,7 @@ class Truth(RobotsTruth):
         self.parts = Parts()
         roles = [
             (cell, self.arms.get(cell.arm.name), self.mobiles.get(cell.mobile.name))
-            for cell in world.model.cells
+            for cell in map(StorageLayout, world.model.cells)
         ]
         self.cells = {cell.name: CellTruth(cell, arm, mobile) for cell, arm, mobile in roles}
         for arm in self.arms.values():
