@@ -417,8 +417,11 @@ class TakeZones(Await):
         self.zones: frozenset[str] = frozenset()
 
     def initialise(self) -> None:
-        super().initialise()
         self.zones = self.needed()
+        if self.zones or self.recovers:
+            super().initialise()
+        else:  # it waits for nothing, so nobody has to be woken
+            self.began = self.until = self.time.now
 
     def update(self) -> Status:
         due = self.time.now >= self.until
@@ -447,6 +450,13 @@ class LeaveZones(Await):
         failure = Failure(reason=Reason.ZONE_UNAVAILABLE, sentence=NOT_OUTSIDE(arm=robot))
         left = partial(context.zones.leave, robot)
         super().__init__(name, context, left, context.timing.stop_timeout_s, lambda: failure)
+        self.holds = partial(context.zones.held_by, robot)
+
+    def initialise(self) -> None:
+        if self.holds():
+            super().initialise()
+        else:  # it waits for nothing, so nobody has to be woken
+            self.began = self.until = self.time.now
 
 
 class TakeDevices(Await):
