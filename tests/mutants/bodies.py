@@ -44,7 +44,7 @@ ZONES = (
     mutant(
         "zone_entered_only_when_held",
         "A leg's zones are taken one pose too late, and nothing guards them.",
-        edit(steps.visit, "if leg.start == index and", "if leg.start + 1 == index and"),
+        edit(steps.tour, "if leg.start == index]", "if leg.start + 1 == index]"),
         edit(CellZones.objection, "if not missing:", "if missing is not None:"),
         seeds=SHARED,
     ),
@@ -143,9 +143,9 @@ GRIP = (
         "one_pick_one_place",
         "A storage task fetches its part twice.",
         edit(
-            storage.storage,
-            "(cell.home, []),",
-            "(pickup, steps.grip(context, arm, pickup, check=check)), (cell.home, []),",
+            storage.storage.function,
+            "Place(station), HOME",
+            "Place(station), Pick(pickup), HOME",
         ),
         weather="none",
     ),

@@ -8,8 +8,8 @@ from arboleda.core.operator import Operator
 from arboleda.core.plant import Plant
 from arboleda.dispatch import evidence
 from arboleda.dispatch.dispatcher import Dispatcher
-from arboleda.recipes import storage
 from arboleda.simulator.run import NO_EXCEPTION
+from arboleda.trees import paths
 from arboleda.trees.leaves import Dwell, TakeZones
 from arboleda.trees.tree_run import TreeRun
 from arboleda.wire import strict
@@ -142,9 +142,9 @@ TASKS = (
         "no_internal_failure",
         "A path is cut where its robot stands, even where nobody knows that.",
         edit(
-            storage._follow,
-            "elif known is None or not cell.drive_to_start:",
-            "elif not cell.drive_to_start:",
+            paths.follow,
+            "if node is None or not context.cell.drive_to_start:",
+            "if not context.cell.drive_to_start:",
         ),
         seeds=SHARED,
         weather={"brown_out": 30.0},

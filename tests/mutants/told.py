@@ -11,7 +11,7 @@ from arboleda.core.readiness import Readiness
 from arboleda.dispatch import evidence
 from arboleda.dispatch.belief import Belief
 from arboleda.dispatch.dispatcher import Dispatcher
-from arboleda.recipes import storage
+from arboleda.recipes.parameters import Slot
 from arboleda.trees import steps
 from arboleda.trees.cell_zones import CellZones
 from arboleda.trees.stations import Stations
@@ -82,7 +82,7 @@ PEOPLE = (
     mutant(
         "texts_mean_what_they_say",
         "The last station of a rack is not known.",
-        edit(storage._numbers, "range(len(cell.stations))]", "range(len(cell.stations) - 1)]"),
+        edit(Slot._numbers, "range(len(", "range(-1 + len("),
         weather="none",
     ),
     mutant(

@@ -20,7 +20,7 @@ Stage = Callable[..., tuple[Rig, Witness]]
 TASK, STATION = "sis_a 1B 7", "station 7"
 STEPS = [
     "system start/dwell",
-    "drive to node 1",
+    "be at node 1",
     "drive path 1B",
     "move to pick-up",
     "piece there",

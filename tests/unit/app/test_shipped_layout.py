@@ -106,22 +106,20 @@ def test_a_task_takes_the_part_from_the_mobile_and_puts_it_into_its_station(task
     order = text.parse(task, shipped())
     cell = CELLS[order.cell]
     layout = StorageLayout(cell)
-    pickup, tool = (
-        layout.pickup_of(order.values["path"]),
-        held(layout.arm, layout.pickup_of(order.values["path"])),
-    )
-    top = carried(layout.mobile, order.values["path"].nodes[-1])
+    path, place = layout.path(order.values["path"]), layout.space.targets[order.values["station"]]
+    pickup = layout.pickup_of(path)
+    tool, top = held(layout.arm, pickup), carried(layout.mobile, path.nodes[-1])
     assert math.dist(tool[0], top) < FEW_MM
     assert tool[1][2] < tool[0][2], "the part hangs below the tool"
-    station = held(layout.arm, order.values["station"])
+    station = held(layout.arm, place)
     assert station[0][2] - station[2][2] == pytest.approx(PART_HEIGHT_M, abs=1e-4), "it stands upright"
     assert station[2][2] > 0
-    others = [middle for name, middle in stored(cell).items() if name != order.values["station"].name]
-    for q in on_the_way(layout.arm, pickup, order.values["station"]):
+    others = [middle for name, middle in stored(cell).items() if name != place.name]
+    for q in on_the_way(layout.arm, pickup, place):
         _, middle, low = part_at(layout.arm, q)
         assert low[2] > 0
         assert not any(strikes(middle, other) for other in others)
-    for q in on_the_way(layout.arm, order.values["station"], layout.home):
+    for q in on_the_way(layout.arm, place, layout.home):
         tip, _, _ = part_at(layout.arm, q)
         assert all(tip[2] > z + PART_HEIGHT_M / 2 - FEW_MM or away(tip, (x, y)) for x, y, z in others)
 

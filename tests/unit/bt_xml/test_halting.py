@@ -213,6 +213,8 @@ IN_PYTHON = {
 NO_FRAMES = {
     "devices",
     "device",
+    "group",
+    "handover",
     "run",
     "using",
     "choose",

@@ -292,11 +292,11 @@ def test_a_leaf_that_raises_fails_its_task_and_halts_its_robot(
     plant = hand(Evidence.IDS)
     monkeypatch.setattr(leaves.Act, "update", raises)
     plant.awake()
-    plant.submit("sis_a 0B 7")
+    plant.submit("sis_a palletizing")
     plant.wait(0.2)
     assert last_change(plant).reason is Reason.INTERNAL
     assert "ZeroDivisionError" in str(last_change(plant).sentence)
-    assert [(stop.robot, stop.mode) for stop in plant.commands(Stop)] == [("rm_sis_a", StopMode.HALT)]
+    assert [(stop.robot, stop.mode) for stop in plant.commands(Stop)] == [("ra1", StopMode.HALT)]
     plant.submit("sis_b 1C 3")
     assert last_change(plant).state.value == "running"
 

@@ -124,7 +124,7 @@ def test_the_failed_step_of_a_recipe_of_ones_own_is_named() -> None:
     assert cause.startswith('Failed in step "oven bake 5": oven needs lid to be closed')
     task = here.story.task_face("t-1000-1", "en")
     failed = [key for key, node in task.items() if key.startswith("node/#task") and node["failed"]]
-    assert "node/#task/0.1.1" in failed
+    assert "node/#task/0.2" in failed
 
 
 def test_there_is_no_twin_where_nothing_is_drawn() -> None:

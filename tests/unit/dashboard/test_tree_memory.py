@@ -81,7 +81,7 @@ def test_the_changes_tell_of_steps_each_once(told: Callable[..., Any]) -> None:
     rig.submit("sis_a 0B 7")
     rig.wait_for("sis_a", "effector on/dwell")
     told_of = [(str(change.name), change.status) for change in rig.story.trees["sis_a"].changes]
-    done = ("system start", "drive path 0B", "move to pick-up", "piece there")
+    done = ("system start", "be at node 0", "drive path 0B", "move to pick-up", "piece there")
     assert told_of == [*((name, "success") for name in done), ("grip", "running")]
 
 
@@ -123,11 +123,11 @@ def test_a_tree_that_ended_between_two_snapshots_is_kept_though_the_next_one_run
     rig.submit("sis_a 0B 3")
     rig.wait_for("sis_a", "move to home")
     assert see(memory, rig) is None
-    rig.wait_for("sis_a", "drive to node 0")
+    rig.wait_for("sis_a", "be at node 0")
     ended = see(memory, rig)
     assert ended is not None and ended.task == first
     assert set(ended.statuses.values()) == {"success", "idle"}
-    assert memory.task != first and "drive to node 0" in {str(row["name"]) for row in memory.rows}
+    assert memory.task != first and "be at node 0" in {str(row["name"]) for row in memory.rows}
 
 
 @pytest.mark.parametrize(("verb", "came_to"), [(Verb.ABANDON, "failure"), (Verb.CANCEL, "halted")])

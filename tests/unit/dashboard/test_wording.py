@@ -17,7 +17,7 @@ from arboleda.model.messages import Reason, TaskState, Verb
 from arboleda.model.sentence import Sentence
 from arboleda.plant_file.poses import HOME, STATION
 from arboleda.recipes import storage
-from arboleda.trees import steps
+from arboleda.trees import paths, steps
 from arboleda.trees.tree_run import IN_RECOVERY
 from arboleda.views.tree_view import KINDS
 
@@ -73,7 +73,7 @@ def test_every_word_of_the_plant_has_a_name(language: str, group: str, known: se
         ),
         (belief.OFFLINE.said(robot="ra1"), "ra1 is offline", "ra1 está sin conexión"),
         (
-            dispatcher.NO_TELEMETRY(robot="rm_sis_a", seconds=1.5, doing=storage.DRIVING(path="0B")),
+            dispatcher.NO_TELEMETRY(robot="rm_sis_a", seconds=1.5, doing=paths.DRIVING(path="0B")),
             "rm_sis_a: no telemetry for 1.5 s while driving path 0B",
             "rm_sis_a: sin telemetría durante 1.5 s mientras estaba recorriendo el camino 0B",
         ),

@@ -287,15 +287,15 @@ def a_part_from_nowhere(patch: Patch) -> Watch:
 
 def twice(order: Any, context: Context) -> Any:
     """A storage recipe that stores two parts."""
-    layout, station = StorageLayout(context.cell), order.values["station"]
+    layout = StorageLayout(context.cell)
+    station = layout.space.targets[order.values["station"]]
     arm, pickup = layout.arm.name, layout.pickup
 
     def once() -> list[Any]:
         gripped = steps.grip(context, arm, pickup, check=False)
         return [(pickup, gripped), (station, steps.let_go(context, arm, station, check=False))]
 
-    way = (layout.home, pickup, station, pickup, station)
-    return steps.task("storage", steps.visit(context, arm, way, [*once(), *once()]), context)
+    return steps.task("storage", steps.tour(context, arm, [*once(), *once()]), context)
 
 
 def two_parts(patch: Patch) -> Watch:

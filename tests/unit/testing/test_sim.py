@@ -10,7 +10,7 @@ from py_trees.composites import Sequence
 
 from arboleda.model.task import Order
 from arboleda.recipes import Kit, recipe, work
-from arboleda.recipes import storage as recipes
+from arboleda.recipes.storage import storage
 from arboleda.recipes.storage_layout import StorageLayout
 from arboleda.simulator.invariants.invariant import Look, Trigger, invariant
 from arboleda.testing import Misuse, Sim, shipped
@@ -199,7 +199,7 @@ def test_the_timeline_rounds_and_is_cut(sim: Sim) -> None:
 
 def unhurried(order: Order, context: Context) -> Behaviour:
     """The shipped recipe after a rest."""
-    children = [Dwell("rest", context.time, 3.0), recipes.storage(order, context)]
+    children = [Dwell("rest", context.time, 3.0), storage.build(order, context)]
     return Sequence("unhurried", memory=True, children=children)
 
 
@@ -294,7 +294,7 @@ def test_what_means_nothing_gets_one_sentence(sim: Sim, ask, sentence: str, hint
     assert "\n" not in str(refusal.value)
 
 
-@pytest.mark.parametrize("choice", [("plant", None), ("recipe", "storage", recipes.storage), ("without",)])
+@pytest.mark.parametrize("choice", [("plant", None), ("recipe", "storage", storage.build), ("without",)])
 def test_what_is_simulated_is_chosen_before_it_starts(sim: Sim, choice: tuple[object, ...]) -> None:
     sim.run(1.0)
     name, *arguments = choice

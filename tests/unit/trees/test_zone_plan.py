@@ -10,7 +10,7 @@ import pytest
 
 from arboleda.model.errors import ConfigError
 from arboleda.model.plant_model import Crossing, Pose, Workspace
-from arboleda.recipes.storage import palletizing_way, plan_problems, storage_way
+from arboleda.recipes.storage import plan_problems
 from arboleda.recipes.storage_layout import StorageLayout
 from arboleda.testing import shipped
 from arboleda.trees.zone_plan import Leg, entered, passed, plan, recovery_zones
@@ -35,7 +35,7 @@ def cell(*crossings: tuple[str, str, str], **zones: str) -> StorageLayout:
 
 
 def storage(made: StorageLayout) -> list[Any]:
-    way = storage_way(made, made.pickup, made.stations[STATION], made.home)
+    way = (made.home, made.pickup, made.stations[STATION], made.home)
     return [(leg.start, leg.end, leg.zones) for leg in plan(made.space, way, made.pickup)]
 
 
@@ -82,9 +82,9 @@ def test_a_part_that_may_have_to_go_back_needs_the_zone_of_the_pick_up() -> None
 def test_an_arm_that_stands_at_a_station_starts_there() -> None:
     made = cell(("station 8", "pick-up", "x"), ("home", "station 8", "y"))
     start = made.palletizing.place
-    legs = plan(made.space, storage_way(made, made.pickup, made.stations[STATION], start), made.pickup)
+    legs = plan(made.space, (start, made.pickup, made.stations[STATION], made.home), made.pickup)
     assert legs[0] == Leg(start=0, end=1, zones=frozenset({"x", "y"}))
-    legs = plan(made.space, palletizing_way(made, start), made.pickup)
+    legs = plan(made.space, (start, made.home, made.palletizing.pick, made.palletizing.place), made.pickup)
     assert [(leg.start, leg.end) for leg in legs] == [(0, 1), (1, 2), (2, 3)]
     assert "y" in legs[0].zones
 
@@ -93,7 +93,7 @@ def test_an_arm_that_stands_at_a_station_starts_there() -> None:
 def test_a_way_starts_and_ends_outside(name: str) -> None:
     made = cell(**{name.replace(" ", ""): "x"})
     with pytest.raises(ConfigError, match=f"{name} lies in zone x, so no way may start or end there"):
-        plan(made.space, palletizing_way(made, made.home), made.pickup)
+        plan(made.space, (made.home, made.home, made.palletizing.pick, made.palletizing.place), made.pickup)
 
 
 def test_no_problem_with_poses_outside_or_passed_through() -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Callable, Collection, Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from enum import Enum
 from functools import cached_property
@@ -295,10 +295,10 @@ class Path:
 
 @dataclass(frozen=True, kw_only=True)
 class Handover:
-    """Poses at which one robot of a cell, the `taker`, takes the parts that another one, the `giver`, brings.
+    """Targets at which one robot of a cell, the `taker`, takes the parts that another, the `giver`, brings.
 
-    Robots and poses go by their names. `by_path` has the poses of the giver's paths by code; `otherwise` is
-    the pose for all other paths.
+    Both robots go by their names. `by_path` has the targets of the giver's paths by code; `otherwise` is the
+    target after all other paths.
     """
 
     taker: str
@@ -307,12 +307,12 @@ class Handover:
     by_path: tuple[tuple[str, str], ...] = ()
 
     @property
-    def poses(self) -> tuple[str, ...]:
-        """The poses, each once; `otherwise` comes first."""
-        return tuple(dict.fromkeys((self.otherwise, *(pose for _, pose in self.by_path))))
+    def targets(self) -> tuple[str, ...]:
+        """The targets, each once; `otherwise` comes first."""
+        return tuple(dict.fromkeys((self.otherwise, *(target for _, target in self.by_path))))
 
     def after(self, code: str) -> str:
-        """The pose at which the taker meets a giver that has come on this path."""
+        """The target at which the taker meets a giver that has come on this path."""
         return dict(self.by_path).get(code, self.otherwise)
 
 
@@ -353,6 +353,10 @@ class Workspace:
         """The poses by the names that recipes and tasks have for them."""
         named = {target: self.by_name[pose] for target, pose in self.target_names}
         return named or self.by_name
+
+    def at(self, targets: Iterable[str]) -> tuple[Pose, ...]:
+        """The poses of these targets, each once."""
+        return tuple(dict.fromkeys(self.targets[target] for target in targets))
 
     def path(self, code: str) -> Path:
         """The path with this code."""
@@ -496,7 +500,7 @@ class Cell:
         """The pose at which the taker meets a giver that stands there, by the first path with this end."""
         assert self.handover is not None
         ends = (path.code for path in self.reach[self.handover.giver].paths if path.nodes[-1] == position)
-        return self.reach[self.handover.taker].by_name[self.handover.after(next(ends, ""))]
+        return self.reach[self.handover.taker].targets[self.handover.after(next(ends, ""))]
 
     @cached_property
     def robots(self) -> tuple[Robot, ...]:

@@ -15,7 +15,7 @@ from arboleda.model.plant_model import STATIONS, Cell, Handover, Pose, Retry, Wo
 from arboleda.model.plant_model import Path as Route
 from arboleda.model.sentence import OWN
 from arboleda.recipes.storage import RECIPES
-from arboleda.recipes.storage_layout import ARM, HOME, MOBILE, PALLETIZING
+from arboleda.recipes.storage_layout import ARM, HOME, MOBILE, PALLETIZING_TARGETS
 
 from . import rack
 from .document import Document, Place
@@ -106,12 +106,11 @@ def _of_mobile(the_mobile: Mobile, routes: tuple[Route, ...]) -> Workspace:
 
 def _handover(the_arm: Arm, the_mobile: Mobile, routes: tuple[Route, ...], poses: ArmPoses) -> Handover:
     ways = [(exit, path.code) for exit, _ in poses.pickups for path in routes if exit_of(path) == exit]
-    own = dict(poses.pickups)
     return Handover(
         taker=the_arm.name,
         giver=the_mobile.name,
-        otherwise=poses.pickup.name,
-        by_path=tuple((code, own[exit].name) for exit, code in ways),
+        otherwise="pickup",
+        by_path=tuple((code, _pickup_target(exit)) for exit, code in ways),
     )
 
 
@@ -120,7 +119,7 @@ def _groups(routes: tuple[Route, ...], poses: ArmPoses) -> tuple[tuple[str, tupl
         (STATIONS, tuple(name for name, _ in _station_targets(poses))),
         ("pickups", tuple(name for name, _ in _pickup_targets(routes, poses))),
         ("paths", tuple(path.code for path in routes)),
-        (PALLETIZING, poses.palletizing),
+        (PALLETIZING_TARGETS, poses.palletizing),
     )
 
 
@@ -128,8 +127,12 @@ def _pickup_targets(routes: tuple[Route, ...], poses: ArmPoses) -> list[tuple[st
     """The targets at which the arm takes parts, with the names of their poses: one, and one for each exit."""
     own = dict(poses.pickups)
     exits = dict.fromkeys(exit_of(path) for path in routes)
-    by_exit = [(f"pickup_{exit.lower()}", own.get(exit, poses.pickup).name) for exit in exits]
+    by_exit = [(_pickup_target(exit), own.get(exit, poses.pickup).name) for exit in exits]
     return [("pickup", poses.pickup.name), *by_exit]
+
+
+def _pickup_target(exit: str) -> str:
+    return f"pickup_{exit.lower()}"
 
 
 def _station_targets(poses: ArmPoses) -> list[tuple[str, str]]:
@@ -153,7 +156,7 @@ def _poses(
     if pickup is None and by_exit and not document.has((*place, "pickup")):
         pickup = by_exit[0][1]
     stations = rack.stations(reader, _section(document, place, "stations"), home)
-    section = _section(document, place, PALLETIZING, needed=False)
+    section = _section(document, place, PALLETIZING_TARGETS, needed=False)
     palletizing = rack.palletizing(reader, section, pickup, by_exit or (), stations)
     if not (home and pickup and by_exit is not None and stations and palletizing):
         return None

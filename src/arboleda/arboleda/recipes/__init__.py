@@ -4,14 +4,19 @@ nodes for trees that are written as XML.
 
 from .authoring import Kit, WrittenRecipe, parallel, recipe, work
 from .errors import RecipeError
+from .handles import Pick, Place
 from .nodes import WrittenNode, function, node
-from .parameters import Choice, Number, Target
+from .parameters import Choice, Number, Path, Slot, Target
 
 __all__ = [
     "Choice",
     "Kit",
     "Number",
+    "Path",
+    "Pick",
+    "Place",
     "RecipeError",
+    "Slot",
     "Target",
     "WrittenNode",
     "WrittenRecipe",

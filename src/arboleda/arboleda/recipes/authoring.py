@@ -31,7 +31,7 @@ from arboleda.trees.leaves import Dwell, Require, Unless, titled
 
 from .decorators import Again, AtMost, Forgiven, Inverted, Times
 from .errors import RecipeError, RoleError
-from .handles import Ask, Step, flat, handle, named, said
+from .handles import Ask, Step, chain, flat, handle, named, said
 from .parameters import parameter
 from .sharing import WORK, check_at_once, held, using
 
@@ -53,10 +53,23 @@ class WrittenRecipe(Recipe):
     function: Callable[..., Step]
 
 
-def recipe(name: str) -> Callable[[Callable[..., Step]], WrittenRecipe]:
+def recipe(
+    name: str,
+    *,
+    title: Phrase | None = None,
+    about: str | None = None,
+    is_default: bool = False,
+    alone: str | None = None,
+    alone_called: Phrase | None = None,
+    part_from: str | None = None,
+) -> Callable[[Callable[..., Step]], WrittenRecipe]:
     """Makes a recipe of a function of a Kit and parameters that are annotated with what they can be.
 
-    The first line of its docstring is shown to whoever asks for it.
+    `title` is its name in sentences, where they exist in several languages; `about` is shown to people, else
+    the first line of the docstring. `is_default`: a task that names no recipe means this one. `alone`: the
+    role of the one robot that works in it, whose name may stand for that of the cell; `alone_called`: that
+    role in sentences. `part_from`: the group of targets at whose first one the part of a task waits, where no
+    robot brings it.
     """
 
     def made(function: Callable[..., Step]) -> WrittenRecipe:
@@ -70,11 +83,21 @@ def recipe(name: str) -> Callable[[Callable[..., Step]], WrittenRecipe]:
 
         @wraps(function)
         def build(order: Order, context: Context) -> Step:
-            return _build(name, function, order, context)
+            return _build(name, title, function, order, context)
 
         known = tuple(each for each in read.values() if each is not None)
-        about = (inspect.getdoc(function) or "").partition("\n")[0]
-        return WrittenRecipe(name=name, build=build, parameters=known, about=about, function=function)
+        first_line = (inspect.getdoc(function) or "").partition("\n")[0]
+        return WrittenRecipe(
+            name=name,
+            build=build,
+            parameters=known,
+            about=first_line if about is None else about,
+            is_default=is_default,
+            alone=alone,
+            alone_called=alone_called,
+            part_from=part_from,
+            function=function,
+        )
 
     return made
 
@@ -88,12 +111,15 @@ def notes_of(name: str, function: Callable[..., Step]) -> dict[str, Any]:
         raise RecipeError(f"{name}: an annotation cannot be read ({error}); {hint}") from error
 
 
-def _build(name: str, function: Callable[..., Step], order: Order, context: Context) -> Step:
+def _build(
+    name: str, title: Phrase | None, function: Callable[..., Step], order: Order, context: Context
+) -> Step:
     context.parts.forget_origins()
     step = function(Kit(context), **order.values)
     if not isinstance(step, Behaviour):
         raise RecipeError(f"{name} returns {quoted(step)}; a recipe returns a step, e.g. work(...)")
-    return steps.task(name, [held(context, step)], context, notes_origins=True)
+    called = title() if title else name
+    return steps.task(called, flat([held(context, step)]), context, notes_origins=True)
 
 
 def _reason(word: Reason | str) -> Reason:
@@ -106,7 +132,7 @@ def _reason(word: Reason | str) -> Reason:
 
 def work(*parts: Step | Sequence[Step]) -> Step:
     """One step after the other."""
-    return steps.framed(steps.sequence(WORK(), *flat(parts)))
+    return chain(WORK(), flat(parts))
 
 
 def parallel(*parts: Step) -> Step:
@@ -137,6 +163,21 @@ class Kit:
             name = self._context.cell.name
             raise RoleError(f"{name} has no device in the role {role!r}; {among(role, known)}")
         return known[role]
+
+    def group(self, name: str) -> tuple[str, ...]:
+        """The targets of a group of the cell, in their order."""
+        groups = self._context.cell.groups
+        if name not in groups:
+            cell = self._context.cell.name
+            raise RoleError(f"{cell} has no group of targets {name!r}; {among(name, groups)}")
+        return groups[name]
+
+    def handover(self, path: str = "") -> str:
+        """The target at which one robot takes what another one brings on this path, or on most paths."""
+        handover = self._context.cell.handover
+        if handover is None:
+            raise RoleError(f"{self._context.cell.name} has no handover from one robot to another")
+        return handover.after(path)
 
     def using(self, roles: str | Sequence[str], *parts: Step | Sequence[Step]) -> Step:
         """The steps, with devices that other cells share held meanwhile; a recipe without it holds each from

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
+from py_trees import composites
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
@@ -15,12 +17,12 @@ from arboleda.model.by_class import nearest
 from arboleda.model.facts import Value, shown
 from arboleda.model.messages import Failure, Reason, TaskAnswer
 from arboleda.model.outside import among, quoted
-from arboleda.model.plant_model import Pose, Robot
+from arboleda.model.plant_model import PieceCheck, Pose, Robot
 from arboleda.model.recipe import spelling
-from arboleda.model.sentence import Phrase
-from arboleda.trees import steps
+from arboleda.model.sentence import Phrase, Sentence
+from arboleda.trees import paths, steps, zone_plan
 from arboleda.trees.context import Context
-from arboleda.trees.leaves import Act, Await, Require
+from arboleda.trees.leaves import Act, Await, Require, titled
 
 from .errors import RecipeError
 from .sharing import check_holds_none
@@ -29,6 +31,8 @@ Step = Behaviour
 LONGEST_QUESTION, LONGEST_ANSWER = 300, 60
 NOT_SO = Phrase("recipe.not_so", "{robot} says {told} of {fact}; {value} is needed")
 NOT_YET = Phrase("recipe.not_yet", "{robot} did not say {value} of {fact} within {seconds:g} s")
+TOUR = Phrase("step.tour", "tour")
+FOLLOW = Phrase("step.follow", "follow path {path}")
 VISIT = Phrase("step.visit", "visit {pose}")
 HOME = Phrase("step.go_home", "go home")
 ASK = Phrase("step.ask", "ask {person}")
@@ -190,6 +194,26 @@ class PersonHandle(Handle):
         return asked
 
 
+@dataclass(frozen=True)
+class Pick:
+    """Stop of a tour at which the robot takes hold of a part.
+
+    `check`: True: its piece sensor has to see the part before and after; "auto": where it has one; None: as
+    the cell has it.
+    """
+
+    target: str
+    check: PieceCheck | None = None
+
+
+@dataclass(frozen=True)
+class Place:
+    """Stop of a tour at which the robot lets go of its part; `check` as of a `Pick`."""
+
+    target: str
+    check: PieceCheck | None = None
+
+
 class RobotHandle(Handle):
     """A robot that goes from target to target: an arm, or a mobile robot."""
 
@@ -203,6 +227,35 @@ class RobotHandle(Handle):
         check_holds_none("a visit", flat(work))
         parts = steps.visit_from_anywhere(self._context, self._device.name, pose, flat(work))
         return steps.sequence(VISIT(pose=pose.said), *parts)
+
+    def tour(self, *stops: str | Pick | Place) -> Step:
+        """Go from target to target, take hold and let go there, and stay at the last one.
+
+        The zones of each leg, from one target outside all zones to the next such target, are held over the
+        whole leg, also while it works there; so nobody else gets between two stops in a zone.
+        """
+        name = self._device.name
+        poses = [self._pose(each if isinstance(each, str) else each.target) for each in stops]
+        if not poses or poses[-1].zones:
+            why = f"{zone_plan.lying(poses[-1])}; it waits there" if poses else "it has no stops"
+            raise RecipeError(f"{name}: a tour has to end outside all zones, and {why}")
+        visits = [(pose, self._work(stop, pose)) for stop, pose in zip(stops, poses, strict=True)]
+        return chain(TOUR(), steps.tour(self._context, name, visits))
+
+    def _work(self, stop: str | Pick | Place, pose: Pose) -> list[Step]:
+        if isinstance(stop, str):
+            return []
+        check = self._context.cell.piece_check if stop.check is None else stop.check
+        switch = steps.grip if isinstance(stop, Pick) else steps.let_go
+        return switch(self._context, self._device.name, pose, check=check)
+
+    def follow(self, path: str) -> Step:
+        """Drive over a path of the cell, by its code; first to its start, where the cell allows that."""
+        space = self._context.cell.reach[self._device.name]
+        codes = [each.code for each in space.paths]
+        if path not in codes:
+            raise RecipeError(f"{self._device.name} has no path {quoted(path)}; {among(path, codes)}")
+        return chain(FOLLOW(path=path), paths.follow(self._context, self._device.name, space.path(path)))
 
     def home(self) -> Step:
         """Go where it waits."""
@@ -253,5 +306,26 @@ def said(value: Value | None) -> str:
     return "nothing" if value is None else shown(value)
 
 
+class Chain(composites.Sequence):
+    """Steps one after the other, which another sequence takes in as its own: fewer nodes are ticked."""
+
+    frame = True
+
+    def dissolved(self) -> list[Step]:
+        """Its steps, of which it is no longer the parent."""
+        steps = list(self.children)
+        self.remove_all_children()
+        return steps
+
+
+def chain(title: Sentence, parts: Sequence[Step]) -> Chain:
+    """A chain of steps with this title."""
+    made = Chain(str(title), memory=True, children=list(parts))
+    titled(made, title)
+    return made
+
+
 def flat(parts: Sequence[Step | Sequence[Step]]) -> list[Step]:
-    return [step for part in parts for step in ([part] if isinstance(part, Behaviour) else part)]
+    """The steps in their order; those of a chain in its place."""
+    steps = [step for part in parts for step in ([part] if isinstance(part, Behaviour) else part)]
+    return [each for step in steps for each in (step.dissolved() if isinstance(step, Chain) else [step])]

@@ -1,8 +1,9 @@
-"""What the parameters of a recipe can be: one of some values, a number, a target of the cell.
+"""What the parameters of a recipe can be: one of some values, a number, a target or a path of the cell.
 
     def load(cell, dose: Choice[5, 10], force: Number[1, 40], blank=Target("pallet")): ...
 
-An annotation in brackets or a default in parentheses: checkers of types read words in brackets as names.
+An annotation in brackets, a default in parentheses, or `Annotated[str, Target("pallet")]`, which checkers of
+types take: they read words in brackets as names.
 """
 
 from __future__ import annotations
@@ -12,6 +13,7 @@ from collections.abc import Sequence
 from arboleda.model.facts import Value, shown
 from arboleda.model.plant_model import Cell
 from arboleda.model.recipe import Limits, Parameter
+from arboleda.model.sentence import Phrase
 
 from .errors import RecipeError
 
@@ -53,6 +55,36 @@ class Number:
         )
 
 
+class Path:
+    """One of the paths of the cell, by its code; `called` is its name in sentences."""
+
+    def __init__(self, *, called: Phrase | None = None) -> None:
+        self.called = called
+
+    def parameter(self, name: str) -> Parameter:
+        return Parameter(name=name, words=lambda cell: list(cell.paths), called=self.called)
+
+
+class Slot:
+    """One of a group of targets, which tasks name by its number in the group, from 0: `Slot("stations")`.
+
+    `called` is its name in sentences.
+    """
+
+    def __init__(self, group: str, *, called: Phrase | None = None) -> None:
+        self.group = group
+        self.called = called
+
+    def parameter(self, name: str) -> Parameter:
+        return Parameter(name=name, words=self._numbers, value=self._target, called=self.called)
+
+    def _numbers(self, cell: Cell) -> Sequence[str]:
+        return [str(number) for number in range(len(cell.groups.get(self.group, ())))]
+
+    def _target(self, cell: Cell, number: str) -> str:
+        return cell.groups[self.group][int(number)]
+
+
 class Target:
     """One of a group of targets, or that of this name: `Target("pallet")`; `Target()` is any."""
 
@@ -75,6 +107,8 @@ class Target:
 
 def parameter(name: str, note: object) -> Parameter | None:
     """The parameter of that annotation; None where it is none."""
-    if note is Target:
-        note = Target()
-    return note.parameter(name) if isinstance(note, (Choice, Number, Target)) else None
+    for each in getattr(note, "__metadata__", (note,)):  # Annotated[str, Target("pallet")]
+        found = Target() if each is Target else each
+        if isinstance(found, (Choice, Number, Path, Slot, Target)):
+            return found.parameter(name)
+    return None

@@ -46,7 +46,7 @@ def held(context: Context, step: Behaviour) -> Behaviour:
 
     A recipe with a `using` of its own says itself when.
     """
-    outside = frozenset(_used(step))
+    outside = frozenset(_used(step)) if context.cell.shared else frozenset[str]()
     if not outside:
         return step
     if any(isinstance(node, TakeDevices) for node in step.iterate()):

@@ -12,7 +12,9 @@ from arboleda.model.plant_model import Cell, Handover, Path, Pose, Workspace
 
 ARM, MOBILE = "arm", "mobile"  # roles of the short form of a plant file
 HOME = "home"
-PALLETIZING = "palletizing"  # the group of targets from which the arm takes a part, and to which it goes
+PALLETIZING_TARGETS = (
+    "palletizing"  # the group of targets from which the arm takes a part, and to which it goes
+)
 
 
 @dataclass(frozen=True)
@@ -81,16 +83,16 @@ class StorageLayout:
     @property
     def pickup(self) -> Pose:
         """The pose at which the arm takes parts after every path that has none of its own."""
-        return self.space.by_name[self.handover.otherwise]
+        return self.space.targets[self.handover.otherwise]
 
     @cached_property
     def pickups(self) -> tuple[Pose, ...]:
         """The poses at which the arm takes parts, each once."""
-        return tuple(self.space.by_name[name] for name in self.handover.poses)
+        return self.space.at(self.handover.targets)
 
     def pickup_of(self, path: Path) -> Pose:
         """The pose at which the arm takes the part that came on this path."""
-        return self.space.by_name[self.handover.after(path.code)]
+        return self.space.targets[self.handover.after(path.code)]
 
     def pickup_over(self, node: Position | None) -> Pose:
         """The pose at which the arm meets a mobile robot that stands on this node."""
@@ -99,5 +101,5 @@ class StorageLayout:
     @cached_property
     def palletizing(self) -> Palletizing:
         """The poses of the arm's own cycle."""
-        pick, place = self.cell.groups[PALLETIZING]
+        pick, place = self.cell.groups[PALLETIZING_TARGETS]
         return Palletizing(pick=self.space.targets[pick], place=self.space.targets[place])

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import fields, is_dataclass
 from enum import Enum
-from functools import partial
+from functools import cache, partial
 from hashlib import blake2b
 from types import CodeType, FunctionType, MethodType
 from typing import Any
@@ -113,10 +113,8 @@ def _parts(value: Any) -> Iterable[Any]:
         return sorted(value, key=repr)
     if isinstance(value, Sentence):
         return value.key, value.values
-    if isinstance(value, Cell):
-        return [getattr(value, each.name) for each in fields(value) if each.name not in NO_MATTER]
-    if is_dataclass(value) and not isinstance(value, type):
-        return [getattr(value, each.name) for each in fields(value)]
+    if (names := _fields(value.__class__)) is not None:
+        return [getattr(value, name) for name in names]
     if isinstance(value, FunctionType):
         return value.__code__, value.__defaults__, *map(_content, value.__closure__ or ())
     if isinstance(value, MethodType):
@@ -126,6 +124,15 @@ def _parts(value: Any) -> Iterable[Any]:
     if isinstance(value, CodeType):
         return value.co_code, value.co_names, value.co_consts
     return ()
+
+
+@cache
+def _fields(kind: type) -> tuple[str, ...] | None:
+    """The names of the fields that matter of a dataclass; None for any other class."""
+    if not is_dataclass(kind):
+        return None
+    passed_over = NO_MATTER if issubclass(kind, Cell) else frozenset[str]()
+    return tuple(each.name for each in fields(kind) if each.name not in passed_over)
 
 
 def _content(cell: Any) -> Any:

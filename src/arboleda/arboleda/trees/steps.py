@@ -141,17 +141,29 @@ def start(context: Context) -> Behaviour:
     return sequence(SYSTEM_START(), announce, Dwell(DWELL(), context.time, context.timing.dwell_s))
 
 
-def visit(context: Context, robot: str, way: Sequence[Pose], visits: Sequence[Visit]) -> list[Behaviour]:
-    """Go from pose to pose and work there, holding the shared zones of each leg of the way."""
-    space = context.cell.workspaces[robot]
-    legs = zone_plan.plan(space, way, context.parts.way_back(robot)) if space.zones else []
+def tour(context: Context, robot: str, visits: Sequence[Visit]) -> list[Behaviour]:
+    """Go from pose to pose and work there, holding the shared zones of each leg of the way.
+
+    The way is planned when each leg begins, from where the robot stands then; it ends outside all zones.
+    """
+    space, poses = context.cell.reach[robot], [pose for pose, _ in visits]
+    legs = zone_plan.plan(space, (space.home, *poses), None) if space.zones else []
     steps: list[Behaviour] = []
     for index, (pose, work) in enumerate(visits):
-        steps += [_take(context, robot, leg.zones) for leg in legs if leg.start == index and leg.zones]
+        begins = [number for number, leg in enumerate(legs) if leg.start == index]
+        needed = [partial(_zones_of_leg, context, robot, poses, number) for number in begins]
+        steps += [TakeZones(TAKE_ZONES(), context, robot, zones) for zones in needed]
         steps += _at(context, robot, pose, *work)
-        ends = [leg for leg in legs if leg.end == index + 1 and leg.zones]
+        ends = [leg for leg in legs if leg.end == index + 1]
         steps += [LeaveZones(LEAVE_ZONES(), context, robot) for _ in ends]
     return steps
+
+
+def _zones_of_leg(context: Context, robot: str, poses: Sequence[Pose], number: int) -> frozenset[str]:
+    """The zones of a leg of a tour; the first leg begins where the robot stands."""
+    space = context.cell.reach[robot]
+    way = (context.robots.standing(robot) if number == 0 else space.home, *poses)
+    return zone_plan.plan(space, way, context.parts.way_back(robot))[number].zones
 
 
 def visit_from_anywhere(

@@ -41,7 +41,7 @@ def handover(cell: Cell) -> Row | None:
         "mobile": giver.robot.name,
         "pitch": grid.pitch,
         "columns": grid.columns,
-        "pickups": [list(taker.by_name[name].joints) for name in cell.handover.poses],
+        "pickups": [list(pose.joints) for pose in taker.at(cell.handover.targets)],
         "stations": [list(station.joints) for station in cell.stations],
     }
 

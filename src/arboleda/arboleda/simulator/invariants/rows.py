@@ -86,16 +86,23 @@ def _says_held(cell: str, said: Sentence | None) -> bool:
     return said is not None and said.phrase in (HELD, HELD_STRANDED) and said.values["cell"] == cell
 
 
+def _steps(frame: Behaviour) -> Iterator[Behaviour]:
+    """The steps in a frame and in its inner frames."""
+    for node in frame.children:
+        yield from _steps(node) if getattr(node, "frame", False) else (node,)
+
+
 def _progress(cell: KnownCell, row: Row) -> Iterator[str]:
     tree = cell.run.tree
     if tree is None:
         return
     work = next((phase for phase in tree.children if phase.name == "main"), None)
-    done = None
-    if work is not None and work.children:
-        done = sum(each.status is Status.SUCCESS for each in work.children) / len(work.children)
-    if (row["progress"] is None) is not (done is None) or abs((row["progress"] or 0) - (done or 0)) > EXACT:
-        yield f"{cell.name}: {row['progress']} of the work is shown as done, it is {done}"
+    done = [each.status is Status.SUCCESS for each in _steps(work)] if work is not None else []
+    shown = row["progress"]
+    if (shown is None) is bool(done):
+        yield f"{cell.name}: {shown} of the work is shown as done, it has {len(done)} steps"
+    elif done and ((shown > 0) is not any(done) or (shown == 1) is not all(done) or not 0 <= shown <= 1):
+        yield f"{cell.name}: {shown} of the work is shown as done, of its {len(done)} steps {sum(done)} are"
     runs = [node.name for node in tree.iterate() if node.status is Status.RUNNING]
     said = row["step"]
     step = str(said.values["step"] if said is not None and said.phrase is IN_RECOVERY else said or "")

@@ -293,7 +293,7 @@ def _cannot_be_done(look: Look, said: TaskChanged) -> bool:
     led_there = cell.drive_to_start and layout.mobile.evidence is not Evidence.STATE
     if led_there or "path" not in order.values or not isinstance(mobile, MobileTruth):
         return False
-    return mobile.node != order.values["path"].nodes[0]
+    return mobile.node != cell.paths[order.values["path"]].nodes[0]
 
 
 @invariant(Trigger.TOLD)

@@ -98,8 +98,8 @@ class CellTruth:
         """The pose at which the part of the last task is gripped."""
         if self.order is None or "station" not in self.order.values:
             return self.cell.pickup if self.order is None else self.cell.palletizing.pick
-        path = self.order.values.get("path")
-        return self.cell.pickup_of(path) if path else self.cell.pickup
+        code = self.order.values.get("path")
+        return self.cell.pickup_of(self.cell.path(code)) if code else self.cell.pickup
 
     @property
     def pick_poses(self) -> tuple[Pose, ...]:
@@ -111,7 +111,8 @@ class CellTruth:
         """The pose at which the part of the last task belongs."""
         if self.order is None:
             return None
-        return self.order.values.get("station", self.cell.palletizing.place)
+        station = self.order.values.get("station")
+        return self.cell.space.targets[station] if station else self.cell.palletizing.place
 
     def begin(self, task: str, order: Order, now: float) -> None:
         """Begin to follow a task."""
@@ -205,7 +206,7 @@ class CellTruth:
     def _missing_way(self) -> str | None:
         if self.order is None or "path" not in self.order.values or self.mobile is None or self._arrived:
             return None
-        return f"the mobile never stood at node {self.order.values['path'].nodes[-1]}"
+        return f"the mobile never stood at node {self._end_of_path}"
 
     def legal_to_open(self, arm: ArmTruth) -> bool:
         """True if nothing falls down when the effector opens where the arm stands."""
@@ -236,11 +237,16 @@ class CellTruth:
     def _at(self, arm: ArmTruth, pose: Pose) -> bool:
         return bool(arm.stood & arm.poses_like(pose.q))
 
+    @property
+    def _end_of_path(self) -> int:
+        assert self.order is not None
+        return self.cell.path(self.order.values["path"]).nodes[-1]
+
     def _follow_mobile(self) -> None:
         mobile = self.mobile
         if mobile is None or self.task is None or self.order is None or "path" not in self.order.values:
             return
-        end = self.order.values["path"].nodes[-1]
+        end = self._end_of_path
         goals = [act.goal for act in mobile.acts if isinstance(act.goal, PathGoal)]
         self._heading = self._heading or any(goal.nodes[-1] == end for goal in goals)
         here = mobile.stands_at(end)
