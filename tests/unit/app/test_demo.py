@@ -11,9 +11,7 @@ from arboleda.runtime.demo import ALARM_S, CALM_S, Demo, DemoEnded, Task
 from arboleda.sim.devices import Alarm, Reboot
 from arboleda.testing.sim import Sim
 
-from ...lengths import length
-
-PASS_S = 0.2  # how often the demonstration sees the plant
+PASS_S = 0.5  # how often the demonstration sees the plant
 
 
 class Show:
@@ -55,16 +53,25 @@ def show() -> Show:
     return Show()
 
 
-def test_every_cell_gets_task_after_task(show: Show) -> None:
-    show.play(120, visited=True)
-    given = Counter(task.text.split()[0] for task in show.tasks)
+@pytest.fixture(scope="module")
+def visited() -> Show:
+    """Ten minutes of a plant whose cards a visitor acts on; its `early_tasks` are those of the first five."""
+    show = Show()
+    show.play(300, visited=True)
+    show.early_tasks = list(show.tasks)
+    show.play(300, visited=True)
+    return show
+
+
+def test_every_cell_gets_task_after_task(visited: Show) -> None:
+    given = Counter(task.text.split()[0] for task in visited.early_tasks)
     assert set(given) == {"sis_a", "sis_b", "sis_c"}
-    assert min(given.values()) > 3
-    assert {task.state for task in show.tasks} <= {"done", "failed", "running", "queued"}
+    assert min(given.values()) > 10
+    assert {task.state for task in visited.tasks} <= {"done", "failed", "running", "queued"}
 
 
 def test_a_failing_cell_waits_for_somebody_while_the_others_go_on(show: Show) -> None:
-    show.play(100)
+    show.play(300)
     held = [cell["name"] for cell in show.sim.snapshot()["cells"] if cell["state"] == "held"]
     assert len(held) == 1
     assert isinstance(show.faults[-1], Reboot)
@@ -74,12 +81,12 @@ def test_a_failing_cell_waits_for_somebody_while_the_others_go_on(show: Show) ->
     assert len(show.tasks) > before + 4
 
 
-def test_buttons_of_the_card_lead_out_and_then_another_cell_fails(show: Show) -> None:
-    show.play(length(200, whole=600), visited=True)
-    fell = [fault.board for fault in show.faults if isinstance(fault, Reboot) or fault.is_on]
-    assert len(fell) == len(set(fell)) >= 2 or len(set(fell)) >= 4
-    assert {"failed", "done"} <= {task.state for task in show.tasks}
-    assert min(fault.at for fault in show.faults) >= CALM_S
+def test_buttons_of_the_card_lead_out_and_then_another_cell_fails(visited: Show) -> None:
+    fell = [fault.board for fault in visited.faults if isinstance(fault, Reboot) or fault.is_on]
+    assert len(fell) >= 4
+    assert len(set(fell)) >= 4
+    assert {"failed", "done"} <= {task.state for task in visited.tasks}
+    assert min(fault.at for fault in visited.faults) >= CALM_S
 
 
 def test_nothing_is_given_and_nothing_fails_after_its_end(show: Show) -> None:
