@@ -8,6 +8,7 @@ import pytest
 
 from arboleda.runtime import build as building
 from arboleda.runtime.build import Options, build
+from arboleda.runtime.parts.page import PagePlant
 from arboleda.store.plant_memory import OtherLeader, PlantMemory
 from arboleda.testing import shipped
 
@@ -26,7 +27,7 @@ def test_it_has_made_no_page_of_which_a_process_has_one(
         raise OtherLeader("another process leads")
 
     monkeypatch.setattr(building, "memory_of", led_by_another)
-    monkeypatch.setattr("arboleda.runtime.parts.page.PagePlant.mount", lambda *page: pages.append(page))
+    monkeypatch.setattr(PagePlant, "mount", lambda page, app: pages.append(page))
     for _ in range(2):
         with pytest.raises(OtherLeader):
             build(shipped("sis_a"), {"orchestrator", "web"}, Options(state_dir=tmp_path))
