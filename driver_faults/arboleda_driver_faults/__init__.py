@@ -1,1 +1,1 @@
-"""Trials of drivers: a plant with one driver under the faults of its virtual controller, seed by seed."""
+"""Rigs for drivers: a plant with one driver under the faults of its virtual controller, seed by seed."""

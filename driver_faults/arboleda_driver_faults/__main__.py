@@ -1,4 +1,4 @@
-"""Trials of one driver, seed by seed, under the faults of its virtual controller.
+"""One driver, seed by seed, under the faults of its virtual controller.
 
 Usage: scripts/driver-faults DRIVER [SEEDS] [FIRST]
 
@@ -17,24 +17,24 @@ from pathlib import Path
 
 from arboleda.plant_file.loader import load
 
-from .dobot import DobotTrial
-from .gripper import CarryTrial
-from .modbus import ModbusTrial
-from .nav2 import RoundTrial, WaypointsTrial
-from .opcua import OpcUaTrial
-from .trial import Trial, run
-from .vda5050 import AgvTrial
+from .dobot import DobotRig
+from .gripper import CarryRig
+from .modbus import ModbusRig
+from .nav2 import RoundRig, WaypointsRig
+from .opcua import OpcUaRig
+from .rig import Rig, run
+from .vda5050 import AgvRig
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
-TRIALS: dict[str, tuple[Path | None, Callable[..., Trial]]] = {
-    "dobot": (None, DobotTrial),
-    "modbus": (EXAMPLES / "plc_conveyor/plant.yaml", ModbusTrial),
-    "opcua": (EXAMPLES / "plc_conveyor/opcua.yaml", OpcUaTrial),
-    "ros2_control": (EXAMPLES / "ros2_control/plant.yaml", CarryTrial),
-    "navigate_to_pose": (EXAMPLES / "nav2/plant.yaml", RoundTrial),
-    "follow_waypoints": (EXAMPLES / "nav2/plant.yaml", WaypointsTrial),
+RIGS: dict[str, tuple[Path | None, Callable[..., Rig]]] = {
+    "dobot": (None, DobotRig),
+    "modbus": (EXAMPLES / "plc_conveyor/plant.yaml", ModbusRig),
+    "opcua": (EXAMPLES / "plc_conveyor/opcua.yaml", OpcUaRig),
+    "ros2_control": (EXAMPLES / "ros2_control/plant.yaml", CarryRig),
+    "navigate_to_pose": (EXAMPLES / "nav2/plant.yaml", RoundRig),
+    "follow_waypoints": (EXAMPLES / "nav2/plant.yaml", WaypointsRig),
     **{
-        f"vda5050-{version}": (EXAMPLES / "agv/plant.yaml", partial(AgvTrial, version=version))
+        f"vda5050-{version}": (EXAMPLES / "agv/plant.yaml", partial(AgvRig, version=version))
         for version in ("2.0", "2.1", "3.0")
     },
 }
@@ -42,15 +42,15 @@ TRIALS: dict[str, tuple[Path | None, Callable[..., Trial]]] = {
 
 def main() -> int:
     driver, *numbers = sys.argv[1:] or [""]
-    if driver not in TRIALS:
-        print(f"usage: scripts/driver-faults {' | '.join(TRIALS)} [SEEDS] [FIRST]")
+    if driver not in RIGS:
+        print(f"usage: scripts/driver-faults {' | '.join(RIGS)} [SEEDS] [FIRST]")
         return 2
     seeds, first = (int(value) for value in (*numbers, *("200", "0")[len(numbers) :]))
-    plant, trial = TRIALS[driver]
+    plant, rig = RIGS[driver]
     model, began = load(plant), time.perf_counter()
     ends, faults, wrong = Counter[str](), Counter[str](), 0
     for seed in range(first, first + seeds):
-        result = run(trial(model), seed)
+        result = run(rig(model), seed)
         faults.update(each.name for each in result.faults)
         ends.update(each.reason.value if each.reason else each.state.value for each in result.ended)
         for breach in result.breaches:

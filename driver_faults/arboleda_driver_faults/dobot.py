@@ -15,7 +15,7 @@ from arboleda.virtual.dobot.faults import FAULTS
 from arboleda.virtual.dobot.machine import VirtualDobot
 
 from .dobot_loopback import Loopback
-from .trial import EPOCH, Hear, Trial
+from .rig import EPOCH, Hear, Rig
 
 FRAME_S = 0.04  # a fifth of a real one's frames is enough to see every state
 NEAR_DEG = 0.02
@@ -63,7 +63,7 @@ def plant_of(shipped: PlantModel) -> PlantModel:
     return replace(shipped, cells=(layout.cell.with_robots(driven),))
 
 
-class DobotTrial(Trial):
+class DobotRig(Rig):
     """Test with parts that go from the pick to the place; it sees the arm's place and its output."""
 
     driver = "dobot"

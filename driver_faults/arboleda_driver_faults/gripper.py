@@ -12,7 +12,7 @@ from arboleda.model.messages import Reason
 from arboleda.virtual.gripper.machine import Grip, GripperBody
 from arboleda.virtual.trajectory.machine import ArmBody, Points
 
-from .ros_action import CAUSES, NO_LINK, ActionTrial, Part, near, spot
+from .ros_action import CAUSES, NO_LINK, ActionRig, Part, near, spot
 
 JOINTS = ("joint1", "joint2", "joint3", "joint4", "joint5", "joint6")
 PART_M = 0.04
@@ -43,7 +43,7 @@ def _grip(goal: Width) -> Grip:
     return Grip(position=goal.position, effort=goal.effort)
 
 
-class CarryTrial(ActionTrial):
+class CarryRig(ActionRig):
     """Test with a part that a gripper carries; it sees the slot of the arm, and a part in the fingers."""
 
     work = (("slot_1", True), ("slot_2", True), ("slot_2", False), ("home", False))

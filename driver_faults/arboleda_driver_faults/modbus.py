@@ -13,9 +13,9 @@ from arboleda.model.messages import Reason
 from arboleda.model.plant_model import PlantModel
 from arboleda.virtual.modbus.memory import FAULTS, BeltMemory
 
-from .plc import NO_LINK, BeltTrial
+from .plc import NO_LINK, BeltRig
 from .plc_loopback import LineBroken
-from .trial import Causes
+from .rig import Causes
 
 CAUSES: Causes = {
     "mute": NO_LINK,
@@ -27,7 +27,7 @@ CAUSES: Causes = {
 FRAME = bytes([0, 1, 0, 0, 0, 5, 1, 3, 2, 0, 7])  # any answer: what the line makes of it
 
 
-class ModbusTrial(BeltTrial):
+class ModbusRig(BeltRig):
     """Test with the example's belt, and the registers of its virtual PLC."""
 
     driver = "modbus"

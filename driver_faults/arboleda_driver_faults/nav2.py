@@ -12,7 +12,7 @@ from arboleda.model.messages import Reason
 from arboleda.model.plant_model import PlantModel
 from arboleda.virtual.nav2.machine import BaseBody, Drive
 
-from .ros_action import CAUSES, NO_LINK, ActionTrial, Part
+from .ros_action import CAUSES, NO_LINK, ActionRig, Part
 
 STANDS_M = 0.15  # somewhat more than what the driver calls standing on a node
 BESIDE = {Reason.DEVICE_FAULT, Reason.NOT_REACHED}
@@ -39,7 +39,7 @@ def _drive(route: Route) -> Drive:
     return Drive(frame=route.frame, poses=route.poses)
 
 
-class RoundTrial(ActionTrial):
+class RoundRig(ActionRig):
     """Test with a base that drives round the grid; it sees the node of the base."""
 
     work = (6, 8, 0)
@@ -63,7 +63,7 @@ class RoundTrial(ActionTrial):
         return next(at, None)
 
 
-class WaypointsTrial(RoundTrial):
+class WaypointsRig(RoundRig):
     """The same test with all nodes of a way as one goal."""
 
     parts = (Part(name="cart", machine=driver.waypoints, body=_base, read=_drive, causes=BASE_CAUSES),)

@@ -12,9 +12,9 @@ from arboleda.model.plant_model import PlantModel
 from arboleda.virtual.opcua.faults import FAULTS
 from arboleda.virtual.opcua.program import BeltProgram
 
-from .plc import NO_LINK, BeltTrial
+from .plc import NO_LINK, BeltRig
 from .plc_loopback import LineBroken
-from .trial import Causes
+from .rig import Causes
 
 CAUSES: Causes = {
     "mute": NO_LINK,
@@ -25,7 +25,7 @@ CAUSES: Causes = {
 }
 
 
-class OpcUaTrial(BeltTrial):
+class OpcUaRig(BeltRig):
     """Test with the example's belt, and the variables of its virtual PLC."""
 
     driver = "opcua"

@@ -13,7 +13,7 @@ from arboleda.model.plant_model import PlantModel, Robot
 from arboleda.virtual.plc.machine import CLOSED, ENTRY, EXIT, OPEN, Belt
 
 from .plc_loopback import Loopback, Wire
-from .trial import START_S, Causes, Hear, Trial
+from .rig import START_S, Causes, Hear, Rig
 
 NO_LINK = {Reason.LINK_LOST}
 CAUSES: Causes = {
@@ -47,7 +47,7 @@ class CountedBelt(Belt):
         self.taken += self.shown.accepted != before
 
 
-class BeltTrial(Trial):
+class BeltRig(Rig):
     """Test with a part that is carried to the exit; it sees the part's true place and the gate."""
 
     work = ((ENTRY, OPEN), (EXIT, OPEN), (EXIT, CLOSED))
@@ -91,17 +91,17 @@ class BeltTrial(Trial):
 
 
 class OrderCounter(Loopback):
-    """Connection that tells its trial the commands given, and the time."""
+    """Connection that tells its rig the commands given, and the time."""
 
-    def __init__(self, trial: BeltTrial, wire: Wire, hear: Hear, now: float) -> None:
-        super().__init__(trial.device.name, wire, hear, now)
-        self._trial = trial
+    def __init__(self, rig: BeltRig, wire: Wire, hear: Hear, now: float) -> None:
+        super().__init__(rig.device.name, wire, hear, now)
+        self._rig = rig
 
     def ask(self, command: Command) -> str | None:
-        self._trial.give(command)
+        self._rig.give(command)
         return super().ask(command)
 
     def pass_time(self, now: float) -> None:
-        self._trial.now = now
-        self._trial.belt.scan(now)
+        self._rig.now = now
+        self._rig.belt.scan(now)
         super().pass_time(now)

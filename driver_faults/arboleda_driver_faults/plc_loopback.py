@@ -12,7 +12,7 @@ from arboleda.drivers import Report, lost
 from arboleda.drivers.plc.plc_snapshot import UnreadableValue
 from arboleda.model.commands import Command
 
-from .trial import Hear
+from .rig import Hear
 
 POLL_S = 0.1  # twice a driver's own: enough to see every state
 AGAIN_S = 0.5

@@ -13,8 +13,8 @@ from arboleda.model.plant_model import Cell, PlantModel, Robot
 from arboleda.virtual.faults import Faults
 from arboleda.virtual.ros_action.machine import Body, VirtualServer
 
+from .rig import Causes, Hear, Rig
 from .ros_action_loopback import Loopback
-from .trial import Causes, Hear, Trial
 
 MEASURE_S = 0.05  # less often than by default: a campaign has to see every state, and no more
 NEAR = 1e-3  # m or rad
@@ -70,7 +70,7 @@ class Part:
     causes: Causes
 
 
-class ActionTrial(Trial):
+class ActionRig(Rig):
     """Test with a server for each device; `parts` names the devices."""
 
     driver = "actions"

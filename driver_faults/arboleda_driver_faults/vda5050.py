@@ -11,7 +11,7 @@ from arboleda.model.plant_model import PlantModel, Robot
 from arboleda.virtual.vda5050.faults import FAULTS
 from arboleda.virtual.vda5050.machine import VirtualAgv
 
-from .trial import Hear, Trial
+from .rig import Hear, Rig
 from .vda5050_loopback import Loopback
 
 SILENT_S = 3.0  # the shortest silence that states of each second allow
@@ -43,7 +43,7 @@ CAUSES: dict[str, set[Reason]] = {
 }
 
 
-class AgvTrial(Trial):
+class AgvRig(Rig):
     """Test with a vehicle that carries things between shelves; it sees the vehicle's place and load."""
 
     driver = "vda5050"

@@ -5,8 +5,8 @@ from __future__ import annotations
 from .bodies import BODIES
 from .cells import CELLS
 from .leaders import LEADERS
+from .operation import OPERATION
 from .protocol import PROTOCOL
 from .restarts import RESTARTS
-from .told import TOLD
 
-MUTANTS = (*BODIES, *PROTOCOL, *CELLS, *TOLD, *RESTARTS, *LEADERS)
+MUTANTS = (*BODIES, *PROTOCOL, *CELLS, *OPERATION, *RESTARTS, *LEADERS)

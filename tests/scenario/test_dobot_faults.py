@@ -9,8 +9,8 @@ from arboleda.drivers.dobot.frames import Feedback, Mode
 from arboleda.kinds.arm import Arm
 from arboleda.testing.plants import shipped
 from arboleda.virtual.dobot.faults import FAULTS
-from arboleda_driver_faults.dobot import CAUSES, DobotTrial
-from arboleda_driver_faults.trial import run
+from arboleda_driver_faults.dobot import CAUSES, DobotRig
+from arboleda_driver_faults.rig import run
 
 from ..lengths import sample
 
@@ -19,7 +19,7 @@ SEEDS = 12
 
 
 def breaches(seed: int, *names: str) -> list[str]:
-    return run(DobotTrial(SHIPPED), seed, names).breaches
+    return run(DobotRig(SHIPPED), seed, names).breaches
 
 
 @pytest.mark.parametrize("seed", sample(range(SEEDS), every=4))

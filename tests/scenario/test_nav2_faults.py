@@ -10,21 +10,21 @@ from arboleda.drivers.ros_action.goal import Rest
 from arboleda.kinds.mobile import Mobile
 from arboleda.plant_file.loader import load
 from arboleda.virtual.nav2.machine import FAULTS
-from arboleda_driver_faults.nav2 import BASE_CAUSES, RoundTrial, WaypointsTrial
-from arboleda_driver_faults.trial import run
+from arboleda_driver_faults.nav2 import BASE_CAUSES, RoundRig, WaypointsRig
+from arboleda_driver_faults.rig import run
 
 EXAMPLE = load(Path(__file__).parents[2] / "examples/nav2/plant.yaml")
 SEEDS = 2
 
 
-def breaches(seed: int, *names: str, trial: type[RoundTrial] = RoundTrial) -> list[str]:
-    return run(trial(EXAMPLE), seed, [f"cart.{name}" for name in names]).breaches
+def breaches(seed: int, *names: str, rig: type[RoundRig] = RoundRig) -> list[str]:
+    return run(rig(EXAMPLE), seed, [f"cart.{name}" for name in names]).breaches
 
 
-@pytest.mark.parametrize("trial", [RoundTrial, WaypointsTrial])
+@pytest.mark.parametrize("rig", [RoundRig, WaypointsRig])
 @pytest.mark.parametrize("seed", range(SEEDS))
-def test_no_false_success_no_hang_and_the_right_cause(seed: int, trial: type[RoundTrial]) -> None:
-    assert breaches(seed, trial=trial) == []
+def test_no_false_success_no_hang_and_the_right_cause(seed: int, rig: type[RoundRig]) -> None:
+    assert breaches(seed, rig=rig) == []
 
 
 @pytest.mark.parametrize("fault", ["lie", "early", "short", "stuck", "jump", "unlocalised", "no_odometry"])
@@ -33,7 +33,7 @@ def test_faults_by_themselves(fault: str) -> None:
 
 
 def test_waypoints_that_are_missed() -> None:
-    assert breaches(1, "missed", trial=WaypointsTrial) == []
+    assert breaches(1, "missed", rig=WaypointsRig) == []
 
 
 def test_a_base_that_is_believed_anywhere_would_be_found(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -18,7 +18,7 @@ from arboleda.simulator.plants import draw
 from arboleda.testing import Sim
 
 from ..lengths import sample
-from ..unit.app import own_arms
+from ..unit.plant_file import own_arms
 
 EXAMPLE = own_arms.TENDER.parents[2] / "plants/own_arm.yaml"
 SEEDS = range(8)

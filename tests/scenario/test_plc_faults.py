@@ -11,53 +11,53 @@ from arboleda.drivers.plc.numbers import Numbers
 from arboleda.plant_file.loader import load
 from arboleda.virtual.modbus.memory import FAULTS as MODBUS_FAULTS
 from arboleda.virtual.opcua.faults import FAULTS as OPCUA_FAULTS
-from arboleda_driver_faults.modbus import ModbusTrial, Registers
-from arboleda_driver_faults.opcua import OpcUaTrial
-from arboleda_driver_faults.plc import BeltTrial
-from arboleda_driver_faults.trial import run
+from arboleda_driver_faults.modbus import ModbusRig, Registers
+from arboleda_driver_faults.opcua import OpcUaRig
+from arboleda_driver_faults.plc import BeltRig
+from arboleda_driver_faults.rig import run
 
 EXAMPLES = Path(__file__).parents[2] / "examples/plc_conveyor"
 MODBUS, OPCUA = load(EXAMPLES / "plant.yaml"), load(EXAMPLES / "opcua.yaml")
 SEEDS = 4
 
 
-def breaches(trial: BeltTrial, seed: int, *names: str) -> list[str]:
-    return run(trial, seed, names).breaches
+def breaches(rig: BeltRig, seed: int, *names: str) -> list[str]:
+    return run(rig, seed, names).breaches
 
 
 @pytest.mark.parametrize("seed", range(SEEDS))
 def test_no_false_success_no_hang_and_the_right_cause(seed: int) -> None:
-    assert breaches(ModbusTrial(MODBUS), seed) == []
-    assert breaches(OpcUaTrial(OPCUA), seed) == []
+    assert breaches(ModbusRig(MODBUS), seed) == []
+    assert breaches(OpcUaRig(OPCUA), seed) == []
 
 
 @pytest.mark.parametrize("fault", MODBUS_FAULTS)
 def test_every_fault_of_modbus_by_itself(fault: str) -> None:
-    assert breaches(ModbusTrial(MODBUS), 1, fault) == []
+    assert breaches(ModbusRig(MODBUS), 1, fault) == []
 
 
 @pytest.mark.parametrize("fault", ["mute", *sorted(set(OPCUA_FAULTS) - set(MODBUS_FAULTS))])
 def test_every_fault_that_only_opcua_has_by_itself(fault: str) -> None:
-    assert breaches(OpcUaTrial(OPCUA), 1, fault) == []
+    assert breaches(OpcUaRig(OPCUA), 1, fault) == []
 
 
 def test_a_belt_that_is_believed_anywhere_would_be_found(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(evidence, "reached", lambda entry, belief: True)
-    found = [each for seed in range(3) for each in breaches(OpcUaTrial(OPCUA), seed, "lies", "blind")]
+    found = [each for seed in range(3) for each in breaches(OpcUaRig(OPCUA), seed, "lies", "blind")]
     assert any("false success" in each for each in found)
 
 
 def test_numbers_that_name_no_command_would_be_found(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(Numbers, "id_of", lambda self, number: None)
-    assert any("wrong cause" in each for each in breaches(ModbusTrial(MODBUS), 1, "bad_part"))
+    assert any("wrong cause" in each for each in breaches(ModbusRig(MODBUS), 1, "bad_part"))
 
 
 def test_an_order_that_is_given_twice_would_be_found(monkeypatch: pytest.MonkeyPatch) -> None:
     once = Registers.order
     monkeypatch.setattr(Registers, "order", lambda wire, told: once(wire, told) or once(wire, told))
-    assert any("moves were said" in each for each in breaches(ModbusTrial(MODBUS), 1, "bad_part"))
+    assert any("moves were said" in each for each in breaches(ModbusRig(MODBUS), 1, "bad_part"))
 
 
 def test_every_fault_has_the_reasons_that_it_may_give() -> None:
-    assert set(ModbusTrial(MODBUS).causes) == set(MODBUS_FAULTS)
-    assert set(OpcUaTrial(OPCUA).causes) == set(OPCUA_FAULTS)
+    assert set(ModbusRig(MODBUS).causes) == set(MODBUS_FAULTS)
+    assert set(OpcUaRig(OPCUA).causes) == set(OPCUA_FAULTS)

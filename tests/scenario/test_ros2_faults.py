@@ -12,9 +12,9 @@ from arboleda.kinds.arm import Arm
 from arboleda.plant_file.loader import load
 from arboleda.virtual.gripper.machine import FAULTS as GRIPPER_FAULTS
 from arboleda.virtual.trajectory.machine import FAULTS as ARM_FAULTS
-from arboleda_driver_faults.gripper import ARM_CAUSES, GRIPPER_CAUSES, CarryTrial
+from arboleda_driver_faults.gripper import ARM_CAUSES, GRIPPER_CAUSES, CarryRig
+from arboleda_driver_faults.rig import run
 from arboleda_driver_faults.ros_action import CAUSES
-from arboleda_driver_faults.trial import run
 
 EXAMPLE = load(Path(__file__).parents[2] / "examples/ros2_control/plant.yaml")
 SEEDS = 4
@@ -23,7 +23,7 @@ OWN = ("jaw.empty", "jaw.slip", "jaw.jam", "jaw.allow_stalling", "arm.no_joint",
 
 
 def breaches(seed: int, *names: str) -> list[str]:
-    return run(CarryTrial(EXAMPLE), seed, names).breaches
+    return run(CarryRig(EXAMPLE), seed, names).breaches
 
 
 @pytest.mark.parametrize("seed", range(SEEDS))

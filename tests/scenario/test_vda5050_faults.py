@@ -11,8 +11,8 @@ from arboleda.drivers.vda5050 import machine
 from arboleda.kinds.mobile import Mobile
 from arboleda.plant_file.loader import load
 from arboleda.virtual.vda5050.faults import FAULTS
-from arboleda_driver_faults.trial import run
-from arboleda_driver_faults.vda5050 import CAUSES, AgvTrial
+from arboleda_driver_faults.rig import run
+from arboleda_driver_faults.vda5050 import CAUSES, AgvRig
 
 EXAMPLE = load(Path(__file__).parents[2] / "examples/agv/plant.yaml")
 SEEDS = 8
@@ -20,7 +20,7 @@ DEAF_AND_REFUSED = 98  # a cancel that is never begun, while an order is refused
 
 
 def breaches(seed: int, *names: str, version: str = "2.1") -> list[str]:
-    return run(AgvTrial(EXAMPLE, version), seed, names).breaches
+    return run(AgvRig(EXAMPLE, version), seed, names).breaches
 
 
 @pytest.mark.parametrize("version", ["2.0", "2.1", "3.0"])

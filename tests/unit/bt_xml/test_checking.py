@@ -4,7 +4,7 @@ import time
 
 import pytest
 
-from .told import HEAD, looked_at, mistakes, tree, warnings
+from .findings import HEAD, looked_at, mistakes, tree, warnings
 
 MODEL = (
     '<TreeNodesModel><Action ID="Go"><input_port name="to" type="int"/><output_port name="at"/></Action>'

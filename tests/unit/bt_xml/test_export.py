@@ -12,7 +12,7 @@ from arboleda.bt_xml.export import LARGEST, PART, export
 from arboleda.bt_xml.forest import Forest, Node
 from arboleda.cli.main import cli
 
-from .told import looked_at
+from .findings import looked_at
 
 ROOT = Path(__file__).parents[3]
 KINDS = {"Sequence": "sequence", "Fallback": "selector", "Parallel": "parallel"}

@@ -25,7 +25,7 @@ from arboleda.recipes import parallel, work
 from arboleda.recipes.authoring import Kit
 
 from ...lengths import sample
-from .told import HEAD
+from .findings import HEAD
 
 TICKS = 6
 BETWEEN_S = 0.2  # two ticks

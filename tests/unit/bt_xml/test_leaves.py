@@ -15,7 +15,7 @@ from arboleda.cli.main import cli
 from arboleda.model.errors import ConfigError
 from arboleda.plant_file import loader
 
-from .told import looked_at, tree
+from .findings import looked_at, tree
 
 PLANT = Path(__file__).parents[3] / "examples/machine_tending/plant.yaml"
 

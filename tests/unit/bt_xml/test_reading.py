@@ -3,7 +3,7 @@ from __future__ import annotations
 from arboleda.bt_xml import nodes
 from arboleda.bt_xml.findings import Mark
 
-from .told import HEAD, looked_at, mistakes, tree, warnings
+from .findings import HEAD, looked_at, mistakes, tree, warnings
 
 COMPACT = '<Sequence name="both"><Gripper open="{o}" _skipIf="o"/><SubTree ID="Go" to="7"/></Sequence>'
 EXPLICIT = (

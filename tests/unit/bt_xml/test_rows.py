@@ -2,7 +2,7 @@ from __future__ import annotations
 
 from arboleda.bt_xml import rows
 
-from .told import looked_at, tree
+from .findings import looked_at, tree
 
 INNER = '<BehaviorTree ID="In"><Fallback><A to="{x}"/><SubTree ID="In"/></Fallback></BehaviorTree>'
 

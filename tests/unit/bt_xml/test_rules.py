@@ -16,7 +16,7 @@ from arboleda.bt_xml.running.build import MAKERS, Builder
 from arboleda.bt_xml.running.memory import Scope
 from arboleda.bt_xml.running.node import ENDED, Node, Result
 
-from .told import HEAD
+from .findings import HEAD
 
 
 def cases(name: str) -> list[tuple[str, str]]:

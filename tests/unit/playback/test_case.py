@@ -14,7 +14,7 @@ from arboleda.model.errors import ConfigError
 from arboleda.playback.report.reading import incident_of
 from arboleda.recorder import reader
 
-from .test_simulate_record import Said, said
+from ..campaigns.test_simulate_record import Said, said
 
 __all__ = ["said"]
 Asked = list[tuple[float, str]]

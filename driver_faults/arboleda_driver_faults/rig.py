@@ -64,7 +64,7 @@ class Loopback(Protocol):
         """Let both do everything due by now."""
 
 
-class Trial(ABC):
+class Rig(ABC):
     """Test of a device behind a driver: the connection, the tasks, and the true state of the device.
 
     `causes` are the reasons for which a task may fail while a fault is there, or soon after it; `work` is
@@ -141,23 +141,23 @@ def drawn(seed: int, names: Sequence[str], between_s: float) -> tuple[FaultPerio
     )
 
 
-def run(trial: Trial, seed: int, names: Sequence[str] = ()) -> Result:
+def run(rig: Rig, seed: int, names: Sequence[str] = ()) -> Result:
     """Run one seed, from the start to the end of its last task; `names`: the faults to draw, default all."""
-    faults = drawn(seed, names or tuple(trial.faults.known), trial.between_s)
-    return World(trial, Result(seed=seed, faults=faults)).run()
+    faults = drawn(seed, names or tuple(rig.faults.known), rig.between_s)
+    return World(rig, Result(seed=seed, faults=faults)).run()
 
 
 class World:
     """World of one seed: plant, driver and device; `result` grows while it runs."""
 
-    def __init__(self, trial: Trial, result: Result) -> None:
-        self.trial, self.result, self.now = trial, result, START_S
-        (self._cell,) = trial.model.cells
-        self._names = {robot.name for robot in trial.robots}
+    def __init__(self, rig: Rig, result: Result) -> None:
+        self.rig, self.result, self.now = rig, result, START_S
+        (self._cell,) = rig.model.cells
+        self._names = {robot.name for robot in rig.robots}
         self._others = {robot.name for robot in self._cell.robots} - self._names
-        self.plant = Plant(trial.model, epoch=EPOCH, now=self.now)
+        self.plant = Plant(rig.model, epoch=EPOCH, now=self.now)
         self._supervisor = Supervisor(
-            [(trial.driver, trial.robots)], epoch=EPOCH, stale_after_s=trial.model.timing.stale_after_s
+            [(rig.driver, rig.robots)], epoch=EPOCH, stale_after_s=rig.model.timing.stale_after_s
         )
         self._driver: Loopback | None = None
         self._inbox: list[Event] = []
@@ -166,17 +166,17 @@ class World:
         self._looked_at = self.now
 
     def run(self) -> Result:
-        times = [START_S + 1 + number * self.trial.between_s for number in range(TASKS)]
+        times = [START_S + 1 + number * self.rig.between_s for number in range(TASKS)]
         over_at = max([times[-1], *(each.ends for each in self.result.faults)]) + PATIENCE_S
         asked = 0
         while len(self.result.ended) < TASKS and self.now < over_at:
             self._pass_time()
             if asked < TASKS and self.now >= times[asked]:
-                self._inbox.append(TaskRequest(at=self.now, text=self.trial.task(asked)))
+                self._inbox.append(TaskRequest(at=self.now, text=self.rig.task(asked)))
                 asked += 1
         if len(self.result.ended) < TASKS:
             self.result.breaches.append(f"hang: {TASKS - len(self.result.ended)} tasks have no end")
-        told, given = self.trial.moves()
+        told, given = self.rig.moves()
         if told > given:
             self.result.breaches.append(f"{told} moves were said, and only {given} were given")
         return self.result
@@ -197,13 +197,13 @@ class World:
         self._settle()
         if self.now >= self._looked_at + LOOKS_S:
             self._looked_at = self.now
-            self._inbox += self.trial.bystanders(self.now)
+            self._inbox += self.rig.bystanders(self.now)
             self._attend()
 
     def _switch_faults(self) -> None:
         for name in {each.name for each in self.result.faults}:
             drawn = (each for each in self.result.faults if each.name == name)
-            self.trial.faults.switch(name, on=any(each.begins <= self.now < each.ends for each in drawn))
+            self.rig.faults.switch(name, on=any(each.begins <= self.now < each.ends for each in drawn))
 
     def _settle(self) -> None:
         while True:
@@ -212,7 +212,7 @@ class World:
                 if isinstance(message, Report | Undelivered):
                     self._inbox.append(message)
                 elif isinstance(message, Begin):
-                    self._driver = self.trial.join(partial(self._hear, message.life), self.now)
+                    self._driver = self.rig.join(partial(self._hear, message.life), self.now)
                 elif isinstance(message, Give):
                     self._give(message)
             inbox, self._inbox = self._inbox, []
@@ -236,13 +236,13 @@ class World:
 
     def _attend(self) -> None:
         """Do as a person what the plant advises."""
-        if self.trial.faults:
+        if self.rig.faults:
             return
         for advice in self.plant.advice(self._cell.name):
             if advice.refusal is not None or advice.scope in self._others:
                 continue
             if isinstance(advice.do, Hand):
-                self.trial.by_hand()
+                self.rig.by_hand()
             else:
                 request = OperatorRequest(
                     at=self.now, verb=advice.do, scope=advice.scope, by_hand=advice.by_hand
@@ -253,7 +253,7 @@ class World:
     # What must hold.
 
     def _look_at_device(self) -> None:
-        seen = self.trial.seen()
+        seen = self.rig.seen()
         if seen is not None and (not self._seen or self._seen[-1] != seen):
             self._seen.append(seen)
 
@@ -263,7 +263,7 @@ class World:
         if change.state not in ENDED:
             return
         self.result.ended.append(change)
-        if change.state is TaskState.DONE and not _within(self.trial.work, self._seen):
+        if change.state is TaskState.DONE and not _within(self.rig.work, self._seen):
             self.result.breaches.append(f"false success: task {change.task}, it was seen at {self._seen}")
         if change.state is TaskState.FAILED and change.reason not in self._possible():
             self.result.breaches.append(
@@ -274,9 +274,9 @@ class World:
         near = [
             each.name
             for each in self.result.faults
-            if each.begins <= self.now <= each.ends + self.trial.after_s
+            if each.begins <= self.now <= each.ends + self.rig.after_s
         ]
-        return set().union(*(self.trial.causes[name] for name in near))
+        return set().union(*(self.rig.causes[name] for name in near))
 
 
 def _within(wanted: Sequence[Hashable], seen: Sequence[Hashable]) -> bool:

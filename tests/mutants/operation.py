@@ -1,4 +1,4 @@
-"""Mutants for what the plant concludes, keeps, shows and does on an operator's word, and for the bridge."""
+"""Mutants of the plant's operation: proofs, bridge, operators' verbs, advice and screens."""
 
 from __future__ import annotations
 
@@ -215,4 +215,4 @@ SCREENS = (
     ),
 )
 
-TOLD = (*PROOFS, *BRIDGE, *PEOPLE, *ADVICE, *SCREENS)
+OPERATION = (*PROOFS, *BRIDGE, *PEOPLE, *ADVICE, *SCREENS)

@@ -1,4 +1,4 @@
-"""What checking says of a text, for the tests of this folder."""
+"""Findings of the check of a text, for the tests of this folder."""
 
 from __future__ import annotations
 
