@@ -13,11 +13,14 @@ import subprocess
 import threading
 from collections.abc import Callable, Iterator
 from contextlib import suppress
+from functools import lru_cache
 from pathlib import Path
 from unittest import mock
 from uuid import uuid4
 
 import pytest
+import typer.main
+import typer.testing
 from hypothesis import HealthCheck, settings
 
 from arboleda.plant_file import recipe_trial
@@ -36,7 +39,7 @@ settings.register_profile(
 settings.load_profile("arboleda")
 
 HERE = Path(__file__).parent
-YOUNG = 50_000  # objects before a collection, as in workers of `arboleda simulate`
+YOUNG = 200_000  # objects before a collection
 SEARCH_PATH = os.pathsep.join([os.environ.get("PATH", os.defpath), "/usr/sbin"])  # Debian keeps servers there
 
 
@@ -103,6 +106,17 @@ def pytest_collection_finish() -> None:
     gc.collect()
     gc.freeze()
     gc.set_threshold(YOUNG)
+
+
+@pytest.fixture(autouse=True, scope="session")
+def commands_made_once() -> Iterator[None]:
+    """The command line is made of its functions once, which takes a tenth of a second; it keeps nothing."""
+    made = lru_cache(typer.main.get_command)
+    with (
+        mock.patch.object(typer.main, "get_command", made),
+        mock.patch.object(typer.testing, "_get_command", made),
+    ):
+        yield
 
 
 @pytest.fixture

@@ -129,10 +129,10 @@ class Result:
     breaches: list[str] = field(default_factory=list)
 
 
-def drawn(seed: int, names: Sequence[str], between_s: float) -> tuple[FaultPeriod, ...]:
+def drawn(seed: int, names: Sequence[str], during_s: float) -> tuple[FaultPeriod, ...]:
     """Two to six faults, each at a random time for a random while."""
     chance = Random(f"faults/{seed}")
-    begins = [START_S + 3 + chance.random() * TASKS * between_s for _ in range(2 + int(chance.random() * 5))]
+    begins = [START_S + 3 + chance.random() * during_s for _ in range(2 + int(chance.random() * 5))]
     return tuple(
         FaultPeriod(
             name=names[int(chance.random() * len(names))], begins=at, ends=at + 0.1 + chance.random() * 6
@@ -141,17 +141,18 @@ def drawn(seed: int, names: Sequence[str], between_s: float) -> tuple[FaultPerio
     )
 
 
-def run(rig: Rig, seed: int, names: Sequence[str] = ()) -> Result:
+def run(rig: Rig, seed: int, names: Sequence[str] = (), tasks: int = TASKS) -> Result:
     """Run one seed, from the start to the end of its last task; `names`: the faults to draw, default all."""
-    faults = drawn(seed, names or tuple(rig.faults.known), rig.between_s)
-    return World(rig, Result(seed=seed, faults=faults)).run()
+    faults = drawn(seed, names or tuple(rig.faults.known), tasks * rig.between_s)
+    return World(rig, Result(seed=seed, faults=faults), tasks).run()
 
 
 class World:
     """World of one seed: plant, driver and device; `result` grows while it runs."""
 
-    def __init__(self, rig: Rig, result: Result) -> None:
+    def __init__(self, rig: Rig, result: Result, tasks: int) -> None:
         self.rig, self.result, self.now = rig, result, START_S
+        self._tasks = tasks
         (self._cell,) = rig.model.cells
         self._names = {robot.name for robot in rig.robots}
         self._others = {robot.name for robot in self._cell.robots} - self._names
@@ -166,16 +167,16 @@ class World:
         self._looked_at = self.now
 
     def run(self) -> Result:
-        times = [START_S + 1 + number * self.rig.between_s for number in range(TASKS)]
+        times = [START_S + 1 + number * self.rig.between_s for number in range(self._tasks)]
         over_at = max([times[-1], *(each.ends for each in self.result.faults)]) + PATIENCE_S
         asked = 0
-        while len(self.result.ended) < TASKS and self.now < over_at:
+        while len(self.result.ended) < self._tasks and self.now < over_at:
             self._pass_time()
-            if asked < TASKS and self.now >= times[asked]:
+            if asked < self._tasks and self.now >= times[asked]:
                 self._inbox.append(TaskRequest(at=self.now, text=self.rig.task(asked)))
                 asked += 1
-        if len(self.result.ended) < TASKS:
-            self.result.breaches.append(f"hang: {TASKS - len(self.result.ended)} tasks have no end")
+        if (endless := self._tasks - len(self.result.ended)) > 0:
+            self.result.breaches.append(f"hang: {endless} tasks have no end")
         told, given = self.rig.moves()
         if told > given:
             self.result.breaches.append(f"{told} moves were said, and only {given} were given")

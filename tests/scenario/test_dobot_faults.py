@@ -10,16 +10,17 @@ from arboleda.kinds.arm import Arm
 from arboleda.testing.plants import shipped
 from arboleda.virtual.dobot.faults import FAULTS
 from arboleda_driver_faults.dobot import CAUSES, DobotRig
-from arboleda_driver_faults.rig import run
+from arboleda_driver_faults.rig import TASKS, run
 
 from ..lengths import sample
 
 SHIPPED = shipped()
 SEEDS = 12
+FEW = 2  # tasks, in which a fault comes by itself
 
 
-def breaches(seed: int, *names: str) -> list[str]:
-    return run(DobotRig(SHIPPED), seed, names).breaches
+def breaches(seed: int, *names: str, tasks: int = TASKS) -> list[str]:
+    return run(DobotRig(SHIPPED), seed, names, tasks).breaches
 
 
 @pytest.mark.parametrize("seed", sample(range(SEEDS), every=4))
@@ -29,7 +30,7 @@ def test_no_false_success_no_hang_and_the_right_cause(seed: int) -> None:
 
 @pytest.mark.parametrize("fault", FAULTS)
 def test_every_fault_by_itself(fault: str) -> None:
-    assert breaches(1, fault) == []
+    assert breaches(1, fault, tasks=FEW) == []
 
 
 def test_an_arm_that_is_believed_anywhere_would_be_found(monkeypatch: pytest.MonkeyPatch) -> None:

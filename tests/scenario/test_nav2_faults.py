@@ -11,14 +11,15 @@ from arboleda.kinds.mobile import Mobile
 from arboleda.plant_file.loader import load
 from arboleda.virtual.nav2.machine import FAULTS
 from arboleda_driver_faults.nav2 import BASE_CAUSES, RoundRig, WaypointsRig
-from arboleda_driver_faults.rig import run
+from arboleda_driver_faults.rig import TASKS, run
 
 EXAMPLE = load(Path(__file__).parents[2] / "examples/nav2/plant.yaml")
 SEEDS = 2
+FEW = 2  # tasks, in which a fault comes by itself
 
 
-def breaches(seed: int, *names: str, rig: type[RoundRig] = RoundRig) -> list[str]:
-    return run(rig(EXAMPLE), seed, [f"cart.{name}" for name in names]).breaches
+def breaches(seed: int, *names: str, rig: type[RoundRig] = RoundRig, tasks: int = TASKS) -> list[str]:
+    return run(rig(EXAMPLE), seed, [f"cart.{name}" for name in names], tasks).breaches
 
 
 @pytest.mark.parametrize("rig", [RoundRig, WaypointsRig])
@@ -29,7 +30,7 @@ def test_no_false_success_no_hang_and_the_right_cause(seed: int, rig: type[Round
 
 @pytest.mark.parametrize("fault", ["lie", "early", "short", "stuck", "jump", "unlocalised", "no_odometry"])
 def test_faults_by_themselves(fault: str) -> None:
-    assert breaches(1, fault) == []
+    assert breaches(1, fault, tasks=FEW) == []
 
 
 def test_waypoints_that_are_missed() -> None:

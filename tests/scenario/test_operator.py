@@ -137,35 +137,64 @@ def facts(rig: Rig) -> Any:
     return rig.snapshot(), latched, grip, {fact: dict(kept) for fact, kept in rig.memory.items()}
 
 
-CASES = [(state, verb, "sis_a") for state in STATES for verb in Verb]
-CASES += [(state, verb, "ra1") for state in STATES for verb in (Verb.RELEASE, Verb.HOME)]
+VERBS = [(verb, "sis_a") for verb in Verb] + [(verb, "ra1") for verb in (Verb.RELEASE, Verb.HOME)]
+ALLOWED = {
+    state: [(verb, scope) for verb, scope in VERBS if verb is Verb.STOP or verb in allowed]
+    for state, (_, _, allowed) in STATES.items()
+}
+CASES = [(state, verb, scope) for state, pairs in ALLOWED.items() for verb, scope in pairs]
 
 
-@pytest.mark.parametrize(("state", "verb", "scope"), CASES, ids=lambda word: getattr(word, "value", word))
-def test_a_verb_is_done_or_refused_and_changes_nothing(
-    stage: Stage, state: str, verb: Verb, scope: str
-) -> None:
+def brought(stage: Stage, state: str) -> tuple[Rig, Witness]:
     rig, witness = stage()
-    bring, where, allowed = STATES[state]
+    bring, where, _ = STATES[state]
     bring(rig)
     assert cell(rig).state is where
-    before, sent, told = facts(rig), len(rig.sent), len(rig.to_boards)
-    foretold = rig.plant.refusal(OperatorRequest(at=rig.now, verb=verb, scope=scope))
+    return rig, witness
+
+
+def foretold(rig: Rig, verb: Verb, scope: str) -> str | None:
+    """The refusal that is foretold; to ask for it changes nothing."""
+    before = facts(rig)
+    refusal = rig.plant.refusal(OperatorRequest(at=rig.now, verb=verb, scope=scope))
     assert facts(rig) == before
-    refusal = rig.operate(verb, scope)
-    assert refusal == (None if foretold is None else str(foretold))
-    news = [message for message in rig.sent[sent:] if isinstance(message, (Journal, Command))]
-    if verb is Verb.STOP or verb in allowed:
-        assert refusal is None
-        assert [each.verb for each in news if isinstance(each, Journal) and each.outcome is None] == [verb]
-    else:
-        assert refusal is not None and len(refusal.split()) > 3
-        assert (facts(rig), news, len(rig.to_boards)) == (before, [], told)
+    return None if refusal is None else str(refusal)
+
+
+def news(rig: Rig, since: int) -> list[Journal | Command]:
+    return [message for message in rig.sent[since:] if isinstance(message, (Journal, Command))]
+
+
+def goes_on(rig: Rig, witness: Witness, *, opened: bool) -> None:
     rig.lost = lambda publication: False
     rig.wait(10.0)
     assert witness.false_successes == []
-    assert witness.illegal == [] or verb is Verb.RELEASE
+    assert witness.illegal == [] or opened
     assert rig.plant.at_rest or cell(rig).state is CellState.HELD
+
+
+@pytest.mark.parametrize(("state", "verb", "scope"), CASES, ids=lambda word: getattr(word, "value", word))
+def test_a_verb_that_a_state_allows_is_done(stage: Stage, state: str, verb: Verb, scope: str) -> None:
+    rig, witness = brought(stage, state)
+    sent = len(rig.sent)
+    assert foretold(rig, verb, scope) is None
+    assert rig.operate(verb, scope) is None
+    journal = [each for each in news(rig, sent) if isinstance(each, Journal)]
+    assert [each.verb for each in journal if each.outcome is None] == [verb]
+    goes_on(rig, witness, opened=verb is Verb.RELEASE)
+
+
+@pytest.mark.parametrize("state", STATES)
+def test_every_other_verb_is_refused_and_changes_nothing(stage: Stage, state: str) -> None:
+    rig, witness = brought(stage, state)
+    before, sent, told = facts(rig), len(rig.sent), len(rig.to_boards)
+    for verb, scope in VERBS:
+        if (verb, scope) not in ALLOWED[state]:
+            refusal = rig.operate(verb, scope)
+            assert refusal == foretold(rig, verb, scope)
+            assert refusal is not None and len(refusal.split()) > 3
+            assert (facts(rig), news(rig, sent), len(rig.to_boards)) == (before, [], told)
+    goes_on(rig, witness, opened=False)
 
 
 @levels

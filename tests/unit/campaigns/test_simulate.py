@@ -393,4 +393,4 @@ def _is_rich(plant: Plant) -> bool:
     return len(plant.declared.cells) == 2 and bool(plant.declared.zones)
 
 
-REBOOT = {"kind": "reboot", "at": 33.25}
+REBOOT = {"kind": "reboot", "at": 3.25}

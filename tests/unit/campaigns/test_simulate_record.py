@@ -20,10 +20,9 @@ from .test_simulate import PLANT
 Said = Callable[..., list[str]]
 
 
-@pytest.fixture
-def said(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Said:
-    """The lines that a command says in a folder with the small plant."""
-    monkeypatch.chdir(tmp_path)
+def lines_in(folder: Path, patch: pytest.MonkeyPatch) -> Said:
+    """The lines that a command says in this folder, in which there is the small plant."""
+    patch.chdir(folder)
     Path("small.yaml").write_text(PLANT)
 
     def run(*words: object) -> list[str]:
@@ -34,34 +33,52 @@ def said(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Said:
     return run
 
 
+@pytest.fixture
+def said(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Said:
+    return lines_in(tmp_path, monkeypatch)
+
+
+@pytest.fixture(scope="module")
+def seed(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, list[str]]:
+    """The record of a seed, and what was said."""
+    folder = tmp_path_factory.mktemp("seed")
+    with pytest.MonkeyPatch.context() as patch:
+        lines = simulated(lines_in(folder, patch), "--record", "seed.mcap")
+    return folder / "seed.mcap", lines
+
+
 def simulated(said: Said, *words: object) -> list[str]:
     return said("simulate", "--plant", "small.yaml", "--cycles", 1, "--seed", 5, *words)
 
 
 @pytest.mark.parametrize("link", ["mqtt", "ros", "none"])
-def test_a_seed_is_a_record_that_is_equal_at_every_step(said: Said, link: str) -> None:
-    Path("small.yaml").write_text(PLANT.replace("link: mqtt", f"link: {link}"))
-    lines = simulated(said, "--record", "seed.mcap")
+def test_a_seed_is_a_record_that_is_equal_at_every_step(
+    said: Said, seed: tuple[Path, list[str]], link: str
+) -> None:
+    if link == "mqtt":
+        record, lines = seed
+        shutil.copy(record, "seed.mcap")
+    else:
+        Path("small.yaml").write_text(PLANT.replace("link: mqtt", f"link: {link}"))
+        lines = simulated(said, "--record", "seed.mcap")
     (steps,) = (line.split()[2] for line in lines if line.startswith("seed.mcap has "))
     assert said("replay", "seed.mcap")[-1] == f"{steps.replace(',', '')} steps, all equal"
     assert "plant file: small.yaml" in said("record", "info", "seed.mcap")
     assert any("running   sis_a" in line for line in said("logs", "seed.mcap"))
 
 
-def test_to_record_a_seed_changes_nothing_of_it_and_is_the_same_every_time(said: Said) -> None:
-    digests = {
-        line.split()[1]
-        for words in (("--trace",), ("--record", "a.mcap"), ("--record", "b.mcap"))
-        for line in simulated(said, *words)
-        if line.startswith("digest ")
-    }
+def test_to_record_a_seed_changes_nothing_of_it_and_is_the_same_every_time(
+    said: Said, seed: tuple[Path, list[str]]
+) -> None:
+    record, lines = seed
+    runs = [lines, *(simulated(said, *words) for words in (("--trace",), ("--record", "seed.mcap")))]
+    digests = {line.split()[1] for run in runs for line in run if line.startswith("digest ")}
     assert len(digests) == 1
-    assert Path("a.mcap").read_bytes() == Path("b.mcap").read_bytes()
+    assert record.read_bytes() == Path("seed.mcap").read_bytes()
 
 
-def test_a_recorded_seed_can_be_looked_at(said: Said) -> None:
-    simulated(said, "--record", "seed.mcap")
-    views = Views(reader.opened(Path("seed.mcap")))
+def test_a_recorded_seed_can_be_looked_at(seed: tuple[Path, list[str]]) -> None:
+    views = Views(reader.opened(seed[0]))
     assert any(row["state"] == "done" for row in views.at(views.ended_ns)["tasks"])
 
 

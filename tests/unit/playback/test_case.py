@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+import shutil
 from pathlib import Path
 
 import pytest
@@ -14,7 +15,7 @@ from arboleda.model.errors import ConfigError
 from arboleda.playback.report.reading import incident_of
 from arboleda.recorder import reader
 
-from ..campaigns.test_simulate_record import Said, said
+from ..campaigns.test_simulate_record import Said, lines_in, said
 
 __all__ = ["said"]
 Asked = list[tuple[float, str]]
@@ -40,11 +41,21 @@ def happened(file: str) -> tuple[Asked, list[tuple[str, str]]]:
     return [*asked.values()], failed
 
 
-@pytest.fixture
-def record(said: Said) -> str:
+@pytest.fixture(scope="module")
+def recorded(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The record of a seed in which something befalls the arm three times, and an operator stops its cell."""
-    Path("faults.json").write_text(json.dumps({"faults": FAULTS}))
-    said("simulate", "--plant", "small.yaml", "--cycles", 1, "--faults", "faults.json", "--record", "a.mcap")
+    folder = tmp_path_factory.mktemp("recorded")
+    with pytest.MonkeyPatch.context() as patch:
+        said = lines_in(folder, patch)
+        Path("faults.json").write_text(json.dumps({"faults": FAULTS}))
+        words = ("--plant", "small.yaml", "--cycles", 1, "--faults", "faults.json", "--record", "a.mcap")
+        said("simulate", *words)
+    return folder / "a.mcap"
+
+
+@pytest.fixture
+def record(said: Said, recorded: Path) -> str:
+    shutil.copy(recorded, "a.mcap")
     return "a.mcap"
 
 

@@ -11,7 +11,7 @@ from arboleda.runtime.demo import ALARM_S, CALM_S, Demo, DemoEnded, Task
 from arboleda.sim.devices import Alarm, Reboot
 from arboleda.testing.sim import Sim
 
-PASS_S = 0.5  # how often the demonstration sees the plant
+PASS_S = 1.0  # how often the demonstration sees the plant
 
 
 class Show:
