@@ -150,6 +150,14 @@ def test_missing_lines_of_a_urdf(folder: Path, data: st.DataObject) -> None:
     read_model(folder, "".join(lines[:first] + lines[last:]))
 
 
+@pytest.mark.parametrize("name", [":", "a:b", "b:"])
+def test_names_of_other_namespaces_are_passed_over(folder: Path, name: str) -> None:
+    text = urdf()
+    for word in ('<origin xyz="0 0 0.12"', 'xyz="0 0 0.12"', 'type="revolute"'):
+        assert word in text
+        read_model(folder, text.replace(word, f"{name}{word}".replace(f"{name}<", f"<{name}"), 1))
+
+
 def test_a_foot_that_is_too_thin_to_be_drawn(folder: Path) -> None:
     assert 'radius="0.11"' in urdf()
     read_model(folder, urdf().replace('radius="0.11"', 'radius="1E-10"', 1))

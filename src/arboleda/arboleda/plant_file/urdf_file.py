@@ -296,8 +296,8 @@ class _Reader:
         robot.extend(_element(material) for material in self._top.all("material"))
         for link in self._below(foot):
             if link != foot:
-                joint = SubElement(robot, "joint", self._above[link].attributes)
-                joint.extend(_element(child) for child in self._above[link].children)
+                joint = SubElement(robot, "joint", _own(self._above[link].attributes))
+                joint.extend(_element(self._above[link]))
                 if joint.get("name") not in moving:
                     joint.set("type", "fixed")
             robot.append(_element(self._links[link]))
@@ -320,6 +320,11 @@ def _has_mesh(link: Tag) -> bool:
 
 
 def _element(tag: Tag) -> Element:
-    element = Element(tag.name, tag.attributes)
-    element.extend(_element(child) for child in tag.children)
+    """The tag without what another namespace has added to it: nothing of that is drawn."""
+    element = Element(tag.name, _own(tag.attributes))
+    element.extend(_element(child) for child in tag.children if ":" not in child.name)
     return element
+
+
+def _own(attributes: dict[str, str]) -> dict[str, str]:
+    return {name: value for name, value in attributes.items() if ":" not in name}
