@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from itertools import product
 from typing import Any
 
 import pytest
@@ -19,8 +20,12 @@ from arboleda.simulator.world import BRIDGE, PLANT
 from arboleda.testing import shipped
 from arboleda.testing.rig import Rig
 
+from ..lengths import sample
+
 MOTIONS = (MoveJoints, FollowPath, Home)
 GAPS_S = (2.0, 20.0, 45.0)
+AWAY = ((PLANT,), (PLANT, BRIDGE))
+STEPS = ("drive path 0B", "move to pick-up", "effector on/dwell", "move to station 4", "effector off/dwell")
 LEVELS = (Evidence.IDS, Evidence.JOINTS)
 
 
@@ -43,9 +48,10 @@ def motions(rig: Rig) -> list[Any]:
     return [message for message in rig.sent if isinstance(message, MOTIONS)]
 
 
-@pytest.mark.parametrize("seconds", GAPS_S)
-@pytest.mark.parametrize("processes", [(PLANT,), (PLANT, BRIDGE)], ids=["plant", "machine"])
-@pytest.mark.parametrize("step", ["drive path 0B", "move to pick-up", "move to station 4"])
+@pytest.mark.parametrize(
+    ("step", "processes", "seconds"),
+    sample(product(["drive path 0B", "move to pick-up", "move to station 4"], AWAY, GAPS_S), every=2),
+)
 def test_a_cell_at_work_is_held_and_its_next_task_waits(
     rig: Rig, seconds: float, processes: tuple[str, ...], step: str
 ) -> None:
@@ -186,12 +192,7 @@ def going_on() -> Rig:
     return made
 
 
-@pytest.mark.parametrize("seconds", GAPS_S)
-@pytest.mark.parametrize("processes", [(PLANT,), (PLANT, BRIDGE)], ids=["plant", "machine"])
-@pytest.mark.parametrize(
-    "step",
-    ["drive path 0B", "move to pick-up", "effector on/dwell", "move to station 4", "effector off/dwell"],
-)
+@pytest.mark.parametrize(("step", "processes", "seconds"), sample(product(STEPS, AWAY, GAPS_S), every=4))
 def test_a_cell_goes_on_by_itself_where_the_plant_file_says_so(
     going_on: Rig, seconds: float, processes: tuple[str, ...], step: str
 ) -> None:

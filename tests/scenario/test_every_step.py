@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from itertools import cycle
+from itertools import cycle, product
 from typing import Any, cast
 
 import pytest
@@ -15,6 +15,8 @@ from arboleda.model.plant_model import Evidence
 from arboleda.sim.arm import ArmBody
 from arboleda.testing import Rig, Witness
 from arboleda.trees.leaves import Act, Await, Dwell
+
+from ..lengths import sample
 
 Stage = Callable[..., tuple[Rig, Witness]]
 TASK, STATION = "sis_a 1B 7", "station 7"
@@ -44,7 +46,9 @@ GRIPPED = STEPS.index("effector on/switch")  # from here on the part is in the e
 PLACED = STEPS.index("effector off/switch")  # from here on it is in its station
 
 levels = pytest.mark.parametrize("evidence", list(Evidence))
-at_every_step = pytest.mark.parametrize("step", STEPS)
+at_every_step_and_level = pytest.mark.parametrize(
+    ("step", "evidence"), sample(product(STEPS, Evidence), every=2)
+)
 at_every_step_one_level = pytest.mark.parametrize(
     ("step", "evidence"), list(zip(STEPS, cycle(Evidence), strict=False))
 )
@@ -133,8 +137,7 @@ def ancestors(node: Any) -> list[Any]:
     return [node.parent, *ancestors(node.parent)] if node.parent else []
 
 
-@levels
-@at_every_step
+@at_every_step_and_level
 def test_stop_then_clear_reset_and_resume(scene: Any, evidence: Evidence, step: str) -> None:
     here = scene(evidence)
     here.run_to(step)
@@ -185,8 +188,7 @@ def test_hold_then_nothing(scene: Any, evidence: Evidence, step: str) -> None:
     here.honest()
 
 
-@levels
-@at_every_step
+@at_every_step_and_level
 def test_hold_then_resume_does_the_task(scene: Any, evidence: Evidence, step: str) -> None:
     here = scene(evidence)
     here.run_to(step)
@@ -229,8 +231,7 @@ def test_hold_then_stop(scene: Any, evidence: Evidence, step: str) -> None:
     here.honest()
 
 
-@levels
-@at_every_step
+@at_every_step_and_level
 def test_cancel_recovers(scene: Any, evidence: Evidence, step: str) -> None:
     here = scene(evidence)
     here.run_to(step)

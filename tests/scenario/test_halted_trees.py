@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from itertools import product
 from pathlib import Path
 
 import pytest
 
 from arboleda.testing.sim import Sim
+
+from ..lengths import sample
 
 PLANT = """
 name: halted
@@ -73,7 +76,7 @@ CASES = [
 ]
 
 
-@pytest.mark.parametrize(("around", "at_once", "cause"), CASES)
+@pytest.mark.parametrize(("around", "at_once", "cause"), sample(CASES, every=2))
 def test_what_runs_is_halted_when_its_task_fails(
     tmp_path: Path, around: str, at_once: str, cause: str
 ) -> None:
@@ -124,8 +127,9 @@ FRAMES = {
 ANSWERED = {"fallback": ("failed", "rejected"), "invert": ("done", None)}  # what has an answer to a failure
 
 
-@pytest.mark.parametrize("cause", ["final", "ordinary", "raises"])
-@pytest.mark.parametrize("frame", FRAMES)
+@pytest.mark.parametrize(
+    ("frame", "cause"), sample(product(FRAMES, ["final", "ordinary", "raises"]), every=2)
+)
 def test_what_runs_is_halted_in_python_too(tmp_path: Path, frame: str, cause: str) -> None:
     """The simulator judges each step: `halted_moves_sent_halt`."""
     written = IN_PYTHON.format(cause=cause, frame=FRAMES[frame].format(at_once=AT_ONCE_IN_PYTHON))

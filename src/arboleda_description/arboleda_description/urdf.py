@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
+from functools import lru_cache
 from importlib.resources import as_file, files
+from pathlib import Path
 from typing import NamedTuple
 from xml.parsers.expat import ExpatError
 
@@ -34,11 +36,17 @@ def render(model: str, *, prefix: str, limits: Mapping[str, Limits] | None = Non
 
     if model not in models():
         raise ValueError(f"there is no urdf/{model}{ENDING}; there are {', '.join(models())}")
-    arguments = {"prefix": prefix, "limits": json.dumps(limits or {})}
     with as_file(files("arboleda_description")) as folder:
         try:
-            document = xacro.process_file(str(folder / "urdf" / (model + ENDING)), mappings=arguments)
+            return _processed(folder / "urdf" / (model + ENDING), prefix, json.dumps(limits or {}))
         except (xacro.XacroException, ExpatError) as error:
             why = " ".join(str(error).split())
             raise ValueError(f"urdf/{model}{ENDING} cannot be processed: {why}") from error
+
+
+@lru_cache(maxsize=32)  # xacro takes a twentieth of a second, for the same robot each time a plant is drawn
+def _processed(file: Path, prefix: str, limits: str) -> str:
+    import xacro
+
+    document = xacro.process_file(str(file), mappings={"prefix": prefix, "limits": limits})
     return '<?xml version="1.0"?>\n' + document.documentElement.toprettyxml(indent="  ")

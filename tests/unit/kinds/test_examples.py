@@ -279,7 +279,7 @@ def test_after_any_device_gave_up_the_first_advice_leads_back_to_work(case: Case
         assert here.do() is TaskState.DONE, (name, verb, done, here.changes[-1])
 
 
-@pytest.mark.parametrize("case", sample(PLAIN, every=3), ids=str)
+@pytest.mark.parametrize("case", sample(PLAIN, every=4), ids=str)
 def test_after_a_stop_at_any_time_the_first_advice_leads_back_to_work(case: Case) -> None:
     whole = Shop(case)
     assert whole.do() is TaskState.DONE

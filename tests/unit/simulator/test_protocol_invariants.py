@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from dataclasses import replace
+from itertools import product
 from operator import attrgetter
 from typing import Any
 
@@ -41,6 +42,7 @@ from arboleda.wire.hop import FromPlant
 from arboleda.wire.transport import Publication
 
 from ...cells import with_poses
+from ...lengths import sample
 
 INVARIANTS = (*COMMANDS, *TASKS, *WIRE, *LIVENESS, *BOOKS)
 TASK = "sis_a 0B 7"
@@ -213,8 +215,9 @@ def test_no_move_after_its_halt__by_the_numbers_that_the_plant_gave():
     assert watch.found == {}
 
 
-@pytest.mark.parametrize("process", [PLANT, BRIDGE, "ra_1", "rm_sis_a"])
-@pytest.mark.parametrize("at_s", [0.1, 1.5, 4.2, 5.6])
+@pytest.mark.parametrize(
+    ("at_s", "process"), sample(product([0.1, 1.5, 4.2, 5.6], [PLANT, BRIDGE, "ra_1", "rm_sis_a"]), every=3)
+)
 def test_nothing_is_found_with_crashes(process, at_s):
     watch = Watch()
     watch.task()
