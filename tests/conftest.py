@@ -32,7 +32,7 @@ from .lengths import length
 from .postgres import PASSWORD, Server
 
 # How fast a machine is does not decide a test.
-EXAMPLES = length(50, whole=300)
+EXAMPLES = length(30, whole=300)
 settings.register_profile(
     "arboleda", max_examples=EXAMPLES, deadline=None, suppress_health_check=[HealthCheck.too_slow]
 )
@@ -57,10 +57,19 @@ PORTS = range(20_000, 32_000)
 _ports = itertools.cycle([*PORTS[os.getpid() * 37 % len(PORTS) :], *PORTS])
 
 
+def folder(item: pytest.Item | pytest.Module) -> str:
+    """The folder below this one that the test is in, or nothing."""
+    return item.path.relative_to(HERE).parts[0] if item.path.is_relative_to(HERE) else ""
+
+
 def by_hand(item: pytest.Item | pytest.Module) -> bool:
     """Whether the test moves time by hand: those of unit/ and scenario/."""
-    parts = item.path.relative_to(HERE).parts if item.path.is_relative_to(HERE) else ()
-    return parts[:1] in {("unit",), ("scenario",)}
+    return folder(item) in {"unit", "scenario"}
+
+
+def is_real(item: pytest.Item | pytest.Module) -> bool:
+    """Whether the test is of real parts, which have threads of their own."""
+    return folder(item) in {"contract", "system", "tutorial", ""}
 
 
 def find_tool(name: str) -> str | None:
@@ -175,8 +184,8 @@ def no_network(request: pytest.FixtureRequest) -> Iterator[None]:
 
 @pytest.fixture(autouse=True, scope="module")
 def quick_trials(request: pytest.FixtureRequest) -> Iterator[None]:
-    """Files of Python that a plant uses are tried in forks, where time is moved by hand."""
-    with mock.patch.object(recipe_trial, "subprocess", forked if by_hand(request.node) else subprocess):
+    """Files of Python that a plant uses are tried in forks, but for tests of real parts."""
+    with mock.patch.object(recipe_trial, "subprocess", subprocess if is_real(request.node) else forked):
         yield
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ctypes
+import gc
 import json
 import os
 import resource
@@ -117,6 +118,7 @@ def _do(work: Work, pipe: int, log: Path) -> None:
         resource.setrlimit(resource.RLIMIT_AS, (MEMORY_BYTES, MEMORY_BYTES))
         resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
         _be_quiet(log)
+        gc.freeze()  # what the parent has made is no garbage of ours
 
         def say(line: dict[str, Any]) -> None:
             os.write(pipe, json.dumps(line).encode() + b"\n")

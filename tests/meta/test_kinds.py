@@ -4,6 +4,7 @@ import ast
 import inspect
 import pkgutil
 from collections.abc import Iterator
+from functools import cache
 from importlib import import_module
 from pathlib import Path
 
@@ -51,9 +52,14 @@ def _concrete() -> set[str]:
     return {each.__name__ for each in classes if issubclass(each, Robot | Cell)} - {"Robot", "Cell"}
 
 
+@cache
+def _nodes(code: str) -> list[ast.AST]:
+    return list(ast.walk(ast.parse(code)))
+
+
 def _questions(code: str, names: set[str]) -> Iterator[str]:
     """Each place where a value is compared with one of these classes."""
-    for node in ast.walk(ast.parse(code)):
+    for node in _nodes(code):
         asks = isinstance(node, ast.Call) and getattr(node.func, "id", "") in ("isinstance", "issubclass")
         compares = isinstance(node, ast.Compare) and "type(" in ast.unparse(node)
         if (asks or compares) and any(getattr(part, "id", "") in names for part in ast.walk(node)):
@@ -94,7 +100,7 @@ def _names_of_kinds(package: str) -> dict[str, set[str]]:
     names = {
         str(path.relative_to(ROOT)): {
             node.value
-            for node in ast.walk(ast.parse(path.read_text()))
+            for node in _nodes(path.read_text())
             if isinstance(node, ast.Constant) and isinstance(node.value, str)
         }
         & (COME_WITH_IT.keys() - {FACT})

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from itertools import product
 from typing import Any
 
 import pytest
@@ -17,6 +18,8 @@ from arboleda.testing import Rig, Witness, faults, shipped, slowed
 from arboleda.testing.following import advised, follow, works
 from arboleda.wire.hop import FromPlant
 from arboleda.wire.transport import Publication
+
+from ..lengths import sample
 
 Stage = Callable[..., tuple[Rig, Witness]]
 TASK = "sis_a 0B 7"
@@ -113,8 +116,7 @@ TROUBLES: dict[str, Callable[[Rig], None]] = {
 }
 
 
-@levels
-@pytest.mark.parametrize("trouble", TROUBLES)
+@pytest.mark.parametrize(("trouble", "evidence"), sample(product(TROUBLES, Evidence), every=2))
 def test_the_first_advice_leads_to_a_working_cell(stage: Stage, evidence: Evidence, trouble: str) -> None:
     rig, witness = stage(evidence)
     TROUBLES[trouble](rig)

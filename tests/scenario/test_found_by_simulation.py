@@ -27,7 +27,7 @@ from arboleda.wire.board import Board, Message
 from arboleda.wire.hop import FromPlant
 
 from ..cells import with_poses
-from ..lengths import length
+from ..lengths import length, sample
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 
@@ -341,7 +341,7 @@ FOUND = {
 
 
 SOON = {name: found for name, found in FOUND.items() if found.seconds < 60}
-CASES = length(SOON, whole=FOUND)
+CASES = length(dict(sample(SOON.items(), every=2)), whole=FOUND)
 
 
 @pytest.mark.parametrize("found", list(CASES.values()), ids=list(CASES))

@@ -242,7 +242,7 @@ def simulated(seed: int, rates: dict[str, float], **changes: object) -> Simulati
     return simulation
 
 
-@pytest.mark.parametrize(("kind", "goes_on"), sample(product(OF_CRASHES, [False, True]), every=3))
+@pytest.mark.parametrize(("kind", "goes_on"), sample(product(OF_CRASHES, [False, True]), every=5))
 def test_everything_holds_however_it_dies(kind: str, goes_on: bool) -> None:
     found = simulated(1, {kind: 8.0}, goes_on=goes_on)
     assert found.result.broken is None

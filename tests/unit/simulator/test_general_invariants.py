@@ -149,7 +149,7 @@ def test_all_of_them_hold_in_bad_weather(seed: int) -> None:
     assert run(seed, "normal", cycles=6, model=SHARING) is None
 
 
-@pytest.mark.parametrize("kind", FAULTS_OF_DEVICES)
+@pytest.mark.parametrize("kind", sample(FAULTS_OF_DEVICES, every=2))
 def test_all_of_them_hold_where_devices_fail_in_this_way_alone(kind: str) -> None:
     assert kind in JUDGED
     assert run(1, {kind: 12.0}, cycles=3, seconds=length(25.0, whole=None)) is None
@@ -430,9 +430,10 @@ def test_it_bites(monkeypatch: Patch, name: str, bug: Bug, how: Scenario | Weath
         assert any(broken is not None and broken.invariant == name for broken in found)
 
 
-@pytest.mark.parametrize(
-    "how", [each for name, _, each in BITES if callable(each) and name != "nothing_is_dropped"]
-)
+SCENARIOS = [each for name, _, each in BITES if callable(each) and name != "nothing_is_dropped"]
+
+
+@pytest.mark.parametrize("how", sample(SCENARIOS, every=2))
 def test_it_finds_nothing_where_there_is_no_bug(how: Scenario) -> None:
     how(JudgedWorld(shop(*RECIPES)))
 

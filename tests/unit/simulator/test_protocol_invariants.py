@@ -121,17 +121,19 @@ def test_nothing_is_found_in_three_cells_at_work():
     assert sum(task.state is TaskState.DONE for task in watch.record.tasks.ended.values()) == 18
 
 
-@pytest.mark.parametrize("at_s", [0.1, 1.5, 4.2, 5.6])
+SEQUENCES = (
+    (Verb.STOP, Verb.CLEAR, Verb.RESET, Verb.RESUME),
+    (Verb.HOLD, Verb.RESUME),
+    (Verb.HOLD, Verb.ABANDON, Verb.RESUME),
+    (Verb.CANCEL,),
+    (Verb.HOLD, Verb.STOP, Verb.CLEAR, Verb.RESET, Verb.RELEASE, Verb.RESUME, Verb.RESET),
+)
+
+
 @pytest.mark.parametrize(
-    "verbs",
-    [
-        (Verb.STOP, Verb.CLEAR, Verb.RESET, Verb.RESUME),
-        (Verb.HOLD, Verb.RESUME),
-        (Verb.HOLD, Verb.ABANDON, Verb.RESUME),
-        (Verb.CANCEL,),
-        (Verb.HOLD, Verb.STOP, Verb.CLEAR, Verb.RESET, Verb.RELEASE, Verb.RESUME, Verb.RESET),
-    ],
-    ids=lambda verbs: "-".join(verb.value for verb in verbs),
+    ("at_s", "verbs"),
+    sample(product([0.1, 1.5, 4.2, 5.6], SEQUENCES), every=2),
+    ids=lambda value: "-".join(verb.value for verb in value) if isinstance(value, tuple) else str(value),
 )
 def test_nothing_is_found_with_operators(verbs, at_s):
     watch = Watch()
