@@ -553,7 +553,7 @@ FOUND = {
 }
 
 
-CASES = dict(sample(FOUND.items(), every=4))
+CASES = dict(sample(FOUND.items(), every=6))
 
 
 @pytest.mark.parametrize("found", CASES.values(), ids=CASES)

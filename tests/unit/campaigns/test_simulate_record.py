@@ -15,6 +15,7 @@ from arboleda.cli.main import cli
 from arboleda.recorder import reader
 from arboleda.recorder.views import Views
 
+from ...lengths import sample
 from .test_simulate import PLANT
 
 Said = Callable[..., list[str]]
@@ -51,7 +52,7 @@ def simulated(said: Said, *words: object) -> list[str]:
     return said("simulate", "--plant", "small.yaml", "--cycles", 1, "--seed", 5, *words)
 
 
-@pytest.mark.parametrize("link", ["mqtt", "ros", "none"])
+@pytest.mark.parametrize("link", sample(["mqtt", "ros", "none"], every=2))
 def test_a_seed_is_a_record_that_is_equal_at_every_step(
     said: Said, seed: tuple[Path, list[str]], link: str
 ) -> None:
