@@ -47,3 +47,12 @@ def browsers() -> Iterator[Any]:
             )
 
         yield launch
+
+
+def leave(context: Any) -> None:
+    """Close the pages of a context, which itself goes with its browser.
+
+    Now and then chromium never answers who asks it to dispose of a context, and nothing ends such a wait.
+    """
+    for page in context.pages:
+        page.close()

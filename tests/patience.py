@@ -5,3 +5,4 @@ It is for the busiest machine: who is answered waits no longer than that takes, 
 
 PATIENCE_S = 60.0
 PATIENCE_MS = 1000 * PATIENCE_S
+SOON_S = PATIENCE_S / 2  # what waits for nothing takes no longer, however busy the machine is

@@ -37,6 +37,9 @@ class Sessions(InternalServer):
             await self.open.pop().close_session()
 
 
+ADVANCE_S = 5.0  # as in test_opcua.py
+
+
 async def main(port, shelf, files):
     sessions = Sessions(user_manager=Users() if files else None)
     server = Server(iserver=sessions)
@@ -66,7 +69,7 @@ async def main(port, shelf, files):
         return []
 
     async def advance(parent, to, speed, number):
-        await asyncio.sleep(5)
+        await asyncio.sleep(ADVANCE_S)
         return []
 
     async def scan(parent, number):

@@ -14,6 +14,9 @@ from arboleda.model.errors import StartError
 from arboleda.model.plant_model import MqttVersion
 from arboleda.wire.transport import Publication
 
+from ..patience import SOON_S
+from .conftest import said
+
 USERS = {"ra_1": "one", "ra_10": "ten", "ana": "look"}
 BOARDS = frozenset({"ra_1", "ra_10"})
 
@@ -153,12 +156,13 @@ def test_a_silent_board_is_dropped_after_one_and_a_half_keep_alives(broker, peer
     began = time.monotonic()
     raw_peer(address, "ra_1", will=("ra_1/conexion", b"0"), keepalive=1)
     assert watcher.inbox.wait(lambda inbox: inbox.payloads) == [b"0"]
-    assert 1.4 < time.monotonic() - began < 3.5
+    assert time.monotonic() - began > 1.4
 
 
 def test_mqtt_5_is_refused_in_one_sentence(broker, peer, caplog):
     peer("bridge", broker.start(), version=MqttVersion.V5)
-    time.sleep(1.0)
+    said(caplog, "over MQTT 5")
+    time.sleep(1.0)  # several attempts more
     assert len(caplog.records) == 1
     assert "over MQTT 5: Unsupported protocol version" in caplog.text
 
@@ -178,7 +182,7 @@ def test_stopping_drops_everybody_at_once_and_leaves_nothing(broker, peer, raw_p
     broker.stop()
     broker.stop()
 
-    assert time.monotonic() - began < 2
+    assert time.monotonic() - began < SOON_S
     assert "mqtt broker" not in {thread.name for thread in threading.enumerate()}
     with pytest.raises(ConnectionRefusedError):
         socket.create_connection((address.host, address.port))

@@ -34,7 +34,7 @@ ACT = Journal(
     verb=Verb.OVERRIDE, scope="mesa", cell=None, sentence=OWN(text="mesa is free: ra1 was carried away")
 )
 AT_FULL = """
-import os, sys, time
+import os, signal, sys
 from pathlib import Path
 from arboleda.store.sqlite import Store
 from arboleda.model.messages import Fact, Journal, Remember, Verb
@@ -45,7 +45,7 @@ for fact in Fact:
     store.keep(Remember(fact=fact, name="ra1", value="on"))
 store.journal(Journal(verb=Verb.STOP, scope="", cell=None, sentence=OWN(text="everything stopped")), 5.0)
 print("kept", flush=True)
-time.sleep(60)
+signal.pause()
 """
 
 

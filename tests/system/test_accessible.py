@@ -12,6 +12,7 @@ from arboleda.cli.client import PlantClient
 from arboleda.dashboard.wording import LANGUAGES
 from arboleda.model.messages import Verb
 
+from ..chromium import leave
 from ..patience import PATIENCE_MS
 from .conftest import SHIPPED
 from .page import PARTS, connected, ended, running, show
@@ -69,7 +70,7 @@ def eye(request: pytest.FixtureRequest, browser: Any) -> Iterator[Callable[[str]
         return Eye(page)
 
     yield go
-    context.close()
+    leave(context)
 
 
 @pytest.fixture(scope="module")

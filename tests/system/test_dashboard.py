@@ -67,11 +67,9 @@ def silent(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
 
 
 @pytest.fixture(scope="module")
-def household(browser: Any) -> Iterator[Any]:
+def household(browser: Any) -> Any:
     """One person's browser: what it remembers is remembered in all its tabs."""
-    made = browser.new_context(**LAPTOP)
-    yield made
-    made.close()
+    return browser.new_context(**LAPTOP)
 
 
 @pytest.fixture
@@ -86,7 +84,7 @@ def open_page(browser: Any, household: Any, address: str) -> Iterator[Open]:
     def go(part: str = "cells", *, at: str = address, token: str = "", **options: Any) -> Any:
         context = browser.new_context(**(LAPTOP | options)) if options else household
         page = context.new_page()
-        opened.append(context if options else page)
+        opened.append(page)
         page.set_default_timeout(PATIENCE_MS)
         page.on("pageerror", lambda error: troubles.append(str(error)))
         page.goto(f"{at}/?tab={part}")

@@ -9,6 +9,7 @@ from typing import Any
 
 import pytest
 
+from ..chromium import leave
 from ..patience import PATIENCE_MS
 from .page import connected, running
 from .test_accessible import Eye
@@ -60,7 +61,7 @@ def page(browser: Any, tmp_path: Path) -> Iterator[Any]:
         connected(made)
         made.wait_for_selector("[data-act=answer]")
         yield made
-        context.close()
+        leave(context)
     assert troubles == []
 
 

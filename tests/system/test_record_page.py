@@ -18,6 +18,7 @@ from arboleda.recorder.errors import NoRecord
 from arboleda.recorder.files import FOLDER, parts_in
 from arboleda.recorder.views import Views
 
+from ..chromium import leave
 from ..patience import PATIENCE_MS
 from .conftest import Process, paths
 from .page import connected, running, show, until
@@ -87,7 +88,7 @@ def tab(browser: Any) -> Iterator[Any]:
     broken: list[str] = []
     page.on("pageerror", lambda error: broken.append(str(error)))
     yield page
-    context.close()
+    leave(context)
     assert broken == []
 
 

@@ -11,6 +11,7 @@ import pytest
 
 from arboleda.cli.client import PlantClient
 
+from ..chromium import leave
 from ..patience import PATIENCE_MS
 from .conftest import Process, paths
 from .page import connected, running, until
@@ -54,7 +55,7 @@ def page(browser: Any, site: str) -> Iterator[Any]:
     made.goto(site)
     connected(made)
     yield made
-    context.close()
+    leave(context)
     assert troubles == []
 
 

@@ -11,6 +11,7 @@ import pytest
 from arboleda.cli.client import PlantClient
 from arboleda.model.messages import Verb
 
+from ..chromium import leave
 from ..patience import PATIENCE_MS
 from .page import connected, running
 
@@ -62,7 +63,7 @@ def visit(browser: Any) -> Iterator[Callable[[str], Any]]:
         return page
 
     yield go
-    context.close()
+    leave(context)
 
 
 def in_trouble(page: Any) -> None:

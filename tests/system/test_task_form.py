@@ -10,6 +10,7 @@ from typing import Any
 
 import pytest
 
+from ..chromium import leave
 from ..patience import PATIENCE_MS
 from .page import connected, running, show
 
@@ -40,7 +41,7 @@ def opened(browser: Any, address: str) -> Iterator[Any]:
     made.goto(f"{address}/?tab=tasks")
     connected(made)
     yield made
-    context.close()
+    leave(context)
     assert troubles == []
 
 

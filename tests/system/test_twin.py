@@ -25,7 +25,7 @@ from arboleda.wire import payloads, topics, units
 from arboleda.wire.topics import Channel
 from arboleda.wire.values import Presence, Telemetry
 
-from ..chromium import FEW_FRAMES, browsers
+from ..chromium import FEW_FRAMES, browsers, leave
 from ..patience import PATIENCE_MS
 from ..unit.description import drawn
 from .conftest import SHIPPED, Process, paths
@@ -149,7 +149,8 @@ def browsing(browser: Any) -> Iterator[Any]:
     with ExitStack() as opened:
 
         def go(address: str, part: str = "twin", **more: Any) -> Any:
-            context = opened.enter_context(browser.new_context(**(COARSE | more)))
+            context = browser.new_context(**(COARSE | more))
+            opened.callback(leave, context)
             context.add_init_script(FEW_FRAMES)
             page = context.new_page()
             page.set_default_timeout(PATIENCE_MS)

@@ -11,6 +11,7 @@ import pytest
 
 from arboleda.runtime.state import find_running
 
+from ..chromium import leave
 from ..patience import PATIENCE_MS
 from .two_hosts import Hosts
 
@@ -38,4 +39,4 @@ def test_a_page_at_the_standby_becomes_the_plants_and_one_at_the_old_leader_lead
     left.click("#standbys a")
     left.wait_for_function("document.getElementById('connection')?.hidden")
     assert left.url.startswith(f"{at_b}/?tab=links")
-    context.close()
+    leave(context)
