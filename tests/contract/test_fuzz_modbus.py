@@ -2,27 +2,20 @@
 
 from __future__ import annotations
 
-from importlib.machinery import SourceFileLoader
-from importlib.util import module_from_spec, spec_from_loader
-from pathlib import Path
 from typing import Any
 
 import pytest
 
+from ..scripts import load
+
 pytestmark = [pytest.mark.system, pytest.mark.requires("pymodbus")]
 
-SCRIPT = Path(__file__).parents[2] / "scripts" / "fuzz-modbus"
 RUNS = 2000
 
 
 @pytest.fixture
 def fuzz() -> Any:
-    loader = SourceFileLoader("fuzz_modbus", str(SCRIPT))
-    spec = spec_from_loader(loader.name, loader)
-    assert spec is not None
-    module = module_from_spec(spec)
-    loader.exec_module(module)
-    return module
+    return load("fuzz-modbus")
 
 
 def test_a_frame_with_mistakes_becomes_no_value(fuzz: Any) -> None:

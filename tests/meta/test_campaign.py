@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-import sys
-from importlib.machinery import SourceFileLoader
-from importlib.util import module_from_spec, spec_from_loader
 from pathlib import Path
 from typing import Any
 
@@ -12,18 +9,14 @@ import pytest
 
 from arboleda.simulator.faults import KINDS
 
+from ..scripts import load
+
 SCRIPT = Path(__file__).parents[2] / "scripts" / "campaign"
 
 
 @pytest.fixture
 def campaign() -> Any:
-    loader = SourceFileLoader("campaign", str(SCRIPT))
-    spec = spec_from_loader(loader.name, loader)
-    assert spec is not None
-    module = module_from_spec(spec)
-    sys.modules[spec.name] = module  # its dataclass looks there
-    loader.exec_module(module)
-    return module
+    return load("campaign")
 
 
 def summary(**faults: int) -> dict[str, Any]:

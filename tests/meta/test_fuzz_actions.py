@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-from importlib.machinery import SourceFileLoader
-from importlib.util import module_from_spec, spec_from_loader
-from pathlib import Path
 from typing import Any
 
 import pytest
@@ -13,22 +10,17 @@ from arboleda.drivers.nav2 import pose
 from arboleda.drivers.ros_action import joints
 
 from ..lengths import length
+from ..scripts import load
 
 pytestmark = pytest.mark.requires("rclpy")
 
-SCRIPT = Path(__file__).parents[2] / "scripts" / "fuzz-actions"
 RUNS = length(150, whole=400)
 ENOUGH, SEED = 100, 5  # to find what is planted
 
 
 @pytest.fixture(scope="module")
 def fuzz() -> Any:
-    loader = SourceFileLoader("fuzz_actions", str(SCRIPT))
-    spec = spec_from_loader(loader.name, loader)
-    assert spec is not None
-    module = module_from_spec(spec)
-    loader.exec_module(module)
-    return module
+    return load("fuzz-actions")
 
 
 def test_nothing_is_raised_and_nothing_refused_counts(fuzz: Any) -> None:

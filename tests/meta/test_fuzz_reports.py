@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-from importlib.machinery import SourceFileLoader
-from importlib.util import module_from_spec, spec_from_loader
-from pathlib import Path
 from typing import Any
 
 import pytest
@@ -13,18 +10,14 @@ from arboleda.kinds.arm import Arm
 from arboleda.kinds.mobile import Mobile
 from arboleda.model.plant_model import Robot
 
-SCRIPT = Path(__file__).parents[2] / "scripts" / "fuzz-reports"
+from ..scripts import load
+
 RUNS = 4000
 
 
 @pytest.fixture
 def fuzz() -> Any:
-    loader = SourceFileLoader("fuzz_reports", str(SCRIPT))
-    spec = spec_from_loader(loader.name, loader)
-    assert spec is not None
-    module = module_from_spec(spec)
-    loader.exec_module(module)
-    return module
+    return load("fuzz-reports")
 
 
 def test_no_mixture_of_fields_raises_anything(fuzz: Any) -> None:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from importlib.machinery import SourceFileLoader
-from importlib.util import module_from_spec, spec_from_loader
 from pathlib import Path
 from typing import Any
 
@@ -12,8 +10,8 @@ import pytest
 from arboleda.bt_xml import script
 
 from ..lengths import length
+from ..scripts import load
 
-SCRIPT = Path(__file__).parents[2] / "scripts" / "fuzz-trees"
 RUNS = length(500, whole=1500)
 ENOUGH, SEED = 100, 13  # to find what is planted
 
@@ -21,16 +19,11 @@ ENOUGH, SEED = 100, 13  # to find what is planted
 @pytest.fixture
 def fuzz(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Any:
     monkeypatch.chdir(tmp_path)
-    loader = SourceFileLoader("fuzz_trees", str(SCRIPT))
-    spec = spec_from_loader(loader.name, loader)
-    assert spec is not None
-    module = module_from_spec(spec)
-    loader.exec_module(module)
-    return module
+    return load("fuzz-trees")
 
 
 def test_no_mixture_of_mistakes_raises_anything(fuzz: Any) -> None:
-    seen, _ = fuzz.run(RUNS, 1)
+    seen = fuzz.run(RUNS, 1)
     assert sum(seen.values()) == RUNS
     assert all(seen[what] > RUNS / 100 for what in ("warned of", "refused")), seen
 

@@ -2,27 +2,20 @@
 
 from __future__ import annotations
 
-from importlib.machinery import SourceFileLoader
-from importlib.util import module_from_spec, spec_from_loader
-from pathlib import Path
 from typing import Any
 
 import pytest
 
 from arboleda.adapters.vda5050 import messages
 
-SCRIPT = Path(__file__).parents[2] / "scripts" / "fuzz-vda5050"
+from ..scripts import load
+
 RUNS = 1000
 
 
 @pytest.fixture(scope="module")
 def fuzz() -> Any:
-    loader = SourceFileLoader("fuzz_vda5050", str(SCRIPT))
-    spec = spec_from_loader(loader.name, loader)
-    assert spec is not None
-    module = module_from_spec(spec)
-    loader.exec_module(module)
-    return module
+    return load("fuzz-vda5050")
 
 
 def test_nothing_is_raised_and_nothing_refused_counts(fuzz: Any) -> None:

@@ -3,23 +3,14 @@
 from __future__ import annotations
 
 import sysconfig
-from importlib.machinery import SourceFileLoader
-from importlib.util import module_from_spec, spec_from_loader
 from pathlib import Path
-from types import ModuleType
 
 import pytest
 
+from ..scripts import load
+
 ROOT = Path(__file__).parents[2]
 LINE = "build/{}/pytest.xml: {} tests, 0 errors, 0 failures, {} skipped\n"
-
-
-def script(name: str) -> ModuleType:
-    """A script of the project as a module."""
-    loader = SourceFileLoader(name.replace("-", "_"), str(ROOT / "scripts" / name))
-    module = module_from_spec(spec_from_loader(loader.name, loader))
-    loader.exec_module(module)
-    return module
 
 
 @pytest.fixture
@@ -34,7 +25,7 @@ def mended(wheels: Path, text: str) -> str:
     """The CMake file of the prefix that is made of `wheels` when theirs says `text`."""
     (wheels / "share/x/cmake/x.cmake").write_text(text)
     prefix = wheels.parent / "prefix"
-    script("ros-prefix").make(prefix, wheels)
+    load("ros-prefix").make(prefix, wheels)
     return (prefix / "share/x/cmake/x.cmake").read_text()
 
 
@@ -55,24 +46,24 @@ def test_a_folder_of_the_building_machine_that_nothing_replaces_is_named(wheels:
 
 
 def python_packages() -> list[str]:
-    return [name for name, kind in script("ros-test").PACKAGES.items() if kind == "ros.ament_python"]
+    return [name for name, kind in load("ros-test").PACKAGES.items() if kind == "ros.ament_python"]
 
 
 def test_a_package_without_tests_is_named() -> None:
     first, second, *others = python_packages()
     results = "".join(LINE.format(name, 1, 0) for name in others) + LINE.format(first, 0, 0)
-    wrong = script("ros-test").shortcomings(results)
+    wrong = load("ros-test").shortcomings(results)
     assert wrong == [f"{name} has no test that colcon ran" for name in (first, second)]
 
 
 def test_a_skip_counts_where_none_is_allowed(monkeypatch: pytest.MonkeyPatch) -> None:
     results = "".join(LINE.format(name, 2, 1) for name in python_packages())
     monkeypatch.delenv("ARBOLEDA_REQUIRE", raising=False)
-    assert script("ros-test").shortcomings(results) == []
+    assert load("ros-test").shortcomings(results) == []
     monkeypatch.setenv("ARBOLEDA_REQUIRE", "all")
-    assert script("ros-test").shortcomings(results) == [f"{name} skips tests" for name in python_packages()]
+    assert load("ros-test").shortcomings(results) == [f"{name} skips tests" for name in python_packages()]
 
 
 def test_every_package_in_the_tree_is_demanded() -> None:
     packages = {path.parent.name for path in ROOT.glob("src/*/package.xml")}
-    assert script("ros-test").PACKAGES.keys() == packages
+    assert load("ros-test").PACKAGES.keys() == packages

@@ -1,0 +1,29 @@
+"""Frame of the fuzzers: what a person types, how often which end came, and how long it took."""
+
+from __future__ import annotations
+
+import sys
+import time
+from collections import Counter
+from collections.abc import Callable
+from typing import NoReturn
+
+BAD_INPUT = 2
+
+
+def fuzz(run: Callable[[int, int], Counter[str]], usage: str | None, runs: int = 100_000) -> NoReturn:
+    """Run it as often as is asked for, and say what came of it; `usage` answers any other words."""
+    words = sys.argv[1:]
+    if len(words) > 2 or not all(word.isdigit() for word in words):
+        print(usage, file=sys.stderr)
+        sys.exit(BAD_INPUT)
+    runs, seed = (*map(int, words), *(runs, 1)[len(words) :])
+    began = time.perf_counter()
+    for what, count in sorted(run(runs, seed).items()):
+        print(f"{count:8} {what}")
+    print(f"{runs} runs of seed {seed} in {time.perf_counter() - began:.0f} s: nothing went wrong")
+    sys.exit()
+
+
+def fail(seed: int, number: int, error: Exception) -> NoReturn:
+    raise AssertionError(f"run {number} of seed {seed}: {type(error).__name__}: {error}") from error
