@@ -11,7 +11,8 @@ from itertools import count
 
 from arboleda.adapters.broker_login import Address
 from arboleda.adapters.mqtt import MqttClient
-from arboleda.kinds.arm import Arm, MoveJoints, SetEffector
+from arboleda.kinds.arm import Arm, SetEffector
+from arboleda.kinds.joints import MoveJoints
 from arboleda.kinds.mobile import FollowPath, Mobile
 from arboleda.model.commands import Command
 from arboleda.model.plant_model import Cell, MotionState, PlantModel, Robot

@@ -13,7 +13,8 @@ from rclpy.publisher import Publisher
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Bool, UInt8
 
-from arboleda.kinds.arm import Arm, MoveJoints
+from arboleda.kinds.arm import Arm
+from arboleda.kinds.joints import MoveJoints
 from arboleda.kinds.mobile import FollowPath
 from arboleda.model.commands import Command
 from arboleda.model.plant_model import Cell, PlantModel, Robot

@@ -7,7 +7,8 @@ from dataclasses import replace
 from typing import Any
 
 from arboleda.core.plant import Plant
-from arboleda.kinds.arm import Arm, MoveJoints, SetEffector
+from arboleda.kinds.arm import Arm, SetEffector
+from arboleda.kinds.joints import MoveJoints
 from arboleda.kinds.mobile import FollowPath
 from arboleda.model.commands import Command
 from arboleda.model.messages import Event, Report, TaskChanged, TaskRequest, TaskState

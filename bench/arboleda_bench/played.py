@@ -6,7 +6,8 @@ from collections.abc import Callable, Mapping
 from functools import partial
 from typing import Any
 
-from arboleda.kinds.arm import Arm, MoveJoints, SetEffector
+from arboleda.kinds.arm import Arm, SetEffector
+from arboleda.kinds.joints import MoveJoints
 from arboleda.kinds.mobile import FollowPath
 from arboleda.model.commands import Command, Home, Stop
 from arboleda.model.messages import Heartbeat, Report

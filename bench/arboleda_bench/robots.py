@@ -12,7 +12,8 @@ from sensor_msgs.msg import JointState
 from std_msgs.msg import UInt8
 
 from arboleda.dispatch.belief import APART_S
-from arboleda.kinds.arm import Arm, MoveJoints
+from arboleda.kinds.arm import Arm
+from arboleda.kinds.joints import MoveJoints
 from arboleda.kinds.mobile import FollowPath, Mobile
 from arboleda.model.commands import Command, Stop
 from arboleda.model.messages import Report

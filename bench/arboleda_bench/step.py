@@ -25,7 +25,7 @@ from typing import Any
 
 from py_trees.behaviour import Behaviour
 
-from arboleda.kinds.arm import MoveJoints
+from arboleda.kinds.joints import MoveJoints
 from arboleda.kinds.mobile import FollowPath
 from arboleda.model.commands import Command
 from arboleda.model.messages import Report

@@ -91,7 +91,7 @@ def test_no_module_asks_which_kind_a_device_is(package):
         for each in _questions(path.read_text(), _concrete())
     ]
     assert not found, (
-        f"ask for what it can do (`has_joints`, `on_grid`, `verb_names`, a table by class): {found}"
+        f"ask for what it can do (`joints`, `floor_grid`, `verb_names`, a table by class): {found}"
     )
 
 

@@ -11,7 +11,7 @@ import pytest
 
 from arboleda.core import reasons
 from arboleda.core.cell_states import CellState
-from arboleda.kinds.arm import MoveJoints
+from arboleda.kinds.joints import MoveJoints
 from arboleda.kinds.mobile import FollowPath
 from arboleda.model.commands import Home
 from arboleda.model.messages import Absence, OperatorRequest, Reason, Verb

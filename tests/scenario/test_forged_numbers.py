@@ -6,7 +6,7 @@ import json
 
 import pytest
 
-from arboleda.kinds.arm import MoveJoints
+from arboleda.kinds.joints import MoveJoints
 from arboleda.model.commands import Home
 from arboleda.model.plant_model import MotionState
 from arboleda.simulator.world import BRIDGE

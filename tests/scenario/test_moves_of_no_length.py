@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 
 from arboleda.core.plant import Plant
-from arboleda.kinds.arm import MoveJoints
+from arboleda.kinds.joints import MoveJoints
 from arboleda.model.messages import Event, Reason, Report, TaskChanged, TaskRequest, TaskState
 from arboleda.model.plant_model import Evidence, Link, MotionState, PlantModel
 from arboleda.recipes.storage_layout import StorageLayout

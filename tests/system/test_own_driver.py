@@ -93,7 +93,7 @@ class Obedient:
         still = {"at": 0.0, "state": MotionState.STOPPED, "homed": True, "boot_id": 1}
         self.said = {
             each.name: Report(robot=each.name, q=each.reference, effector=False, **still)
-            if each.has_joints
+            if each.joints
             else Report(robot=each.name, node=0, **still)
             for each in devices
         }

@@ -27,7 +27,8 @@ from std_msgs.msg import Bool, Float32MultiArray, MultiArrayDimension, String, U
 from std_srvs.srv import Trigger
 
 from arboleda.core.leaving import STILL_WAITS, stop_left
-from arboleda.kinds.arm import MoveJoints, SetEffector
+from arboleda.kinds.arm import SetEffector
+from arboleda.kinds.joints import MoveJoints
 from arboleda.kinds.mobile import FollowPath
 from arboleda.model.commands import Home, Stop, StopMode
 from arboleda.model.errors import StartError

@@ -9,8 +9,9 @@ from dataclasses import replace
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Float32MultiArray, MultiArrayDimension, String, UInt8
 
-from arboleda.kinds.arm import Arm, MoveJoints, SetEffector
+from arboleda.kinds.arm import Arm, SetEffector
 from arboleda.kinds.declared import Device, VerbCall
+from arboleda.kinds.joints import MoveJoints
 from arboleda.kinds.mobile import FollowPath, Mobile
 from arboleda.model.commands import Command, Home, Stop, StopMode
 from arboleda.model.counting import counted

@@ -1,6 +1,7 @@
 """What the robots of a cell saw, and the figures of it."""
 
-from arboleda.kinds.arm import MoveJoints, SetEffector
+from arboleda.kinds.arm import SetEffector
+from arboleda.kinds.joints import MoveJoints
 from arboleda.kinds.mobile import FollowPath
 from arboleda.model.commands import Command
 from arboleda_bench.moments import Cycle, Moment, cycles, kind, reactions

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from arboleda.kinds.arm import MoveJoints, SetEffector
+from arboleda.kinds.arm import SetEffector
+from arboleda.kinds.joints import MoveJoints
 from arboleda.kinds.mobile import FollowPath
 from arboleda.model.messages import TaskChanged, TaskState
 from arboleda.testing import plants

@@ -5,7 +5,8 @@ from __future__ import annotations
 import pytest
 
 from arboleda.core.plant import Plant
-from arboleda.kinds.arm import MoveJoints, SetEffector
+from arboleda.kinds.arm import SetEffector
+from arboleda.kinds.joints import MoveJoints
 from arboleda.kinds.mobile import FollowPath
 from arboleda.model.messages import Heartbeat, TaskChanged, TaskRequest
 from arboleda.testing.plants import shipped

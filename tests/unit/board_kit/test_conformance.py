@@ -10,7 +10,8 @@ from typing import Any
 import pytest
 
 from arboleda.board_kit.conformance.judge import CHECKS, Judge
-from arboleda.kinds.arm import Arm, Joint
+from arboleda.kinds.arm import Arm
+from arboleda.kinds.joints import Joint
 from arboleda.model.commands import StopMode
 from arboleda.model.plant_model import Evidence
 from arboleda.recipes.storage_layout import StorageLayout

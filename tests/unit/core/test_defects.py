@@ -17,7 +17,7 @@ from arboleda.core.operator import Operator
 from arboleda.core.plant import Plant
 from arboleda.dispatch import evidence
 from arboleda.dispatch.ledger import Feed, Ledger
-from arboleda.kinds.arm import MoveJoints
+from arboleda.kinds.joints import MoveJoints
 from arboleda.kinds.mobile import FollowPath
 from arboleda.model.commands import Stop, StopMode
 from arboleda.model.messages import (

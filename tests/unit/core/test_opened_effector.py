@@ -7,7 +7,8 @@ from typing import Any
 
 import pytest
 
-from arboleda.kinds.arm import MoveJoints, SetEffector
+from arboleda.kinds.arm import SetEffector
+from arboleda.kinds.joints import MoveJoints
 from arboleda.model.messages import Reason
 from arboleda.model.plant_model import Evidence, MotionState
 

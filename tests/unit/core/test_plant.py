@@ -9,7 +9,8 @@ import pytest
 from arboleda.core.cell_states import CellState
 from arboleda.core.plant import Plant
 from arboleda.dispatch.belief import APART_S
-from arboleda.kinds.arm import MoveJoints, SetEffector
+from arboleda.kinds.arm import SetEffector
+from arboleda.kinds.joints import MoveJoints
 from arboleda.kinds.mobile import FollowPath
 from arboleda.model.commands import Stop, StopMode
 from arboleda.model.messages import (

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from arboleda.kinds.arm import MoveJoints
+from arboleda.kinds.joints import MoveJoints
 from arboleda.model.messages import OperatorRequest, Verb
 from arboleda.model.plant_model import Evidence, MotionState
 from arboleda.views import diagnostics, view

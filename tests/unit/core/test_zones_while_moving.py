@@ -6,7 +6,7 @@ from importlib.resources import as_file, files
 
 import pytest
 
-from arboleda.kinds.arm import MoveJoints
+from arboleda.kinds.joints import MoveJoints
 from arboleda.model.messages import OperatorRequest, Verb
 from arboleda.model.plant_model import MotionState
 from arboleda.plant_file.loader import load

@@ -9,7 +9,8 @@ import pytest
 
 from arboleda.dispatch.dispatcher import Dispatcher
 from arboleda.dispatch.ledger import State
-from arboleda.kinds.arm import MoveJoints, SetEffector
+from arboleda.kinds.arm import SetEffector
+from arboleda.kinds.joints import MoveJoints
 from arboleda.kinds.mobile import FollowPath
 from arboleda.model.commands import Home, Stop, StopMode, Switch
 from arboleda.model.messages import Failure, Reason, Report

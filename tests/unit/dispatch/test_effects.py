@@ -10,7 +10,7 @@ import pytest
 from arboleda.dispatch.belief import Belief
 from arboleda.dispatch.evidence import Before, judge
 from arboleda.dispatch.ledger import Entry, Feed
-from arboleda.kinds.arm import MoveJoints
+from arboleda.kinds.joints import MoveJoints
 from arboleda.model.commands import Command, Home, Motion, Position, Stop, StopMode
 from arboleda.model.messages import Reason, Report
 from arboleda.model.plant_model import Evidence, MotionState

@@ -10,7 +10,7 @@ import pytest
 from arboleda.dispatch.belief import APART_S, Belief
 from arboleda.dispatch.evidence import QUIET_S, Before, judge, strayed
 from arboleda.dispatch.ledger import Entry, Feed
-from arboleda.kinds.arm import MoveJoints
+from arboleda.kinds.joints import MoveJoints
 from arboleda.kinds.mobile import FollowPath
 from arboleda.model.messages import Reason, Report
 from arboleda.model.plant_model import Evidence, MotionState

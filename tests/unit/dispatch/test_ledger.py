@@ -5,7 +5,7 @@ import itertools
 import pytest
 
 from arboleda.dispatch.ledger import OPEN, TABLE, Entry, Feed, Ledger, State
-from arboleda.kinds.arm import MoveJoints
+from arboleda.kinds.joints import MoveJoints
 from arboleda.model.errors import IllegalTransition
 from arboleda.model.messages import Failure, Reason
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from arboleda.campaigns.request import shared
 from arboleda.dispatch.evidence import QUIET_S
 from arboleda.dispatch.underway import PATIENCE_S, UnderWay, Unnamed
-from arboleda.kinds.arm import MoveJoints
+from arboleda.kinds.joints import MoveJoints
 from arboleda.model.messages import Report
 from arboleda.model.plant_model import Evidence
 from arboleda.recipes.storage_layout import StorageLayout

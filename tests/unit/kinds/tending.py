@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from arboleda.kinds.arm import Arm, Joint
+from arboleda.kinds.arm import Arm
 from arboleda.kinds.declared import Device, DeviceKind, DeviceVerb, Effect, FactType, Slot
 from arboleda.kinds.floor import Placement
+from arboleda.kinds.joints import Joint
 from arboleda.kinds.mobile import Grid, Mobile
 from arboleda.model.plant_model import Cell, Evidence, Link, PlantModel, Pose, Robot, Workspace
 from arboleda.model.recipe import Recipe

@@ -20,8 +20,9 @@ import arboleda.recipes
 from arboleda.cli.main import cli
 from arboleda.core.text import parse
 from arboleda.dashboard.twin import bodies, kinematics
-from arboleda.kinds.arm import Arm, MoveJoints, SetEffector
+from arboleda.kinds.arm import Arm, SetEffector
 from arboleda.kinds.declared import Device, MotionCall, VerbCall
+from arboleda.kinds.joints import MoveJoints
 from arboleda.kinds.mobile import FollowPath, Mobile
 from arboleda.model.commands import Command, Position, Question
 from arboleda.model.facts import Value

@@ -68,8 +68,8 @@ def done(body: MachineBody, verb: str, **values: Value) -> float:
 
 def test_what_is_public_is_named() -> None:
     assert set(public.__all__) == {
-        *("Kind", "KindError", "Number", "Verb", "WrittenKind"),
-        *("kind", "motion", "process", "query", "switch"),
+        *("Axes", "Axis", "GridDrive", "Kind", "KindError", "MovingKind", "Number", "Verb", "WrittenKind"),
+        *("kind", "motion", "moving_kind", "process", "query", "switch"),
     }
     assert all(hasattr(public, name) for name in public.__all__)
 

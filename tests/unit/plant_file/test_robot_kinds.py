@@ -1,4 +1,4 @@
-"""Kinds that read by themselves what a plant file says of a device: anybody's stand beside those shipped."""
+"""Kinds of robots that move: anybody's stand beside those shipped."""
 
 from __future__ import annotations
 
@@ -13,30 +13,25 @@ from arboleda.plant_file.registry import COME_WITH_IT
 from arboleda.testing import Sim
 
 CART = """\
-from arboleda.plant_file.robot_kind import RobotKind
-from arboleda.plant_file.robots import mobile
-from arboleda.plant_file.shapes import MobileDeviceShape
-from arboleda.kinds.mobile import Mobile
+from dataclasses import dataclass
+
+from arboleda.kinds import GridDrive, KindError, moving_kind
 
 
-class Cart(Mobile):
-    @property
-    def kind_name(self):
-        return "cart"
-
-
-class CartShape(MobileDeviceShape):
+@dataclass(frozen=True, kw_only=True)
+class Cart:
     loaded: bool = False
+    mm_s: float = 200.0
+
+    def __post_init__(self):
+        if self.mm_s > 200:
+            raise KindError(f"mm_s must be at most 200, is {self.mm_s:g}")
 
 
-def read(document, place):
-    driven = mobile(document, place, CartShape)
-    if driven is None:
-        return None
-    return Cart(**vars(driven)).at_rate(0.5 if document.value((*place, "loaded")) else 1.0)
-
-
-cart = RobotKind(name="cart", read=read, goes=True)
+@moving_kind("cart")
+def cart(settings: Cart):
+    speed = settings.mm_s / 2 if settings.loaded else settings.mm_s
+    return GridDrive(rows=3, columns=3, pitch_mm=150, mm_s=speed)
 """
 RECIPES = """\
 from arboleda.recipes import Target, recipe, work
@@ -52,7 +47,7 @@ uses: [cart.py, recipes.py]
 cells:
   bay:
     devices:
-      cart: {kind: cart, loaded: true, speed_mm_s: 100}
+      cart: {kind: cart, loaded: true, mm_s: 100}
       eye: {kind: camera}
     targets:
       home: {cart: {node: 0}}
@@ -104,7 +99,7 @@ def test_a_robot_of_a_kind_of_ones_own_goes_to_targets(tmp_path: Path, sim: Sim)
 def test_an_installed_package_brings_such_a_kind(tmp_path: Path, site: Path) -> None:
     install(site)
     cart = loader.load(write(tmp_path, PLANT.replace("cart.py, ", ""))).robots["cart"]
-    assert (cart.kind_name, cart.goes, cart.on_grid) == ("cart", True, True)
+    assert (cart.kind_name, cart.goes, bool(cart.floor_grid)) == ("cart", True, True)
 
 
 def test_its_own_keys_are_read_and_others_are_named_with_their_place(tmp_path: Path) -> None:
@@ -118,24 +113,30 @@ def test_its_own_keys_are_read_and_others_are_named_with_their_place(tmp_path: P
 def test_a_kind_of_a_file_with_a_problem_is_not_taken_for_another(tmp_path: Path) -> None:
     """Its name is like that of the camera, which nobody meant."""
     (found,) = problems(write(tmp_path, PLANT.replace("100", "900")))
-    assert found.startswith("plant.yaml:6:52: cells.bay.devices.cart.speed_mm_s: must be at most 200 mm/s")
+    assert found == "plant.yaml:6:13: cells.bay.devices.cart: mm_s must be at most 200, is 900"
 
 
 def test_what_goes_cannot_be_shared_whosever_kind_it_is(tmp_path: Path) -> None:
-    shared = PLANT.replace("cart: {kind: cart, loaded: true, speed_mm_s: 100}", "cart: {shared: wagon}")
+    shared = PLANT.replace("cart: {kind: cart, loaded: true, mm_s: 100}", "cart: {shared: wagon}")
     told = problems(write(tmp_path, shared.replace("cells:", "shared: {wagon: {kind: cart}}\ncells:")))
     assert any("a robot that goes from place to place belongs to one cell" in each for each in told)
 
 
 def test_what_such_a_kind_raises_is_told_at_its_line(tmp_path: Path) -> None:
-    (found,) = problems(write(tmp_path, cart=CART.replace("    driven =", "    1 / 0\n    driven =")))
+    (found,) = problems(write(tmp_path, cart=CART.replace("    speed =", "    1 / 0\n    speed =")))
     assert found == "cart.py:18:1: cart: ZeroDivisionError: division by zero"
 
 
-def test_a_kind_that_reads_no_robot_is_told(tmp_path: Path) -> None:
-    nonsense = CART.replace("    driven =", '    return "a cart"\n    driven =')
+def test_a_kind_that_makes_no_robot_is_told(tmp_path: Path) -> None:
+    nonsense = CART.replace("    speed =", '    return "a cart"\n    speed =')
     (found,) = problems(write(tmp_path, cart=nonsense))
-    assert found == "cart.py:17:1: cart reads 'a cart'; a kind that reads by itself makes a Robot"
+    expected = "cart returns 'a cart'; a kind that moves returns Axes(...) or GridDrive(...)"
+    assert found == f"cart.py:16:1: cart: {expected}"
+
+
+def test_a_field_cannot_have_the_name_of_a_key_of_every_robot(tmp_path: Path) -> None:
+    (found,) = problems(write(tmp_path, cart=CART.replace("loaded", "timeout_s")))
+    assert "timeout_s is a key of every robot; give the field another name" in found
 
 
 @pytest.mark.parametrize("name", ["arm", "mobile", "person"])

@@ -13,7 +13,8 @@ from arboleda.core import text
 from arboleda.dashboard.twin import bodies, kinematics
 from arboleda.dashboard.twin.parts import PART_HEIGHT_M, PART_RADIUS_M
 from arboleda.dashboard.twin.scene import deck
-from arboleda.kinds.arm import Arm, Joint
+from arboleda.kinds.arm import Arm
+from arboleda.kinds.joints import Joint
 from arboleda.kinds.mobile import Mobile
 from arboleda.model.plant_model import Cell, Pose
 from arboleda.plant_file.urdf import robot_urdf

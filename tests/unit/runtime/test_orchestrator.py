@@ -10,7 +10,8 @@ import pytest
 
 from arboleda.adapters.broker_login import address
 from arboleda.core.plant import Plant
-from arboleda.kinds.arm import MoveJoints, SetEffector
+from arboleda.kinds.arm import SetEffector
+from arboleda.kinds.joints import MoveJoints
 from arboleda.model.commands import Home, Stop, StopMode
 from arboleda.model.errors import ArboledaError, StartError
 from arboleda.model.messages import (

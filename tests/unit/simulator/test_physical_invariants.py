@@ -14,7 +14,8 @@ from arboleda.dispatch.dispatcher import Dispatcher
 from arboleda.dispatch.evidence import Verdict
 from arboleda.dispatch.ledger import Feed
 from arboleda.dispatch.zones import Zones
-from arboleda.kinds.arm import MoveJoints, SetEffector
+from arboleda.kinds.arm import SetEffector
+from arboleda.kinds.joints import MoveJoints
 from arboleda.model.commands import Home
 from arboleda.model.messages import Verb
 from arboleda.model.plant_model import Evidence, PlantModel

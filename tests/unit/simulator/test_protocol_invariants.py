@@ -15,7 +15,8 @@ from arboleda.core.cell_states import CellState
 from arboleda.core.task_queue import TaskQueue
 from arboleda.dispatch import belief, dispatcher, evidence, ledger
 from arboleda.dispatch.ledger import TABLE, Feed, State
-from arboleda.kinds.arm import Arm, MoveJoints, SetEffector
+from arboleda.kinds.arm import Arm, SetEffector
+from arboleda.kinds.joints import MoveJoints
 from arboleda.kinds.mobile import FollowPath
 from arboleda.model.commands import Command, Home, Stop, StopMode
 from arboleda.model.messages import Fact, Heartbeat, OperatorRequest, TaskState, Verb

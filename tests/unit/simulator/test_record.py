@@ -8,7 +8,7 @@ import pytest
 
 from arboleda.core.cell_states import CellState
 from arboleda.dispatch.ledger import State
-from arboleda.kinds.arm import MoveJoints
+from arboleda.kinds.joints import MoveJoints
 from arboleda.kinds.mobile import FollowPath
 from arboleda.model.commands import Stop, StopMode
 from arboleda.model.messages import Report, TaskChanged, TaskState, Verb

@@ -7,7 +7,8 @@ from dataclasses import replace
 
 import pytest
 
-from arboleda.kinds.arm import MoveJoints, SetEffector
+from arboleda.kinds.arm import SetEffector
+from arboleda.kinds.joints import MoveJoints
 from arboleda.kinds.mobile import FollowPath
 from arboleda.model.commands import Home, Stop, StopMode
 from arboleda.model.plant_model import Evidence, MotionState

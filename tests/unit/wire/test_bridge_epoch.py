@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from arboleda.kinds.arm import MoveJoints, SetEffector
+from arboleda.kinds.arm import SetEffector
+from arboleda.kinds.joints import MoveJoints
 from arboleda.model.commands import Stop, StopMode
 from arboleda.model.messages import Heartbeat
 from arboleda.model.plant_model import Evidence, MotionState

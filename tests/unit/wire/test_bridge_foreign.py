@@ -6,7 +6,8 @@ from dataclasses import replace
 
 import pytest
 
-from arboleda.kinds.arm import MoveJoints, SetEffector
+from arboleda.kinds.arm import SetEffector
+from arboleda.kinds.joints import MoveJoints
 from arboleda.kinds.mobile import FollowPath, Mobile
 from arboleda.model.commands import Command, Home, Stop, StopMode
 from arboleda.model.plant_model import Evidence, ForeignCommands, MotionState

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from arboleda.kinds.arm import MoveJoints
+from arboleda.kinds.joints import MoveJoints
 from arboleda.model.plant_model import Evidence, MotionState
 
 MOVING, STOPPED, NO_LINK = MotionState.MOVING, MotionState.STOPPED, MotionState.NO_LINK

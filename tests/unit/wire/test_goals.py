@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from arboleda.kinds.arm import MoveJoints
+from arboleda.kinds.joints import MoveJoints
 from arboleda.recipes.storage_layout import StorageLayout
 from arboleda.testing import shipped
 from arboleda.wire.goals import refusal

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from arboleda.kinds.arm import MoveJoints
+from arboleda.kinds.joints import MoveJoints
 from arboleda.model.plant_model import Evidence, MotionState
 from arboleda.recipes.storage_layout import StorageLayout
 from arboleda.testing import shipped

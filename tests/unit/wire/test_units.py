@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from arboleda.kinds.arm import Joint
+from arboleda.kinds.joints import Joint
 from arboleda.wire.units import from_wire, to_wire
 
 

@@ -68,11 +68,11 @@ def _named(model: PlantModel, name: str) -> Robot:
 
 
 def _has_board(robot: Robot) -> bool:
-    return robot.has_joints or (robot.link is Link.MQTT and bool(robot.verb_names))
+    return robot.has_effector or (robot.link is Link.MQTT and bool(robot.verb_names))
 
 
 def _deeds(robot: Robot) -> str:
-    if robot.has_joints:
+    if robot.joints:
         return "move from limit to limit"
     return f"do all that a {robot.kind_name} can: {', '.join(robot.verb_names)}"
 
@@ -131,6 +131,6 @@ def _verdict(robot: Robot, judge: Judge) -> Text:
 
 def _level(robot: Robot, level: Evidence) -> tuple[str, str]:
     """The meaning of a level for a robot, and the level's name in the plant file."""
-    if robot.has_joints:
+    if robot.joints:
         return MEANING[level], level.value
     return DEVICE_MEANING[level], "facts" if level is Evidence.JOINTS else level.value

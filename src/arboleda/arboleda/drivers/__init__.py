@@ -1,7 +1,8 @@
 """Drivers; with `@driver`, a class with `start`, `send` and `stop` makes a driver of your own."""
 
-from arboleda.kinds.arm import MoveJoints, SetEffector
+from arboleda.kinds.arm import SetEffector
 from arboleda.kinds.declared import VerbCall as VerbCommand
+from arboleda.kinds.joints import MoveJoints
 from arboleda.kinds.mobile import FollowPath
 from arboleda.model.commands import Command, Home, Stop, StopMode
 from arboleda.model.messages import Report

@@ -99,13 +99,13 @@ def kind(name: str) -> Callable[[Callable[..., Kind]], WrittenKind]:
 
     def made(function: Callable[..., Kind]) -> WrittenKind:
         about = (inspect.getdoc(function) or "").partition("\n")[0]
-        settings = _settings(name, function) if inspect.isfunction(function) else None
+        settings = settings_of(name, function) if inspect.isfunction(function) else None
         return WrittenKind(name=name, function=function, settings=settings, about=about)
 
     return made
 
 
-def _settings(name: str, function: Callable[..., Kind]) -> type[Any] | None:
+def settings_of(name: str, function: Callable[..., object]) -> type[Any] | None:
     """The dataclass that a function is annotated to take; None if it takes nothing."""
     taken = list(inspect.signature(function).parameters)
     if not taken:

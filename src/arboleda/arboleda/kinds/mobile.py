@@ -67,22 +67,21 @@ class Grid:
 
 @dataclass(frozen=True, kw_only=True)
 class Mobile(Robot):
-    """A mobile robot on a grid; `speed` in m/s."""
+    """Robot on a grid; `speed` in m/s, `model` that of its drawing, empty where it has none."""
 
-    model: str
+    kind_name: str = "mobile"
+    model: str = ""
     grid: Grid
     speed: float
     position_key: ClassVar[str | None] = "node"
 
     @property
-    def kind_name(self) -> str:
-        return "mobile"
-
-    @property
     def floor_grid(self) -> Grid:
         return self.grid
 
-    def drawn(self) -> dict[str, object]:
+    def drawn(self) -> dict[str, object] | None:
+        if not self.model:
+            return None
         nodes = [list(self.grid.position(node)) for node in range(self.grid.size)]
         at, speeds = self.grid.origin.on_floor, [self.speed, self.speed]
         return {"at": at, "speeds": speeds, "reference": nodes[0], "nodes": nodes}

@@ -103,14 +103,9 @@ class Robot:
         raise NotImplementedError
 
     @property
-    def has_joints(self) -> bool:
-        """Whether its position is a number for each of its joints."""
-        return self.position_key == "q"
-
-    @property
-    def on_grid(self) -> bool:
-        """Whether its position is a node of a grid."""
-        return self.position_key == "node"
+    def joints(self) -> tuple[Any, ...]:
+        """The joints whose values are its position; none where it is elsewhere than at such values."""
+        return ()
 
     @property
     def floor_grid(self) -> Any:

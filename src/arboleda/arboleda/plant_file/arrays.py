@@ -133,7 +133,7 @@ def _between(
 
 def _mixed(corners: Sequence[Position], weights: Sequence[float], robot: Robot) -> Position | None:
     """The position with these shares of the corners; None if that is no node."""
-    if robot.on_grid:
+    if robot.floor_grid:
         columns = robot.grid.columns
         rows = _sums([divmod(node, columns) for node in corners if isinstance(node, int)], weights)
         row, column = map(round, rows)

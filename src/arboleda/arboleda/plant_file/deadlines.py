@@ -39,7 +39,7 @@ def check_arrivals_show(document: Document, cells: Iterable[Cell], timing: Timin
 
 
 def _shown_s(robot: Robot) -> float:
-    drives = robot.on_grid and robot.evidence is Evidence.JOINTS
+    drives = robot.floor_grid and robot.evidence is Evidence.JOINTS
     return DRIVE_SHOWN_S if drives else SHOWN_S[robot.evidence]
 
 
@@ -60,7 +60,7 @@ def _spare_s(robot: Robot, longest_s: float, timing: Timing) -> float:
 
 
 def _longest_s(cell: Cell, robot: Arm | Mobile) -> float:
-    if robot.has_joints:
+    if robot.joints:
         return robot.travel_s(None, [robot.reference])
     space, nodes = cell.reach[robot.name], range(robot.grid.size)
     ways = [path.nodes for path in space.paths]

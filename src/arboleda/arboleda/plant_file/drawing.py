@@ -7,7 +7,7 @@ from collections.abc import Iterable, Sequence
 from xml.etree.ElementTree import Element, SubElement, tostring
 
 from arboleda.dashboard.twin import bodies, kinematics, stand_in
-from arboleda.kinds.arm import Joint
+from arboleda.kinds.joints import Joint
 
 from .robot_models import millimetres
 from .shapes import OffsetShape

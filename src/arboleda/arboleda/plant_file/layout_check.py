@@ -46,7 +46,7 @@ def _stores(cell: Cell) -> bool:
     if cell.handover is None:
         return False
     taker, giver = (cell.reach[name].robot for name in (cell.handover.taker, cell.handover.giver))
-    return taker.has_joints and giver.on_grid
+    return bool(taker.joints and giver.floor_grid)
 
 
 def _uneven(plant: PlantModel) -> Iterator[str]:
@@ -56,7 +56,7 @@ def _uneven(plant: PlantModel) -> Iterator[str]:
             array = Array(group=group, rows=rows, columns=columns)
             for space in cell.spaces:
                 poses = {pose.name: pose for pose in space.poses}
-                if space.robot.has_joints and array.names[0] in poses:
+                if space.robot.joints and space.robot.drawn() and array.names[0] in poses:
                     yield from _uneven_of(plant, space.robot, array, [poses[name] for name in array.names])
 
 

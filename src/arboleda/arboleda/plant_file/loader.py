@@ -144,7 +144,7 @@ def notes(plant: PlantModel) -> tuple[str, ...]:
     described = {
         robot.description: robot.name
         for robot in reversed(plant.robots.values())
-        if robot.has_joints and robot.description
+        if robot.joints and robot.description
     }
     own_models = [f"{name}: {note}" for own, name in described.items() for note in own.notes]
     many = [(cell, each, combinations(cell, each)) for cell in plant.cells for each in cell.recipes]

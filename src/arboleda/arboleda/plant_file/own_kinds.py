@@ -19,6 +19,7 @@ from arboleda.wire import mqtt_limits
 
 from .document import Document, Place, shown
 from .kinds import OF_FACTS, OF_STEPS, name_objection
+from .moving_kinds import as_read
 from .python_uses import LONGEST, KindInPython, PythonUses, Spot, refused, said
 from .registry import COME_WITH_IT, IN_PYTHON, RESERVED
 from .robot_kind import RobotKind
@@ -141,9 +142,10 @@ def _installed(
         rule = f'and that is none; one is a function with @kind("{name}") before it'
         document.problem(place, plain(f"{what}, {rule}", LONGEST))
         return None
-    file = used.spot(kind).file
+    read = as_read(kind)
+    file = used.spot(read).file
     used.files[file] = file
-    return kind
+    return read
 
 
 def _package(entry: EntryPoint) -> str:

@@ -7,7 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from arboleda.kinds.arm import Description, Joint
+from arboleda.kinds.joints import Description, Joint
 from arboleda.model.errors import ConfigError
 from arboleda.model.outside import plain
 from arboleda.wire.units import to_wire

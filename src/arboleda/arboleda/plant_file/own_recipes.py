@@ -28,6 +28,7 @@ from arboleda.recipes.storage import RECIPES
 
 from . import tree_includes, user_file
 from .document import Document, Place, nearest, shown
+from .moving_kinds import as_read
 from .python_uses import LONGEST, PythonUses, Spot, Watch, Written, said
 from .registry import IN_PYTHON, RESERVED
 from .shapes import NAME_RULE, WORDS, is_name
@@ -193,7 +194,7 @@ def _importing(folder: Path, files: dict[Path, bytes]) -> Iterator[None]:
 
 def _collect(document: Document, place: Place, module: ModuleType, used: PythonUses) -> None:
     recipes = {id(each): each for each in vars(module).values() if isinstance(each, Recipe)}
-    kinds = {id(each): each for each in vars(module).values() if isinstance(each, IN_PYTHON)}
+    kinds = {id(each): as_read(each) for each in vars(module).values() if isinstance(each, IN_PYTHON)}
     drivers = {id(spec): spec for each in vars(module).values() if (spec := spec_of(each)) is not None}
     nodes = {id(each): each for each in vars(module).values() if isinstance(each, WrittenNode)}
     if not recipes and not kinds and not drivers and not nodes:
@@ -269,4 +270,4 @@ def _check_twice(document: Document, known_as: str, source: bytes) -> None:
 
 def _marks(decorator: ast.expr) -> bool:
     name = decorator.attr if isinstance(decorator, ast.Attribute) else getattr(decorator, "id", "")
-    return name in ("recipe", "kind", "node", "function")
+    return name in ("recipe", "kind", "moving_kind", "node", "function")

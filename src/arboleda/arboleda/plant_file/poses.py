@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from itertools import count, repeat
 
-from arboleda.kinds.arm import Joint
+from arboleda.kinds.joints import Joint
 from arboleda.model.counting import counted
 from arboleda.model.plant_model import Pose
 from arboleda.model.sentence import Phrase, Sentence

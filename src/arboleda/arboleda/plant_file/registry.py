@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from arboleda.kinds import WrittenKind
+from arboleda.kinds import MovingKind, WrittenKind
 from arboleda.kinds.shipped import SHIPPED
 
 from .python_uses import KindInPython
@@ -16,4 +16,4 @@ ROBOTS = (
 )
 COME_WITH_IT: dict[str, KindInPython] = {each.name: each for each in (*ROBOTS, *SHIPPED)}
 RESERVED = tuple(each.name for each in ROBOTS)  # names that no kind of one's own may have
-IN_PYTHON = (WrittenKind, RobotKind)
+IN_PYTHON = (WrittenKind, MovingKind, RobotKind)

@@ -11,7 +11,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from arboleda.kinds.arm import Description, Joint
+from arboleda.kinds.joints import Description, Joint
 
 from .document import Document, Place, choice
 

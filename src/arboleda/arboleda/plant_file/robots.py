@@ -7,8 +7,9 @@ from collections.abc import Iterable
 from dataclasses import replace
 from typing import Any, TypeVar
 
-from arboleda.kinds.arm import Arm, Joint
+from arboleda.kinds.arm import Arm
 from arboleda.kinds.floor import Placement
+from arboleda.kinds.joints import Joint
 from arboleda.kinds.mobile import Grid, Mobile
 from arboleda.kinds.person import Person, person
 from arboleda.model.plant_model import Evidence, Link, Robot
@@ -65,12 +66,12 @@ def arm(
     of_a_cell = DrivenArmShape if document.has((*place, drivers.KEY)) else ArmShape
     shape = document.read(written or of_a_cell, place)
     base = _section(document, (*place, "base"), BaseShape)
-    _check_homing(document, place, shape)
+    check_homing(document, place, shape)
     tolerance = _tolerance(document, (*place, "tolerance"), model) if model else None
     if shape is None or base is None or model is None:
         return None
     return Arm(
-        **_common(document, shape, place),
+        **names_and_link(document, shape, place),
         model=model.name,
         twin=shape.twin or shape.name or str(place[-1]),
         base=_placement(base),
@@ -88,7 +89,7 @@ def mobile(document: Document, place: Place, written: type[MobileShape] | None =
     of_a_cell = DrivenMobileShape if document.has((*place, drivers.KEY)) else MobileShape
     shape = document.read(written or of_a_cell, place)
     grid = _section(document, (*place, "grid"), GridShape)
-    _check_homing(document, place, shape)
+    check_homing(document, place, shape)
     model = _model(document, (*place, "model"), mobile_models(), default="mobile")
     if shape is None or grid is None or model is None:
         return None
@@ -97,7 +98,7 @@ def mobile(document: Document, place: Place, written: type[MobileShape] | None =
         fastest = f"{model.speed * 1000:g} mm/s, the speed of the model {model.name}"
         document.problem((*place, "speed_mm_s"), f"must be at most {fastest}, is {shape.speed_mm_s:g}")
     return Mobile(
-        **_common(document, shape, place),
+        **names_and_link(document, shape, place),
         model=model.name,
         grid=Grid(origin=_placement(grid), pitch=millimetres(grid.pitch_mm)),
         speed=speed,
@@ -121,7 +122,8 @@ def person_device(document: Document, place: Place) -> Person | None:
     return None if named is None else person(named.name or str(place[-1]))
 
 
-def _check_homing(document: Document, place: Place, shape: RobotShape | None) -> None:
+def check_homing(document: Document, place: Place, shape: RobotShape | None) -> None:
+    """Keep a problem if a robot is to be homed at its start and that contradicts its other keys."""
     if shape is None or not shape.home_at_start:
         return
     if shape.assume_homed:
@@ -131,7 +133,8 @@ def _check_homing(document: Document, place: Place, shape: RobotShape | None) ->
         document.problem((*place, "home_at_start"), needs)
 
 
-def _common(document: Document, shape: RobotShape, place: Place) -> dict[str, Any]:
+def names_and_link(document: Document, shape: RobotShape, place: Place) -> dict[str, Any]:
+    """The names, link and evidence of a robot, as its class takes them."""
     name = shape.name or str(place[-1])
     return {
         "name": name,

@@ -287,6 +287,16 @@ class MobileDeviceShape(DrivenMobileShape):
     evidence: Annotated[Evidence, Field(strict=False)] = Evidence.IDS
 
 
+class MovingDeviceShape(RobotShape):
+    """A robot of a kind of one's own, in a role; an empty `name` is the role."""
+
+    kind: str
+    name: Name = ""
+    link: Reach = "mqtt"
+    evidence: Annotated[Evidence, Field(strict=False)] = Evidence.IDS
+    timeout_s: Duration = 10.0
+
+
 class PersonShape(Shape):
     """A person in a role; an empty `name` is the role."""
 

@@ -14,12 +14,14 @@ START = "home"  # the target where each robot waits
 
 def spot(document: Document, place: Place, robot: Robot, name: str) -> Pose | None:
     """The pose that the file has there for a target of this name; else None, with the problem kept."""
-    if robot.on_grid:
+    if robot.floor_grid:
         shape = document.read(NodeShape, place)
         if shape is not None and shape.node >= robot.grid.size:
             document.problem((*place, "node"), f"must be 0 to {robot.grid.size - 1}, is {shape.node}")
             return None
         return None if shape is None else Pose(name=name, title=OWN(text=name), q=shape.node)
-    assert robot.has_joints
-    reader = PoseReader(document=document, cell=str(place[1]), model=robot.model, joints=robot.joints)
+    assert robot.joints
+    reader = PoseReader(
+        document=document, cell=str(place[1]), model=robot.model or robot.kind_name, joints=robot.joints
+    )
     return reader.home(place) if name == START else reader.pose(place, OWN(text=name))

@@ -25,7 +25,7 @@ def robot_urdf(plant: PlantModel, name: str) -> str:
     ConfigError for a robot that the plant does not have; StartError without xacro or a usable drawing.
     """
     robot = _named(plant, name)
-    if robot.has_joints and robot.description is not None:
+    if robot.joints and robot.description is not None:
         return _described(robot.description.urdf, prefix(robot), limits(robot))
     try:
         return render(robot.model, prefix=prefix(robot), limits=limits(robot))
@@ -37,17 +37,17 @@ def robot_urdf(plant: PlantModel, name: str) -> str:
 
 def prefix(robot: Arm | Mobile) -> str:
     """The prefix of the names of its links and joints, as in its `joint_states`."""
-    return f"{robot.twin if robot.has_joints else robot.name}_"
+    return f"{robot.twin if robot.joints else robot.name}_"
 
 
 def root_link(robot: Arm | Mobile) -> str:
     """The link whose place in `world` is the arm's base, or node 0 of the mobile's grid."""
-    return prefix(robot) + ("base_link" if robot.has_joints else "grid_link")
+    return prefix(robot) + ("base_link" if robot.joints else "grid_link")
 
 
 def limits(robot: Arm | Mobile) -> dict[str, Limits]:
     """The limits by joint name without prefix, in SI units; a mobile's joints end with its grid."""
-    if robot.has_joints:
+    if robot.joints:
         return {joint.name: Limits(joint.lower, joint.upper, joint.speed) for joint in robot.joints}
     far = robot.grid.position(robot.grid.size - 1)
     return {f"{axis}_joint": Limits(0.0, end, robot.speed) for axis, end in zip("xy", far, strict=True)}
@@ -75,8 +75,6 @@ def _named(plant: PlantModel, name: str) -> Arm | Mobile:
     if robot is None:
         known = f"there are {', '.join(plant.robots)}{nearest(name, plant.robots)}"
         raise ConfigError((f"{shown(name)} is not a robot of the plant {plant.name}; {known}",))
-    if not robot.goes:
-        raise ConfigError(
-            (f"{shown(name)} is neither an arm nor a mobile robot, so there is no drawing of it",)
-        )
+    if robot.drawn() is None:
+        raise ConfigError((f"{shown(name)} has no model, so there is no drawing of it",))
     return robot

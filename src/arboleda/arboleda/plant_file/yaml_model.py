@@ -8,7 +8,7 @@ from xml.etree.ElementTree import Element, SubElement
 
 from pydantic import Field
 
-from arboleda.kinds.arm import Joint
+from arboleda.kinds.joints import Joint
 
 from .document import Document, Place, shown
 from .drawing import ROOT, in_words

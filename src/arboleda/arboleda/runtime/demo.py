@@ -85,7 +85,7 @@ class Demo:
             return []
         self._faults += 1
         self._fails_at = math.inf
-        if robot.has_joints:
+        if robot.joints:
             return [Reboot(at=now, board=robot.mqtt)]
         self._repairs[robot.mqtt] = now + ALARM_S
         return [Alarm(at=now, board=robot.mqtt, is_on=True)]
@@ -108,7 +108,7 @@ class Demo:
 def _boards(cell: Cell) -> list[Robot]:
     """The devices of a cell that have a virtual board and move, arms last."""
     boards = [robot for robot in cell.robots if robot.link is Link.MQTT and robot.position_key]
-    return sorted(boards, key=lambda robot: robot.has_joints)
+    return sorted(boards, key=lambda robot: bool(robot.joints))
 
 
 def _rests(cell: dict[str, Any]) -> bool:

@@ -1,10 +1,10 @@
-"""Body of an arm's board: axes, effector and virtual piece."""
+"""Bodies of boards with axes: of an arm with its effector and virtual piece, and of axes alone."""
 
 from __future__ import annotations
 
 from collections.abc import Collection
 
-from arboleda.kinds.arm import Arm, Joint
+from arboleda.kinds.joints import Joint, Jointed
 from arboleda.model.facts import Value
 from arboleda.wire import units
 from arboleda.wire.payloads import JointsGoal
@@ -28,7 +28,9 @@ class ArmBody(Robotic):
 
     channels = frozenset({Channel.JOINTS, Channel.EFFECTOR, Channel.STOP, Channel.HOME, Channel.BEAT})
 
-    def __init__(self, arm: Arm, *, start: tuple[float, ...], pickups: Collection[tuple[float, ...]]) -> None:
+    def __init__(
+        self, arm: Jointed, *, start: tuple[float, ...], pickups: Collection[tuple[float, ...]]
+    ) -> None:
         self.axes: int | None = len(arm.joints)
         self._joints = arm.joints
         self._step_deg = tuple(units.to_wire(joint, joint.step) for joint in arm.joints)
@@ -174,6 +176,19 @@ class ArmBody(Robotic):
 
     def _grip(self) -> None:
         self.holding = self.holding or (self.effector and self.grips and self._piece_lies_here())
+
+
+class AxesBody(ArmBody):
+    """Body of axes without an effector, to which nothing says that it holds a part."""
+
+    channels = ArmBody.channels - {Channel.EFFECTOR}
+
+    @property
+    def true_facts(self) -> dict[str, Value]:
+        return {}
+
+    def tell(self) -> BodyReport:
+        return super().tell()._replace(effector=None, piece=None)
 
 
 def _axis(joint: Joint) -> Axis:

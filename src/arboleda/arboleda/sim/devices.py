@@ -9,12 +9,13 @@ from typing import Any
 
 from arboleda.kinds.arm import Arm
 from arboleda.kinds.declared import Device
+from arboleda.kinds.joints import Jointed
 from arboleda.kinds.mobile import Mobile
 from arboleda.model.by_class import nearest
 from arboleda.model.plant_model import Cell, Link, PlantModel, Robot
 from arboleda.wire.transport import Connection, Delivery, Publication
 
-from .arm import ArmBody
+from .arm import ArmBody, AxesBody
 from .board import Board
 from .body import Body
 from .machine import MachineBody
@@ -129,6 +130,11 @@ def _arm(arm: Arm, cell: Cell) -> Body:
     return ArmBody(arm, start=start if isinstance(start, tuple) else arm.reference, pickups=pickups)
 
 
+def _jointed(robot: Jointed, cell: Cell) -> Body:
+    start = cell.start_of(robot.name)
+    return AxesBody(robot, start=start if isinstance(start, tuple) else robot.reference, pickups=())
+
+
 def _mobile(mobile: Mobile, cell: Cell) -> Body:
     start = cell.start_of(mobile.name)
     return MobileBody(mobile, start_node=start if isinstance(start, int) else 0)
@@ -138,7 +144,12 @@ def _machine(device: Device, cell: Cell) -> Body:
     return MachineBody(device.kind)
 
 
-BODIES: dict[type[Robot], Callable[[Any, Cell], Body]] = {Arm: _arm, Mobile: _mobile, Device: _machine}
+BODIES: dict[type[Robot], Callable[[Any, Cell], Body]] = {
+    Jointed: _jointed,
+    Arm: _arm,
+    Mobile: _mobile,
+    Device: _machine,
+}
 
 
 def _us(seconds: float) -> int:

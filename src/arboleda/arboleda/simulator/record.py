@@ -11,7 +11,7 @@ from typing import Any
 from arboleda.core.cell_states import CellState
 from arboleda.core.plant import Plant
 from arboleda.dispatch.ledger import Entry, State
-from arboleda.kinds.arm import MoveJoints
+from arboleda.kinds.joints import MoveJoints
 from arboleda.model.by_class import nearest
 from arboleda.model.commands import Command, Home, Stop, StopMode, Work
 from arboleda.model.messages import (

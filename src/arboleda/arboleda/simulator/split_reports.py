@@ -37,7 +37,7 @@ def _ways(robot: Robot) -> tuple[Callable[[World, Robot, Dice], None] | None, ..
     """The ways to report of this robot; not two instants if a short state or node would never be reported."""
     if robot.evidence is Evidence.IDS:
         return (None,)
-    too_fast = robot.on_grid and robot.grid.pitch / robot.speed < APART_S
+    too_fast = robot.floor_grid and robot.grid.pitch / robot.speed < APART_S
     if robot.evidence is Evidence.STATE or too_fast:
         return (None, _two_topics)
     return (None, _two_topics, _two_instants)

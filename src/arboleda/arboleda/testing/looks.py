@@ -75,7 +75,7 @@ def robot(world: World, name: str) -> RobotLook:
     model, belief = world.model.robots[name], world.plant.dispatcher.beliefs[name]
     heard = {"name": name, "online": belief.online, "homed": belief.homed}
     body = world.boards[model.mqtt].body
-    if model.has_joints and isinstance(body, ArmBody):
+    if model.joints and isinstance(body, ArmBody):
         true = tuple(
             joint.step * steps for joint, steps in zip(model.joints, body.true_position, strict=True)
         )

@@ -25,7 +25,7 @@ def slowed(plant: PlantModel, times: float) -> PlantModel:
     """The plant with arms so many times slower, for tests of what must happen in the middle of a move."""
 
     def slower(robot: Robot) -> Robot:
-        if not robot.has_joints:
+        if not robot.joints:
             return robot
         joints = tuple(replace(joint, speed=joint.speed / times) for joint in robot.joints)
         return replace(robot, joints=joints)

@@ -34,7 +34,7 @@ def handover(cell: Cell) -> Row | None:
         return None
     taker, giver = cell.reach[cell.handover.taker], cell.reach[cell.handover.giver]
     grid = giver.robot.floor_grid
-    if grid is None or not taker.robot.has_joints:
+    if grid is None or not taker.robot.joints:
         return None
     return {
         "arm": taker.robot.name,

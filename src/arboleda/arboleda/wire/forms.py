@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
-from arboleda.kinds.arm import Arm, Joint, MoveJoints, SetEffector
+from arboleda.kinds.arm import Arm, SetEffector
 from arboleda.kinds.declared import Device, FactType, UseError, VerbCall
+from arboleda.kinds.joints import Joint, Jointed, MoveJoints
 from arboleda.kinds.mobile import FollowPath, Mobile
 from arboleda.model.by_class import nearest
 from arboleda.model.commands import Command, Home, Stop, StopMode
@@ -88,10 +89,10 @@ def form_of(robot: Robot) -> Form:
     return form(robot)
 
 
-def _check_joints(arm: Arm, command: MoveJoints) -> str | None:
-    if len(command.q) != len(arm.joints) or not all(math.isfinite(value) for value in command.q):
+def _check_joints(robot: Jointed, command: MoveJoints) -> str | None:
+    if len(command.q) != len(robot.joints) or not all(math.isfinite(value) for value in command.q):
         return "formato"
-    return "limite" if _beyond(arm, command) else None
+    return "limite" if _beyond(robot, command) else None
 
 
 def _check_path(mobile: Mobile, command: FollowPath) -> str | None:
@@ -122,22 +123,22 @@ def _check_stop(robot: Robot, command: Stop) -> str | None:
     return None if robot.has_stop else "no_stop"
 
 
-def _wire_joints(arm: Arm, command: MoveJoints) -> dict[str, object]:
-    rows = zip(arm.joints, arm.quantised(command.q), strict=True)
+def _wire_joints(robot: Jointed, command: MoveJoints) -> dict[str, object]:
+    rows = zip(robot.joints, robot.quantised(command.q), strict=True)
     return {"q": tuple(to_wire(joint, value) for joint, value in rows)}
 
 
-def _beyond(arm: Arm, command: MoveJoints) -> Sentence | None:
+def _beyond(robot: Jointed, command: MoveJoints) -> Sentence | None:
     """The first joint beyond its limits; None if there is none."""
-    for number, (joint, value) in enumerate(zip(arm.joints, command.q, strict=True), start=1):
+    for number, (joint, value) in enumerate(zip(robot.joints, command.q, strict=True), start=1):
         if not joint.lower - FLOAT32_SLACK <= value <= joint.upper + FLOAT32_SLACK:
             lower, upper = joint.lower, joint.upper
             return BEYOND(number=number, value=value, lower=lower, upper=upper, unit=joint.unit)
     return None
 
 
-def _why_of_arms(arm: Arm, command: Command, word: str, by_board: bool) -> Sentence | None:
-    return _beyond(arm, command) if word == "limite" and isinstance(command, MoveJoints) else None
+def _why_of_joints(robot: Jointed, command: Command, word: str, by_board: bool) -> Sentence | None:
+    return _beyond(robot, command) if word == "limite" and isinstance(command, MoveJoints) else None
 
 
 def _why_of_mobiles(mobile: Mobile, command: Command, word: str, by_board: bool) -> Sentence | None:
@@ -157,15 +158,18 @@ STOP = CommandForm(
     refusal=_check_stop,
 )
 HOME = CommandForm(channel=Channel.HOME, goal=HomeGoal, body=lambda robot, command: {})
-OF_ARMS: dict[type[Command], CommandForm] = {
+OF_JOINTS: dict[type[Command], CommandForm] = {
     MoveJoints: CommandForm(
         channel=Channel.JOINTS, goal=JointsGoal, body=_wire_joints, refusal=_check_joints
     ),
+    Stop: STOP,
+    Home: HOME,
+}
+OF_ARMS: dict[type[Command], CommandForm] = {
+    **OF_JOINTS,
     SetEffector: CommandForm(
         channel=Channel.EFFECTOR, goal=EffectorGoal, body=lambda robot, command: {"on": command.on}
     ),
-    Stop: STOP,
-    Home: HOME,
 }
 OF_MOBILES: dict[type[Command], CommandForm] = {
     FollowPath: CommandForm(
@@ -189,8 +193,12 @@ OF_DEVICES: dict[type[Command], CommandForm] = {
 }
 
 
+def _of_jointed(robot: Jointed) -> Form:
+    return Form(ways=OF_JOINTS, axes=len(robot.joints), joints=robot.joints, why=_why_of_joints)
+
+
 def _of_arm(arm: Arm) -> Form:
-    return Form(ways=OF_ARMS, axes=len(arm.joints), joints=arm.joints, why=_why_of_arms)
+    return replace(_of_jointed(arm), ways=OF_ARMS)
 
 
 def _of_mobile(mobile: Mobile) -> Form:
@@ -207,4 +215,9 @@ def _of_device(device: Device) -> Form:
     )
 
 
-FORMS: dict[type[Robot], Callable[[Any], Form]] = {Arm: _of_arm, Mobile: _of_mobile, Device: _of_device}
+FORMS: dict[type[Robot], Callable[[Any], Form]] = {
+    Jointed: _of_jointed,
+    Arm: _of_arm,
+    Mobile: _of_mobile,
+    Device: _of_device,
+}

@@ -9,8 +9,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-from arboleda.kinds.arm import MoveJoints, SetEffector
+from arboleda.kinds.arm import SetEffector
 from arboleda.kinds.declared import VerbCall
+from arboleda.kinds.joints import MoveJoints
 from arboleda.kinds.mobile import FollowPath
 from arboleda.model.commands import Command, Home, Stop, StopMode
 from arboleda.model.facts import shown as shown_value

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from arboleda.kinds.arm import Joint
+from arboleda.kinds.joints import Joint
 
 
 def to_wire(joint: Joint, value: float) -> float:

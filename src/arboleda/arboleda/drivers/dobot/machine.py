@@ -8,7 +8,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from arboleda.drivers.port import lost
-from arboleda.kinds.arm import Arm, MoveJoints, SetEffector
+from arboleda.kinds.arm import Arm, SetEffector
+from arboleda.kinds.joints import MoveJoints
 from arboleda.model.commands import Command, Home, Stop, StopMode
 from arboleda.model.messages import Report
 from arboleda.model.plant_model import MotionState, Robot

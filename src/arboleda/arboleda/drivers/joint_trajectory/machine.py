@@ -6,7 +6,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from arboleda.kinds.arm import Arm, MoveJoints
+from arboleda.kinds.arm import Arm
+from arboleda.kinds.joints import MoveJoints
 from arboleda.model.commands import Command
 from arboleda.model.plant_model import Robot
 

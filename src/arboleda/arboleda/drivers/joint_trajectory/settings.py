@@ -6,7 +6,8 @@ import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
-from arboleda.kinds.arm import Arm, Joint
+from arboleda.kinds.arm import Arm
+from arboleda.kinds.joints import Joint
 from arboleda.model.plant_model import Evidence, Robot
 
 SHORTEST_S = 0.1

@@ -57,7 +57,7 @@ def driver_alarm(world: World, fault: Fault) -> End:
 
 def _joints(model: PlantModel, target: str) -> tuple[str, ...]:
     robot = targets.robot_of(model, target)
-    return tuple(f"q{number + 1}" for number in range(len(robot.joints))) if robot.has_joints else ()
+    return tuple(f"q{number + 1}" for number in range(len(robot.joints)))
 
 
 @kind(targets=targets.arms, words=_joints, amount=(-50.0, 50.0), weight=0.5)

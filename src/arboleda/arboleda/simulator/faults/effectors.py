@@ -8,31 +8,31 @@ from .kind import End, Fault, kind
 from .shared_effects import hold
 
 
-@kind(targets=targets.arms, seconds=(1.0, 30.0))
+@kind(targets=targets.hands, seconds=(1.0, 30.0))
 def no_grip(world: World, fault: Fault) -> End:
     """An effector closes beside the part."""
     return _keep(world, fault, "grips", False)
 
 
-@kind(targets=targets.arms, seconds=(1.0, 30.0))
+@kind(targets=targets.hands, seconds=(1.0, 30.0))
 def stuck_effector(world: World, fault: Fault) -> End:
     """An effector does not follow its switch."""
     return _keep(world, fault, "stuck", True)
 
 
-@kind(targets=targets.arms, seconds=(1.0, 30.0))
+@kind(targets=targets.hands, seconds=(1.0, 30.0))
 def no_part(world: World, fault: Fault) -> End:
     """Nothing lies at the pick-up."""
     return _keep(world, fault, "supplied", False)
 
 
-@kind(targets=targets.arms)
+@kind(targets=targets.hands)
 def lost_part(world: World, fault: Fault) -> None:
     """The part falls out of an effector, which does not notice."""
     targets.arm_body(world, fault.target).lose_piece()
 
 
-@kind(targets=targets.arms)
+@kind(targets=targets.hands)
 def opened_effector(world: World, fault: Fault) -> None:
     """Somebody else opens an effector, and its board says that it is off."""
     world.open_effector(fault.target)

@@ -27,7 +27,7 @@ from .orchestrators import ORDERS
 from .shared_effects import hold
 
 OF_ALL = (Channel.STOP, Channel.HOME, Channel.BEAT, Channel.TELEMETRY, Channel.PRESENCE)
-OF_ARMS, OF_MOBILES, OF_DEVICES = (Channel.JOINTS, Channel.EFFECTOR), (Channel.PATH,), (Channel.ORDER,)
+OF_JOINTS, OF_MOBILES, OF_DEVICES = (Channel.JOINTS,), (Channel.PATH,), (Channel.ORDER,)
 GARBAGE = (
     b"",
     b"\xff\xfe\x00\x01",
@@ -52,8 +52,9 @@ GARBAGE = (
 
 def _channels(model: PlantModel, target: str) -> tuple[str, ...]:
     robot = targets.robot_of(model, target)
-    own = OF_ARMS if robot.has_joints else OF_MOBILES if robot.on_grid else OF_DEVICES
-    return tuple(channel.value for channel in (*own, *OF_ALL))
+    own = OF_JOINTS if robot.joints else OF_MOBILES if robot.floor_grid else OF_DEVICES
+    held = (Channel.EFFECTOR,) if robot.has_effector else ()
+    return tuple(channel.value for channel in (*own, *held, *OF_ALL))
 
 
 @kind(targets=targets.boards, words=_channels)
@@ -70,15 +71,15 @@ NEWEST = 4_000_000_000  # a telemetry number above that of any board
 
 
 def _foreign(model: PlantModel, target: str) -> tuple[str, ...]:
-    is_arm = targets.robot_of(model, target).has_joints
-    return tuple(FOREIGN_TO_ARMS if is_arm else FOREIGN_TO_MOBILES)
+    has_joints = bool(targets.robot_of(model, target).joints)
+    return tuple(FOREIGN_TO_ARMS if has_joints else FOREIGN_TO_MOBILES)
 
 
 @kind(targets=targets.goers, words=_foreign, weight=0.5)
 def foreign_report(world: World, fault: Fault) -> None:
     """A stranger publishes telemetry in which a board says what its kind of robot cannot."""
     robot = targets.robot_of(world.model, fault.target)
-    own = {f"q{number + 1}_mov": 0.0 for number in range(len(robot.joints))} if robot.has_joints else {}
+    own = {f"q{number + 1}_mov": 0.0 for number in range(len(robot.joints))}
     foreign = {**FOREIGN_TO_ARMS, **FOREIGN_TO_MOBILES}[fault.word]
     said = {**(own or {"nodo": 6}), "estado": 0, "seq": NEWEST, "arranque": 1, fault.word: foreign}
     payload = json.dumps(said, separators=(",", ":")).encode()
@@ -124,9 +125,10 @@ STRAYS: dict[str, Callable[[str], Publication]] = {
 def _goals(model: PlantModel, target: str) -> tuple[str, ...]:
     """The goals that can be ordered of a robot, without stops, which are a kind of fault of their own."""
     robot = targets.robot_of(model, target)
-    if robot.has_joints:
-        return ("move", "effector on", "effector off", "home", "clear")
-    return ("path", "home", "clear") if robot.on_grid else ("order", "clear")
+    if robot.joints:
+        held = ("effector on", "effector off") if robot.has_effector else ()
+        return ("move", *held, "home", "clear")
+    return ("path", "home", "clear") if robot.floor_grid else ("order", "clear")
 
 
 @kind(targets=targets.boards, words=_goals, seconds=(1.0, 60.0), weight=0.7)

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from arboleda.kinds.arm import MoveJoints, SetEffector
+from arboleda.kinds.arm import SetEffector
+from arboleda.kinds.joints import MoveJoints
 from arboleda.kinds.mobile import FollowPath
 from arboleda.model.commands import Command, Home, Stop, StopMode
 from arboleda.model.messages import Heartbeat
@@ -59,9 +60,9 @@ def _strange(model: PlantModel, target: str) -> tuple[str, ...]:
 def _own(model: PlantModel, target: str) -> tuple[str, ...]:
     """The orders for robots of this kind alone; a repeated one is drawn more often."""
     robot = model.robots[target]
-    if robot.has_joints:
-        return ("move", "effector on", "effector off") * 4
-    return ("path",) * 8 if robot.on_grid else ("order",) * 8
+    if robot.joints:
+        return ("move", *(("effector on", "effector off") if robot.has_effector else ())) * 4
+    return ("path",) * 8 if robot.floor_grid else ("order",) * 8
 
 
 def _knows(model: PlantModel, target: str, word: str) -> bool:

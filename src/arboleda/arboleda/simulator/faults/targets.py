@@ -17,8 +17,13 @@ def boards(model: PlantModel) -> tuple[str, ...]:
 
 
 def arms(model: PlantModel) -> tuple[str, ...]:
-    """The boards of arms."""
-    return tuple(robot.mqtt for robot in _reached(model) if robot.has_joints)
+    """The boards of robots of joints."""
+    return tuple(robot.mqtt for robot in _reached(model) if robot.joints)
+
+
+def hands(model: PlantModel) -> tuple[str, ...]:
+    """The boards of arms with effectors."""
+    return tuple(robot.mqtt for robot in _reached(model) if _is_hand(robot))
 
 
 def machines(model: PlantModel) -> tuple[str, ...]:
@@ -52,7 +57,7 @@ def goers(model: PlantModel) -> tuple[str, ...]:
 def feelers(model: PlantModel) -> tuple[str, ...]:
     """The boards of arms that report what their piece sensor sees."""
     heard = (robot for robot in _reached(model) if robot.evidence is Evidence.IDS)
-    return tuple(robot.mqtt for robot in heard if robot.has_joints)
+    return tuple(robot.mqtt for robot in heard if _is_hand(robot))
 
 
 def clients(model: PlantModel) -> tuple[str, ...]:
@@ -98,6 +103,10 @@ def arm_body(world: World, board: str) -> ArmBody:
 def machine_body(world: World, board: str) -> MachineBody:
     """The virtual body of the board of a declared device."""
     return cast(MachineBody, world.boards[board].body)
+
+
+def _is_hand(robot: Robot) -> bool:
+    return bool(robot.joints) and robot.has_effector
 
 
 def _reached(model: PlantModel) -> list[Robot]:

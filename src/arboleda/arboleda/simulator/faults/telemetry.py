@@ -6,7 +6,8 @@ import math
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from arboleda.kinds.arm import Arm, Joint
+from arboleda.kinds.arm import Arm
+from arboleda.kinds.joints import Joint
 from arboleda.model.plant_model import Evidence, MotionState, PlantModel
 from arboleda.wire.units import to_wire
 
@@ -37,11 +38,11 @@ Lie = Callable[[Fields], Any]  # the telemetry as it should be -> the value that
 def fields_of(model: PlantModel, target: str) -> tuple[str, ...]:
     """The keys of a board's telemetry that are evidence, at its robot's level."""
     robot = targets.robot_of(model, target)
-    place = tuple(_keys(robot)) if robot.has_joints else ("nodo",) if robot.on_grid else ()
+    place = tuple(_keys(robot)) if robot.joints else ("nodo",) if robot.floor_grid else ()
     if robot.evidence is not Evidence.IDS:
         return (*place, "estado")
     homed = ("ref",) if robot.homes else ()
-    return (*place, "estado", *NUMBERED, *homed, *(HELD if robot.has_joints else ()))
+    return (*place, "estado", *NUMBERED, *homed, *(HELD if robot.joints and robot.has_effector else ()))
 
 
 @kind(targets=targets.boards, words=fields_of, seconds=(0.5, 15.0))
@@ -100,7 +101,7 @@ def _keys(arm: Arm) -> dict[str, tuple[Joint, float]]:
 
 def _off(world: World, fault: Fault) -> Lie:
     arm = targets.robot_of(world.model, fault.target)
-    assert arm.has_joints
+    assert arm.joints
     joint, tolerance = _keys(arm)[fault.word]
     sign = Dice(fault.seed, "sign").pick((-1.0, 1.0))
     off = sign * fault.amount * to_wire(joint, tolerance)
@@ -120,7 +121,7 @@ def _other_code(world: World, fault: Fault) -> Lie:
 
 def _other_node(world: World, fault: Fault) -> Lie:
     robot = targets.robot_of(world.model, fault.target)
-    assert robot.on_grid
+    assert robot.floor_grid
     told = world.boards[fault.target].body.tell().node
     return _another(fault, -1 if told is None else told, range(robot.grid.size))
 

@@ -13,7 +13,7 @@ from arboleda.core.advice import Advice, sentence
 from arboleda.core.reasons import HELD, HELD_STRANDED
 from arboleda.dispatch.belief import FAULTY, FENCED, MOVING, OFFLINE, STOPPED, UNANSWERED, UNHEARD, UNHOMED
 from arboleda.dispatch.ledger import OPEN, State
-from arboleda.kinds.arm import MoveJoints
+from arboleda.kinds.joints import MoveJoints
 from arboleda.kinds.mobile import FollowPath
 from arboleda.model.messages import ENDED, Reason, TaskChanged, Verb
 from arboleda.model.plant_model import MotionState, Robot
@@ -232,7 +232,7 @@ def of_cell(row: Row) -> dict[str, str]:
 
 def ended_at(robot: Robot, last: SentCommand | None, q: tuple[float, ...] | None) -> Row | None:
     """The place where the last motion of a robot ended, as far as that was proven; `q`: an arm's place."""
-    if robot.has_joints:
+    if robot.joints:
         return None if q is None else {"q": list(q)}
     done = last is not None and last.state is State.DONE and isinstance(last.command, FollowPath)
     return {"node": last.command.nodes[-1]} if done else None  # type: ignore[union-attr]

@@ -11,7 +11,8 @@ from py_trees.behaviour import Behaviour
 
 from arboleda.core.cell_states import CellState
 from arboleda.dispatch.ledger import OPEN, State
-from arboleda.kinds.arm import Arm, MoveJoints
+from arboleda.kinds.arm import Arm
+from arboleda.kinds.joints import MoveJoints
 from arboleda.kinds.mobile import FollowPath, Mobile
 from arboleda.model.errors import PayloadError
 from arboleda.model.messages import OperatorRequest
@@ -240,7 +241,7 @@ def _node(tree: Behaviour, path: str) -> Behaviour:
 def _robot(look: Look, known: KnownRobot) -> Row:
     now, robot = look.record.stepped_at, known.robot
     last = look.record.commands.last.get(robot.name)
-    is_arm = robot.has_joints
+    is_arm = bool(robot.joints)
     kept = look.record.effector_of(robot.name)
     return {
         "mqtt": robot.mqtt,
@@ -257,7 +258,7 @@ def _robot(look: Look, known: KnownRobot) -> Row:
         "boot_id": known.boot,
         "bridge_epoch": known.epoch,
         "holding": kept != "off" if is_arm else None,
-        "units": [_unit(joint) for joint in robot.joints] if robot.has_joints else None,
+        "units": [_unit(joint) for joint in robot.joints] if robot.joints else None,
         "goal": _goal(last),
     }
 
@@ -328,7 +329,7 @@ def _ends(look: Look, known: KnownRobot, row: Row) -> Iterator[str]:
         yield f"{name} is drawn going since {since}, at {row['reached']}; it came to {reached}"
     if goes and last is not None and last.cancelled_at is None and not (since and since >= last.at):
         yield f"{name} is drawn going since {since}, its command left at {last.at}"
-    known_place = known.q if known.robot.has_joints else known.node
+    known_place = known.q if known.robot.joints else known.node
     if (row["position_at"] is None) is not (known_place is None):
         yield f"{name} is drawn as of {row['position_at']}, it has said {known_place}"
     age_s = math.inf if row["position_at"] is None else look.record.stepped_at - row["position_at"]
@@ -379,7 +380,7 @@ def _broken(look: Look) -> Iterator[str]:
         return
     sent = status.to_status(robot, report)
     garbled = [replace(sent, values={**sent.values, key: value}) for key, value in GARBLED]
-    if robot.has_joints:
+    if robot.joints:
         endless = ",".join(["1e999"] * len(robot.joints))
         garbled.append(replace(sent, values={**sent.values, "q": endless}))
     alone = {key: value for key, value in sent.values.items() if key != "reason"} | {"rejected": "1-1"}

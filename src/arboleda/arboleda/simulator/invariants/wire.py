@@ -6,7 +6,8 @@ from collections.abc import Callable, Iterable, Iterator
 from itertools import pairwise
 from typing import Any
 
-from arboleda.kinds.arm import Arm, Joint, MoveJoints, SetEffector
+from arboleda.kinds.arm import Arm, SetEffector
+from arboleda.kinds.joints import Joint, MoveJoints
 from arboleda.kinds.mobile import FollowPath, Grid
 from arboleda.model.commands import Command, Home, Stop, StopMode
 from arboleda.model.messages import Heartbeat
@@ -82,7 +83,7 @@ def wire_targets_legal(look: Look) -> Iterable[str]:
 def _joints(look: Look, name: str, body: dict[str, Any]) -> Iterator[str]:
     board = look.record.boards.by_name[name]
     arm = board.robot
-    assert arm.has_joints
+    assert arm.joints
     goal = [body.get(f"q{number}") for number in range(1, len(arm.joints) + 1)]
     if not all(is_number(value) for value in goal) or not _numbered(arm.evidence, body):
         yield f"{name}/juntas is {body}"
@@ -115,7 +116,7 @@ def _is_goal(arm: Arm, q: tuple[float, ...], goal: list[Any]) -> bool:
 def _path(look: Look, name: str, body: dict[str, Any]) -> Iterator[str]:
     board = look.record.boards.by_name[name]
     mobile = board.robot
-    assert mobile.on_grid
+    assert mobile.floor_grid
     nodes = body.get("nodos")
     whole = isinstance(nodes, list) and nodes and all(type(node) is int for node in nodes)
     if not whole or not _numbered(mobile.evidence, body):

@@ -6,7 +6,8 @@ from collections.abc import Iterable, Iterator
 from itertools import dropwhile
 
 from arboleda.dispatch.ledger import State
-from arboleda.kinds.arm import Arm, MoveJoints
+from arboleda.kinds.arm import Arm
+from arboleda.kinds.joints import MoveJoints
 from arboleda.model.plant_model import Evidence, Pose
 from arboleda.recipes.storage_layout import StorageLayout
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from arboleda.kinds.arm import Joint
+from arboleda.kinds.joints import Joint
 
 from ..chance import Dice
 from .mobile_paths import draw_paths

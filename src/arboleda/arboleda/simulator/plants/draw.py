@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-from arboleda.kinds.arm import Joint
+from arboleda.kinds.joints import Joint
 
 from ..chance import Dice
 from .cells import DrawnCell, draw_cell

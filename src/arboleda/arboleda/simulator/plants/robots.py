@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
-from arboleda.kinds.arm import Joint
+from arboleda.kinds.joints import Joint
 from arboleda.model.plant_model import Evidence, Link
 
 from ..chance import Dice

@@ -10,7 +10,7 @@ from functools import lru_cache
 from typing import Any, NamedTuple
 
 from arboleda.dispatch.belief import Belief
-from arboleda.kinds.arm import Joint
+from arboleda.kinds.joints import Joint
 from arboleda.model.plant_model import Robot
 from arboleda.sim.board import Board
 from arboleda.wire.epochs import can_follow
@@ -57,7 +57,7 @@ class KnownBoard:
         self.telemetry: deque[Delivery] = deque(maxlen=RECENT)
         self.legal: set[tuple[float, ...]] = set()  # goals and paths on the wire that the robot can follow
         self._written: tuple[tuple[float, ...] | int | None, bytes] | None = None
-        joints = robot.joints if robot.has_joints else ()
+        joints = robot.joints
         self._axes = board.body.axes
         self._degrees = tuple(on_wire(joint, 1.0) for joint in joints)
         self._keys = tuple(f"q{number}_mov" for number in range(1, len(joints) + 1)) or ("nodo",)

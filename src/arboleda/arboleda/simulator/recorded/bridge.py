@@ -13,7 +13,8 @@ from dataclasses import replace
 from typing import Any
 
 from arboleda.dispatch.belief import Belief
-from arboleda.kinds.arm import MoveJoints, SetEffector
+from arboleda.kinds.arm import SetEffector
+from arboleda.kinds.joints import MoveJoints
 from arboleda.kinds.mobile import FollowPath
 from arboleda.model.commands import Command, Home, Motion, Stop, StopMode
 from arboleda.model.messages import Heartbeat, Report
@@ -353,7 +354,7 @@ class _Board:
 
     def _is_within(self, command: Command) -> bool:
         """True if the goal is within the robot's limits, which do not bind an arm's way up."""
-        if not isinstance(command, MoveJoints) or not self.robot.has_joints:
+        if not isinstance(command, MoveJoints) or not self.robot.joints:
             return True
         rows = zip(self.robot.joints, command.q, strict=True)
         return all(joint.lower - SLACK <= value <= joint.upper + SLACK for joint, value in rows)
@@ -593,12 +594,12 @@ def _read(payload: bytes, robot: Robot) -> dict[str, Any] | None:
         said = json.loads(payload)
     except ValueError:
         return None
-    place = [f"q{number + 1}_mov" for number in range(len(robot.joints))] if robot.has_joints else ["nodo"]
+    place = [f"q{number + 1}_mov" for number in range(len(robot.joints))] if robot.joints else ["nodo"]
     if not isinstance(said, dict) or len(payload) > 512 or not all(key in said for key in place):
         return None
-    if any(key in said for key in (FOREIGN_TO_ARMS if robot.has_joints else FOREIGN_TO_MOBILES)):
+    if any(key in said for key in (FOREIGN_TO_ARMS if robot.joints else FOREIGN_TO_MOBILES)):
         return None
-    if robot.on_grid and not 0 <= said["nodo"] < robot.grid.size:
+    if robot.floor_grid and not 0 <= said["nodo"] < robot.grid.size:
         return None
     if not all(type(said[key]) in (int, float) and math.isfinite(said[key]) for key in place):
         return None
@@ -611,7 +612,7 @@ def _agree(report: Report, said: dict[str, Any], robot: Robot) -> bool:
         return False
     if report.state is None or report.state.value != said["estado"]:
         return False
-    if not robot.has_joints:
+    if not robot.joints:
         return report.node == said["nodo"] and report.q is None
     if report.q is None or report.node is not None:
         return False

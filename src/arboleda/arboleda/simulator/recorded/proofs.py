@@ -9,7 +9,7 @@ import math
 from dataclasses import dataclass, field
 from itertools import starmap
 
-from arboleda.kinds.arm import MoveJoints
+from arboleda.kinds.joints import MoveJoints
 from arboleda.kinds.mobile import FollowPath
 from arboleda.model.commands import Home, Query, Switch
 from arboleda.model.messages import Failure, Reason, Report
@@ -199,7 +199,7 @@ def _off(sent: SentCommand, robot: Robot, q: tuple[float, ...] | None, node: int
     command = sent.command
     if isinstance(command, FollowPath):
         return None if node is None else _off_path(command.nodes, node)
-    if not isinstance(command, MoveJoints) or not robot.has_joints or q is None:
+    if not isinstance(command, MoveJoints) or not robot.joints or q is None:
         return None
 
     def beyond(at: float, goal: float, step: float, tolerance: float) -> float:

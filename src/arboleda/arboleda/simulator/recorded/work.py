@@ -7,7 +7,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from arboleda.dispatch.ledger import State
-from arboleda.kinds.arm import MoveJoints, SetEffector
+from arboleda.kinds.arm import SetEffector
+from arboleda.kinds.joints import MoveJoints
 from arboleda.kinds.mobile import FollowPath
 from arboleda.model.commands import Command
 from arboleda.model.messages import TaskState, Verb

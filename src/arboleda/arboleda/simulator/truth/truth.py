@@ -29,11 +29,9 @@ class Truth(RobotsTruth):
         self.ended: list[EndedTask] = []
         self.stray_grips: list[str] = []
         super().__init__(world)
-        self.arms: dict[str, Any] = {
-            name: each for name, each in self.robots.items() if each.robot.has_joints
-        }
+        self.arms: dict[str, Any] = {name: each for name, each in self.robots.items() if each.robot.joints}
         self.mobiles: dict[str, Any] = {
-            name: each for name, each in self.robots.items() if each.robot.on_grid
+            name: each for name, each in self.robots.items() if each.robot.floor_grid
         }
         self.parts = Parts()
         roles = [
