@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import ClassVar
 
 from arboleda.model.commands import Switch
 from arboleda.model.facts import Facts
-from arboleda.model.messages import Report
 
 from .floor import Placement
 from .joints import Jointed
@@ -34,6 +34,7 @@ class Arm(Jointed):
     kind_name: str = "arm"
     twin: str
     base: Placement
+    unsaid: ClassVar[tuple[str, ...]] = ("node",)
 
     @property
     def fact_names(self) -> tuple[str, ...]:
@@ -50,11 +51,6 @@ class Arm(Jointed):
     @property
     def held_fact(self) -> str:
         return "effector"
-
-    def objection(self, report: Report) -> str | None:
-        if report.node is not None:
-            return f"node is {report.node}; {self.name} is an arm and stands on no node"
-        return super().objection(report)
 
     def grip(self, *, id: str) -> SetEffector:
         return SetEffector(id=id, robot=self.name, on=True)

@@ -96,6 +96,7 @@ class Jointed(Robot):
     description: Description | None = None  # None: the model comes with arboleda_description
     tolerance: tuple[float, ...] | None = None
     position_key: ClassVar[str | None] = "q"
+    unsaid: ClassVar[tuple[str, ...]] = ("node", "effector", "piece")  # what no report of it has
 
     @property
     def joint_names(self) -> tuple[str, ...]:
@@ -109,10 +110,9 @@ class Jointed(Robot):
         return [joint.unit for joint in self.joints]
 
     def objection(self, report: Report) -> str | None:
-        held = () if self.has_effector else ("effector", "piece")
-        for key in ("node", *held):
-            if (value := getattr(report, key)) is not None:
-                return f"{key} is {value}; {self.name} is a robot of joints and has none"
+        for key in self.unsaid:
+            if getattr(report, key) is not None:
+                return f"{key} was said; {self.name} is a robot of joints and has none"
         if report.q is not None and len(report.q) != len(self.joints):
             has = f"{self.name} has {counted(len(self.joints), 'joint')}"
             return f"q has {counted(len(report.q), 'value')}; {has}"
