@@ -158,7 +158,7 @@ def test_an_arm_is_moved_in_its_time(arm: Bench) -> None:
     arm.driver.send(go("1"))
     assert arm.until(lambda report: report.accepted == "1").state is MotionState.MOVING
     done = arm.until(lambda report: report.done == "1")
-    assert done.q is not None and ARM.stands_at(done.q, GOAL)
+    assert done.q is not None and ARM.motion.stands_at(done.q, GOAL)
 
 
 def test_a_goal_is_halted_under_way(arm: Bench) -> None:
@@ -167,7 +167,7 @@ def test_a_goal_is_halted_under_way(arm: Bench) -> None:
     arm.until(lambda report: report.q is not None and report.q[0] > GOAL[0] / 10)
     arm.driver.send(Stop(id="2", robot=ARM.name, mode=StopMode.HALT))
     halted = arm.until(lambda report: report.accepted == "2" and report.state is MotionState.STOPPED)
-    assert halted.q is not None and not ARM.stands_at(halted.q, GOAL) and halted.done is None
+    assert halted.q is not None and not ARM.motion.stands_at(halted.q, GOAL) and halted.done is None
 
 
 def test_a_server_that_vanishes_comes_back_as_a_boot(arm: Bench) -> None:

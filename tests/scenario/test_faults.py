@@ -83,7 +83,7 @@ def deadline(rig: Rig, spot: Spot) -> float:
     """Of the robot's longest possible command."""
     timing, robot = rig.model.timing, rig.model.robots[spot.robot]
     layout = StorageLayout(rig.model.cell("sis_a"))
-    drives_s = layout.mobile.travel_s(None, layout.path("0B").nodes)
+    drives_s = layout.mobile.motion.travel_s(None, layout.path("0B").nodes)
     travel_s = drives_s if robot is layout.mobile else longest_s(rig)
     return max(robot.timeout_s, travel_s * timing.deadline_factor + timing.deadline_floor_s)
 
@@ -118,7 +118,7 @@ def longest_s(rig: Rig) -> float:
     """The longest way between two poses of the arm, s."""
     layout = StorageLayout(rig.model.cell("sis_a"))
     arm, poses = layout.arm, layout.space.poses
-    return max(arm.travel_s(arm.quantised(one.q), [other.q]) for one in poses for other in poses)
+    return max(arm.motion.travel_s(arm.quantised(one.q), [other.q]) for one in poses for other in poses)
 
 
 def rest_s(rig: Rig, outcome: Outcome) -> float:

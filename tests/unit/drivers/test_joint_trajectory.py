@@ -113,7 +113,9 @@ def test_a_server_that_lies_is_not_believed_while_the_arm_moves(rig: Rig) -> Non
         rig.wait(0.1)
         assert rig.last.done is None and rig.last.state is MotionState.MOVING
     rig.wait(0.5)
-    assert rig.last.done == GO.id and not ARM.stands_at(rig.last.q, GOAL)  # so the plant says: not reached
+    assert rig.last.done == GO.id and not ARM.motion.stands_at(
+        rig.last.q, GOAL
+    )  # so the plant says: not reached
     assert rig.count(CancelAll) == 1  # of what such a server may still go on with
 
 

@@ -104,7 +104,7 @@ def test_a_part_is_carried_from_station_to_station() -> None:
     rig = Rig(own())
     assert do(rig, "sis_a sort station_1 station_5") is TaskState.DONE
     arm = own().cell("sis_a").roles["arm"]
-    assert arm.stands_at(arm_of(rig).true_place, own().cell("sis_a").reach[arm.name].targets["home"].q)
+    assert arm.motion.stands_at(arm_of(rig).true_place, own().cell("sis_a").reach[arm.name].targets["home"].q)
     assert rig.plant.cells["sis_a"].context.stations.stored == {5}
 
 
@@ -132,7 +132,7 @@ def test_what_is_held_when_a_task_fails_goes_back_where_it_was_taken() -> None:
         rig.wait(0.05)
         let_go_at += [arm_of(rig).true_place] if before and not arm_of(rig).effector else []
     (place,) = let_go_at
-    assert own().robots["ra1"].stands_at(place, own().robots["ra1"].held_at(spot))
+    assert own().robots["ra1"].motion.stands_at(place, own().robots["ra1"].motion.held_at(spot))
 
 
 def test_storage_after_it_is_carried_out_and_recovered_as_ever() -> None:
@@ -167,7 +167,7 @@ def test_its_ways_take_the_zones_that_they_lead_into() -> None:
     while len([each for each in rig.changes if each.state in ENDED]) < 2:
         rig.wait(0.05)
         places = {cell: rig.boards[arm.mqtt].body.true_place for cell, arm in arms.items()}
-        there = [cell for cell, arm in arms.items() if arm.stands_at(places[cell], spots[cell])]
+        there = [cell for cell, arm in arms.items() if arm.motion.stands_at(places[cell], spots[cell])]
         inside.add(tuple(there))
         assert [rig.plant.zones.holder("table") for _ in there] == [arms[cell].name for cell in there]
     assert inside == {(), ("left",), ("right",)}

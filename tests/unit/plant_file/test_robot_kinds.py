@@ -105,7 +105,7 @@ def test_an_installed_package_brings_such_a_kind(tmp_path: Path, site: Path) -> 
 def test_its_own_keys_are_read_and_others_are_named_with_their_place(tmp_path: Path) -> None:
     slow = loader.load(write(tmp_path)).robots["cart"]
     quick = loader.load(write(tmp_path, PLANT.replace("true", "false"))).robots["cart"]
-    assert slow.travel_s(0, (0, 1)) == 2 * quick.travel_s(0, (0, 1))
+    assert slow.motion.travel_s(0, (0, 1)) == 2 * quick.motion.travel_s(0, (0, 1))
     (found,) = problems(write(tmp_path, PLANT.replace("loaded", "loadd")))
     assert found.startswith('plant.yaml:6:26: cells.bay.devices.cart: the key "loadd" is not known;')
 

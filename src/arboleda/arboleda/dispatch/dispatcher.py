@@ -260,7 +260,7 @@ class Dispatcher:
         here = belief.position if belief.supervised else self.reached.get(robot.name)
         if here is None or (belief.supervised and belief.position_at < self.sure_from):
             return None
-        return next((pose for spot, pose in workspace.free_spots if robot.stands_at(here, spot)), None)
+        return next((pose for spot, pose in workspace.free_spots if robot.motion.stands_at(here, spot)), None)
 
     def report(self, report: Report, now: float) -> None:
         """Merge a report and book what it proves.
@@ -511,7 +511,7 @@ class Dispatcher:
             return timing.effector_timeout_s
         here = self.beliefs[robot.name].known_position
         way = command.way if isinstance(command, Motion) else ()
-        travel_s = robot.travel_s(here, way) if way else HOMING_S
+        travel_s = robot.motion.travel_s(here, way) if way else HOMING_S
         return max(robot.timeout_s, travel_s * timing.deadline_factor + timing.deadline_floor_s)
 
     def _settles_at(self, command: Command, now: float, deadline: float) -> float | None:

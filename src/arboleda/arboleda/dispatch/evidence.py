@@ -147,7 +147,7 @@ def reached(entry: Entry, belief: Belief) -> bool:
         return False
     if not entry.way:
         return entry.sets != ()
-    return belief.position is not None and belief.robot.stands_at(belief.position, entry.way[-1])
+    return belief.position is not None and belief.robot.motion.stands_at(belief.position, entry.way[-1])
 
 
 def _failed(entry: Entry, reason: Reason, what: Phrase, **values: str | float | Sentence) -> Verdict:
@@ -219,7 +219,7 @@ def strayed(before: Before, belief: Belief, report: Report, goal: Position) -> b
     robot, place = belief.robot, belief.position_in(report)
     if before.online or place is None or robot.evidence is not Evidence.JOINTS or robot.reference is None:
         return False
-    return not robot.stands_at(place, goal)
+    return not robot.motion.stands_at(place, goal)
 
 
 def rebooted(before: Before, belief: Belief, report: Report) -> bool:
@@ -236,7 +236,7 @@ def _jumped(before: Before, belief: Belief, report: Report) -> bool:
     if before.position is None or place is None:
         return False
     elapsed_s = report.at - before.position_at + JITTER_S
-    return not belief.robot.can_have_moved(before.position, place, elapsed_s)
+    return not belief.robot.motion.can_have_moved(before.position, place, elapsed_s)
 
 
 def _device(entry: Entry, report: Report) -> Verdict | None:

@@ -11,6 +11,7 @@ from typing import ClassVar
 from arboleda.model.commands import Motion, Position
 from arboleda.model.counting import counted
 from arboleda.model.messages import Report
+from arboleda.model.movement import Movement
 from arboleda.model.plant_model import Robot
 
 ROUNDING = 1e-9  # rad or m, far below a motor step
@@ -118,6 +119,10 @@ class Jointed(Robot):
             return f"q has {counted(len(report.q), 'value')}; {has}"
         return None
 
+    @cached_property
+    def motion(self) -> JointMotion:
+        return JointMotion(self)
+
     def go(self, *, id: str, way: Sequence[Position]) -> MoveJoints:
         goal = way[-1]
         assert isinstance(goal, tuple)
@@ -135,16 +140,6 @@ class Jointed(Robot):
     def quantised(self, q: tuple[float, ...]) -> tuple[float, ...]:
         return tuple(joint.quantised(value) for joint, value in zip(self.joints, q, strict=True))
 
-    def held_at(self, position: Position) -> Position:
-        assert isinstance(position, tuple)
-        return self.quantised(position)
-
-    def lifted(self, position: Position, heights: Sequence[Position]) -> Position:
-        """The position with its lifting (prismatic) joints at the highest of `heights`, within limits."""
-        assert isinstance(position, tuple)
-        rows = zip(self.joints, position, *[up for up in heights if isinstance(up, tuple)], strict=True)
-        return tuple(joint.higher(joint.within(q), *above) for joint, q, *above in rows)
-
     def reached(self, q: tuple[float, ...], target: tuple[float, ...]) -> bool:
         """True if reported joints `q` lie within tolerance of a quantised target."""
         rows = zip(q, target, self.tolerances, strict=True)
@@ -155,14 +150,34 @@ class Jointed(Robot):
         shape."""
         return replace(self, joints=tuple(joint.at_rate(rate) for joint in self.joints))
 
+
+class JointMotion(Movement):
+    """Movement of a robot whose joints all start and arrive together."""
+
+    def __init__(self, robot: Jointed) -> None:
+        self.robot = robot
+        self.joints = robot.joints
+
+    def held_at(self, position: Position) -> Position:
+        assert isinstance(position, tuple)
+        return self.robot.quantised(position)
+
+    def lifted(self, position: Position, heights: Sequence[Position]) -> Position:
+        """The position with its lifting (prismatic) joints at the highest of `heights`, within limits."""
+        assert isinstance(position, tuple)
+        rows = zip(self.joints, position, *[up for up in heights if isinstance(up, tuple)], strict=True)
+        return tuple(joint.higher(joint.within(q), *above) for joint, q, *above in rows)
+
     def stands_at(self, position: Position, goal: Position) -> bool:
         assert isinstance(position, tuple) and isinstance(goal, tuple)
-        return self.reached(position, self.quantised(goal))
+        return self.robot.reached(position, self.robot.quantised(goal))
 
     def confuses(self, position: Position, other: Position) -> bool:
         """True if the robot, stopped within tolerance of one position, may count as standing at the other."""
         assert isinstance(position, tuple) and isinstance(other, tuple)
-        rows = zip(self.quantised(position), self.quantised(other), self.tolerances, strict=True)
+        rows = zip(
+            self.robot.quantised(position), self.robot.quantised(other), self.robot.tolerances, strict=True
+        )
         return all(abs(a - b) <= 2 * within + ROUNDING for a, b, within in rows)
 
     def travel_s(self, start: Position | None, way: Sequence[Position]) -> float:

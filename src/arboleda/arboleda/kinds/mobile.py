@@ -5,10 +5,12 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import ClassVar
 
 from arboleda.model.commands import Motion, Position
 from arboleda.model.messages import Report
+from arboleda.model.movement import Movement
 from arboleda.model.plant_model import Robot
 
 from .floor import Placement
@@ -104,14 +106,25 @@ class Mobile(Robot):
             return f"node is {report.node}; {self.name} knows {self.grid.size} nodes"
         return None
 
+    @cached_property
+    def motion(self) -> GridMotion:
+        return GridMotion(self)
+
+    def go(self, *, id: str, way: Sequence[Position]) -> FollowPath:
+        return FollowPath(id=id, robot=self.name, nodes=tuple(node for node in way if isinstance(node, int)))
+
+
+class GridMotion(Movement):
+    """Movement over the edges of a grid, at one speed."""
+
+    def __init__(self, robot: Mobile) -> None:
+        self.grid, self.pitch, self.speed = robot.grid, robot.grid.pitch, robot.speed
+
     def route(self, start: Position | None, goal: Position) -> tuple[Position, ...]:
         """A route along the edges of its grid."""
         assert isinstance(goal, int)
         return self.grid.route(start, goal) if isinstance(start, int) else (goal,)
 
-    def go(self, *, id: str, way: Sequence[Position]) -> FollowPath:
-        return FollowPath(id=id, robot=self.name, nodes=tuple(node for node in way if isinstance(node, int)))
-
     def travel_s(self, start: Position | None, way: Sequence[Position]) -> float:
         """The time of a path, s; one edge is added for a robot that starts elsewhere."""
-        return len(way) * self.grid.pitch / self.speed
+        return len(way) * self.pitch / self.speed

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 from .commands import Command, Position
 from .facts import Facts
+from .movement import Movement
 from .recipe import Recipe
 from .sentence import NOTHING, OWN, Sentence
 
@@ -123,11 +124,6 @@ class Robot:
         return ()
 
     @property
-    def on_a_board(self) -> Robot:
-        """The same robot, reached over MQTT, where virtual boards are."""
-        return replace(self, link=Link.MQTT, driver=None)
-
-    @property
     def query_names(self) -> tuple[str, ...]:
         """Those of its verbs that ask it for an answer."""
         return ()
@@ -194,9 +190,10 @@ class Robot:
         """Where its position is counted from; None where it counts nothing that a boot could lose."""
         return None
 
-    def route(self, start: Position | None, goal: Position) -> tuple[Position, ...]:
-        """The positions by which it gets from `start`, where that is known, to `goal`, which is the last."""
-        return (goal,)
+    @cached_property
+    def motion(self) -> Movement:
+        """Its ways, their times, and which positions count as one."""
+        return Movement()
 
     def go(self, *, id: str, way: Sequence[Position]) -> Command:
         """The command that brings it along `way` to its last position."""
@@ -213,30 +210,6 @@ class Robot:
     def at_rate(self, rate: float) -> Robot:
         """The same robot, virtual and so many times as fast."""
         return self
-
-    def stands_at(self, position: Position, goal: Position) -> bool:
-        """Whether a reported position is that goal."""
-        return position == goal
-
-    def confuses(self, position: Position, other: Position) -> bool:
-        """Whether it may stop at the one and count as standing at the other."""
-        return position == other
-
-    def held_at(self, position: Position) -> Position:
-        """The position as its motors can hold it."""
-        return position
-
-    def lifted(self, position: Position, heights: Sequence[Position]) -> Position:
-        """The position, raised to all of these heights where that is possible."""
-        return position
-
-    def travel_s(self, start: Position | None, way: Sequence[Position]) -> float:
-        """Time of a motion along `way`; from an unknown start the longest possible one."""
-        raise NotImplementedError
-
-    def can_have_moved(self, before: Position, after: Position, elapsed_s: float) -> bool:
-        """Whether its limits allow it to come from one position to the other in that time."""
-        return True
 
     @property
     def says_homed(self) -> bool:
@@ -385,7 +358,8 @@ class Workspace:
         reference = self.robot.reference
         if reference is not None and all(pose.q != reference for pose in self.poses):
             spots.append((reference, self.home))
-        return tuple((self.robot.held_at(q), pose) for q, pose in spots)
+        held_at = self.robot.motion.held_at
+        return tuple((held_at(q), pose) for q, pose in spots)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -574,7 +548,7 @@ class PlantModel:
         """The same plant, where who is reached by one of these has a board on MQTT instead."""
 
         def change(robot: Robot) -> Robot:
-            return robot.on_a_board if robot.link in links else robot
+            return replace(robot, link=Link.MQTT, driver=None) if robot.link in links else robot
 
         return replace(self, cells=tuple(cell.with_robots(change) for cell in self.cells))
 

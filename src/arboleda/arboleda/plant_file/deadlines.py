@@ -61,14 +61,14 @@ def _spare_s(robot: Robot, longest_s: float, timing: Timing) -> float:
 
 def _longest_s(cell: Cell, robot: Arm | Mobile) -> float:
     if robot.joints:
-        return robot.travel_s(None, [robot.reference])
+        return robot.motion.travel_s(None, [robot.reference])
     space, nodes = cell.reach[robot.name], range(robot.grid.size)
     ways = [path.nodes for path in space.paths]
     if ways and cell.drive_to_start:  # a drive that is given anew leads to the start of its path and over it
         ways = [(*robot.grid.route(node, way[0]), *way[1:]) for way in ways for node in nodes]
     goals = [pose.q for pose in space.poses if isinstance(pose.q, int)]
     ways += [robot.grid.route(node, goal) for goal in goals for node in nodes]
-    return max(robot.travel_s(None, way) for way in ways)
+    return max(robot.motion.travel_s(None, way) for way in ways)
 
 
 def _sentence(robot: Robot, timing: Timing, spare_s: float, needed_s: float) -> str:

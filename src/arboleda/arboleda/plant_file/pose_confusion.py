@@ -55,7 +55,7 @@ def _at_reference(space: Workspace) -> Iterator[PoseConfusion]:
     """The confusions of poses with the reference, at which homing ends: it must lie outside all zones."""
     reference = space.robot.reference
     for pose in space.poses if reference is not None else ():
-        if reference is not None and any(space.robot.confuses(reference, q) for q in _own_spots(pose)):
+        if reference is not None and any(space.robot.motion.confuses(reference, q) for q in _own_spots(pose)):
             for zone in sorted(pose.zones):
                 what = f"{pose.name} looks like the reference (all joints 0) to the arm"
                 rule = "homing ends there, so it must be outside all zones"
@@ -79,7 +79,7 @@ def _alike(space: Workspace) -> list[tuple[Pose, Pose]]:
     return [
         (a, b)
         for a, b in combinations(space.poses, 2)
-        if any(space.robot.confuses(p, q) for p, q in product(spots[a.name], spots[b.name]))
+        if any(space.robot.motion.confuses(p, q) for p, q in product(spots[a.name], spots[b.name]))
     ]
 
 

@@ -110,7 +110,7 @@ def _is_astray(world: World, plant: Plant, name: str) -> bool:
     if place is None or belief.position is None:
         return False
     apart_s = plant.now - belief.position_at + APART_S
-    return not robot.can_have_moved(belief.position, place, apart_s)
+    return not robot.motion.can_have_moved(belief.position, place, apart_s)
 
 
 def _rest_of(plant: Plant, entry: Entry) -> Entry:

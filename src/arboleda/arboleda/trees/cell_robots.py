@@ -62,7 +62,7 @@ class CellRobots:
         """The position of a robot, lifted as high as its highest approach; home where it is unknown."""
         space, here = self._cell.workspaces[robot], self.position(robot)
         heights = [pose.above for pose in space.poses if pose.above]
-        return space.robot.lifted(here, heights) if here is not None and heights else space.home.q
+        return space.robot.motion.lifted(here, heights) if here is not None and heights else space.home.q
 
     def obstacle(self, robot: str, *, was: bool = False) -> Failure | None:
         """The reason for which a robot takes no command now; `was`: in words that stay true.

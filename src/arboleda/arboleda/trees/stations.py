@@ -32,7 +32,7 @@ class Stations:
         """Book a part that a robot has put down where it stands; where that is a station, it stays there."""
         here, device = self._robots.position(robot), self._cell.reach[robot].robot
         for station in self._cell.stations:
-            if here is not None and device.stands_at(here, device.held_at(station.q)):
+            if here is not None and device.motion.stands_at(here, device.motion.held_at(station.q)):
                 self.store(station)
 
     def unload(self, station: int | None = None) -> None:

@@ -300,7 +300,7 @@ def _go_where(context: Context, robot: str, where: Callable[[], Pose | None], *,
     def make(id: str) -> Command:
         pose = where() or context.cell.workspaces[robot].home
         goal = pose.above if above and pose.above is not None else pose.q
-        return device.go(id=id, way=device.route(context.robots.position(robot), goal))
+        return device.go(id=id, way=device.motion.route(context.robots.position(robot), goal))
 
     title, doing = (GO_OVER, GOING_OVER) if above else (GO_BACK, GOING_BACK)
     return Act(title(), context, make, doing())
@@ -349,7 +349,7 @@ def _move(context: Context, robot: str, pose: Pose, *, above: bool = False) -> B
     device = context.cell.reach[robot].robot
 
     def make(id: str) -> Command:
-        return device.go(id=id, way=device.route(context.robots.position(robot), goal))
+        return device.go(id=id, way=device.motion.route(context.robots.position(robot), goal))
 
     title, doing = (MOVE_ABOVE, MOVING_ABOVE) if above else (MOVE, MOVING)
     return Act(title(pose=pose.said), context, make, doing(pose=pose.said), guard=context.parts.lost)

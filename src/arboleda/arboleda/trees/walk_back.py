@@ -169,7 +169,7 @@ class WalkBack:
         begun, here = self.trail.begun.planned.positions.get(belief.robot.name), belief.known_position
         if begun is None:
             return None
-        if here is not None and belief.robot.stands_at(here, begun):
+        if here is not None and belief.robot.motion.stands_at(here, begun):
             return None
         return Trouble(Reason.INTERRUPTED, MOVED(robot=belief.robot.name), NOBODY_KNOWS())
 
@@ -200,4 +200,4 @@ def _at(goal: Any, belief: Belief) -> bool:
     if goal is None:
         return True
     place = tuple(goal) if isinstance(goal, list) else goal
-    return belief.known_position is not None and belief.robot.stands_at(belief.known_position, place)
+    return belief.known_position is not None and belief.robot.motion.stands_at(belief.known_position, place)

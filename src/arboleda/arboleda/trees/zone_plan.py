@@ -54,8 +54,8 @@ def entered(space: Workspace, start: Pose | None, way: Sequence[Position]) -> fr
 
 def passed(space: Workspace, start: Position | None, goal: Position) -> frozenset[str]:
     """The zones between a position and a goal, by the way that a robot of a grid is given there or back."""
-    there = space.robot.route(start, goal)
-    back = () if start is None else space.robot.route(goal, start)
+    there = space.robot.motion.route(start, goal)
+    back = () if start is None else space.robot.motion.route(goal, start)
     return _lying(space, {*there, *back} - {start, goal})
 
 
@@ -73,7 +73,7 @@ def _zones(space: Workspace, poses: Sequence[Pose], back: Pose | None) -> frozen
     moves = [*pairwise(poses), *combinations(recovery, 2)]
     moves += [(pose, goal) for pose in poses for goal in recovery]
     inside = (pose.zones for pose in (*poses, *recovery))
-    halted = [spot for a, b in pairwise(poses) for spot in space.robot.route(a.q, b.q)]
+    halted = [spot for a, b in pairwise(poses) for spot in space.robot.motion.route(a.q, b.q)]
     between = (passed(space, spot, goal.q) for spot in halted for goal in recovery)
     return _crossed(space, moves).union(*inside, *between)
 

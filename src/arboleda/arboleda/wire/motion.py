@@ -68,4 +68,4 @@ class OpenMotion:
             return set(self.command.sets) <= set(facts or ())
         if position is None or not isinstance(self.command, Motion) or not self.command.way:
             return False
-        return self.robot.stands_at(position, self.command.way[-1])
+        return self.robot.motion.stands_at(position, self.command.way[-1])

@@ -247,7 +247,7 @@ class Machine:
             self._out.append(CommandNotSent(why=f"a Dobot has no word for {type(command).__name__}"))
 
     def _move(self, now: float, command: MoveJoints) -> None:
-        move = Move(command.id, lambda feedback: self._arm.stands_at(_radians(feedback), command.q))
+        move = Move(command.id, lambda feedback: self._arm.motion.stands_at(_radians(feedback), command.q))
         self._work = move
 
         def take(now: float, reply: Reply) -> None:

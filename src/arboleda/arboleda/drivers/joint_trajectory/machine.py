@@ -63,7 +63,7 @@ class ArmMover:
         return self._joints.heard_at > at
 
     def is_at(self, goal: Trajectory) -> bool:
-        return self._joints.q is not None and self._arm.stands_at(self._joints.q, goal.q)
+        return self._joints.q is not None and self._arm.motion.stands_at(self._joints.q, goal.q)
 
     def rests(self, now: float, since: float = 0.0) -> bool:
         return self._joints.rest.holds(now, since)

@@ -141,7 +141,9 @@ def _longest_s(robot: Robot, sent: SentCommand, timing: Timing) -> float:
         return command.at_most_s
     if isinstance(command, Switch):
         return timing.effector_timeout_s
-    way_s = robot.travel_s(None, command.way) if isinstance(command, Motion) and command.way else HOMING_S
+    way_s = (
+        robot.motion.travel_s(None, command.way) if isinstance(command, Motion) and command.way else HOMING_S
+    )
     return max(robot.timeout_s, way_s * timing.deadline_factor + timing.deadline_floor_s)
 
 

@@ -106,7 +106,9 @@ def _is_outside(look: Look, space: Workspace) -> bool:
     free = [pose for pose in space.poses if not pose.zones]
     points = [point for pose in free for point in (pose.q, pose.above) if point is not None]
     here = known.node if known.q is None else known.q
-    return here is not None and any(robot.stands_at(here, robot.held_at(point)) for point in points)
+    return here is not None and any(
+        robot.motion.stands_at(here, robot.motion.held_at(point)) for point in points
+    )
 
 
 @invariant(Trigger.WAITING)
