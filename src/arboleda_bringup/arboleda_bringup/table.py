@@ -5,9 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from arboleda.kinds.arm import Arm
-from arboleda.kinds.mobile import Mobile
-from arboleda.model.plant_model import Link, PlantModel
+from arboleda.model.plant_model import Link, PlantModel, Robot
 from arboleda.plant_file.urdf import root_link
 
 from .choice import Choice
@@ -19,7 +17,7 @@ RVIZ_CONFIG = "rviz/plant.rviz"  # in the share folder of this package
 
 def table(plant: PlantModel, choice: Choice, *, urdf: Callable[[str], str], share: str) -> list[Row]:
     """The nodes of a plant; `urdf` describes a robot by its name, `share` is this package's folder."""
-    robots = [robot for robot in plant.robots.values() if isinstance(robot, Arm | Mobile)]
+    robots = [robot for robot in plant.robots.values() if robot.drawn() is not None]
     rows = [row for robot in robots for row in _shown(robot, urdf(robot.name))] if choice.describe else []
     rows += _plant(choice, plant)
     if choice.rviz:
@@ -27,12 +25,12 @@ def table(plant: PlantModel, choice: Choice, *, urdf: Callable[[str], str], shar
     return rows
 
 
-def namespace(robot: Arm | Mobile) -> str:
+def namespace(robot: Robot) -> str:
     """The namespace of a robot's joint states and description: the twin of an arm, the name of a mobile."""
-    return robot.twin if isinstance(robot, Arm) else robot.name
+    return robot.twin_name
 
 
-def _shown(robot: Arm | Mobile, urdf: str) -> list[Row]:
+def _shown(robot: Robot, urdf: str) -> list[Row]:
     """The nodes that draw a robot; one publishes its joints if nobody else does."""
     described = {"robot_description": urdf}
     rows = [_named("robot_state_publisher", robot, parameters=described), _placed(robot)]
@@ -41,14 +39,13 @@ def _shown(robot: Arm | Mobile, urdf: str) -> list[Row]:
     return rows
 
 
-def _named(package: str, robot: Arm | Mobile, **more: Any) -> Row:
+def _named(package: str, robot: Robot, **more: Any) -> Row:
     """The executable of the same name as its package, in the robot's namespace."""
     return Row(package=package, executable=package, namespace=namespace(robot), **more)
 
 
-def _placed(robot: Arm | Mobile) -> Row:
-    place = robot.base if isinstance(robot, Arm) else robot.grid.origin
-    x, y, yaw = (str(value) for value in (place.x, place.y, place.yaw))
+def _placed(robot: Robot) -> Row:
+    x, y, yaw = (str(value) for value in robot.drawn()["at"])
     frames = ("--frame-id", WORLD, "--child-frame-id", root_link(robot))
     return Row(
         package="tf2_ros",

@@ -11,8 +11,9 @@ from std_msgs.msg import Float32MultiArray, MultiArrayDimension, String, UInt8
 
 from arboleda.kinds.arm import Arm, SetEffector
 from arboleda.kinds.declared import Device, VerbCall
-from arboleda.kinds.joints import MoveJoints
+from arboleda.kinds.joints import Jointed, MoveJoints
 from arboleda.kinds.mobile import FollowPath, Mobile
+from arboleda.model.by_class import nearest
 from arboleda.model.commands import Command, Home, Stop, StopMode
 from arboleda.model.counting import counted
 from arboleda.model.errors import PayloadError
@@ -28,11 +29,17 @@ COPY = "copy"  # the label of what the topic `command` carries, too; there, of w
 _AT_NODE = 0.125  # share of the pitch: a mobile farther from every node is between nodes
 
 
+COMMANDS: dict[type[Robot], tuple[type[Command], ...]] = {
+    Device: (VerbCall, Stop),
+    Jointed: (MoveJoints, Stop, Home),
+    Arm: (MoveJoints, SetEffector, Stop, Home),
+    Mobile: (FollowPath, Stop, Home),
+}
+
+
 def commands_of(robot: Robot) -> tuple[type[Command], ...]:
     """The kinds of command a robot takes."""
-    if isinstance(robot, Device):
-        return (VerbCall, Stop)
-    return (MoveJoints, SetEffector, Stop, Home) if isinstance(robot, Arm) else (FollowPath, Stop, Home)
+    return nearest(COMMANDS, type(robot)) or (Stop,)
 
 
 def message_type(kind: type[Command]) -> type:
@@ -104,7 +111,7 @@ def labelled_command(robot: Robot, message: Float32MultiArray | String) -> tuple
 
 def command(kind: type[Command], robot: Robot, message: Float32MultiArray | UInt8) -> Command:
     """The command in a message of `robot`'s plain topic; its id is "" if the message has none."""
-    if isinstance(robot, Arm) and kind is MoveJoints:
+    if isinstance(robot, Jointed) and kind is MoveJoints:
         id, values = _unlabelled(message, robot.name)
         return MoveJoints(id=id, robot=robot.name, q=_joints(robot, values))
     if isinstance(robot, Mobile) and kind is FollowPath:
@@ -168,7 +175,7 @@ def _unlabelled(message: Float32MultiArray, robot: str) -> tuple[str, tuple[floa
     return id, values
 
 
-def _joints(arm: Arm, values: tuple[float, ...]) -> tuple[float, ...]:
+def _joints(arm: Jointed, values: tuple[float, ...]) -> tuple[float, ...]:
     if len(values) != len(arm.joints):
         joints, numbers = counted(len(arm.joints), "joint"), counted(len(values), "number")
         raise PayloadError(f"{arm.name} has {joints}, but the goal has {numbers}")

@@ -37,7 +37,7 @@ def robot_urdf(plant: PlantModel, name: str) -> str:
 
 def prefix(robot: Arm | Mobile) -> str:
     """The prefix of the names of its links and joints, as in its `joint_states`."""
-    return f"{robot.twin if robot.joints else robot.name}_"
+    return f"{robot.twin_name}_"
 
 
 def root_link(robot: Arm | Mobile) -> str:

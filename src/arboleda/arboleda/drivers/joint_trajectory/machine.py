@@ -1,4 +1,4 @@
-"""Arm behind a joint trajectory controller: its goals, and the measured joints."""
+"""Robot of joints behind a joint trajectory controller: its goals, and the measured joints."""
 
 from __future__ import annotations
 
@@ -6,8 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from arboleda.kinds.arm import Arm
-from arboleda.kinds.joints import MoveJoints
+from arboleda.kinds.joints import Jointed, MoveJoints
 from arboleda.model.commands import Command
 from arboleda.model.plant_model import Robot
 
@@ -37,11 +36,11 @@ class Trajectory:
 
 
 class ArmMover:
-    """Arm, measured by its joint states."""
+    """Robot of joints, measured by its joint states."""
 
     replaces = False
 
-    def __init__(self, arm: Arm, settings: Settings) -> None:
+    def __init__(self, arm: Jointed, settings: Settings) -> None:
         self.name = arm.name
         self._arm, self._settings = arm, settings
         self._joints = Joints(settings.joint_names(arm), settings.joint_states)
@@ -82,7 +81,7 @@ class ArmMover:
 
 
 def machine(devices: Sequence[Robot], settings: Settings) -> Machine:
-    """The machine of one arm; raises ValueError for other devices."""
-    if len(devices) != 1 or not isinstance(devices[0], Arm):
-        raise ValueError("a joint trajectory controller moves one arm")
+    """The machine of one robot of joints; raises ValueError for other devices."""
+    if len(devices) != 1 or not isinstance(devices[0], Jointed):
+        raise ValueError("a joint trajectory controller moves one robot of joints")
     return Machine(ArmMover(devices[0], settings), settings.action)

@@ -6,8 +6,7 @@ import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
-from arboleda.kinds.arm import Arm
-from arboleda.kinds.joints import Joint
+from arboleda.kinds.joints import Joint, Jointed
 from arboleda.model.plant_model import Evidence, Robot
 
 SHORTEST_S = 0.1
@@ -39,11 +38,11 @@ class Settings:
             if not getattr(self, name):
                 raise ValueError(f"{name} is empty; it is a name of ROS 2")
 
-    def joint_names(self, arm: Arm) -> tuple[str, ...]:
+    def joint_names(self, arm: Jointed) -> tuple[str, ...]:
         """The names of the arm's joints in ros2_control, in the arm's order."""
         return self.joints or tuple(joint.name for joint in arm.joints)
 
-    def duration_s(self, arm: Arm, start: Sequence[float], goal: Sequence[float]) -> float:
+    def duration_s(self, arm: Jointed, start: Sequence[float], goal: Sequence[float]) -> float:
         """The least duration of a move, s, at which no joint exceeds its share of the model's limits."""
         share = self.speed_percent / 100
         ways = zip(arm.joints, start, goal, strict=True)
@@ -52,8 +51,8 @@ class Settings:
 
     def problems(self, device: Robot) -> Iterable[tuple[tuple[str | int, ...], str]]:
         """Settings that do not fit a device, each as its keys and a sentence."""
-        if not isinstance(device, Arm):
-            yield (), f"{device.name} is no arm; a joint trajectory controller moves arms"
+        if not isinstance(device, Jointed):
+            yield (), f"{device.name} has no joints; a joint trajectory controller moves robots of joints"
         elif self.joints and len(self.joints) != len(device.joints):
             count = len(device.joints)
             yield ("joints",), f"there are {len(self.joints)} names for the {count} joints of {device.name}"
