@@ -146,7 +146,9 @@ class Board:
         else:
             self._node = goal.nodes[-1]
         command, telemetry = self._command(goal), self._telemetry()
-        home = isinstance(command, MoveJoints) and self._layout.arm.reached(command.q, self._layout.home.q)
+        home = isinstance(command, MoveJoints) and self._layout.arm.motion.reached(
+            command.q, self._layout.home.q
+        )
         self._moments.append(Moment(at=now(), command=command, ended=True, last=home))
         self._say(telemetry)
 

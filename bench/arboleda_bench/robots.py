@@ -134,7 +134,9 @@ class Body:
             return
         self._moving = None
         self._here = self._seen_at(_goal(command))
-        last = isinstance(command, MoveJoints) and self._layout.arm.reached(command.q, self._layout.home.q)
+        last = isinstance(command, MoveJoints) and self._layout.arm.motion.reached(
+            command.q, self._layout.home.q
+        )
         self._joints.publish(self._here)
         stopped = UInt8(data=int(MotionState.STOPPED))
         at = now()

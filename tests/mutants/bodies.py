@@ -6,7 +6,7 @@ from arboleda.core.cell import CellRun
 from arboleda.dispatch import evidence
 from arboleda.dispatch.dispatcher import Dispatcher
 from arboleda.dispatch.zones import Zones
-from arboleda.kinds.arm import Arm
+from arboleda.kinds.joints.motion import JointMotion
 from arboleda.recipes import storage
 from arboleda.sim.arm import ArmBody
 from arboleda.sim.board import Board
@@ -81,7 +81,7 @@ MOTION = (
     mutant(
         "done_is_true",
         "An arm counts as there when one of its joints is.",
-        edit(Arm.reached, "return all(", "return any("),
+        edit(JointMotion.reached, "return all(", "return any("),
         seeds=SHARED,
         weather={"plant_stall": 20.0},
         likely=38,

@@ -123,7 +123,7 @@ def test_odd_plants_are_drawn(plants: list[PlantModel]) -> None:
     cells = [cell for plant in plants for cell in plant.cells]
     assert {len(plant.cells) for plant in plants} == {1, 2, 3, 4}
     assert any(
-        StorageLayout(cell).arm.reached(a.q, b.q)
+        StorageLayout(cell).arm.motion.reached(a.q, b.q)
         for cell in cells
         for a, b in combinations(StorageLayout(cell).space.poses, 2)
     )

@@ -5,6 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
+from arboleda.kinds.declared import Device
+from arboleda.kinds.joints import Jointed
+from arboleda.kinds.mobile import Mobile
+from arboleda.model.by_class import nearest
 from arboleda.model.commands import Command
 from arboleda.model.messages import Fact, OperatorAnswer, Remember, Verb
 from arboleda.model.plant_model import Evidence, Robot
@@ -21,8 +25,12 @@ from .stops import Stops
 from .zones import ZonesTruth
 
 SAMPLE_S = 1.0  # no deception is shorter, as each lasts until its reports are stale
-KINDS: dict[str | None, Callable[..., RobotTruth]] = {"q": ArmTruth, "node": MobileTruth, None: MachineTruth}
-"""What is followed of a robot, by what it says of its place."""
+KINDS: dict[type[Robot], Callable[..., RobotTruth]] = {
+    Jointed: ArmTruth,
+    Mobile: MobileTruth,
+    Device: MachineTruth,
+}
+"""The truth that is followed of a robot, by its class."""
 
 
 class RobotsTruth:
@@ -157,7 +165,8 @@ class RobotsTruth:
         world = self.world
         board, client = world.boards.get(robot.mqtt), world.broker.clients.get(robot.mqtt)
         if board is not None and client is not None:
-            follow = KINDS[robot.position_key]
+            follow = nearest(KINDS, type(robot))
+            assert follow is not None, f"nothing follows a {robot.kind_name}"
             truth = follow(robot, world.model.cell_of[robot.name], board, client)
             locks = (each.interlocks_of(robot.name) for each in world.model.cells_of[robot.name])
             truth.be_locked(tuple(lock for of_cell in locks for lock in of_cell))

@@ -5,26 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
-from arboleda.model.commands import Switch
-from arboleda.model.facts import Facts
-
-from .floor import Placement
-from .joints import Jointed
-
-
-@dataclass(frozen=True, kw_only=True)
-class SetEffector(Switch):
-    """Switch an arm's effector; `on`: it takes hold of a part."""
-
-    on: bool
-
-    @property
-    def sets(self) -> Facts:
-        return (("effector", self.on),)
-
-    @property
-    def grips(self) -> bool:
-        return self.on
+from ..floor import Placement
+from ..joints import Jointed
+from .commands import SetEffector
 
 
 @dataclass(frozen=True, kw_only=True)
