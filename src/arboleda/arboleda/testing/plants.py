@@ -28,7 +28,7 @@ def slowed(plant: PlantModel, times: float) -> PlantModel:
         if not robot.joints:
             return robot
         joints = tuple(replace(joint, speed=joint.speed / times) for joint in robot.joints)
-        return replace(robot, joints=joints)
+        return replace(robot, joints=joints)  # type: ignore[call-arg]
 
     return replace(plant, cells=tuple(cell.with_robots(slower) for cell in plant.cells))
 

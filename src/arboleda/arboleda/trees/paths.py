@@ -61,10 +61,10 @@ def follow(context: Context, robot: str, path: Path) -> list[Behaviour]:
             return device.go(id=id, way=nodes[nodes.index(node) :])
         if node is None or not context.cell.drive_to_start:
             return device.go(id=id, way=nodes)
-        return device.go(id=id, way=(*device.route(node, start), *nodes[1:]))
+        return device.go(id=id, way=(*device.motion.route(node, start), *nodes[1:]))
 
     def to_start(id: str) -> Command:
-        return device.go(id=id, way=device.route(known(), start))
+        return device.go(id=id, way=device.motion.route(known(), start))
 
     def is_at_start() -> bool:
         return known() in (None, start)
