@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import threading
 from concurrent.futures import ThreadPoolExecutor
+from urllib.parse import quote
 
 import pytest
 
@@ -228,6 +229,35 @@ def test_a_verb_reaches_the_plant_with_its_scope(web, plant, verb, path, scope):
 def test_homed_by_hand_is_declared_in_the_body(web, plant, body, by_hand):
     assert web.post("/api/cells/ra1/home", content=body).status_code == 200
     assert plant.acts == [(Verb.HOME, "ra1", by_hand)]
+
+
+@pytest.mark.parametrize(
+    ("scope", "body", "meant"),
+    [
+        ("ana", {"answer": "not yet"}, "ana not yet"),
+        ("ana", {"answer": "yes", "question": "1000-12"}, "ana #1000-12 yes"),
+        ("ana yes", None, "ana yes"),
+        ("ana #1000-12 yes", {}, "ana #1000-12 yes"),
+    ],
+)
+def test_a_person_is_answered_by_arguments_or_within_the_address(web, plant, scope, body, meant):
+    answer = web.post(f"/api/cells/{quote(scope)}/answer", json=body)
+    assert (answer.status_code, answer.json()["scope"]) == (200, scope)
+    assert plant.acts == [(Verb.ANSWER, meant, False)]
+
+
+@pytest.mark.parametrize(
+    ("verb", "body"),
+    [
+        ("hold", {"answer": "yes"}),
+        ("answer", {"question": "1000-12"}),
+        ("answer", {"answer": ""}),
+        ("answer", {"answer": "yes", "question": "1 no"}),
+    ],
+)
+def test_arguments_that_do_not_belong_to_a_verb_are_refused(web, plant, verb, body):
+    assert web.post(f"/api/cells/ana/{verb}", json=body).status_code == 422
+    assert plant.acts == []
 
 
 def test_a_refused_verb_says_why(web, plant):

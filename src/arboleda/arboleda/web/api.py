@@ -35,7 +35,6 @@ from .plant_api import COMMAND_LINE, PlantApi
 from .request import is_api
 from .schema import (
     Act,
-    ByHand,
     CellOee,
     Done,
     KeptTask,
@@ -49,6 +48,7 @@ from .schema import (
     TaskFilter,
     TaskForm,
     TaskText,
+    VerbArguments,
 )
 
 
@@ -235,7 +235,7 @@ def _operate(api: APIRouter, side: PlantApi) -> None:
     verb_route: dict[str, Any] = {
         "response_model": Done,
         "responses": ACCEPTED | REFUSED | CONFLICT,
-        "openapi_extra": _body(ByHand, required=False),
+        "openapi_extra": _body(VerbArguments, required=False),
     }
 
     @api.post("/plant/{verb}", **verb_route)
@@ -249,9 +249,9 @@ def _operate(api: APIRouter, side: PlantApi) -> None:
         return await operated(verb, scope, request)
 
     async def operated(word: str, scope: str, request: Request) -> JSONResponse:
-        verb, by_hand = verb_of(word), said_by_hand(await request.body())
+        verb, arguments = verb_of(word), verb_arguments(await request.body())
         require(request.scope["arboleda.role"], verb.value)
-        answer = await in_time(side.operate(verb, scope, by_hand=by_hand))
+        answer = await in_time(side.operate(verb, arguments.scoped(verb, scope), by_hand=arguments.by_hand))
         if answer.refusal is not None:
             return PlainJson(explained({"sentence": answer.refusal}), status_code=409)
         known = {"act": answer.act, "outcome": answer.outcome, "why": answer.why}
@@ -280,13 +280,14 @@ def verb_of(word: str) -> Verb:
         raise PayloadError(f"{quoted(word, 80)} is not an operator's verb; there are {names}.") from None
 
 
-def said_by_hand(body: bytes) -> bool:
-    """The value in `{"by_hand": true}`, False without a body; raises PayloadError for anything else."""
+def verb_arguments(body: bytes) -> VerbArguments:
+    """The arguments in a body, none where it is empty; raises PayloadError for anything else."""
     try:
-        return ByHand.model_validate_json(body or b"{}").by_hand
+        return VerbArguments.model_validate_json(body or b"{}")
     except ValidationError:
         raise PayloadError(
-            'The body may be empty or JSON like {"by_hand": true}, and nothing else.'
+            'The body may be empty or JSON like {"by_hand": true}, for answer {"answer": "yes"}, '
+            "and nothing else."
         ) from None
 
 

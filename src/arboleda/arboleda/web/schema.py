@@ -8,6 +8,7 @@ from pydantic import BaseModel, ConfigDict, Field, FiniteFloat, model_validator
 
 from arboleda.core.cell_states import CellState
 from arboleda.core.text import BETWEEN_CELLS
+from arboleda.model.errors import PayloadError
 from arboleda.model.messages import Outcome, Verb
 from arboleda.store.oee_rows import OeeQuery
 from arboleda.store.task_rows import TaskQuery
@@ -109,12 +110,30 @@ class TaskForm(_RequestModel):
         return named | {"cell": self.cell or BETWEEN_CELLS.join(self.any_of)}
 
 
-class ByHand(_RequestModel):
+class VerbArguments(_RequestModel):
+    """Arguments of an operator's verb."""
+
     by_hand: bool = Field(
         default=False,
         description="Nothing moves, you declare what was done by hand: for home, that the robot is at its "
         "reference; for release, that the part was taken out.",
     )
+    answer: str | None = Field(
+        default=None, min_length=1, description="For `answer`, whose scope is a person: one of the answers."
+    )
+    question: str | None = Field(
+        default=None,
+        pattern=r"^[0-9]+-[0-9]+$",
+        description="For `answer`: the `id` of the question, where only that one is meant.",
+    )
+
+    def scoped(self, verb: Verb, scope: str) -> str:
+        """The scope as the plant takes it, with the answer; raises PayloadError where none belongs."""
+        if self.answer is None and self.question is None:
+            return scope
+        if verb is not Verb.ANSWER or self.answer is None:
+            raise PayloadError("Only the verb answer has an answer, and a question only beside an answer.")
+        return " ".join([scope, *([f"#{self.question}"] if self.question else []), self.answer])
 
 
 class Sentence(_ResponseModel):
@@ -306,7 +325,7 @@ class Cell(_ResponseModel):
 
 
 class Asking(_ResponseModel):
-    """Open question to a person; `POST /api/cells/<person> <answer>/answer` answers it."""
+    """Open question to a person; `POST /api/cells/<person>/answer` with `{"answer": "yes"}` answers it."""
 
     id: str
     text: str
