@@ -6,7 +6,7 @@ import pytest
 
 from arboleda.drivers.dobot import work
 from arboleda.drivers.dobot.frames import Feedback, Mode
-from arboleda.kinds.arm import Arm
+from arboleda.kinds.joints.motion import JointMotion
 from arboleda.testing.plants import shipped
 from arboleda.virtual.dobot.faults import FAULTS
 from arboleda_driver_faults.dobot import CAUSES, DobotRig
@@ -34,7 +34,7 @@ def test_every_fault_by_itself(fault: str) -> None:
 
 
 def test_an_arm_that_is_believed_anywhere_would_be_found(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(Arm, "stands_at", lambda self, position, goal: True)
+    monkeypatch.setattr(JointMotion, "stands_at", lambda self, position, goal: True)
     assert any("false success" in each for seed in range(5) for each in breaches(seed, "lie", "short"))
 
 

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from arboleda.drivers.ros_action.goal import Rest
-from arboleda.kinds.mobile import Mobile
+from arboleda.kinds.mobile.motion import GridMotion
 from arboleda.plant_file.loader import load
 from arboleda.virtual.nav2.machine import FAULTS
 from arboleda_driver_faults.nav2 import BASE_CAUSES, RoundRig, WaypointsRig
@@ -38,7 +38,7 @@ def test_waypoints_that_are_missed() -> None:
 
 
 def test_a_base_that_is_believed_anywhere_would_be_found(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(Mobile, "stands_at", lambda self, position, goal: True)
+    monkeypatch.setattr(GridMotion, "stands_at", lambda self, position, goal: True)
     assert any("false success" in each for seed in range(3) for each in breaches(seed, "lie"))
 
 

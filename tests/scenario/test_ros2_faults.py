@@ -8,7 +8,7 @@ import pytest
 
 from arboleda.drivers.gripper_command.machine import GripperMover
 from arboleda.drivers.ros_action import machine
-from arboleda.kinds.arm import Arm
+from arboleda.kinds.joints.motion import JointMotion
 from arboleda.plant_file.loader import load
 from arboleda.virtual.gripper.machine import FAULTS as GRIPPER_FAULTS
 from arboleda.virtual.trajectory.machine import FAULTS as ARM_FAULTS
@@ -40,7 +40,7 @@ def test_every_fault_by_itself(fault: str) -> None:
 
 
 def test_an_arm_that_is_believed_anywhere_would_be_found(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(Arm, "stands_at", lambda self, position, goal: True)
+    monkeypatch.setattr(JointMotion, "stands_at", lambda self, position, goal: True)
     assert any("false success" in each for seed in range(3) for each in breaches(seed, "arm.lie"))
 
 

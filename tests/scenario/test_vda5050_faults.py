@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from arboleda.drivers.vda5050 import machine
-from arboleda.kinds.mobile import Mobile
+from arboleda.kinds.mobile.motion import GridMotion
 from arboleda.plant_file.loader import load
 from arboleda.virtual.vda5050.faults import FAULTS
 from arboleda_driver_faults.rig import TASKS, run
@@ -47,7 +47,7 @@ def test_a_cancel_that_is_said_once_would_be_found(monkeypatch: pytest.MonkeyPat
 
 
 def test_a_vehicle_that_is_believed_anywhere_would_be_found(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(Mobile, "stands_at", lambda self, position, goal: True)
+    monkeypatch.setattr(GridMotion, "stands_at", lambda self, position, goal: True)
     assert any("false success" in each for seed in range(5) for each in breaches(seed, "lie", "short"))
 
 

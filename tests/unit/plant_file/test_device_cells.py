@@ -398,7 +398,7 @@ def test_all_mistakes_are_told_at_once(folder: Path) -> None:
 @pytest.mark.parametrize(
     ("command", "words"),
     [
-        (["urdf", "oven", "--plant"], '"oven" is neither an arm nor a mobile robot'),
+        (["urdf", "oven", "--plant"], '"oven" has no model, so there is no drawing of it'),
         (["urdf", "ovn", "--plant"], 'there are oven, eye; did you mean "oven"?'),
     ],
     ids=["urdf", "urdf of nobody"],
