@@ -390,7 +390,7 @@ class Cell:
     goes_on: bool = False  # after a restart the queue of an idle cell goes on by itself
     goes_on_after_absence: bool = False  # what was at work, too, once its devices prove what they did
     retry: Retry = Retry()
-    piece_check: PieceCheck = False  # of recipes that say nothing else
+    piece_check: PieceCheck = "auto"  # of tours that say nothing else
     drive_to_start: bool = True  # False: a robot known to be elsewhere than its path begins fails the task
     zone_wait_s: float = 30.0
     recipes: tuple[Recipe, ...] = ()

@@ -11,7 +11,7 @@ from arboleda.kinds.declared import Device, DeviceKind, DeviceVerb, Effect
 from arboleda.model.plant_model import Cell, Evidence, Retry, Robot
 from arboleda.recipes.storage_layout import ARM, MOBILE
 
-from . import own_kinds, shared, targets
+from . import handovers, own_kinds, shared, targets
 from .arrays import arrays
 from .deadlines import ROUNDING_S, SHOWN_S
 from .document import Document, Place, choice, nearest, shown
@@ -104,19 +104,25 @@ def device_cell(document: Document, place: Place, kinds: Kinds, common: Mapping[
     if shape is None or retry is None or len(members) < len(found):
         return None
     spaces = targets.workspaces(document, place, members, tools)
-    if spaces is None:
+    if spaces is None or (spaces := handovers.with_paths(document, place, members, spaces)) is None:
         return None
     check_absence(document, place, shape.on_absence, members.values())
+    groups = targets.groups(document, place, spaces)
+    handover = handovers.handover(document, place, members, spaces)
     return Cell(
         name=str(place[-1]),
         members=tuple(members.items()),
         spaces=spaces,
-        arrays=targets.groups(document, place, spaces),
+        handover=handover,
+        recipes=handovers.recipes(document, place, handover, members, dict(groups)),
+        arrays=groups,
         grids=tuple((each.group, each.rows, each.columns) for each in arrays(document, place)),
         shared=tuple(sharing.values()),
         queue_limit=shape.queue_limit,
         goes_on=shape.on_restart == "go_on",
         goes_on_after_absence=shape.on_absence == "go_on",
+        drive_to_start=shape.drive_to_start,
+        piece_check=shape.piece_check,
         zone_wait_s=shape.zone_wait_s,
         retry=Retry(**retry.model_dump()),
     )

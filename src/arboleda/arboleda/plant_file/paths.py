@@ -24,14 +24,14 @@ def exit_of(path: Path) -> str:
     return path.code[1]
 
 
-def paths(document: Document, place: Place) -> tuple[Path, ...]:
+def paths(document: Document, place: Place, grid: Grid = GRID) -> tuple[Path, ...]:
     """Every path of the section; empty, with the problems kept, if one is wrong."""
     document.read_plain(MAPPING, place)
     seen: dict[str, str] = {}
     found = []
     for key in document.keys(place):
         first = seen.setdefault(key.upper(), key)
-        path = _path(document, (*place, key))
+        path = _path(document, (*place, key), grid)
         if not CODE.fullmatch(key):
             document.problem((*place, key), "a path code is two letters or digits", at=(*place, key))
             path = None
@@ -56,22 +56,22 @@ def check_nodes_show(document: Document, place: Place, routes: Iterable[Path], m
             document.problem(place, f"{what}; {why}: a pitch_mm of {longer} or more, or a lower speed_mm_s")
 
 
-def _path(document: Document, place: Place) -> Path | None:
+def _path(document: Document, place: Place, grid: Grid) -> Path | None:
     nodes = document.read_plain(NODES, place)
-    if nodes is None or not _on_grid(document, place, nodes):
+    if nodes is None or not _on_grid(document, place, nodes, grid):
         return None
     for index, (node, following) in enumerate(pairwise(nodes), start=1):
-        if following not in GRID.neighbours(node):
-            near = choice(str(neighbour) for neighbour in GRID.neighbours(node))
+        if following not in grid.neighbours(node):
+            near = choice(str(neighbour) for neighbour in grid.neighbours(node))
             sentence = f"node {following} is no neighbour of node {node} on the grid; allowed: {near}"
             document.problem((*place, index), sentence)
             return None
     return Path(code=str(place[-1]).upper(), nodes=tuple(nodes))
 
 
-def _on_grid(document: Document, place: Place, nodes: list[int]) -> bool:
+def _on_grid(document: Document, place: Place, nodes: list[int], grid: Grid) -> bool:
     for index, node in enumerate(nodes):
-        if not 0 <= node < GRID.size:
-            sentence = f"must be a node of the grid, 0 to {GRID.size - 1}, is {node}"
+        if not 0 <= node < grid.size:
+            sentence = f"must be a node of the grid, 0 to {grid.size - 1}, is {node}"
             document.problem((*place, index), sentence)
-    return all(0 <= node < GRID.size for node in nodes)
+    return all(0 <= node < grid.size for node in nodes)

@@ -65,7 +65,7 @@ def brought(document: Document, content: bytes) -> PlantPython:
     of_devices = [place for place in places if is_of_devices(document, place)]
     words = own_recipes.listed(document) if document.has(own_recipes.SECTION) else ()
     if not document.has(own_recipes.SECTION):
-        for place in of_devices:
+        for place in [each for each in of_devices if not document.has((*each, "handover"))]:
             how = 'name a file that has one at the top of this one: "uses: [recipes.py]"'
             document.problem(place, f"offers no recipe; {how}", at=place)
     if not (words or own_kinds.needs_python(document) or any(drivers.named(document))):

@@ -132,7 +132,7 @@ class CellShape(Shape):
     on_absence: OnAbsence = "hold"
     drive_to_start: bool = True
     retry: Any = None
-    piece_check: Annotated[Any, AfterValidator(_piece_check)] = "auto"
+    piece_check: Annotated[Any, AfterValidator(_piece_check)] = Cell.piece_check
     zone_wait_s: Duration = Cell.zone_wait_s
 
 
@@ -148,7 +148,20 @@ class DeviceCellShape(Shape):
     retry: Any = None
     targets: Any = None
     groups: Any = None
+    paths: Any = None
+    handover: Any = None
+    drive_to_start: bool = True
+    piece_check: Annotated[Any, AfterValidator(_piece_check)] = Cell.piece_check
     zone_wait_s: Duration = Cell.zone_wait_s
+
+
+class HandoverShape(Shape):
+    """`handover:`, two roles and the targets at which one robot takes what the other one brings."""
+
+    taker: str
+    giver: str
+    at: str
+    by_path: dict[str, str] = Field(default_factory=dict)
 
 
 class KindShape(Shape):

@@ -1,0 +1,103 @@
+"""Paths of the mobile robots of a cell of devices, and the handover of what they bring."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+from arboleda.model.plant_model import STATIONS, Handover, Robot, Workspace
+from arboleda.model.recipe import Recipe
+from arboleda.recipes import storage
+from arboleda.recipes.storage_layout import ARM, MOBILE, PALLETIZING_TARGETS
+
+from .document import Document, Place, choice, nearest, shown
+from .own_recipes import SECTION
+from .paths import check_nodes_show, paths
+from .shapes import MAPPING, HandoverShape
+
+
+def with_paths(
+    document: Document, place: Place, roles: Mapping[str, Robot], spaces: Sequence[Workspace]
+) -> tuple[Workspace, ...] | None:
+    """The workspaces with the paths of their robots; None, with the problems kept, if something is wrong.
+
+    A robot with paths stays where it is when a recovery brings the others home.
+    """
+    here = (*place, "paths")
+    if not document.has(here):
+        return tuple(spaces)
+    document.read_plain(MAPPING, here)
+    drives = {role: robot for role, robot in roles.items() if robot.floor_grid is not None}
+    by_robot = {}
+    for role in document.keys(here):
+        if role not in drives:
+            there = f"must be {choice(drives)}" if drives else "no robot of this cell drives on a grid"
+            document.problem(
+                (*here, role), f"{there}, is {shown(role)}{nearest(role, drives)}", at=(*here, role)
+            )
+            return None
+        found = paths(document, (*here, role), drives[role].floor_grid)
+        check_nodes_show(document, (*place, "devices", role), found, drives[role])
+        by_robot[drives[role].name] = found
+    if not all(by_robot.values()):
+        return None
+    return tuple(
+        replace(space, paths=by_robot[space.robot.name], returns=False)
+        if space.robot.name in by_robot
+        else space
+        for space in spaces
+    )
+
+
+def handover(
+    document: Document, place: Place, roles: Mapping[str, Robot], spaces: Sequence[Workspace]
+) -> Handover | None:
+    """The handover of a cell; None where it has none, or, with the problems kept, where that is wrong."""
+    here = (*place, "handover")
+    shape = document.read(HandoverShape, here) if document.has(here) else None
+    if shape is None:
+        return None
+    reach = {space.robot.name: space for space in spaces}
+    goes = {role: robot for role, robot in roles.items() if robot.name in reach}
+    targets = reach[goes[shape.taker].name].targets if shape.taker in goes else {}
+    codes = [path.code for path in reach[goes[shape.giver].name].paths] if shape.giver in goes else []
+    asked = [("taker", shape.taker, goes), ("giver", shape.giver, goes), ("at", shape.at, targets)]
+    asked += [(f"by_path.{code}", target, targets) for code, target in shape.by_path.items()]
+    wrong = [each for each in asked if each[1] not in each[2]]
+    for key, name, known in wrong:
+        there = f"must be {choice(known)}" if known else "there is none to choose from"
+        document.problem((*here, *key.split(".")), f"{there}, is {shown(name)}{nearest(name, known)}")
+    unknown = [code for code in shape.by_path if code not in codes]
+    for code in unknown:
+        known = (
+            f"must be a path of {shape.giver}: {choice(codes)}" if codes else f"{shape.giver} has no paths"
+        )
+        document.problem((*here, "by_path", code), f"{known}, is {shown(code)}", at=(*here, "by_path", code))
+    if wrong or unknown:
+        return None
+    return Handover(
+        taker=goes[shape.taker].name,
+        giver=goes[shape.giver].name,
+        otherwise=shape.at,
+        by_path=tuple(shape.by_path.items()),
+    )
+
+
+def recipes(
+    document: Document,
+    place: Place,
+    found: Handover | None,
+    roles: Mapping[str, Robot],
+    groups: Mapping[str, object],
+) -> tuple[Recipe, ...]:
+    """The recipes of storage that fit a cell with a handover; a problem is kept if it offers none."""
+    if found is None:
+        return ()
+    meet = {role: robot.name for role, robot in roles.items() if role in (ARM, MOBILE)}
+    needs = {storage.storage: STATIONS, storage.palletizing: PALLETIZING_TARGETS}
+    named = meet == {ARM: found.taker, MOBILE: found.giver}
+    offered = tuple(recipe for recipe, group in needs.items() if named and group in groups)
+    if not offered and not document.has(SECTION):
+        what = f'storage needs the roles {ARM} (the taker) and {MOBILE} (the giver) and a group "{STATIONS}"'
+        document.problem(place, f'offers no recipe: {what}; or "uses" names a file with recipes', at=place)
+    return offered

@@ -1,0 +1,101 @@
+"""Paths and a handover of a cell of devices: the same cell as by the short form, and what is refused."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from arboleda.model.errors import ConfigError
+from arboleda.model.messages import TaskState
+from arboleda.model.plant_model import Cell, PlantModel
+from arboleda.model.sentence import NOTHING
+from arboleda.plant_file import loader
+from arboleda.testing import Rig
+
+SHORT = """name: hall
+cells:
+  bay:
+    arm: {name: ra, model: scara, link: mqtt, evidence: ids}
+    mobile: {name: cart, link: mqtt, evidence: ids}
+    home: {deg: [0, 0], mm: 0}
+    pickup: {deg: [45, 10], mm: 0}
+    pickups: {A: {deg: [50, 10], mm: 0}}
+    paths: {0A: [0, 3, 6], 0B: [0, 3, 4, 7]}
+    stations: {0: {deg: [0, 20], mm: 100}, 1: {deg: [10, 20], mm: 100}}
+    palletizing: {pick: pickup a, place: station 1}
+"""
+LONG = """name: hall
+cells:
+  bay:
+    devices:
+      arm: {kind: arm, name: ra, model: scara, link: mqtt, evidence: ids}
+      mobile: {kind: mobile, name: cart, link: mqtt, evidence: ids}
+    targets:
+      home: {arm: {deg: [0, 0], mm: 0}, mobile: {node: 0}}
+      pickup: {arm: {deg: [45, 10], mm: 0}}
+      pickup_a: {arm: {deg: [50, 10], mm: 0}}
+      station_0: {arm: {deg: [0, 20], mm: 100}}
+      station_1: {arm: {deg: [10, 20], mm: 100}}
+    groups:
+      stations: [station_0, station_1]
+      palletizing: [pickup_a, station_1]
+    paths: {mobile: {0A: [0, 3, 6], 0B: [0, 3, 4, 7]}}
+    handover: {taker: arm, giver: mobile, at: pickup, by_path: {0A: pickup_a}}
+"""
+MISTAKES = {  # what is in LONG, what is put in its place, what the problem says
+    "no such robot": ("paths: {mobile:", "paths: {arm:", 'must be mobile, is "arm"'),
+    "a jump": ("[0, 3, 6]", "[0, 6]", "node 6 is no neighbour of node 0"),
+    "no such taker": ("taker: arm", "taker: amr", 'did you mean "arm"?'),
+    "no such target": ("at: pickup,", "at: pikup,", 'did you mean "pickup"?'),
+    "no such path": ("by_path: {0A:", "by_path: {1A:", "must be a path of mobile: 0A or 0B"),
+    "no stations": (
+        "stations: [station_0, station_1]\n      palletizing: [pickup_a",
+        "racks: [pickup_a",
+        "offers no recipe: storage needs",
+    ),
+    "no such key": ("at: pickup,", "from: pickup,", '"from"'),
+}
+
+
+def load(folder: Path, text: str) -> PlantModel:
+    path = folder / "plant.yaml"
+    path.write_text(text, "utf-8")
+    return loader.load(path)
+
+
+def of_targets(cell: Cell) -> object:
+    """What recipes see of a cell, without what its poses are called."""
+    spaces = [
+        (space.robot, space.returns, space.paths, {name: pose.q for name, pose in space.targets.items()})
+        for space in cell.spaces
+    ]
+    return cell.members, spaces, cell.handover, [pose.q for pose in cell.stations], cell.recipes
+
+
+def test_both_forms_are_the_same_cell(tmp_path: Path) -> None:
+    short, long = (load(tmp_path, text).cell("bay") for text in (SHORT, LONG))
+    arm, mobile = short.spaces
+    ways = {name: pose for name, pose in arm.targets.items() if name not in ("pickup_b",)}
+    poses = tuple(replace(pose, name=name, title=NOTHING) for name, pose in ways.items())
+    same = replace(arm, target_names=(), poses=poses)
+    short = replace(short, spaces=(same, replace(mobile, poses=(mobile.home,))))
+    assert of_targets(short) == of_targets(long)
+
+
+def test_the_recipes_of_storage_run_in_a_cell_of_devices(tmp_path: Path) -> None:
+    rig = Rig(load(tmp_path, LONG))
+    for text in ("bay 0A 1", "bay palletizing", "bay 0B 0"):
+        rig.submit(text)
+    rig.wait(600, until=lambda: rig.plant.at_rest and not rig.plant.cells["bay"].queue)
+    assert [change.state for change in rig.outcomes().values()] == [TaskState.DONE] * 3
+
+
+@pytest.mark.parametrize("mistake", MISTAKES.values(), ids=MISTAKES)
+def test_a_mistake_is_named(tmp_path: Path, mistake: tuple[str, str, str]) -> None:
+    old, new, words = mistake
+    assert old in LONG
+    with pytest.raises(ConfigError) as refused:
+        load(tmp_path, LONG.replace(old, new, 1))
+    assert any(words in problem for problem in refused.value.problems), refused.value.problems
