@@ -27,7 +27,7 @@ from arboleda.campaigns.request import Request
 from arboleda.campaigns.setting import Setting
 from arboleda.campaigns.workers import collect_rarely
 from arboleda.model.errors import ArboledaError
-from arboleda.simulator.invariants import INVARIANTS
+from arboleda.simulator.judged import INVARIANTS
 from arboleda.simulator.people import Attendant, Customers
 from arboleda.simulator.run import MINUTE_S
 from arboleda.simulator.world import World

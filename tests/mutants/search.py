@@ -11,8 +11,9 @@ import pytest
 from arboleda.model.plant_model import PlantModel
 from arboleda.plant_file import loader
 from arboleda.simulator import judged_world
-from arboleda.simulator.invariants import INVARIANTS, Invariant
+from arboleda.simulator.invariants import Invariant
 from arboleda.simulator.invariants.hosts import HOSTS
+from arboleda.simulator.judged import INVARIANTS
 from arboleda.simulator.run import Simulation
 
 from .mutant import Mutant

@@ -14,7 +14,7 @@ from arboleda.simulator.invariants.advice import ADVICE, ENOUGH
 from arboleda.simulator.invariants.invariant import Judges, Look
 from arboleda.simulator.people import Attendant
 from arboleda.simulator.record import Record
-from arboleda.simulator.truth import Truth
+from arboleda.simulator.truth.truth import Truth
 from arboleda.simulator.world import World
 from arboleda.testing import shipped
 

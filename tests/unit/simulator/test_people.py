@@ -11,7 +11,7 @@ from arboleda.simulator.invariants.invariant import Look
 from arboleda.simulator.invariants.motion import no_move_after_a_boot_that_was_told
 from arboleda.simulator.people import WAITING, Customers
 from arboleda.simulator.record import Record
-from arboleda.simulator.truth import Truth
+from arboleda.simulator.truth.truth import Truth
 from arboleda.simulator.world import World
 from arboleda.testing import shipped
 

@@ -22,13 +22,13 @@ from arboleda.model.plant_model import Evidence, PlantModel
 from arboleda.recipes.storage_layout import StorageLayout
 from arboleda.sim.arm import ArmBody
 from arboleda.sim.mobile import MobileBody
-from arboleda.simulator.invariants.grip import GRIP
 from arboleda.simulator.invariants.invariant import Judges, Look
 from arboleda.simulator.invariants.motion import MOTION
 from arboleda.simulator.invariants.stop import STOP
 from arboleda.simulator.invariants.zones import ZONES
 from arboleda.simulator.record import Record
-from arboleda.simulator.truth import Truth
+from arboleda.simulator.storage.grip import GRIP
+from arboleda.simulator.truth.truth import Truth
 from arboleda.simulator.world import World
 from arboleda.testing.plants import shipped
 from arboleda.trees import steps

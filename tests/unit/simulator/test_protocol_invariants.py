@@ -33,7 +33,7 @@ from arboleda.simulator.invariants.memory_bounds import BOOKS
 from arboleda.simulator.invariants.tasks import TASKS
 from arboleda.simulator.invariants.wire import WIRE
 from arboleda.simulator.record import Record
-from arboleda.simulator.truth import Truth
+from arboleda.simulator.truth.truth import Truth
 from arboleda.simulator.world import BRIDGE, PLANT, World
 from arboleda.testing.plants import shipped, slowed
 from arboleda.trees import cell_commands, cell_time, cell_zones, leaves

@@ -18,9 +18,8 @@ from arboleda.simulator import world
 from arboleda.simulator.climate import Climate
 from arboleda.simulator.faults import OF_CRASHES
 from arboleda.simulator.general import GENERAL
-from arboleda.simulator.invariants import INVARIANTS
 from arboleda.simulator.invariants.starts import EVERYWHERE, STARTS
-from arboleda.simulator.judged import judged_by
+from arboleda.simulator.judged import INVARIANTS, judged_by
 from arboleda.simulator.judged_world import BrokenInvariant
 from arboleda.simulator.run import Simulation
 from arboleda.testing import shipped

@@ -11,8 +11,8 @@ from arboleda.model.commands import StopMode
 from arboleda.model.messages import Fact, Report, Verb
 from arboleda.model.plant_model import Crossing, Evidence, PlantModel
 from arboleda.recipes.storage_layout import StorageLayout
-from arboleda.simulator.truth import Truth
 from arboleda.simulator.truth.arm import ArmTruth
+from arboleda.simulator.truth.truth import Truth
 from arboleda.simulator.world import PLANT, World
 from arboleda.testing import shipped, slowed
 from arboleda.wire.payloads import HomeGoal, JointsGoal, StopGoal, encode

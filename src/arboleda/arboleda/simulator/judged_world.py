@@ -20,7 +20,7 @@ from .judged import judged_by
 from .record import Record
 from .recorded.leaders import Leaders
 from .trace import Trace
-from .truth import Truth
+from .truth.truth import Truth
 from .world import FIRST_EPOCH, START_S, World
 
 REST_S = 600.0  # after the last fault, or the end of a task since, everything must have come to rest by then

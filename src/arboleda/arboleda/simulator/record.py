@@ -39,7 +39,6 @@ from .recorded.commands import Commands, SentCommand
 from .recorded.courses import Courses
 from .recorded.foreign import ForeignCommands
 from .recorded.proofs import Proofs
-from .recorded.racks import Racks
 from .recorded.refusals import differences
 from .recorded.robots import KnownRobot, Obstacle, StopProgress
 from .recorded.scopes import Scopes
@@ -49,7 +48,8 @@ from .recorded.tasks import Tasks
 from .recorded.time_line import TimeLine
 from .recorded.times import Times
 from .recorded.verbs import EarlierState
-from .recorded.work import Works
+from .storage.racks import Racks
+from .storage.works import Works
 from .world import BRIDGE, World
 
 NO_VERBS: frozenset[Verb] = frozenset()

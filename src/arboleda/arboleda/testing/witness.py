@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from arboleda.simulator.truth import Truth
-from arboleda.simulator.truth.deeds import Switch
+from arboleda.simulator.storage.deeds import Switch
+from arboleda.simulator.truth.truth import Truth
 from arboleda.wire.transport import Publication
 
 from .rig import Rig

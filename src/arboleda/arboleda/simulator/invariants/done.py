@@ -10,11 +10,11 @@ from arboleda.kinds.mobile import FollowPath
 from arboleda.model.commands import Command, Home
 from arboleda.model.plant_model import Evidence
 
-from ..truth import Truth
 from ..truth.arm import ArmTruth
 from ..truth.ended_commands import EndedCommand
 from ..truth.mobile import MobileTruth
 from ..truth.robot import RobotTruth
+from ..truth.truth import Truth
 from .invariant import Look, Trigger, invariant
 
 

@@ -11,7 +11,7 @@ from operator import attrgetter
 
 from ..record import Record
 from ..recorded.leaders import Leaders
-from ..truth import Truth
+from ..truth.truth import Truth
 from ..world import Moment, World
 
 

@@ -1,5 +1,1 @@
 """Truth about a world, whatever the plant believes: where arms, mobiles and parts are, and what was done."""
-
-from .truth import Truth
-
-__all__ = ["Truth"]

@@ -13,10 +13,10 @@ from arboleda.model.commands import Command
 from arboleda.model.messages import Fact, OperatorAnswer, Remember, Verb
 from arboleda.model.plant_model import Evidence, Robot
 
+from ..storage.deeds import CellTruth
 from ..world import BRIDGE, World
 from .arm import ArmTruth
 from .boots import Boots
-from .deeds import CellTruth
 from .ended_commands import CALM_S, Books
 from .machine import MachineTruth
 from .mobile import MobileTruth

@@ -10,9 +10,9 @@ from arboleda.model.messages import OperatorAnswer, TaskChanged, TaskState, Verb
 from arboleda.model.task import Order
 from arboleda.recipes.storage_layout import StorageLayout
 
+from ..storage.deeds import CellTruth, EndedTask
+from ..storage.parts import Parts
 from ..world import World
-from .deeds import CellTruth, EndedTask
-from .parts import Parts
 from .robots import RobotsTruth
 from .stops import robots_of
 

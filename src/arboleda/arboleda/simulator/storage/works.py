@@ -15,9 +15,9 @@ from arboleda.model.messages import TaskState, Verb
 from arboleda.model.plant_model import Pose
 from arboleda.recipes.storage_layout import StorageLayout
 
-from .commands import SentCommand
-from .robots import KnownRobot
-from .tasks import Tasks
+from ..recorded.commands import SentCommand
+from ..recorded.robots import KnownRobot
+from ..recorded.tasks import Tasks
 
 ROUNDING_S = 1e-6
 OPTIONAL, TO_START = "maybe", "to the start"

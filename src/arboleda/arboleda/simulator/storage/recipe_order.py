@@ -11,9 +11,9 @@ from arboleda.kinds.joints import MoveJoints
 from arboleda.model.plant_model import Evidence, Pose
 from arboleda.recipes.storage_layout import StorageLayout
 
+from ..invariants.invariant import Look, Trigger, invariant
 from ..recorded.cells import KnownCell
 from ..recorded.commands import SentCommand
-from .invariant import Look, Trigger, invariant
 
 
 @invariant(Trigger.NEWS)

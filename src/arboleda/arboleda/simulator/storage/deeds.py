@@ -10,8 +10,8 @@ from arboleda.model.task import Order
 from arboleda.recipes.storage_layout import StorageLayout
 from arboleda.wire.payloads import EffectorGoal, PathGoal
 
-from .arm import NOWHERE, ArmTruth
-from .mobile import MobileTruth
+from ..truth.arm import NOWHERE, ArmTruth
+from ..truth.mobile import MobileTruth
 
 KEPT = 50  # switches of one task
 

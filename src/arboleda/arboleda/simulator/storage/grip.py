@@ -7,10 +7,10 @@ from collections.abc import Iterable, Iterator
 from arboleda.model.messages import Check
 from arboleda.model.plant_model import Evidence
 
+from ..invariants.invariant import Look, Trigger, invariant
 from ..truth.arm import ArmTruth
-from ..truth.deeds import CellTruth, EndedTask, Switch, named
-from ..truth.parts import FELL, FLOOR, GRIPPED, POWER, RELEASED
-from .invariant import Look, Trigger, invariant
+from .deeds import CellTruth, EndedTask, Switch, named
+from .parts import FELL, FLOOR, GRIPPED, POWER, RELEASED
 
 
 @invariant(Trigger.DEEDS)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from itertools import count
 
-from .arm import ArmTruth
+from ..truth.arm import ArmTruth
 from .deeds import CellTruth
 
 FLOOR, EFFECTOR = "floor", "effector"  # where a part can be, besides a pose

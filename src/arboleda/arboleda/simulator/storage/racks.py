@@ -7,8 +7,8 @@ from collections.abc import Iterable, Mapping
 from arboleda.model.messages import OperatorAnswer, TaskState, Verb
 from arboleda.recipes.storage_layout import StorageLayout
 
-from .scopes import Scopes
-from .tasks import KnownTask, Tasks
+from ..recorded.scopes import Scopes
+from ..recorded.tasks import KnownTask, Tasks
 
 Stations = set[int]
 

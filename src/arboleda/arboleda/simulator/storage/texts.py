@@ -10,7 +10,7 @@ from arboleda.model.messages import TaskChanged, TaskRequest, TaskState
 from arboleda.model.plant_model import PlantModel
 from arboleda.model.sentence import Value
 
-from .invariant import Look, Trigger, invariant
+from ..invariants.invariant import Look, Trigger, invariant
 
 LONGEST = 200
 ID = re.compile(r"#(?!t-)[A-Za-z0-9_.-]{1,64}", re.ASCII)
