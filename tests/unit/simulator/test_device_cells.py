@@ -6,9 +6,9 @@ from arboleda.core.advice import in_words
 from arboleda.model.messages import OperatorRequest, Verb
 from arboleda.recipes import Kit, parallel, recipe, work
 from arboleda.simulator.faults import KINDS, Fault
-from arboleda.simulator.general import GeneralTruth
 from arboleda.simulator.judged_world import JudgedWorld
 from arboleda.simulator.people import Attendant
+from arboleda.simulator.truth.truth import Truth
 from arboleda.simulator.world import BRIDGE, World
 
 from ..kinds.lab import bake
@@ -55,7 +55,7 @@ def test_what_work_needs_is_not_let_go_while_its_machine_says_that_it_works() ->
 
 def test_a_machine_that_says_it_stands_still_while_it_moves_misleads_until_its_next_work() -> None:
     world = World(bench(bake))
-    truth = GeneralTruth(world)
+    truth = Truth(world)
     world.watchers.append(truth.look)
     oven = truth.robots["oven"]
     world.boards["eye"].body.answer = lambda goal: "good"

@@ -23,11 +23,11 @@ from arboleda.sim.board import Board
 from arboleda.sim.machine import MachineBody
 from arboleda.sim.receipts import Receipts
 from arboleda.simulator.climate import Climate
-from arboleda.simulator.faults import GENERAL as JUDGED
 from arboleda.simulator.faults import OF_DEVICES as FAULTS_OF_DEVICES
+from arboleda.simulator.faults import ON_ONE_HOST as JUDGED
 from arboleda.simulator.faults import Fault
-from arboleda.simulator.general import GENERAL, OF_DEVICES
-from arboleda.simulator.judged import judged_by
+from arboleda.simulator.invariants.devices import DEVICES
+from arboleda.simulator.judged import INVARIANTS, judged_by
 from arboleda.simulator.judged_world import BrokenInvariant, JudgedWorld
 from arboleda.simulator.run import Simulation
 from arboleda.trees.cell_commands import CellCommands
@@ -138,7 +138,7 @@ def run(
         climate = Climate.draw(model, seed, weather)
     else:
         climate = Climate.from_file(model, seed, {"rates": weather})
-    judges = tuple(each for each in judged_by(model) if only in ("", each.name))
+    judges = tuple(each for each in judged_by() if only in ("", each.name))
     simulation = Simulation(model, seed, climate.faults, invariants=judges)
     return simulation.run(cycles=cycles, seconds=seconds).broken
 
@@ -420,7 +420,7 @@ def test_it_bites(monkeypatch: Patch, name: str, bug: Bug, how: Scenario | Weath
     monkeypatch.setattr("arboleda.simulator.run.PATIENCE", 1)  # a cell that is held does not wait for long
     monkeypatch.setattr("arboleda.simulator.judged_world.REST_S", 60.0)
     if callable(how):
-        watched = JudgedWorld(shop(*RECIPES), invariants=[each for each in GENERAL if each.name == name])
+        watched = JudgedWorld(shop(*RECIPES), invariants=[each for each in INVARIANTS if each.name == name])
         with pytest.raises(BrokenInvariant, match=name):
             how(watched)
     else:
@@ -439,5 +439,5 @@ def test_it_finds_nothing_where_there_is_no_bug(how: Scenario) -> None:
 
 
 def test_every_invariant_of_devices_has_a_bug() -> None:
-    assert {each.name for each in OF_DEVICES} <= {name for name, _, _ in BITES}
-    assert {name for name, _, _ in BITES} <= {each.name for each in GENERAL}
+    assert {each.name for each in DEVICES} <= {name for name, _, _ in BITES}
+    assert {name for name, _, _ in BITES} <= {each.name for each in INVARIANTS}

@@ -78,7 +78,7 @@ class Watch:
     def carry(self) -> None:
         """Be in the middle of the way from pick-up to place."""
         self.task(wait_s=0.0)
-        self.wait(60.0, until=lambda: self.truth.cells["sis_a"].picks == 1)
+        self.wait(60.0, until=lambda: self.truth.storage.cells["sis_a"].picks == 1)
         self.wait(0.1)
 
     def verb(self, verb: Verb, scope: str = "", wait_s: float = 1.0) -> None:

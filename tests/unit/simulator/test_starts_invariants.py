@@ -16,12 +16,12 @@ from arboleda.model.plant_model import PlantModel
 from arboleda.model.task import Task
 from arboleda.simulator import world
 from arboleda.simulator.climate import Climate
-from arboleda.simulator.faults import OF_CRASHES
-from arboleda.simulator.general import GENERAL
-from arboleda.simulator.invariants.starts import EVERYWHERE, STARTS
+from arboleda.simulator.faults import KINDS, OF_CRASHES
+from arboleda.simulator.invariants.starts import STARTS
 from arboleda.simulator.judged import INVARIANTS, judged_by
 from arboleda.simulator.judged_world import BrokenInvariant
 from arboleda.simulator.run import Simulation
+from arboleda.simulator.storage.grip import one_pick_one_place_over_all_starts
 from arboleda.testing import shipped
 from arboleda.trees.walk_back import WalkBack
 
@@ -31,14 +31,13 @@ from .test_general_invariants import load, shop
 Patch = pytest.MonkeyPatch
 Bug = Callable[[Patch], None]
 WEATHER = {**dict.fromkeys(OF_CRASHES, 8.0), "double_submit": 6.0}
-OF_DEVICES = {name: rate for name, rate in WEATHER.items() if name in OF_CRASHES}
 
 
 def run(model: PlantModel, seed: int, *, only: str = "", cycles: int = 6) -> BrokenInvariant | None:
     """What breaks; `only`: by this invariant alone."""
-    rates = WEATHER if judged_by(model) is INVARIANTS else OF_DEVICES
+    rates = {name: rate for name, rate in WEATHER.items() if KINDS[name].targets(model)}
     climate = Climate.from_file(model, seed, {"rates": rates})
-    judges = [each for each in judged_by(model) if only in ("", each.name)]
+    judges = [each for each in judged_by() if only in ("", each.name)]
     return Simulation(model, seed, climate.faults, invariants=judges).run(cycles=cycles).broken
 
 
@@ -130,7 +129,7 @@ CASES = [
     (kind, name, bug)
     for kind in HERE
     for name, bug in BITES
-    if kind == "storage" or name in {each.name for each in EVERYWHERE}
+    if kind == "storage" or name in {each.name for each in STARTS}
 ]
 
 
@@ -152,5 +151,7 @@ def test_all_of_them_hold_however_often_the_plant_dies(kind: str, seed: int) -> 
 
 
 def test_every_one_of_them_has_a_bug_and_judges_where_it_can() -> None:
-    assert {each.name for each in STARTS} == {name for name, _ in BITES}
-    assert set(STARTS) <= set(INVARIANTS) and set(EVERYWHERE) <= set(GENERAL)
+    assert {each.name for each in (*STARTS, one_pick_one_place_over_all_starts)} == {
+        name for name, _ in BITES
+    }
+    assert {*STARTS, one_pick_one_place_over_all_starts} <= {*INVARIANTS}

@@ -52,7 +52,7 @@ class Stage:
 
     @property
     def arm(self) -> ArmTruth:
-        return self.truth.arms["ra1"]
+        return self.truth.storage.arms["ra1"]
 
     @property
     def body(self):
@@ -68,7 +68,7 @@ class Stage:
     def _keep(self) -> None:
         if self.arm.zones not in self.zones[-1:]:
             self.zones.append(self.arm.zones)
-        self.places += [passage.place for passage in self.truth.parts.passages]
+        self.places += [passage.place for passage in self.truth.storage.parts.passages]
 
 
 @pytest.fixture
@@ -138,7 +138,9 @@ def test_an_arm_stands_at_a_pose_within_its_tolerance(beside, here):
 
 def test_a_part_is_gripped_where_the_axes_truly_are(stage):
     lay_there = []
-    stage.world.watchers.append(lambda: lay_there.extend(p.lay_there for p in stage.truth.parts.passages))
+    stage.world.watchers.append(
+        lambda: lay_there.extend(p.lay_there for p in stage.truth.storage.parts.passages)
+    )
     stage.body.lose_steps(0, 5)
     drive_beside(stage, -5)
     stage.body.switch_effector(True)
@@ -153,7 +155,7 @@ def test_a_part_is_gripped_where_an_arm_stood_that_has_moved_on_in_the_same_step
     stage.body.advance(round(stage.world.now * 1e6) + 100_000)
     stage.truth.look()
     assert not stage.arm.reaches
-    assert [passage.lay_there for passage in stage.truth.parts.passages] == [True]
+    assert [passage.lay_there for passage in stage.truth.storage.parts.passages] == [True]
 
 
 def test_a_move_sweeps_the_zones_of_both_ends_and_those_between():
@@ -199,18 +201,18 @@ def test_an_arm_that_is_halted_near_a_pose_on_its_way_is_where_the_way_is():
 
 def test_a_part_goes_from_the_pick_up_to_its_station_and_the_customer_takes_it(stage):
     stage.ask("sis_a 0B 7")
-    stage.until(lambda: bool(stage.truth.parts.stations))
-    cell = stage.truth.cells["sis_a"]
+    stage.until(lambda: bool(stage.truth.storage.parts.stations))
+    cell = stage.truth.storage.cells["sis_a"]
     assert (cell.picks, cell.places, cell.let_go) == (1, 1, True)
-    stage.until(lambda: bool(stage.truth.ended))
-    assert stage.truth.ended[0].missing is None
-    assert (stage.places, stage.truth.parts.stations) == (["effector", "station 7"], {})
+    stage.until(lambda: bool(stage.truth.storage.ended))
+    assert stage.truth.storage.ended[0].missing is None
+    assert (stage.places, stage.truth.storage.parts.stations) == (["effector", "station 7"], {})
 
 
 def test_a_part_that_is_carried_back_is_the_next_one_to_be_gripped(stage):
-    parts = stage.truth.parts
+    parts = stage.truth.storage.parts
     stage.ask("sis_a palletizing")
-    stage.until(lambda: stage.truth.cells["sis_a"].picks == 1)
+    stage.until(lambda: stage.truth.storage.cells["sis_a"].picks == 1)
     number = parts.held["ra1"].number
     stage.world.request_verb(Verb.CANCEL, "sis_a")
     stage.until(lambda: stage.places == ["effector", "pick-up"])
@@ -222,9 +224,11 @@ def test_a_part_that_is_carried_back_is_the_next_one_to_be_gripped(stage):
 @pytest.mark.parametrize(("how", "cause"), [("lose_piece", "fell"), ("crash", "lost with the power")])
 def test_a_part_that_falls_is_on_the_floor(stage, how, cause):
     causes = []
-    stage.world.watchers.append(lambda: causes.extend(each.cause for each in stage.truth.parts.passages))
+    stage.world.watchers.append(
+        lambda: causes.extend(each.cause for each in stage.truth.storage.parts.passages)
+    )
     stage.ask("sis_a palletizing")
-    stage.until(lambda: stage.truth.cells["sis_a"].picks == 1)
+    stage.until(lambda: stage.truth.storage.cells["sis_a"].picks == 1)
     stage.body.lose_piece() if how == "lose_piece" else stage.world.crash(ARM)
     stage.world.advance(0.2)
     assert (stage.places[-1], causes[-1]) == ("floor", cause)
@@ -232,21 +236,21 @@ def test_a_part_that_falls_is_on_the_floor(stage, how, cause):
 
 def test_a_task_that_is_asked_for_again_does_not_begin_again(stage):
     stage.ask("sis_a palletizing #lot7")
-    stage.until(lambda: stage.truth.cells["sis_a"].picks == 1)
+    stage.until(lambda: stage.truth.storage.cells["sis_a"].picks == 1)
     stage.ask("sis_a palletizing #lot7")
-    stage.until(lambda: bool(stage.truth.ended))
-    assert (stage.truth.ended[0].picks, stage.truth.ended[0].missing) == (1, None)
+    stage.until(lambda: bool(stage.truth.storage.ended))
+    assert (stage.truth.storage.ended[0].picks, stage.truth.storage.ended[0].missing) == (1, None)
 
 
 def test_what_a_task_that_is_called_done_did_not_do_is_named(stage):
     stage.ask("sis_a palletizing")
     stage.until(lambda: stage.arm.on)
-    ended = stage.truth.cells["sis_a"].end("sis_a palletizing", done=True)
+    ended = stage.truth.storage.cells["sis_a"].end("sis_a palletizing", done=True)
     assert ended.missing == "the effector was switched on at pick-up"
 
 
 def test_a_mobile_is_where_it_is_whatever_it_counts(stage):
-    mobile = stage.truth.mobiles["rm_sis_a"]
+    mobile = stage.truth.storage.mobiles["rm_sis_a"]
     stage.world.boards[MOBILE].body.true_node = 1
     stage.ask("sis_a 0A 7")
     stage.until(lambda: mobile.counted == 6 and not mobile.moving)
@@ -273,13 +277,13 @@ def test_a_board_that_was_told_to_stop_is_latched_until_it_is_cleared_or_boots(s
 @pytest.mark.parametrize("kept", [True, False])
 def test_a_restarted_plant_goes_on_only_with_a_task_of_which_it_knows_where_it_stands(stage, kept):
     stage.ask("sis_a palletizing", 0.5)
-    task = stage.truth.cells["sis_a"].task
+    task = stage.truth.storage.cells["sis_a"].task
     assert task is not None
     if not kept:
         del stage.world.memory[Fact.STEP]
     stage.world.crash()
     stage.world.advance(0.1)
-    assert stage.truth.cells["sis_a"].task == (task if kept else None)
+    assert stage.truth.storage.cells["sis_a"].task == (task if kept else None)
 
 
 @pytest.mark.parametrize(("stalled_s", "at_home"), [(0.2, False), (30.0, True)])

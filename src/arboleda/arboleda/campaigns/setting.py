@@ -11,7 +11,7 @@ from arboleda.core.plant import Plant as CorePlant
 from arboleda.model.plant_model import PlantModel
 from arboleda.simulator.climate import Climate
 from arboleda.simulator.faults import Fault
-from arboleda.simulator.judged import every
+from arboleda.simulator.judged import judged_by
 from arboleda.simulator.run import NO_EXCEPTION, BrokenInvariant, Plan, Result, Simulation
 from arboleda.simulator.scripted_people import Script, script_from
 
@@ -106,5 +106,5 @@ class Setting:
 
 def rules() -> dict[str, str]:
     """The sentence of each invariant, by its name."""
-    sentences = {each.name: " ".join(each.sentence.split()) for each in every()}
+    sentences = {each.name: " ".join(each.sentence.split()) for each in judged_by(standby=True)}
     return {NO_EXCEPTION: "No exception escapes a step."} | sentences

@@ -11,8 +11,7 @@ from arboleda.model.plant_model import PlantModel
 
 from .chance import Dice
 from .checks import BadFaults, is_number, only, within
-from .faults import GENERAL, KINDS, NOT_WITH_STANDBY, OF_CRASHES, OF_HOSTS, ON_ONE_HOST, Fault, Kind
-from .general import is_general
+from .faults import KINDS, NOT_WITH_STANDBY, OF_CRASHES, OF_HOSTS, ON_ONE_HOST, Fault, Kind
 from .levels import CRASHES, LEVELS
 
 MINUTE_S = 60.0
@@ -47,7 +46,7 @@ class Climate:
             raise BadFaults(f"{level!r} is not a level of faults; there are {', '.join(LEVELS)}")
         dice, (low, high) = Dice(seed, "climate"), LEVELS[level]
         total = low * (high / low) ** dice.random() if low else 0.0
-        judged = _possible(model, standby=standby)
+        judged = _possible(standby=standby)
         kinds = {name: kind for name, kind in KINDS.items() if name in judged and kind.targets(model)}
         weights = {name: _weight(dice, _weight_at(level, kind)) for name, kind in kinds.items()}
         return cls(model=model, seed=seed, rates=_shared(round(total, 3), weights))
@@ -86,9 +85,9 @@ class Climate:
         return Fault(kind=name, at=at, seed=dice.below(2**32), **KINDS[name].draw(dice, self.model))
 
 
-def _possible(model: PlantModel, *, standby: bool) -> Collection[str]:
-    known = GENERAL if is_general(model) else ON_ONE_HOST
-    return [*(name for name in known if name not in NOT_WITH_STANDBY), *OF_HOSTS] if standby else known
+def _possible(*, standby: bool) -> Collection[str]:
+    here = [name for name in ON_ONE_HOST if name not in NOT_WITH_STANDBY]
+    return [*here, *OF_HOSTS] if standby else ON_ONE_HOST
 
 
 def _refuse_hosts(name: str, *, standby: bool) -> None:

@@ -1,16 +1,14 @@
-"""Choice of the invariants by which a plant is judged."""
+"""The invariants by which plants are judged."""
 
 from __future__ import annotations
 
-from arboleda.model.plant_model import PlantModel
-
-from .general import GENERAL, is_general
 from .invariants import Invariant
 from .invariants.advice import ADVICE
 from .invariants.beliefs import BELIEFS
 from .invariants.bridge import BRIDGE
 from .invariants.choices import CHOICES
 from .invariants.commands import COMMANDS
+from .invariants.devices import DEVICES
 from .invariants.hosts import HOSTS
 from .invariants.liveness import LIVENESS
 from .invariants.memory import MEMORY
@@ -25,7 +23,8 @@ from .invariants.tasks import TASKS
 from .invariants.verbs import VERBS
 from .invariants.wire import WIRE
 from .invariants.zones import ZONES
-from .storage.grip import GRIP
+from .storage.grip import GRIP, OVER_ALL_STARTS
+from .storage.rack_books import RACKS
 from .storage.recipe_order import WORK
 from .storage.texts import TEXTS
 
@@ -51,16 +50,13 @@ INVARIANTS: tuple[Invariant, ...] = (
     *OEE,
     *SCREENS,
     *STARTS,
+    *OVER_ALL_STARTS,
+    *DEVICES,
+    *RACKS,
 )
-"""What must hold of plants whose cells only store."""
+"""What must hold of every plant."""
 
 
-def every() -> tuple[Invariant, ...]:
-    """Every invariant by which some plant is judged."""
-    return (*INVARIANTS, *GENERAL, *HOSTS)
-
-
-def judged_by(model: PlantModel, *, standby: bool = False) -> tuple[Invariant, ...]:
-    """The invariants for a plant: of storage or general, and those of two hosts where there are two."""
-    of_plant = GENERAL if is_general(model) else INVARIANTS
-    return (*of_plant, *HOSTS) if standby else of_plant
+def judged_by(*, standby: bool = False) -> tuple[Invariant, ...]:
+    """The invariants for a run: where there are two hosts, what must hold of those, too."""
+    return (*INVARIANTS, *HOSTS) if standby else INVARIANTS

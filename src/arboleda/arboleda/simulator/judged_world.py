@@ -11,7 +11,6 @@ from arboleda.model.plant_model import PlantModel
 from arboleda.model.recipe import Builders
 
 from .faults import KINDS, Fault
-from .general import GeneralTruth, is_general
 from .hosts.database import LeaderRow, SharedDisk
 from .hosts.hosts import Hosts
 from .invariants import Invariant
@@ -59,13 +58,11 @@ class JudgedWorld:
         hosts = None if disk is None else Hosts(self.world, disk)
         self._start = self.world.now
         self.faults: list[Fault] = []
-        general = is_general(model)
-        self.invariants = tuple(judged_by(model, standby=standby) if invariants is None else invariants)
+        self.invariants = tuple(judged_by(standby=standby) if invariants is None else invariants)
         self.trace = Trace(self.world, keep=keep, tell=tell)
         self._ends: dict[int, Callable[[], None]] = {}
         self._rests = 0  # a fault that is expected since before a rest never begins
-        truth = GeneralTruth(self.world) if general else Truth(self.world)
-        record = Record(self.world)
+        truth, record = Truth(self.world), Record(self.world)
         leaders = None if hosts is None else Leaders(self.world, hosts, record.boards)
         self._look = Look(world=self.world, truth=truth, record=record, leaders=leaders)
         self._judges = Judges(self.invariants)

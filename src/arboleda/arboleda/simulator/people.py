@@ -12,12 +12,12 @@ from arboleda.model.errors import TextError
 from arboleda.model.facts import Value
 from arboleda.model.messages import TaskChanged, TaskState, Verb
 from arboleda.model.plant_model import Cell, Link
-from arboleda.recipes.storage import only_stores
 from arboleda.sim.machine import MachineBody
 from arboleda.wire.payloads import OrderGoal
 
 from .chance import Dice
 from .hands import do
+from .storage.tasks import only_stores
 from .world import World
 
 WAITING = 2  # tasks that the customers of a cell keep in its queue

@@ -27,7 +27,6 @@ from arboleda.model.messages import (
     Verb,
 )
 from arboleda.model.plant_model import Link
-from arboleda.recipes.storage import only_stores
 from arboleda.trees.leaves import Act
 
 from .recorded.acts import Acts
@@ -49,6 +48,7 @@ from .recorded.time_line import TimeLine
 from .recorded.times import Times
 from .recorded.verbs import EarlierState
 from .storage.racks import Racks
+from .storage.tasks import stores
 from .storage.works import Works
 from .world import BRIDGE, World
 
@@ -85,9 +85,9 @@ class Record:
         self.proofs = Proofs()
         self.bridges = Bridges(model)
         self.others = ForeignCommands()
-        storage = {name: known for name, known in self.cells.items() if only_stores(known.cell)}
+        storage = {name: known for name, known in self.cells.items() if stores(known.cell)}
         self._storage = tuple(storage.values())
-        self.racks = Racks([known.layout for known in self._storage], self.scopes)
+        self.racks = Racks(model, self.scopes)
         self._people = [robot.name for robot in model.robots.values() if robot.link is Link.SCREEN]
         self.works = Works(storage, self.robots, model.timing.dwell_s)
         self.asked = EarlierState()
@@ -397,7 +397,8 @@ class Record:
         if self.commands.new or self.tasks.changes:
             self.works.follow(self.tasks, self.commands.new, plant.now)
         if self.tasks.changes or self.answers:
-            self.racks.look(self.tasks, self.answers, plant.now)
+            stored = self.world.memory.get(Fact.STORED, {})
+            self.racks.look(self.tasks, self.answers, stored, plant.now)
         asked = bool(self.world.moment.asked)
         if asked:
             self.differences += differences(self)

@@ -61,8 +61,8 @@ class Sim:
     def without(self, *invariants: str) -> None:
         """Do not judge by these invariants, where a recipe means something else than the shipped one."""
         self._before_start("without")
-        judges = judged_by(self._chosen) if self._invariants is None else self._invariants
-        every = [each.name for each in judged_by(self._chosen)]
+        judges = judged_by() if self._invariants is None else self._invariants
+        every = [each.name for each in judged_by()]
         names = {known("an invariant", name, every) for name in invariants}
         self._invariants = tuple(each for each in judges if each.name not in names)
 
@@ -150,7 +150,7 @@ class Sim:
             cycles=cycles,
             level=level,
             recipes=self._recipes,
-            invariants=judged_by(self._chosen) if self._invariants is None else self._invariants,
+            invariants=judged_by() if self._invariants is None else self._invariants,
         )
         for seed in range(first, first + count):
             if (result := drawn.run(seed)).broken:

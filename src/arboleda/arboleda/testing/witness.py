@@ -38,12 +38,12 @@ class Witness:
         """Take in what happened in this step."""
         truth = self.truth
         truth.look()
-        switches = [cell.switch for cell in truth.cells.values()]
+        switches = [cell.switch for cell in truth.storage.cells.values()]
         self.switches += [each for each in switches if each is not None and not each.lost_power]
-        self.part.update({passage.arm: passage.place for passage in truth.parts.passages})
+        self.part.update({passage.arm: passage.place for passage in truth.storage.parts.passages})
         for meeting in truth.zones.meetings:
             self.collisions.append(f"{' and '.join(meeting.arms)} in {meeting.zone} at {self.rig.now:.2f}")
-        for ended in truth.ended:
+        for ended in truth.storage.ended:
             if ended.missing is not None:
                 self.false_successes.append(f"{ended.text}: {ended.missing}")
 

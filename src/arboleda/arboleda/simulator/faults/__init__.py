@@ -19,7 +19,6 @@ from . import (
 from .kind import Fault, Kind
 
 __all__ = [
-    "GENERAL",
     "KINDS",
     "NOT_WITH_STANDBY",
     "OF_CRASHES",
@@ -60,7 +59,3 @@ NOT_WITH_STANDBY = frozenset({*OF_CRASHES, "plant_freeze", "bridge_restart"})
 
 ON_ONE_HOST = {name: kind for name, kind in KINDS.items() if name not in OF_HOSTS}
 """The kinds that befall a plant where no standby is simulated."""
-
-OF_STORAGE = frozenset({"bad_task", "flood_of_tasks"})
-GENERAL = tuple(name for name in ON_ONE_HOST if name not in OF_STORAGE)
-"""The kinds that befall plants of any devices: those that are left out are made of words of storage."""

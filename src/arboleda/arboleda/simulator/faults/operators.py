@@ -8,10 +8,10 @@ from arboleda.core.intake import HISTORY
 from arboleda.model.messages import TaskState, Verb
 from arboleda.model.plant_model import Cell, PlantModel
 from arboleda.model.task import Task
-from arboleda.recipes.storage import only_stores
 
 from ..chance import Dice
 from ..people import any_text
+from ..storage.tasks import only_stores, stores
 from ..world import World
 from . import targets
 from .kind import Fault, Kind, Words, kind, no_words, words
@@ -153,13 +153,18 @@ BAD_TEXTS: dict[str, Callable[[Cell], str]] = {
 }
 
 
-@kind(targets=targets.cells, words=words(*BAD_TEXTS))
+def _storing(model: PlantModel) -> tuple[str, ...]:
+    """The cells whose tasks have the words of storage."""
+    return tuple(cell.name for cell in model.cells if stores(cell))
+
+
+@kind(targets=_storing, words=words(*BAD_TEXTS))
 def bad_task(world: World, fault: Fault) -> None:
     """Somebody asks for a task in words that mean none."""
     world.request_task(BAD_TEXTS[fault.word](world.model.cell(fault.target)))
 
 
-@kind(targets=targets.cells, weight=0.0)
+@kind(targets=_storing, weight=0.0)
 def flood_of_tasks(world: World, fault: Fault) -> None:
     """Somebody asks for more tasks than a plant remembers, and takes each back; never drawn: it is slow."""
     for number in range(HISTORY + SPARE):

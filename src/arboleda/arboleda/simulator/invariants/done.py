@@ -59,6 +59,8 @@ def _untrue(truth: Truth, booked: EndedCommand) -> str | None:
         return None if robot.stands_at(command.q) else _where(robot, f"{robot.true} motor steps")
     if isinstance(command, FollowPath) and isinstance(robot, MobileTruth):
         return None if robot.stands_at(command.nodes[-1]) else _where(robot, f"node {robot.node}")
+    if not isinstance(command, Home):
+        return None
     return None if robot.at_reference else _where(robot, "another place than its reference")
 
 

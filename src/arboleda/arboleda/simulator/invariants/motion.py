@@ -38,7 +38,7 @@ def nothing_moves_unasked(look: Look) -> Iterator[str]:
     """A body moves, and a fact of it changes, only by a goal that our bridge published, or to a stop."""
     for robot in look.truth.changed:
         yield from _moves_unasked(robot)
-    for cell in look.truth.cells.values():
+    for cell in look.truth.storage.cells.values():
         switch = cell.switch
         if switch is not None and not (switch.asked or switch.lost_power or switch.by_others):
             yield f"the effector of {switch.arm} goes {'on' if switch.on else 'off'} unasked"

@@ -42,9 +42,14 @@ Row = dict[str, Any]
 @invariant(Trigger.STEPPED)
 def screens_show_what_is(look: Look) -> Iterable[str]:
     """A screen shows cells, tasks, robots and zones as they were told, asked and commanded."""
-    if look.record.due_for("screens", EVERY_S):
+    if _only_arms_and_mobiles(look) and look.record.due_for("screens", EVERY_S):
         return _shown(look)
     return _lines(look) if look.record.tasks.changes else NOTHING
+
+
+def _only_arms_and_mobiles(look: Look) -> bool:
+    """True if each cell is one of an arm and a mobile robot: rows of other devices are not written here."""
+    return all(cell.handover is not None for cell in look.world.model.cells)
 
 
 def _lines(look: Look) -> Iterator[str]:
@@ -395,6 +400,8 @@ def _broken(look: Look) -> Iterator[str]:
 @invariant(Trigger.END)
 def plans_show_the_model(look: Look) -> Iterator[str]:
     """The values that never change are shown as in the plant file."""
+    if not _only_arms_and_mobiles(look):
+        return
     model = look.world.model
     shown = {row["name"]: row for row in view.layout(model)["cells"]}
     placed = geometry.places(model)

@@ -73,17 +73,6 @@ def no_step_is_done_twice(look: Look) -> Iterable[str]:
     return look.record.starts.twice
 
 
-@invariant(Trigger.DEEDS)
-def one_pick_one_place_over_all_starts(look: Look) -> Iterator[str]:
-    """Over all starts at most one part leaves the pick-up for a task, and at most one comes to its place."""
-    for each in look.truth.cells.values():
-        if each.task is None or each.blind or each.earlier == (0, 0):
-            continue
-        picks, places = each.earlier[0] + each.picks, each.earlier[1] + each.places
-        if picks > 1 or places > 1:
-            yield f"task {each.task} has {picks} picks and {places} places over all starts"
-
-
 @invariant(Trigger.COMMANDED)
 def nothing_moves_after_a_restart(look: Look) -> Iterator[str]:
     """After a start no robot is told to move before an operator gets its cell going, or somebody brings a
@@ -93,7 +82,7 @@ def nothing_moves_after_a_restart(look: Look) -> Iterator[str]:
         yield f"the plant has started, and by itself sends {command}"
 
 
-EVERYWHERE = (
+STARTS = (
     accepted_is_found_again,
     asked_again_is_the_same_task,
     ends_once_over_all_starts,
@@ -101,4 +90,3 @@ EVERYWHERE = (
     nothing_unkept_leaves,
     nothing_moves_after_a_restart,
 )
-STARTS = (*EVERYWHERE, one_pick_one_place_over_all_starts)

@@ -25,6 +25,7 @@ from arboleda.recipes.storage_layout import StorageLayout
 from ..recorded.cells import KnownCell
 from ..recorded.robots import StopProgress
 from ..recorded.scopes import UNSENT
+from ..storage.tasks import NAMES
 from ..truth.mobile import MobileTruth
 from .invariant import Look, Trigger, invariant
 
@@ -272,8 +273,16 @@ def no_task_fails_without_a_fault(look: Look) -> Iterable[str]:
     if world.last_fault_at > -math.inf or world.recipes or not record.undisturbed:
         return
     for change in record.tasks.changes:
-        if change.said.state is TaskState.FAILED and not _cannot_be_done(look, change.said):
+        if (
+            change.said.state is TaskState.FAILED
+            and _is_of_storage(look, change.said)
+            and not _cannot_be_done(look, change.said)
+        ):
             yield f"task {change.said.task} ({change.said.text}) failed: {change.said.sentence}"
+
+
+def _is_of_storage(look: Look, said: TaskChanged) -> bool:
+    return look.world.plant.intake.tasks[said.task].order.recipe in NAMES
 
 
 def _cannot_be_done(look: Look, said: TaskChanged) -> bool:

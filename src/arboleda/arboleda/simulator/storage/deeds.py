@@ -12,6 +12,7 @@ from arboleda.wire.payloads import EffectorGoal, PathGoal
 
 from ..truth.arm import NOWHERE, ArmTruth
 from ..truth.mobile import MobileTruth
+from .tasks import path_of, station_of
 
 KEPT = 50  # switches of one task
 
@@ -67,8 +68,8 @@ class EndedTask:
 class CellTruth:
     """Deeds since the cell's last task began; `task` is None once it has ended.
 
-    `picks`: parts that left a pick-up in the effector; `places`: parts put down where they belong;
-    `puts_down`: its effector was opened for one of these in this step.
+    `of_others`: it is at, or was last at, a task of another recipe than those of storage. `picks`: parts
+    that left a pick-up in the effector; `places`: parts put down where they belong; `puts_down`: its effector was opened for one of these in this step.
     """
 
     def __init__(self, cell: StorageLayout, arm: ArmTruth | None, mobile: MobileTruth | None) -> None:
@@ -76,6 +77,7 @@ class CellTruth:
         self.arm = arm
         self.mobile = mobile
         self.task: str | None = None
+        self.of_others = False
         self.order: Order | None = None
         self.began_at = 0.0
         self.released = False  # an operator has the effector opened
@@ -96,10 +98,10 @@ class CellTruth:
     @property
     def pick(self) -> Pose:
         """The pose at which the part of the last task is gripped."""
-        if self.order is None or "station" not in self.order.values:
+        if self.order is None or station_of(self.order) is None:
             return self.cell.pickup if self.order is None else self.cell.palletizing.pick
-        code = self.order.values.get("path")
-        return self.cell.pickup_of(self.cell.path(code)) if code else self.cell.pickup
+        path = path_of(self.order)
+        return self.cell.pickup_of(path) if path else self.cell.pickup
 
     @property
     def pick_poses(self) -> tuple[Pose, ...]:
@@ -111,8 +113,7 @@ class CellTruth:
         """The pose at which the part of the last task belongs."""
         if self.order is None:
             return None
-        station = self.order.values.get("station")
-        return self.cell.space.targets[station] if station else self.cell.palletizing.place
+        return station_of(self.order) or self.cell.palletizing.place
 
     def begin(self, task: str, order: Order, now: float) -> None:
         """Begin to follow a task."""
@@ -194,7 +195,7 @@ class CellTruth:
         due = [self.arm.poses_like(self._due(each).q) for each in self._switches]
         rows = zip(self._switches, due, strict=True)
         done = [(each.on, each.taken_away or bool(each.poses & poses)) for each, poses in rows]
-        last = self.cell.home if "station" in self.order.values else self.place
+        last = self.cell.home if station_of(self.order) else self.place
         if not done or done != [(True, True), (False, True)] * (len(done) // 2):
             told = ", ".join(f"{'on' if s.on else 'off'} at {named(s.poses)}" for s in self._switches)
             return f"the effector was switched {told or 'not at all'}"
@@ -204,9 +205,10 @@ class CellTruth:
         return None
 
     def _missing_way(self) -> str | None:
-        if self.order is None or "path" not in self.order.values or self.mobile is None or self._arrived:
+        path = path_of(self.order) if self.order is not None else None
+        if path is None or self.mobile is None or self._arrived:
             return None
-        return f"the mobile never stood at node {self._end_of_path}"
+        return f"the mobile never stood at node {path.nodes[-1]}"
 
     def legal_to_open(self, arm: ArmTruth) -> bool:
         """True if nothing falls down when the effector opens where the arm stands."""
@@ -237,16 +239,14 @@ class CellTruth:
     def _at(self, arm: ArmTruth, pose: Pose) -> bool:
         return bool(arm.stood & arm.poses_like(pose.q))
 
-    @property
-    def _end_of_path(self) -> int:
-        assert self.order is not None
-        return self.cell.path(self.order.values["path"]).nodes[-1]
-
     def _follow_mobile(self) -> None:
         mobile = self.mobile
-        if mobile is None or self.task is None or self.order is None or "path" not in self.order.values:
+        if mobile is None or self.task is None or self.order is None:
             return
-        end = self._end_of_path
+        path = path_of(self.order)
+        if path is None:
+            return
+        end = path.nodes[-1]
         goals = [act.goal for act in mobile.acts if isinstance(act.goal, PathGoal)]
         self._heading = self._heading or any(goal.nodes[-1] == end for goal in goals)
         here = mobile.stands_at(end)

@@ -31,10 +31,10 @@ def effector_off_only_where_legal(look: Look) -> Iterable[str]:
 def no_part_dropped(look: Look) -> Iterator[str]:
     """A part ends on the floor only by a fault that takes it, with the power, or by an operator's release."""
     world = look.world
-    for passage in look.truth.parts.passages:
+    for passage in look.truth.storage.parts.passages:
         taken = passage.cause == FELL and (world.faults_active > 0 or world.last_fault_at == world.now)
         excused = taken or passage.cause in (POWER, RELEASED)
-        arm = look.truth.arms[passage.arm]
+        arm = look.truth.storage.arms[passage.arm]
         if passage.place == FLOOR and not (excused or arm.taken_away or look.truth.unseen(arm)):
             yield f"{passage.arm} drops part {passage.part.number} ({passage.cause})"
 
@@ -42,7 +42,7 @@ def no_part_dropped(look: Look) -> Iterator[str]:
 @invariant(Trigger.CHANGED)
 def parts_conserved(look: Look) -> Iterator[str]:
     """An effector holds a part only where one lay and it was on; an effector that is off holds none."""
-    for passage in look.truth.parts.passages:
+    for passage in look.truth.storage.parts.passages:
         if passage.cause == GRIPPED and not passage.lay_there:
             yield f"{passage.arm} holds a part where none lay"
     for robot in look.truth.changed:
@@ -53,7 +53,7 @@ def parts_conserved(look: Look) -> Iterator[str]:
 @invariant(Trigger.PASSED)
 def station_gets_one_part(look: Look) -> Iterator[str]:
     """No part is put into a station that has one; the customer takes it when its task has ended."""
-    for (cell, station), parts in look.truth.parts.stations.items():
+    for (cell, station), parts in look.truth.storage.parts.stations.items():
         if len(parts) > 1:
             yield f"{station} of {cell} holds {len(parts)} parts"
 
@@ -62,6 +62,17 @@ def station_gets_one_part(look: Look) -> Iterator[str]:
 def one_pick_one_place(look: Look) -> Iterable[str]:
     """At most one part leaves the pick-up for a task, and at most one comes to its place."""
     return _repeated(look)
+
+
+@invariant(Trigger.DEEDS)
+def one_pick_one_place_over_all_starts(look: Look) -> Iterator[str]:
+    """Over all starts at most one part leaves the pick-up for a task, and at most one comes to its place."""
+    for each in look.truth.storage.cells.values():
+        if each.task is None or each.blind or each.earlier == (0, 0):
+            continue
+        picks, places = each.earlier[0] + each.picks, each.earlier[1] + each.places
+        if picks > 1 or places > 1:
+            yield f"task {each.task} has {picks} picks and {places} places over all starts"
 
 
 @invariant(Trigger.ENDED)
@@ -75,7 +86,7 @@ def done_task_is_true(look: Look) -> Iterable[str]:
 @invariant(Trigger.ENDED)
 def robbed_task_is_not_done(look: Look) -> Iterator[str]:
     """A task is not called done whose effector somebody else opened on the way, if its board says so."""
-    for ended in look.truth.ended:
+    for ended in look.truth.storage.ended:
         if ended.done and ended.robbed and not _untold(look, ended.cell.arm, ended.began_at):
             yield f"{ended.task} ({ended.text}) is called done, but its part was taken from the effector"
 
@@ -85,7 +96,7 @@ def done_task_has_its_part(look: Look) -> Iterator[str]:
     """A task is not called done whose arm came without a part to where that belongs, if its board had said so
     and it does not say that nobody checked.
     """
-    for ended in look.truth.ended:
+    for ended in look.truth.storage.ended:
         arm = ended.cell.arm
         if not (ended.done and ended.empty_handed) or Check.GRIP in ended.unchecked or arm is None:
             continue
@@ -98,7 +109,7 @@ def unchecked_is_as_said(look: Look) -> Iterator[str]:
     """A done task says that its grip is unchecked exactly where no piece sensor speaks, or nobody is to ask
     it, and its release where the board says nothing of its effector, or has booted.
     """
-    for ended in look.truth.ended:
+    for ended in look.truth.storage.ended:
         if not ended.done or ended.cell.arm is None:
             continue
         silent = ended.cell.arm.robot.evidence is not Evidence.IDS
@@ -115,17 +126,17 @@ def _checked(ended: EndedTask, check: Check) -> str:
 
 def _grips(look: Look) -> Iterator[str]:
     truth = look.truth
-    for name in truth.stray_grips:
+    for name in truth.storage.stray_grips:
         yield f"{name} is told to grip while no task of its cell runs"
     for switch in _switches(look):
-        if not switch.on or switch.taken_away or truth.unseen(truth.arms[switch.arm]):
+        if not switch.on or switch.taken_away or truth.unseen(truth.storage.arms[switch.arm]):
             continue
-        if why := _grips_wrongly(truth.cells[switch.cell], switch):
+        if why := _grips_wrongly(truth.storage.cells[switch.cell], switch):
             yield f"{switch.arm} grips at {named(switch.poses)}: {why}"
-    for cell in truth.begun:
+    for cell in truth.storage.begun:
         if cell.arm is not None and cell.arm.on and not _untold(look, cell.arm, look.world.now):
             yield f"{cell.task} begins, and the effector of its arm is on"
-    for ended in truth.ended:
+    for ended in truth.storage.ended:
         if ended.done and ended.grips and not _untold(look, ended.cell.arm, ended.began_at):
             yield f"{ended.task} is done, and the effector of its arm is on"
 
@@ -137,20 +148,20 @@ def _opened(look: Look) -> Iterator[str]:
             or switch.by_others
             or switch.released
             or switch.taken_away
-            or look.truth.unseen(look.truth.arms[switch.arm])
+            or look.truth.unseen(look.truth.storage.arms[switch.arm])
         )
         if not switch.on and not switch.legal and not excused:
             yield f"the effector of {switch.arm} is opened at {named(switch.poses)}"
 
 
 def _repeated(look: Look) -> Iterator[str]:
-    for each in (*look.truth.cells.values(), *look.truth.ended):
+    for each in (*look.truth.storage.cells.values(), *look.truth.storage.ended):
         if not each.blind and (each.picks > 1 or each.places > 1):
             yield f"task {each.task} has {each.picks} picks and {each.places} places"
 
 
 def _not_done(look: Look) -> Iterator[str]:
-    for ended in look.truth.ended:
+    for ended in look.truth.storage.ended:
         if ended.missing is None or ended.unprovable:
             continue
         if not _untold(look, ended.cell.arm, ended.began_at):
@@ -159,7 +170,7 @@ def _not_done(look: Look) -> Iterator[str]:
 
 def _switches(look: Look) -> list[Switch]:
     """The effectors that changed in this step."""
-    return [cell.switch for cell in look.truth.cells.values() if cell.switch is not None]
+    return [cell.switch for cell in look.truth.storage.cells.values() if cell.switch is not None]
 
 
 def _grips_wrongly(cell: CellTruth, switch: Switch) -> str | None:
@@ -191,3 +202,4 @@ GRIP = (
     done_task_has_its_part,
     unchecked_is_as_said,
 )
+OVER_ALL_STARTS = (one_pick_one_place_over_all_starts,)

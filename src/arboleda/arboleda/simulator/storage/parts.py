@@ -57,6 +57,11 @@ class Parts:
         if arm.holding:
             self.held[arm.robot.name] = Part(number=next(self._numbers), cell=arm.cell.name)
 
+    def take_over(self, arm: ArmTruth) -> None:
+        """Take over what an arm holds after tasks that nobody followed."""
+        self.held.pop(arm.robot.name, None)
+        self.start(arm)
+
     def look(self, cell: CellTruth, arm: ArmTruth) -> None:
         """Take in what an arm did with its part in this step."""
         name = arm.robot.name

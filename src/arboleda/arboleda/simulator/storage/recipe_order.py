@@ -14,6 +14,7 @@ from arboleda.recipes.storage_layout import StorageLayout
 from ..invariants.invariant import Look, Trigger, invariant
 from ..recorded.cells import KnownCell
 from ..recorded.commands import SentCommand
+from .tasks import NAMES, stores
 
 
 @invariant(Trigger.NEWS)
@@ -27,10 +28,18 @@ def recovery_takes_its_zones(look: Look) -> Iterator[str]:
     """An arm that recovers from where nobody knows moves only while it holds all that its way may cross."""
     for sent in look.record.commands.new:
         cell = look.record.cells[sent.entry.cell] if sent.entry else None
-        if cell is None or not cell.layout.space.zones or not isinstance(sent.command, MoveJoints):
+        if cell is None or not isinstance(sent.command, MoveJoints) or not _at_storage(look, cell):
             continue
         if cell.run.run.recovering and _sets_out(cell, sent) and not _is_seen(look, cell.layout):
             yield from _lacking(look, cell, sent)
+
+
+def _at_storage(look: Look, cell: KnownCell) -> bool:
+    """True if a cell whose arm shares zones is at a task of a storage recipe."""
+    task = cell.run.task
+    if task is None or not stores(cell.cell) or task.order.recipe not in NAMES:
+        return False
+    return bool(cell.layout.space.zones)
 
 
 def _lacking(look: Look, cell: KnownCell, sent: SentCommand) -> Iterator[str]:

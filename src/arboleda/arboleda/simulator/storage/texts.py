@@ -11,6 +11,7 @@ from arboleda.model.plant_model import PlantModel
 from arboleda.model.sentence import Value
 
 from ..invariants.invariant import Look, Trigger, invariant
+from .tasks import is_storage_task, only_stores, stores
 
 LONGEST = 200
 ID = re.compile(r"#(?!t-)[A-Za-z0-9_.-]{1,64}", re.ASCII)
@@ -25,6 +26,8 @@ def texts_mean_what_they_say(look: Look) -> Iterator[str]:
     changes = [change.said for change in record.tasks.changes if change.before is None or change.answer]
     refused = record.tasks.refused > 0
     meant = _all_meant(look.world.model, asked[0].text)
+    if not meant and not all(map(only_stores, look.world.model.cells)):
+        return  # it may be a task of another recipe
     if not meant:
         if not refused:
             yield f"{asked[0].text[:60]!r} means nothing, and was taken"
@@ -91,14 +94,15 @@ def _meant(model: PlantModel, text: str) -> tuple[str, str, str | None] | None:
     if not words or not all(word.isascii() for word in words[:2]):
         return None
     name, *rest = (word.lower() for word in words[:2])
-    cell = next((each for each in model.cells if each.name.lower() == name), None)
+    cells = [each for each in model.cells if stores(each)]
+    cell = next((each for each in cells if each.name.lower() == name), None)
     if len(words) == 2 and rest == ["palletizing"]:
-        cell = cell or next((each for each in model.cells if each.roles["arm"].name.lower() == name), None)
+        cell = cell or next((each for each in cells if each.roles["arm"].name.lower() == name), None)
         return (cell.name, f"{cell.name} palletizing", id) if cell else None
     if cell is None or len(words) != 3:
         return None
     code = next((code for code in cell.paths if code.lower() == rest[0]), None)
-    if code is None:
+    if code is None or not is_storage_task(cell, f"{cell.name} {code}"):
         return None
     if words[2] not in map(str, range(len(cell.stations))):
         return None

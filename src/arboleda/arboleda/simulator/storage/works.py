@@ -18,6 +18,7 @@ from arboleda.recipes.storage_layout import StorageLayout
 from ..recorded.commands import SentCommand
 from ..recorded.robots import KnownRobot
 from ..recorded.tasks import Tasks
+from .tasks import is_storage_task
 
 ROUNDING_S = 1e-6
 OPTIONAL, TO_START = "maybe", "to the start"
@@ -73,6 +74,8 @@ class Works:
             said = change.said
             if said.state is TaskState.RUNNING and not change.answer and said.cell in self._cells:
                 cell = self._cells[said.cell].layout
+                if not is_storage_task(cell.cell, said.text):
+                    continue
                 steps = list(_steps(cell, said.text.split(), self._robots[cell.mobile.name], now))
                 self._works[said.cell] = Work(said.task, steps, now)
         for sent in new:

@@ -13,7 +13,6 @@ from arboleda.model.commands import Command
 from arboleda.model.messages import Fact, OperatorAnswer, Remember, Verb
 from arboleda.model.plant_model import Evidence, Robot
 
-from ..storage.deeds import CellTruth
 from ..world import BRIDGE, World
 from .arm import ArmTruth
 from .boots import Boots
@@ -44,7 +43,6 @@ class RobotsTruth:
     def __init__(self, world: World) -> None:
         self.world = world
         self.robots: dict[str, RobotTruth] = {}
-        self.cells: dict[str, CellTruth] = {}  # those whose parts are followed
         self.changed: list[RobotTruth] = []
         self.defied: list[tuple[str, Act]] = []
         self.deeds = False

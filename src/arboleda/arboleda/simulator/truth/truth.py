@@ -1,120 +1,170 @@
-"""The truth about a plant of storage cells, step by step."""
+"""The truth about a plant, step by step: its robots and devices, their facts and answers, and its storage."""
 
 from __future__ import annotations
 
-from typing import Any
+import json
 
-from arboleda.core import text
-from arboleda.model.commands import Command, Switch
+from arboleda.model.commands import Command, Motion, Query, Switch
+from arboleda.model.facts import Value
 from arboleda.model.messages import OperatorAnswer, TaskChanged, TaskState, Verb
-from arboleda.model.task import Order
-from arboleda.recipes.storage_layout import StorageLayout
+from arboleda.wire.hop import FromPlant
+from arboleda.wire.payloads import OrderGoal
+from arboleda.wire.topics import Channel, topic
+from arboleda.wire.transport import Publication
 
-from ..storage.deeds import CellTruth, EndedTask
-from ..storage.parts import Parts
+from ..commands import goal as goal_of
+from ..storage.truth import StorageTruth
 from ..world import World
+from .ended_commands import EndedCommand
 from .robots import RobotsTruth
-from .stops import robots_of
+from .stops import is_order_of, robots_of
+
+RELEASE_S = 60.0  # within which an operator's release opens a tool
 
 
 class Truth(RobotsTruth):
-    """Cells by name, beside the robots.
+    """The true facts of robots and devices, since when they are so, and devices' true answers.
 
-    Of this step: `begun`, the cells whose task began, and `ended`, the tasks that did; `stray_grips`, the
-    arms that the plant told to grip though no task of their cell ran.
+    `done_tasks` of this step: the cells whose task is called done, the task, and since when it ran.
     """
 
     def __init__(self, world: World) -> None:
-        self.begun: list[CellTruth] = []
-        self.ended: list[EndedTask] = []
-        self.stray_grips: list[str] = []
         super().__init__(world)
-        self.arms: dict[str, Any] = {name: each for name, each in self.robots.items() if each.robot.joints}
-        self.mobiles: dict[str, Any] = {
-            name: each for name, each in self.robots.items() if each.robot.floor_grid
-        }
-        self.parts = Parts()
-        roles = [
-            (cell, self.arms.get(cell.arm.name), self.mobiles.get(cell.mobile.name))
-            for cell in map(StorageLayout, world.model.cells)
-        ]
-        self.cells = {cell.name: CellTruth(cell, arm, mobile) for cell, arm, mobile in roles}
-        for arm in self.arms.values():
-            self.parts.start(arm)
-        self._orders: dict[str, Order] = {}
+        self.storage = StorageTruth(world, self.robots, self.unseen)
+        self.done_tasks: list[tuple[str, str, float]] = []
+        self._facts = {name: dict(robot.body.true_facts) for name, robot in self.robots.items()}
+        self._left: dict[tuple[str, object], float] = {}  # when a fact ceased to be so, a target was left
+        self._released: dict[str, float] = {}  # when an operator had a robot let go
+        self._last: dict[str, EndedCommand] = {}  # the last command of each robot, if it is called done
+        self._asked: dict[tuple[str, int, int], str] = {}  # (robot, epoca, seq) -> the question
+        self._answers: dict[str, set[Value]] = {}  # what was truly answered to it
+        self._began: dict[str, float] = {}
+        robots = [each.robot for each in self.robots.values()]
+        self._telemetry = {topic(robot.mqtt, Channel.TELEMETRY): robot.name for robot in robots}
+        self._orders = {topic(robot.mqtt, Channel.ORDER): robot.name for robot in robots}
+
+    def was_so(self, robot: str, fact: str, value: Value, since: float) -> bool:
+        """True if a robot truly had this value of a fact at some time since `since`."""
+        return self._facts[robot].get(fact) == value or self._left_since(robot, (fact, value), since)
+
+    def stood_at(self, robot: str, command: Motion, since: float) -> bool:
+        """True if a robot truly stood at a command's goal since `since`, or if that is no target."""
+        space = self.world.model.cell_of[robot].workspaces.get(robot)
+        names = [pose.name for pose in space.poses if pose.q == command.way[-1]] if space else []
+        here = self.robots[robot].here
+        return not names or any(name in here or self._left_since(robot, name, since) for name in names)
+
+    def released(self, robot: str) -> bool:
+        """True while what a robot holds may be let go on an operator's word."""
+        return self._released.get(robot, -RELEASE_S) + RELEASE_S >= self.world.now
+
+    def answers(self, question: str) -> set[Value]:
+        """The answers that a device has truly given to the query with this id."""
+        return self._answers.get(question, set())
+
+    def last_done(self, robot: str) -> EndedCommand | None:
+        """The last command of a robot, questions left out, if it is called done."""
+        return self._last.get(robot)
 
     def _did_anything(self) -> bool:
-        return bool(self.changed or self.begun or self.ended or self.stray_grips)
+        return bool(self.changed or self.storage.has_news)
 
     def _forget(self) -> None:
         super()._forget()
-        for cell in self.cells.values():
-            cell.switch = None
-        self.parts.forget()
-        self.begun, self.ended, self.stray_grips = [], [], []
-
-    def _new_plant(self) -> None:
-        """Begin with a new plant: the old one's tasks are gone, but for those that go on."""
-        super()._new_plant()
-        for name, cell in self.cells.items():
-            goes_on = self.world.plant.cells[name].task
-            if goes_on is None or goes_on.id != cell.task:
-                cell.cut_off()
-                self.parts.empty(name)
-            if goes_on is not None and goes_on.id != cell.task:  # its start was not reported
-                cell.begin(goes_on.id, goes_on.order, self.world.now)
+        self.storage.forget()
 
     def _follow_changes(self) -> None:
         super()._follow_changes()
-        for name in dict.fromkeys(robot.cell.name for robot in self.changed):
-            cell = self.cells[name]
-            cell.look()
-            if cell.arm is not None:
-                cell.blind = cell.blind or self.unseen(cell.arm)
-                self.parts.look(cell, cell.arm)
+        self.storage.follow(self.changed)
 
     def _look_at_plant(self) -> None:
-        for report in self.world.moment.heard:
-            if report.piece is False and report.robot in self.arms:
-                self.cells[self.world.model.cell_of[report.robot].name].feel()
+        if self.world.moment.heard and self.storage.cells:
+            self.storage.hear(self.world.moment.heard)
         super()._look_at_plant()
+
+    def look(self) -> None:
+        if self.done_tasks:
+            self.done_tasks = []
+        super().look()
+        for booked in self.books.ended:
+            self._end(booked)
+        for passed in self.world.moment.bridged:
+            self._follow_questions(passed.events, passed.out)
+        for client, publication in self.world.moment.published:
+            if client and b'"respuesta"' in publication.payload and publication.topic in self._telemetry:
+                self._hear_answer(self._telemetry[publication.topic], publication.payload)
+
+    def _left_since(self, robot: str, what: object, since: float) -> bool:
+        return self._left.get((robot, what), -1.0) >= since
+
+    def _new_plant(self) -> None:
+        """Forget the last commands of robots: a new plant has no book of what became of them."""
+        super()._new_plant()
+        self._last.clear()
+        self.storage.restart()
+
+    def _look_at_robots(self) -> None:
+        super()._look_at_robots()
+        now = self.world.now
+        for robot in self.changed:
+            name, facts = robot.robot.name, dict(robot.body.true_facts)
+            for fact, value in self._facts[name].items():
+                if facts.get(fact) != value:
+                    self._left[name, (fact, value)] = now
+            self._facts[name] = facts
+            self._left.update({(name, pose): now for pose in robot.stood})
+
+    def _end(self, booked: EndedCommand) -> None:
+        command = booked.command
+        if booked.done and not isinstance(command, Query):
+            self._last[command.robot] = booked
+        elif not isinstance(command, Query):
+            self._last.pop(command.robot, None)
+
+    def _follow_questions(self, events: list[object], out: list[object]) -> None:
+        """Take in the questions that the bridge sent on, each under a number."""
+        said = [each.message for each in events if isinstance(each, FromPlant)]
+        asked = [each for each in said if isinstance(each, Query) and each.id]
+        for each in out if asked else ():
+            name = self._orders.get(each.topic) if isinstance(each, Publication) else None
+            if name is None or not isinstance(each, Publication):
+                continue
+            goal = goal_of(each.topic, each.payload, self.robots[name].body.axes)
+            for question in [each for each in asked if each.robot == name]:
+                if isinstance(goal, OrderGoal) and is_order_of(goal, self.robots[name].robot, question):
+                    asked.remove(question)
+                    self._asked[name, goal.epoch or 0, goal.seq or 0] = question.id
+                    break
+
+    def _hear_answer(self, robot: str, payload: bytes) -> None:
+        """Take in the answer in a board's telemetry; it belongs to the question with this number."""
+        said = json.loads(payload)
+        question = self._asked.get((robot, said.get("epoca_ack"), said.get("respuesta_seq")))
+        if question is not None:
+            self._answers.setdefault(question, set()).add(said["respuesta"])
 
     def _take_in(self, message: object) -> None:
         if isinstance(message, TaskChanged):
             self._task(message)
+            self.storage.task(message)
         else:
             super()._take_in(message)
 
     def _command(self, command: Command) -> None:
         super()._command(command)
-        if not isinstance(command, Switch) or command.grips is None:
-            return
-        cell = self.cells[self.world.model.cell_of[command.robot].name]
-        cell.tell(grips=command.grips)
-        if command.grips and cell.task is None:
-            self.stray_grips.append(command.robot)
+        if isinstance(command, Switch):
+            self.storage.command(command)
+
+    def _task(self, change: TaskChanged) -> None:
+        cell = change.cell or ""
+        if change.state is TaskState.RUNNING and change.request is None:
+            self._began[cell] = self.world.now
+        elif change.state is TaskState.DONE and change.request is None:
+            self.done_tasks.append((cell, change.task, self._began.get(cell, self.world.now)))
 
     def _answered(self, answer: OperatorAnswer) -> None:
         super()._answered(answer)
         if answer.verb is Verb.RELEASE:
-            for name in robots_of(self.world.model, answer.scope):
-                self.cells[self.world.model.cell_of[name].name].released = True
-
-    def _task(self, change: TaskChanged) -> None:
-        cell = self.cells.get(change.cell or "")
-        if cell is None:
-            return
-        if change.state is TaskState.RUNNING and change.task == cell.task:
-            return  # somebody asked for it again
-        if change.state is TaskState.RUNNING:
-            cell.begin(change.task, self._order(change.text), self.world.now)
-            self.begun.append(cell)
-        elif change.task == cell.task and change.state is not TaskState.QUEUED:
-            is_done = change.state is TaskState.DONE
-            self.ended.append(cell.end(change.text, done=is_done, unchecked=change.unchecked))
-            self.parts.empty(cell.cell.name)
-
-    def _order(self, words: str) -> Order:
-        if words not in self._orders:
-            self._orders[words] = text.parse(words, self.world.model)
-        return self._orders[words]
+            robots = robots_of(self.world.model, answer.scope)
+            self._released.update(dict.fromkeys(robots, self.world.now))
+            self.storage.release(robots)
