@@ -71,7 +71,7 @@ def times(known: KnownTask, row: Row, now: float) -> Iterator[str]:
             yield f"task {known.id}: {key} is shown as {row[key]}, it is {value}"
 
 
-def queue(cell: KnownCell, row: Row) -> Iterator[str]:
+def queue(cell: KnownCell, row: Row, *, own: bool) -> Iterator[str]:
     """Differences in what is shown of a cell's queue: why no task starts, who holds it, its progress."""
     state, name = row["state"], cell.name
     waits = row["queue"] and (state != "idle" or row["paused"])
@@ -79,7 +79,8 @@ def queue(cell: KnownCell, row: Row) -> Iterator[str]:
         yield f"{name} is {state}, its tasks are shown to wait for {row['waiting_for']!r}"
     if state == "held" and not _says_held(name, row["held_by"]):
         yield f"{name} is held, by what is shown by {row['held_by']!r}"
-    yield from _progress(cell, row)
+    if not own:  # other recipes may count their steps otherwise
+        yield from _progress(cell, row)
 
 
 def _says_held(cell: str, said: Sentence | None) -> bool:

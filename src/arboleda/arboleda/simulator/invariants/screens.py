@@ -26,6 +26,7 @@ from ..recorded.cells import KnownCell
 from ..recorded.commands import SentCommand
 from ..recorded.robots import KnownRobot, StopProgress
 from ..recorded.time_line import UNIX_S
+from ..storage.tasks import NAMES
 from . import rows
 from .invariant import Look, Trigger, invariant
 from .liveness import ready
@@ -52,6 +53,12 @@ def _only_arms_and_mobiles(look: Look) -> bool:
     return all(cell.handover is not None for cell in look.world.model.cells)
 
 
+def _is_own(look: Look, cell: KnownCell) -> bool:
+    """True if a cell is at a task of a recipe that does not come with Arboleda."""
+    task = cell.run.task
+    return bool(look.world.recipes) or (task is not None and task.order.recipe not in NAMES)
+
+
 def _lines(look: Look) -> Iterator[str]:
     for change in look.record.tasks.changes:
         yield from _unlike(f"task {change.said.task}", view.change(change.said), rows.line(change.said))
@@ -66,12 +73,12 @@ def _shown(look: Look) -> Iterator[str]:
         yield from _unlike(cell.name, row, _cell(look, cell))
         if cell.state is CellState.IDLE and cell.paused and row["not_ready"] is None:
             yield f"{cell.name} is shown as ready, and its queue is paused"
-        yield from rows.queue(cell, row)
+        yield from rows.queue(cell, row, own=_is_own(look, cell))
         yield from _refused(look, row, "cell")
         yield from rows.ways(plant.advice(cell.name), row)
         if view.standing_said(row) != rows.stands(row):
             yield f"{cell.name} is said to be {view.standing_said(row)}, it is {rows.stands(row)}"
-        yield from _tree(cell, row["tree"], record.stepped_at, own=bool(look.world.recipes))
+        yield from _tree(cell, row["tree"], record.stepped_at, own=_is_own(look, cell))
     for row in shown["robots"]:
         known = record.robots[row["name"]]
         yield from _unlike(known.robot.name, row, _robot(look, known))
@@ -319,7 +326,8 @@ def _drawn(look: Look, drawn: Row) -> Iterator[str]:
         if kept != "off" and part is not None and part.get("sure") is not (kept == "on"):
             yield f"the part of {name} is drawn as {part}, its effector is {kept}"
         running = look.record.tasks.open.get(look.record.tasks.running.get(name, ""))
-        if kept == "off" and running is not None and look.record.cells[name].run.tree is not None:
+        own = _is_own(look, look.record.cells[name])
+        if not own and kept == "off" and running is not None and look.record.cells[name].run.tree is not None:
             yield from rows.waits_at(look.record.cells[name], running.said.text, part)
 
 

@@ -69,7 +69,8 @@ class CellTruth:
     """Deeds since the cell's last task began; `task` is None once it has ended.
 
     `of_others`: it is at, or was last at, a task of another recipe than those of storage. `picks`: parts
-    that left a pick-up in the effector; `places`: parts put down where they belong; `puts_down`: its effector was opened for one of these in this step.
+    that left a pick-up in the effector; `places`: parts put down where they belong; `puts_down`:
+    its effector was opened for one of these in this step.
     """
 
     def __init__(self, cell: StorageLayout, arm: ArmTruth | None, mobile: MobileTruth | None) -> None:
