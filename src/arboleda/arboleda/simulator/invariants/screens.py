@@ -43,7 +43,7 @@ Row = dict[str, Any]
 @invariant(Trigger.STEPPED)
 def screens_show_what_is(look: Look) -> Iterable[str]:
     """A screen shows cells, tasks, robots and zones as they were told, asked and commanded."""
-    if _only_arms_and_mobiles(look) and look.record.due_for("screens", EVERY_S):
+    if look.record.due_for("screens", EVERY_S) and _only_arms_and_mobiles(look):
         return _shown(look)
     return _lines(look) if look.record.tasks.changes else NOTHING
 
