@@ -147,7 +147,7 @@ class Board:
             self._node = goal.nodes[-1]
         command, telemetry = self._command(goal), self._telemetry()
         home = isinstance(command, MoveJoints) and self._layout.arm.motion.reached(
-            command.q, self._layout.home.q
+            command.q, self._layout.home.joints
         )
         self._moments.append(Moment(at=now(), command=command, ended=True, last=home))
         self._say(telemetry)

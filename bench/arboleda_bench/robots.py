@@ -135,7 +135,7 @@ class Body:
         self._moving = None
         self._here = self._seen_at(_goal(command))
         last = isinstance(command, MoveJoints) and self._layout.arm.motion.reached(
-            command.q, self._layout.home.q
+            command.q, self._layout.home.joints
         )
         self._joints.publish(self._here)
         stopped = UInt8(data=int(MotionState.STOPPED))

@@ -143,8 +143,8 @@ TASKS = (
         "A path is cut where its robot stands, even where nobody knows that.",
         edit(
             paths.follow,
-            "if node is None or not context.cell.drive_to_start:",
-            "if not context.cell.drive_to_start:",
+            "if node in nodes:",
+            "if nodes:",
         ),
         seeds=SHARED,
         weather={"brown_out": 30.0},
@@ -191,8 +191,8 @@ LIVENESS = (
         "An arm waits for its zones twice as long as it may.",
         edit(
             TakeZones.initialise,
-            "self.zones = self.needed()",
-            "self.zones = self.needed()\n    self.until += self.seconds",
+            "super().initialise()",
+            "super().initialise()\n        self.until += self.seconds",
         ),
         seeds=SHARED,
         weather={"brown_out": 20.0},

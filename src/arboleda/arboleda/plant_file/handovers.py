@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
+from typing import Any
 
 from arboleda.model.plant_model import STATIONS, Handover, Robot, Workspace
 from arboleda.model.recipe import Recipe
@@ -27,7 +28,7 @@ def with_paths(
     if not document.has(here):
         return tuple(spaces)
     document.read_plain(MAPPING, here)
-    drives = {role: robot for role, robot in roles.items() if robot.floor_grid is not None}
+    drives: dict[str, Any] = {role: robot for role, robot in roles.items() if robot.floor_grid is not None}
     by_robot = {}
     for role in document.keys(here):
         if role not in drives:
@@ -61,7 +62,11 @@ def handover(
     goes = {role: robot for role, robot in roles.items() if robot.name in reach}
     targets = reach[goes[shape.taker].name].targets if shape.taker in goes else {}
     codes = [path.code for path in reach[goes[shape.giver].name].paths] if shape.giver in goes else []
-    asked = [("taker", shape.taker, goes), ("giver", shape.giver, goes), ("at", shape.at, targets)]
+    asked: list[tuple[str, str, Collection[str]]] = [
+        ("taker", shape.taker, goes),
+        ("giver", shape.giver, goes),
+        ("at", shape.at, targets),
+    ]
     asked += [(f"by_path.{code}", target, targets) for code, target in shape.by_path.items()]
     wrong = [each for each in asked if each[1] not in each[2]]
     for key, name, known in wrong:

@@ -59,8 +59,3 @@ def plan_problems(cell: Cell) -> dict[str, str]:
     place = StorageLayout(cell).palletizing.place
     rule = "palletizing ends and waits there, so it must be outside all zones"
     return {place.name: f"cell {cell.name}: {zone_plan.lying(place)}; {rule}"} if place.zones else {}
-
-
-def only_stores(cell: Cell) -> bool:
-    """True if a cell offers nothing but these recipes."""
-    return bool(cell.recipes) and {*cell.recipes} <= {*RECIPES}

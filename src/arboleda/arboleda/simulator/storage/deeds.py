@@ -99,9 +99,9 @@ class CellTruth:
     @property
     def pick(self) -> Pose:
         """The pose at which the part of the last task is gripped."""
-        if self.order is None or station_of(self.order) is None:
+        if self.order is None or station_of(self.cell, self.order) is None:
             return self.cell.pickup if self.order is None else self.cell.palletizing.pick
-        path = path_of(self.order)
+        path = path_of(self.cell, self.order)
         return self.cell.pickup_of(path) if path else self.cell.pickup
 
     @property
@@ -114,7 +114,7 @@ class CellTruth:
         """The pose at which the part of the last task belongs."""
         if self.order is None:
             return None
-        return station_of(self.order) or self.cell.palletizing.place
+        return station_of(self.cell, self.order) or self.cell.palletizing.place
 
     def begin(self, task: str, order: Order, now: float) -> None:
         """Begin to follow a task."""
@@ -196,7 +196,7 @@ class CellTruth:
         due = [self.arm.poses_like(self._due(each).q) for each in self._switches]
         rows = zip(self._switches, due, strict=True)
         done = [(each.on, each.taken_away or bool(each.poses & poses)) for each, poses in rows]
-        last = self.cell.home if station_of(self.order) else self.place
+        last = self.cell.home if station_of(self.cell, self.order) else self.place
         if not done or done != [(True, True), (False, True)] * (len(done) // 2):
             told = ", ".join(f"{'on' if s.on else 'off'} at {named(s.poses)}" for s in self._switches)
             return f"the effector was switched {told or 'not at all'}"
@@ -206,7 +206,7 @@ class CellTruth:
         return None
 
     def _missing_way(self) -> str | None:
-        path = path_of(self.order) if self.order is not None else None
+        path = path_of(self.cell, self.order) if self.order is not None else None
         if path is None or self.mobile is None or self._arrived:
             return None
         return f"the mobile never stood at node {path.nodes[-1]}"
@@ -244,7 +244,7 @@ class CellTruth:
         mobile = self.mobile
         if mobile is None or self.task is None or self.order is None:
             return
-        path = path_of(self.order)
+        path = path_of(self.cell, self.order)
         if path is None:
             return
         end = path.nodes[-1]

@@ -5,6 +5,7 @@ from __future__ import annotations
 from arboleda.model.plant_model import Cell, Path, Pose
 from arboleda.model.task import Order
 from arboleda.recipes.storage import RECIPES
+from arboleda.recipes.storage_layout import StorageLayout
 
 NAMES = frozenset(each.name for each in RECIPES)
 
@@ -19,14 +20,16 @@ def only_stores(cell: Cell) -> bool:
     return stores(cell) and NAMES.issuperset(each.name for each in cell.recipes)
 
 
-def path_of(order: Order) -> Path | None:
+def path_of(layout: StorageLayout, order: Order) -> Path | None:
     """The path on which a task's part comes."""
-    return order.values.get("path")
+    code = order.values.get("path")
+    return layout.path(code) if code else None
 
 
-def station_of(order: Order) -> Pose | None:
+def station_of(layout: StorageLayout, order: Order) -> Pose | None:
     """The station that a task fills, if its text names one."""
-    return order.values.get("station")
+    target = order.values.get("station")
+    return layout.space.targets[target] if target else None
 
 
 def is_storage_task(cell: Cell, text: str) -> bool:
