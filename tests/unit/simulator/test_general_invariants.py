@@ -155,6 +155,14 @@ def test_all_of_them_hold_where_devices_fail_in_this_way_alone(kind: str) -> Non
     assert run(1, {kind: 12.0}, cycles=3, seconds=length(25.0, whole=None)) is None
 
 
+def test_a_task_of_any_recipe_that_fails_without_a_fault_is_found(monkeypatch: Patch) -> None:
+    name = "no_task_fails_without_a_fault"
+    assert run(1, only=name, model=shop(careless)) is None, "the recipe fails by itself"
+    monkeypatch.setattr(evidence, "reached", lambda entry, belief: False)
+    broken = run(1, only=name, model=shop(load))
+    assert broken is not None and broken.invariant == name
+
+
 def machine_of(watched: JudgedWorld, name: str = "mill") -> MachineBody:
     body = watched.world.boards[name].body
     assert isinstance(body, MachineBody)

@@ -49,6 +49,19 @@ BY_VERB: dict[Verb, frozenset[Cause]] = {
     Verb.CANCEL: frozenset({Cause.ABANDON}),
 }
 ROWS = tuple(TABLE.items())
+ONLY_BY_FAULTS = frozenset(
+    {
+        Reason.LINK_LOST,
+        Reason.REBOOTED,
+        Reason.STOPPED_SHORT,
+        Reason.NOT_REACHED,
+        Reason.DEVICE_FAULT,
+        Reason.STOP_UNCONFIRMED,
+        Reason.STOPPED,
+        Reason.INTERRUPTED,
+    }
+)
+"""The reasons for which no recipe fails a task by itself."""
 PIECES = frozenset({Reason.NO_PIECE, Reason.NOT_GRIPPED, Reason.PART_LOST})
 TECHNICAL = ("Traceback", "object at 0x", "\n", "Error(")
 
@@ -265,24 +278,23 @@ def no_internal_failure(look: Look) -> Iterable[str]:
 
 @invariant(Trigger.TOLD)
 def no_task_fails_without_a_fault(look: Look) -> Iterable[str]:
-    """As long as nothing has gone wrong and no operator has acted, no task of a shipped recipe fails, but for
-    what its plant file asks for and robots cannot do, and for a zone in which another arm works for longer
-    than `zone_wait_s`.
+    """As long as nothing has gone wrong and no operator has acted, no task fails, but for what its plant file
+    asks for and robots cannot do, for a zone in which another arm works for longer than `zone_wait_s`, and,
+    of other recipes than those of storage, for what a recipe may fail by itself: a check, a time that is up,
+    an answer.
     """
     world, record = look.world, look.record
     if world.last_fault_at > -math.inf or world.recipes or not record.undisturbed:
         return
     for change in record.tasks.changes:
-        if (
-            change.said.state is TaskState.FAILED
-            and _is_of_storage(look, change.said)
-            and not _cannot_be_done(look, change.said)
-        ):
+        if change.said.state is TaskState.FAILED and not _may_fail(look, change.said):
             yield f"task {change.said.task} ({change.said.text}) failed: {change.said.sentence}"
 
 
-def _is_of_storage(look: Look, said: TaskChanged) -> bool:
-    return look.world.plant.intake.tasks[said.task].order.recipe in NAMES
+def _may_fail(look: Look, said: TaskChanged) -> bool:
+    if look.world.plant.intake.tasks[said.task].order.recipe in NAMES:
+        return _cannot_be_done(look, said)
+    return said.reason not in ONLY_BY_FAULTS
 
 
 def _cannot_be_done(look: Look, said: TaskChanged) -> bool:
