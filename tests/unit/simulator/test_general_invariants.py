@@ -17,8 +17,8 @@ from arboleda.dispatch.ledger import Feed
 from arboleda.kinds.declared import Device, DeviceKind, DeviceVerb, Effect, FactType
 from arboleda.model.commands import OnStop, Query
 from arboleda.model.messages import Verb
-from arboleda.model.plant_model import Evidence, Interlock, PlantModel
-from arboleda.recipes import Kit, parallel, recipe, work
+from arboleda.model.plant_model import Cell, Evidence, Interlock, PlantModel
+from arboleda.recipes import Choice, Kit, parallel, recipe, work
 from arboleda.sim.board import Board
 from arboleda.sim.machine import MachineBody
 from arboleda.sim.receipts import Receipts
@@ -40,6 +40,7 @@ from arboleda.wire.transport import Publication
 
 from ...lengths import length, sample
 from ..kinds.tending import IDS, plant
+from ..kinds.test_shared_devices import LAMP
 from ..kinds.test_shared_devices import plant as sharing
 
 Patch = pytest.MonkeyPatch
@@ -161,6 +162,22 @@ def test_a_task_of_any_recipe_that_fails_without_a_fault_is_found(monkeypatch: P
     monkeypatch.setattr(evidence, "reached", lambda entry, belief: False)
     broken = run(1, only=name, model=shop(load))
     assert broken is not None and broken.invariant == name
+
+
+def test_a_shared_device_that_was_handed_on_need_not_be_as_the_task_left_it() -> None:
+    @recipe("set")
+    def set_lamp(cell: Kit, on=Choice(0, 1)):  # type: ignore[no-untyped-def]
+        """The lamp that both cells have is switched, and is free while the cell waits."""
+        return work(cell.device("lamp").light(on=bool(on)), cell.wait(0.1))
+
+    lamp = Device(name="lamp", mqtt="lamp", **IDS, timeout_s=5.0, kind=LAMP)
+    lamp = replace(lamp, evidence=Evidence.STATE)
+    cells = [
+        Cell(name=name, queue_limit=5, members=(("lamp", lamp),), shared=("lamp",), recipes=(set_lamp,))
+        for name in ("left", "right")
+    ]
+    model = PlantModel(name="hall", cells=tuple(cells))
+    assert run(1, only="what_a_task_left_is_so", model=model, cycles=60) is None
 
 
 def machine_of(watched: JudgedWorld, name: str = "mill") -> MachineBody:
