@@ -12,7 +12,8 @@ from __future__ import annotations
 import inspect
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
-from functools import partial, wraps
+from functools import partial, reduce, wraps
+from importlib import import_module
 from typing import Any
 
 from py_trees import common, composites
@@ -51,6 +52,14 @@ class WrittenRecipe(Recipe):
     """A recipe that is a function; `function(cell, **values)` returns its step."""
 
     function: Callable[..., Step]
+
+    def __reduce__(self) -> tuple[Callable[..., object], tuple[str, str]]:
+        """Its place in its module, by which `pickle` takes it to another process, as it does functions."""
+        return _found, (self.function.__module__, self.function.__qualname__)
+
+
+def _found(module: str, name: str) -> object:
+    return reduce(getattr, name.split("."), import_module(module))
 
 
 def recipe(

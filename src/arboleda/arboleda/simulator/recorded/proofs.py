@@ -50,6 +50,7 @@ class ReportEvidence:
 
     moving: bool = False
     position: bool = False
+    facts: bool = False  # one of those that it sets
     unhomed: bool = False
 
 
@@ -87,7 +88,7 @@ class Proofs:
             _broken(proof, sent, report, known)
             if report.at >= sent.at:
                 shown = self._shown.setdefault(sent.command.id, ReportEvidence())
-                _see(shown, report)
+                _see(shown, sent, report)
                 _said(proof, sent, report, known.robot)
                 off = _off(sent, known.robot, q, node) if sent.way else _off_facts(sent, report, known)
                 _moved(proof, sent, shown, report, known.robot, off)
@@ -125,9 +126,10 @@ def _must(proof: Proof, reason: Reason, why: str) -> None:
     proof.must_end = proof.must_end or why
 
 
-def _see(shown: ReportEvidence, report: Report) -> None:
+def _see(shown: ReportEvidence, sent: SentCommand, report: Report) -> None:
     shown.moving |= report.state is MotionState.MOVING
     shown.position |= report.q is not None or report.node is not None
+    shown.facts |= any(report.fact(name) is not None for name, _ in sent.command.sets)
     shown.unhomed |= report.homed is False
 
 
@@ -174,7 +176,8 @@ def _moved(
     else:
         proof.named |= shown.moving
         # at `joints` state and place come in separate messages, so the truth judges the distance
-        seen = shown.moving if robot.evidence is Evidence.STATE else shown.position
+        goal = shown.position or shown.facts
+        seen = goal if robot.evidence is Evidence.JOINTS and (sent.way or command.sets) else shown.moving
         proof.done |= seen and (stopped or report.state is None)
     if (stopped or report.state is None) and not _surely_at(off):
         proof.causes.add(Reason.STOPPED_SHORT)
