@@ -53,7 +53,8 @@ def _unprovable(truth: Truth, booked: EndedCommand, robot: RobotTruth) -> bool:
 @invariant(Trigger.DONE_TASKS)
 def what_a_task_left_is_so(look: Look) -> Iterator[str]:
     """A task that is called done leaves each of its devices as the last command to that has set it, unless
-    power, somebody's hand, a lie or another cell that shares it has changed that.
+    power, somebody's hand, a lie or another cell that shares it has changed that; an effector of which nobody
+    reports anything counts as switched after a time.
     """
     truth, last_sent = look.truth, look.world.plant.dispatcher.last_sent
     for cell, task, began in truth.done_tasks:
@@ -61,6 +62,8 @@ def what_a_task_left_is_so(look: Look) -> Iterator[str]:
         for robot in of_task.robots:
             booked = truth.last_done(robot.name)
             if booked is None or booked.sent_at < began:
+                continue
+            if robot.has_effector and robot.evidence is not Evidence.IDS:
                 continue
             last = last_sent.get(robot.name)
             if robot.name in of_task.shared and last is not None and last.sent_at > booked.sent_at:
