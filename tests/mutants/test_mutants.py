@@ -25,7 +25,7 @@ def test_a_bug_is_found_by_the_invariant_that_it_breaks(mutant: Mutant) -> None:
 
 
 def test_every_invariant_has_one_mutant() -> None:
-    """Those of devices have theirs in tests/unit/simulator/test_general_invariants.py, on a plant of devices."""
+    """Those of devices have theirs in test_general_invariants.py, on a plant of devices."""
     names = Counter(mutant.invariant for mutant in MUTANTS)
     judged = [each.name for each in JUDGES if each not in DEVICES]
     assert names == Counter([*judged, NO_EXCEPTION])
