@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from arboleda.dispatch.ledger import State
 from arboleda.model.commands import Motion, Query
-from arboleda.model.plant_model import Evidence, MotionState
+from arboleda.model.plant_model import Evidence, MotionState, Robot
 
 from ..truth.ended_commands import EndedCommand
 from ..truth.robot import RobotTruth
@@ -45,9 +45,16 @@ def _unprovable(truth: Truth, booked: EndedCommand, robot: RobotTruth) -> bool:
 
     if robot.blind or robot.put_right_at >= booked.sent_at:
         return True
+    if not booked.entry.is_work and not _tells_switches(robot.robot):
+        return True
     if robot.robot.evidence is Evidence.IDS and booked.entry.is_work:
         return lies("done") and lies(robot.PLACE)
     return booked.late or lies(robot.PLACE) or lies("effector") or lies("state")
+
+
+def _tells_switches(robot: Robot) -> bool:
+    """False for an arm whose effector counts as switched after a time, as nobody reports anything of it."""
+    return robot.evidence is Evidence.IDS or not robot.has_effector
 
 
 @invariant(Trigger.DONE_TASKS)
@@ -63,7 +70,7 @@ def what_a_task_left_is_so(look: Look) -> Iterator[str]:
             booked = truth.last_done(robot.name)
             if booked is None or booked.sent_at < began:
                 continue
-            if robot.has_effector and robot.evidence is not Evidence.IDS:
+            if not _tells_switches(robot):
                 continue
             last = last_sent.get(robot.name)
             if robot.name in of_task.shared and last is not None and last.sent_at > booked.sent_at:
