@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
+from arboleda.core.plant import Plant
 from arboleda.model.errors import ConfigError
 from arboleda.model.messages import TaskState
 from arboleda.model.plant_model import Cell, PlantModel
 from arboleda.model.sentence import NOTHING
 from arboleda.plant_file import loader
+from arboleda.recipes import Kit, RecipeError
+from arboleda.recipes.handles import Step
 from arboleda.testing import Rig
 
 SHORT = """name: hall
@@ -48,6 +52,7 @@ MISTAKES = {  # what is in LONG, what is put in its place, what the problem says
     "no such robot": ("paths: {mobile:", "paths: {arm:", 'must be mobile, is "arm"'),
     "a jump": ("[0, 3, 6]", "[0, 6]", "node 6 is no neighbour of node 0"),
     "no such taker": ("taker: arm", "taker: amr", 'did you mean "arm"?'),
+    "a cart that takes": ("taker: arm, giver: mobile", "taker: mobile, giver: arm", "must be arm, is"),
     "no such target": ("at: pickup,", "at: pikup,", 'did you mean "pickup"?'),
     "no such path": ("by_path: {0A:", "by_path: {1A:", "must be a path of mobile: 0A or 0B"),
     "no stations": (
@@ -90,6 +95,30 @@ def test_the_recipes_of_storage_run_in_a_cell_of_devices(tmp_path: Path) -> None
         rig.submit(text)
     rig.wait(600, until=lambda: rig.plant.at_rest and not rig.plant.cells["bay"].queue)
     assert [change.state for change in rig.outcomes().values()] == [TaskState.DONE] * 3
+
+
+def test_the_case_of_a_path_does_not_matter(tmp_path: Path) -> None:
+    assert load(tmp_path, LONG.replace("by_path: {0A:", "by_path: {0a:")) == load(tmp_path, LONG)
+
+
+def wrong(folder: Path, step: Callable[[Kit], Step]) -> str:
+    """The sentence with which a recipe of the cell in LONG is refused."""
+    run = Plant(load(folder, LONG), epoch=1, now=0.0).cells["bay"]
+    with pytest.raises(RecipeError) as refused:
+        step(Kit(run.context))
+    return str(refused.value)
+
+
+def test_a_tour_or_a_path_that_cannot_be_is_refused(tmp_path: Path) -> None:
+    zoned = LONG.replace("name: hall\n", "name: hall\nzones: {rack: {poses: [bay station_0]}}\n")
+    run = Plant(load(tmp_path, zoned), epoch=1, now=0.0).cells["bay"]
+    with pytest.raises(
+        RecipeError, match="a tour has to end outside all zones, and station_0 lies in zone rack"
+    ):
+        Kit(run.context).device("arm").tour("home", "station_0")
+    assert "it has no stops" in wrong(tmp_path, lambda cell: cell.device("arm").tour())
+    assert "no path '9Z'" in wrong(tmp_path, lambda cell: cell.device("mobile").follow("9Z"))
+    assert "no group of targets 'shelf'" in wrong(tmp_path, lambda cell: cell.group("shelf"))
 
 
 @pytest.mark.parametrize("mistake", MISTAKES.values(), ids=MISTAKES)

@@ -60,11 +60,14 @@ def handover(
         return None
     reach = {space.robot.name: space for space in spaces}
     goes = {role: robot for role, robot in roles.items() if robot.name in reach}
-    targets = reach[goes[shape.taker].name].targets if shape.taker in goes else {}
-    codes = [path.code for path in reach[goes[shape.giver].name].paths] if shape.giver in goes else []
+    takers = [role for role, robot in goes.items() if robot.has_effector]
+    givers = [role for role, robot in goes.items() if robot.floor_grid is not None]
+    targets = reach[goes[shape.taker].name].targets if shape.taker in takers else {}
+    codes = [path.code for path in reach[goes[shape.giver].name].paths] if shape.giver in givers else []
+    by_path = {code.upper(): target for code, target in shape.by_path.items()}
     asked: list[tuple[str, str, Collection[str]]] = [
-        ("taker", shape.taker, goes),
-        ("giver", shape.giver, goes),
+        ("taker", shape.taker, takers),
+        ("giver", shape.giver, givers),
         ("at", shape.at, targets),
     ]
     asked += [(f"by_path.{code}", target, targets) for code, target in shape.by_path.items()]
@@ -72,7 +75,7 @@ def handover(
     for key, name, known in wrong:
         there = f"must be {choice(known)}" if known else "there is none to choose from"
         document.problem((*here, *key.split(".")), f"{there}, is {shown(name)}{nearest(name, known)}")
-    unknown = [code for code in shape.by_path if code not in codes]
+    unknown = [code for code in shape.by_path if code.upper() not in codes]
     for code in unknown:
         known = (
             f"must be a path of {shape.giver}: {choice(codes)}" if codes else f"{shape.giver} has no paths"
@@ -84,7 +87,7 @@ def handover(
         taker=goes[shape.taker].name,
         giver=goes[shape.giver].name,
         otherwise=shape.at,
-        by_path=tuple(shape.by_path.items()),
+        by_path=tuple(by_path.items()),
     )
 
 

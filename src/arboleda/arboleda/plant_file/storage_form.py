@@ -26,7 +26,6 @@ from .robot_models import ArmModel
 from .robots import arm, arm_model, check_absence, mobile
 from .shapes import CellShape, PoseShape, PositionShape, RetryShape
 
-ROLES = (ARM, MOBILE)  # the keys by which a cell is one of this form
 SECTIONS = ("paths", "stations", "palletizing")  # they may stand at the top of the file, for all such cells
 
 

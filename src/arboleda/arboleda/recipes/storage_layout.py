@@ -12,9 +12,7 @@ from arboleda.model.plant_model import Cell, Handover, Path, Pose, Workspace
 
 ARM, MOBILE = "arm", "mobile"  # roles of the short form of a plant file
 HOME = "home"
-PALLETIZING_TARGETS = (
-    "palletizing"  # the group of targets from which the arm takes a part, and to which it goes
-)
+PALLETIZING_TARGETS = "palletizing"  # the group of the two targets of the arm's own cycle
 
 
 @dataclass(frozen=True)
