@@ -16,6 +16,8 @@ from arboleda.model.sentence import NOTHING
 from arboleda.plant_file import loader
 from arboleda.recipes import Kit, RecipeError
 from arboleda.recipes.handles import Step
+from arboleda.simulator.climate import Climate
+from arboleda.simulator.run import Simulation
 from arboleda.testing import Rig
 
 SHORT = """name: hall
@@ -95,6 +97,14 @@ def test_the_recipes_of_storage_run_in_a_cell_of_devices(tmp_path: Path) -> None
         rig.submit(text)
     rig.wait(600, until=lambda: rig.plant.at_rest and not rig.plant.cells["bay"].queue)
     assert [change.state for change in rig.outcomes().values()] == [TaskState.DONE] * 3
+
+
+@pytest.mark.parametrize("more", ["", "      ana: {kind: person}\n"], ids=["alone", "with a person"])
+def test_such_a_cell_is_judged_right(tmp_path: Path, more: str) -> None:
+    model = load(tmp_path, LONG.replace("    targets:\n", f"{more}    targets:\n"))
+    result = Simulation(model, 3, Climate.draw(model, 3, "normal").faults).run(cycles=4)
+    assert result.broken is None, str(result.broken)
+    assert result.outcomes["done"]
 
 
 def test_the_case_of_a_path_does_not_matter(tmp_path: Path) -> None:

@@ -269,6 +269,8 @@ def place(cell: StorageLayout) -> Row:
         "mobile": cell.mobile.name,
         "pitch": cell.mobile.grid.pitch,
         "columns": cell.mobile.grid.columns,
-        "pickups": [list(pose.q) for pose in cell.space.poses if pose.name.startswith("pick-up")],
+        "pickups": [
+            list(q) for q in dict.fromkeys(cell.space.targets[name].q for name in cell.handover.targets)
+        ],
         "stations": [list(station.q) for station in cell.stations],
     }

@@ -50,7 +50,9 @@ def screens_show_what_is(look: Look) -> Iterable[str]:
 
 def _only_arms_and_mobiles(look: Look) -> bool:
     """True if each cell is one of an arm and a mobile robot: rows of other devices are not written here."""
-    return all(cell.handover is not None for cell in look.world.model.cells)
+    cells = look.world.model.cells
+    kinds = [[(role, robot.kind_name) for role, robot in cell.members] for cell in cells if cell.handover]
+    return kinds == [[("arm", "arm"), ("mobile", "mobile")]] * len(cells)
 
 
 def _is_own(look: Look, cell: KnownCell) -> bool:
