@@ -73,6 +73,7 @@ class Hall:
     def __init__(self, robots: dict[str, Robot], broker: Mosquitto, node: str) -> None:
         self._robots, self._broker, self._node = robots, broker, node
         self.reports = Inbox()
+        self._reports_before = 0
         self.wire = Inbox()
         self._spy = MqttClient("spy", broker.address, on_event=self.wire.put, subscriptions=[f"{TOPICS}/#"])
         self._spy.start()
@@ -85,6 +86,7 @@ class Hall:
         self.vehicle = self.boot()
 
     def boot(self) -> subprocess.Popen[bytes]:
+        self._mark()
         url = f"mqtt://{self._broker.address.host}:{self._broker.address.port}"
         self.vehicle = subprocess.Popen([self._node, VEHICLE, LIBRARY, url, "agv1"])
         return self.vehicle
@@ -96,22 +98,28 @@ class Hall:
         self._spy.close()
 
     def drive(self, id: str, *nodes: int) -> None:
+        self._mark()
         self._driver.send(FollowPath(id=id, robot="cart", nodes=nodes))
 
     def do(self, id: str, verb: str, **values: Value) -> None:
         forks = self._robots["forks"]
         assert isinstance(forks, Device)
+        self._mark()
         self._driver.send(forks.kind.command(id=id, robot="forks", verb=verb, values=values))
 
     def stop(self, mode: StopMode) -> None:
+        self._mark()
         self._driver.send(Stop(id="", robot="cart", mode=mode))
 
+    def _mark(self) -> None:
+        """Reports from here on may answer what is sent next; its answer may come before anybody waits."""
+        self._reports_before = len(self.reports)
+
     def hears(self, robot: str, **wanted: object) -> Report:
-        """The first report of a robot, from now on, that says all of this."""
-        began = len(self.reports)
+        """The first report of a robot, after what was sent last, that says all of this."""
 
         def found(reports: Inbox) -> Report | None:
-            mine = (each for each in reports[began:] if each.robot == robot)
+            mine = (each for each in reports[self._reports_before :] if each.robot == robot)
             return next(
                 (each for each in mine if all(getattr(each, key) == wanted[key] for key in wanted)), None
             )
