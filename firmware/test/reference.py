@@ -19,7 +19,7 @@ class Reference(Virtual):
     """One virtual SCARA, told the lines of a script."""
 
     def __init__(self, setting: Setting, now_us: int) -> None:
-        arm = shipped("sis_a").cell("sis_a").arm
+        arm = shipped("sis_a").cell("sis_a").roles["arm"]
         self.arm: Arm = replace(arm, evidence=Evidence.IDS if setting.ids else Evidence.JOINTS)
         self.body = ArmBody(
             self.arm, start=self._si(setting.start), pickups=[self._si(place) for place in PLACES]
