@@ -263,14 +263,13 @@ def _acts(cell: KnownCell) -> Iterator[Any]:
 
 
 def place(cell: StorageLayout) -> Row:
-    """The values of a cell that never change."""
+    """The values of a cell that never change; a pose with several names for targets is one pick-up."""
+    poses = {pose.name: pose.q for pose in map(cell.space.targets.__getitem__, cell.handover.targets)}
     return {
         "arm": cell.arm.name,
         "mobile": cell.mobile.name,
         "pitch": cell.mobile.grid.pitch,
         "columns": cell.mobile.grid.columns,
-        "pickups": [
-            list(q) for q in dict.fromkeys(cell.space.targets[name].q for name in cell.handover.targets)
-        ],
+        "pickups": [list(q) for q in poses.values()],
         "stations": [list(station.q) for station in cell.stations],
     }
