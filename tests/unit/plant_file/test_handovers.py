@@ -107,6 +107,14 @@ def test_such_a_cell_is_judged_right(tmp_path: Path, more: str) -> None:
     assert result.outcomes["done"]
 
 
+def test_pick_ups_at_one_point_are_judged_right(tmp_path: Path) -> None:
+    model = load(tmp_path, LONG.replace("pickup_a: {arm: {deg: [50, 10]", "pickup_a: {arm: {deg: [45, 10]"))
+    targets = model.cells[0].reach["ra"].targets
+    assert targets["pickup"].q == targets["pickup_a"].q
+    result = Simulation(model, 1, Climate.draw(model, 1, "none").faults).run(cycles=1)
+    assert result.broken is None, str(result.broken)
+
+
 def test_the_case_of_a_path_does_not_matter(tmp_path: Path) -> None:
     assert load(tmp_path, LONG.replace("by_path: {0A:", "by_path: {0a:")) == load(tmp_path, LONG)
 

@@ -1,4 +1,4 @@
-"""What a recipe of one's own is written with: a function of a cell and typed parameters that returns a step.
+"""Recipes of one's own: a function of a cell and typed parameters that returns a step.
 
 @recipe("weigh")
 def weigh(cell, dose: Choice["5", "10"]):
@@ -112,7 +112,7 @@ def recipe(
 
 
 def notes_of(name: str, function: Callable[..., Step]) -> dict[str, Any]:
-    """What the parameters are annotated with."""
+    """The annotations of the parameters, by name."""
     try:
         return inspect.get_annotations(function, eval_str=True)
     except (NameError, SyntaxError) as error:
@@ -153,7 +153,7 @@ def parallel(*parts: Step) -> Step:
 
 
 class Kit:
-    """What a recipe may use of its cell."""
+    """Kit of a recipe: the devices and targets of its cell, and the steps around steps."""
 
     def __init__(self, context: Context) -> None:
         self._context = context
@@ -201,7 +201,7 @@ class Kit:
         return other.function(self, **values)
 
     def choose(self, asked: Step, ways: Mapping[Value, Step | Sequence[Step]]) -> Step:
-        """What to do for each answer to a step that asks a device; another answer is a failure."""
+        """A way for each answer to a step that asks a device or a person; another answer is a failure."""
         if not isinstance(asked, Ask):
             raise RecipeError(f"choose looks at the answer of a device's step; {named(asked)} has none")
         asked.check(ways)

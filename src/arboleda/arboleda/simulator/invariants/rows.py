@@ -263,13 +263,12 @@ def _acts(cell: KnownCell) -> Iterator[Any]:
 
 
 def place(cell: StorageLayout) -> Row:
-    """The values of a cell that never change; a pose with several names for targets is one pick-up."""
-    poses = {pose.name: pose.q for pose in map(cell.space.targets.__getitem__, cell.handover.targets)}
+    """The values of a cell that never change."""
     return {
         "arm": cell.arm.name,
         "mobile": cell.mobile.name,
         "pitch": cell.mobile.grid.pitch,
         "columns": cell.mobile.grid.columns,
-        "pickups": [list(q) for q in poses.values()],
+        "pickups": [list(pose.q) for pose in cell.pickups],
         "stations": [list(station.q) for station in cell.stations],
     }
