@@ -1,6 +1,6 @@
 # Everything a person types here; what each target does is in `make help`.
 .DEFAULT_GOAL := help
-.PHONY: run test pinned-test integration-test test-tools judge-test ros-test nightly campaign drawn-campaign devices-campaign crash-campaign standby-campaign kills hosts mutants cost firmware firmware-test firmware-robot fuzz install lint diagrams reference shots example-pictures moving-picture clean help docs
+.PHONY: run test pinned-test integration-test test-tools judge-test ros-test nightly campaign drawn-campaign devices-campaign crash-campaign standby-campaign kills hosts mutants cost performance firmware firmware-test firmware-robot fuzz install lint diagrams reference shots example-pictures moving-picture clean help docs
 
 export PYTHON
 export PYTHONDONTWRITEBYTECODE := # what a target here runs hundreds of times is compiled once
@@ -98,6 +98,11 @@ cost:  ## count the Python calls of pinned scenarios; fails where there are more
 	@scripts/install test
 	$(BIN)/python -m arboleda_bench.cost $(COST)
 
+performance:  ## measure, and write docs/performance.md; on a quiet machine, about twenty minutes; PERFORMANCE="--quick" takes at most ten
+	@scripts/install test
+	$(BIN)/arboleda bench $(PERFORMANCE) --json docs/performance.json; [ $$? -le 1 ]
+	$(BIN)/python -m arboleda_bench.page docs/performance.json docs/performance.md
+
 firmware:  ## build the board for Linux, firmware/build/board
 	@$(MAKE) --no-print-directory -C firmware board
 
@@ -131,9 +136,10 @@ diagrams:  ## write docs/reference/states.md anew from the state tables of the c
 	@scripts/install
 	@page=$$($(BIN)/python scripts/state-diagrams) && printf '%s\n' "$$page" >docs/reference/states.md
 
-reference:  ## write docs/reference/api.md anew from the docstrings of what users import
+reference:  ## write docs/reference/api.md and verbs.md anew from docstrings and the table of verbs
 	@scripts/install
 	@page=$$($(BIN)/python scripts/api-reference) && printf '%s\n' "$$page" >docs/reference/api.md
+	@page=$$($(BIN)/python scripts/verb-reference) && printf '%s\n' "$$page" >docs/reference/verbs.md
 
 shots:  ## take pictures of the page, on screens of several sizes, into shots/; needs chromium
 	@scripts/install test

@@ -17,6 +17,7 @@ NAMES = (
     "reaction",
     "chain",
     "polling",
+    "rival",
     "cycle",
     "idle",
     "scale",

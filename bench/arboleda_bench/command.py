@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import json
+import os
 from collections.abc import Sequence
+from datetime import datetime
 from difflib import get_close_matches
 from pathlib import Path
 from typing import Any
@@ -16,7 +18,9 @@ from arboleda.model.errors import ArboledaError, ConfigError
 from arboleda.plant_file.user_file import check_writable
 
 from . import catalog, report
+from .report import Run
 from .result import Result
+from .revision import revision
 from .scene import Scene
 
 DONE, FAILED, INTERRUPTED = 0, 1, 130
@@ -42,19 +46,20 @@ def run(names: Sequence[str], *, quick: bool, file: Path | None, listed: bool) -
 
 def _all(names: Sequence[str], screen: Console, quick: bool, file: Path | None) -> int:
     """Run all, also if one of them lacks something; return the exit status."""
-    results: dict[str, Result] = {}
-    status = DONE
+    runs: list[Run] = []
     for name in names:
+        began, load = datetime.now().astimezone(), os.getloadavg()[0]
         try:
-            results[name] = _one(name, screen, quick)
+            outcome: Result | str = _one(name, screen, quick)
         except ArboledaError as error:
+            outcome = str(error)
             screen.print(Text(f"{name} was not measured: {error}\n", style="red"), soft_wrap=True)
-            status = FAILED
-            continue
-        _show(name, results[name], screen)
+        else:
+            _show(name, outcome, screen)
+        runs.append(Run(name=name, began=began, load=load, revision=revision(), outcome=outcome))
         if file is not None:
-            _write(file, report.as_json(results, quick=quick))
-    return status
+            _write(file, report.as_json(runs, quick=quick))
+    return FAILED if any(isinstance(each.outcome, str) for each in runs) else DONE
 
 
 def _one(name: str, screen: Console, quick: bool) -> Result:

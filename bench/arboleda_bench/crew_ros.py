@@ -17,7 +17,8 @@ from .processes import Process
 from .scene import wait_for
 
 NEEDS = "this benchmark needs ROS 2 for Python: pip install arboleda[ros], or source a ROS 2 installation"
-DISCOVERY_S = 20.0
+DISCOVERY_S = 30.0
+WORK_S = 30.0  # until every cell of a plant has begun a task
 DEPTH = 1000  # of the user's publisher: DDS forgets what it cannot send as fast as it is asked
 HEARD = 10_000  # lines of /task_status that may wait to be read
 
@@ -80,9 +81,13 @@ class CrewOnRos:
         for cell in self.cells:
             self._ask_cell(cell)
 
+    def wait_for_work(self) -> None:
+        """Wait until every cell has begun a task."""
+        wait_for(lambda: not self._idle(), self._of_idle, limit_s=WORK_S)
+
     def reactions_in(self, seconds: float) -> Sequence[float]:
-        """The reactions of so many seconds, once every cell has begun; ArboledaError if a task fails."""
-        wait_for(lambda: len(self._begun()) == len(self.cells), "a cell")
+        """The reactions of so many seconds, once every cell works; ArboledaError if a task fails."""
+        self.wait_for_work()
         self.crew.reactions.clear()
         time.sleep(seconds)
         found = list(self.crew.reactions)
@@ -91,8 +96,17 @@ class CrewOnRos:
             raise ArboledaError(f"a task did not end well: {bad[0] if bad else 'none moved'}")
         return found
 
-    def _begun(self) -> set[str]:
-        return {each["cell"] for each in self.changes if each["state"] == "running"}
+    def _idle(self) -> list[str]:
+        """The cells that have not begun a task yet."""
+        begun = {each["cell"] for each in self.changes if each["state"] == "running"}
+        return [cell for cell in self.cells if cell not in begun]
+
+    def _of_idle(self) -> str:
+        """The first idle cell and the last news of its tasks, for people."""
+        cell, *others = self._idle()
+        news = [each for each in self.changes if each["cell"] in (cell, None)]
+        last = f"{news[-1]['text']}: {news[-1]['state']}, {news[-1]['sentence']}" if news else "no news"
+        return f"cell {cell} ({last}), and {len(others)} more," if others else f"cell {cell} ({last})"
 
     def _ask_cell(self, cell: str) -> None:
         self.ask(f"{cell} 0B {next(self._number) % 9}")

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-import datetime
 import os
 import platform
-from collections.abc import Mapping
+from collections.abc import Sequence
+from dataclasses import dataclass
+from datetime import datetime
 from pathlib import Path
 from typing import Any
 
@@ -18,6 +19,20 @@ from .result import Figure, Result
 COLUMNS = ("figure", "ours", "floor", "ratio", "aim", "")
 
 
+@dataclass(frozen=True, kw_only=True)
+class Run:
+    """Run of one benchmark: its beginning, the revision of the code, and its result or why there is none.
+
+    `load`: the average number of programs that wanted a core in the minute before.
+    """
+
+    name: str
+    began: datetime
+    load: float
+    revision: str
+    outcome: Result | str
+
+
 def table(result: Result) -> Table:
     """The table of one benchmark's figures; a figure that misses its aim is marked."""
     made = Table(box=None, pad_edge=False)
@@ -28,14 +43,17 @@ def table(result: Result) -> Table:
     return made
 
 
-def as_json(results: Mapping[str, Result], *, quick: bool) -> dict[str, Any]:
+def as_json(runs: Sequence[Run], *, quick: bool) -> dict[str, Any]:
     """The figures as JSON, with the machine on which they were measured."""
     return {
         "arboleda": __version__,
-        "date": datetime.date.today().isoformat(),
+        "date": runs[0].began.date().isoformat(),
         "machine": machine(),
         "quick": quick,
-        "benches": {name: _plain(result) for name, result in results.items()},
+        "benches": {
+            each.name: _plain(each, each.outcome) for each in runs if isinstance(each.outcome, Result)
+        },
+        "not_measured": {each.name: each.outcome for each in runs if isinstance(each.outcome, str)},
     }
 
 
@@ -68,7 +86,7 @@ def number(value: float) -> str:
     return f"{value:.3g}" if abs(value) >= 0.001 else f"{value:.6f}"
 
 
-def _plain(result: Result) -> dict[str, Any]:
+def _plain(run: Run, result: Result) -> dict[str, Any]:
     figures = [
         {
             "name": each.name,
@@ -81,7 +99,14 @@ def _plain(result: Result) -> dict[str, Any]:
         }
         for each in result.figures
     ]
-    return {"figures": figures, "notes": list(result.notes)}
+    began = run.began.isoformat(timespec="seconds")
+    return {
+        "began": began,
+        "load": run.load,
+        "revision": run.revision,
+        "figures": figures,
+        "notes": list(result.notes),
+    }
 
 
 def _processor() -> str:

@@ -9,13 +9,16 @@ between.
 
 Over ROS 2 the robots are played by this process, through the topics of the shipped bridge, and the plant is
 the shipped node `orchestrator`. A reaction is then the time from before the publication of the report to the
-receipt of the command.
+receipt of the command. The start lasts from the node's start as a process until every robot hears the plant,
+and until every cell has begun a task that was asked for then.
 """
 
 from __future__ import annotations
 
 import json
+import time
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Any
 
 from . import plants
@@ -25,11 +28,12 @@ from .scene import Scene
 
 MOVE_S, QUICK_MOVE_S = 0.8, 0.2
 SIZES, QUICK_SIZES = (1, 10, 100, 300), (1, 100)
-ROS_SIZES, QUICK_ROS_SIZES = (1, 10, 30), (10,)
+ROS_SIZES, QUICK_ROS_SIZES = (1, 10, 100), (1, 10)
 ONE_S, MANY_S, QUICK_S = 15.0, 8.0, 2.0  # one cell ends few moves in a second
 ROS_S = 6.0
 MEASURED = 100  # cells at which the reaction has an aim
 AIMS = {50: 2.0, 99: 5.0}  # by percentile, as ratio to one cell
+START_S = 5.0
 MB = 1e6
 
 
@@ -37,8 +41,8 @@ def run(scene: Scene) -> Result:
     sizes = QUICK_SIZES if scene.quick else SIZES
     joined = {size: _joined(scene, size) for size in sizes}
     figures = _reactions(joined) + _costs(joined)
-    for size in QUICK_ROS_SIZES if scene.quick else ROS_SIZES:
-        figures += _over_ros(scene, size)
+    over_ros = {size: _over_ros(scene, size) for size in (QUICK_ROS_SIZES if scene.quick else ROS_SIZES)}
+    figures += _reactions_over_ros(over_ros) + _starts(over_ros)
     return Result(figures=figures, notes=_notes(scene, joined))
 
 
@@ -98,28 +102,54 @@ def _per_task(found: dict[str, Any]) -> float:
     return float(found["process_s"]) / max(found["tasks"], 1) * 1e3
 
 
-def _over_ros(scene: Scene, size: int) -> list[Figure]:
+@dataclass(frozen=True, kw_only=True)
+class OverRos:
+    """A plant over ROS 2: its reactions, and how long it took until it was heard and until all cells work."""
+
+    reactions: Sequence[float]
+    heard_s: float
+    works_s: float
+
+
+def _over_ros(scene: Scene, size: int) -> OverRos:
     scene.say(f"{size} cells over ROS 2")
-    reactions = _at_work(scene, size)
+    file = plants.write(scene.folder / f"ros_{size}.yaml", size)
+    with CrewOnRos(file, move_s=_move_s(scene)) as crew:
+        began = time.monotonic()
+        node = scene.node("orchestrator", file)
+        crew.wait_for_the_plant(node)
+        heard_s = time.monotonic() - began
+        crew.keep_busy()
+        crew.wait_for_work()
+        works_s = time.monotonic() - began
+        reactions = crew.reactions_in(QUICK_S if scene.quick else ROS_S)
+    scene.end()
+    return OverRos(reactions=reactions, heard_s=heard_s, works_s=works_s)
+
+
+def _reactions_over_ros(found: dict[int, OverRos]) -> list[Figure]:
     return [
         Figure(
             name=f"over ROS 2, reaction p{percent}, {_cells(size)}",
             unit="ms",
-            ours=percentile(reactions, percent) * 1e3,
+            ours=percentile(each.reactions, percent) * 1e3,
+            floor=percentile(found[1].reactions, percent) * 1e3 if size > 1 else None,
         )
         for percent in (50, 99)
+        for size, each in found.items()
     ]
 
 
-def _at_work(scene: Scene, size: int) -> Sequence[float]:
-    file = plants.write(scene.folder / f"ros_{size}.yaml", size)
-    node = scene.node("orchestrator", file)
-    with CrewOnRos(file, move_s=_move_s(scene)) as crew:
-        crew.wait_for_the_plant(node)
-        crew.keep_busy()
-        reactions = crew.reactions_in(QUICK_S if scene.quick else ROS_S)
-    scene.end()
-    return reactions
+def _starts(found: dict[int, OverRos]) -> list[Figure]:
+    aims = {MEASURED: Aim(most=START_S, of_ratio=False)}
+    heard = [
+        Figure(name=f"start until heard, {_cells(size)}", unit="s", ours=each.heard_s, aim=aims.get(size))
+        for size, each in found.items()
+    ]
+    return heard + [
+        Figure(name=f"start until all cells work, {_cells(size)}", unit="s", ours=each.works_s)
+        for size, each in found.items()
+    ]
 
 
 def _notes(scene: Scene, joined: dict[int, dict[str, Any]]) -> list[str]:

@@ -51,8 +51,12 @@ class Scene:
             self._processes.pop().end()
 
     def node(self, name: str, plant: Path, **parameters: Any) -> Process:
-        """One of the shipped ROS 2 nodes, as a user starts it; its state is in the scene's folder."""
-        values = {"plant": plant, "state_dir": self.folder / "state", **parameters}
+        """One of the shipped ROS 2 nodes, as a user starts it, with a state of its own.
+
+        A plant that found the tasks of the one before would hold the cells that were at work.
+        """
+        state = Path(tempfile.mkdtemp(prefix="state_", dir=self.folder))
+        values = {"plant": plant, "state_dir": state, **parameters}
         settings = [word for key, value in values.items() for word in ("-p", f"{key}:={value}")]
         return self.python("arboleda_ros.nodes", name, "--ros-args", *settings, name=name)
 
@@ -61,6 +65,12 @@ class Scene:
         count = len(list(self.folder.glob("*.log")))
         log = self.folder / f"{name or module.rpartition('.')[2]}_{count}.log"
         process = Process.python(module, *args, log=log)
+        self._processes.append(process)
+        return process
+
+    def program(self, file: Path) -> Process:
+        """Another program as a process, ended with the scene."""
+        process = Process([str(file)], self.folder / f"{file.name}.log")
         self._processes.append(process)
         return process
 
@@ -86,14 +96,22 @@ def free_port() -> int:
 
 
 def wait_for(
-    ready: Callable[[], object], what: str, check: Callable[[], None] = lambda: None, limit_s: float = START_S
+    ready: Callable[[], object],
+    what: str | Callable[[], str],
+    check: Callable[[], None] = lambda: None,
+    limit_s: float = START_S,
 ) -> None:
-    """Wait until `ready`; raises ArboledaError naming `what` after `limit_s`, or whatever `check` raises."""
+    """Wait until `ready`; raises ArboledaError naming `what` after `limit_s`, or whatever `check` raises.
+
+    `what` may be a function where only the end of the wait shows what is missing.
+    """
     until = time.monotonic() + limit_s
     while not ready():
         check()
         if time.monotonic() > until:
-            raise ArboledaError(f"{what} is not ready after {limit_s:g} s")
+            raise ArboledaError(
+                f"{what if isinstance(what, str) else what()} is not ready after {limit_s:g} s"
+            )
         time.sleep(POLL_S)
 
 

@@ -7,7 +7,7 @@ namespace {
 constexpr const char* kSilent = "silencio";
 constexpr const char* kAlarm = "alarma";
 constexpr const char* kOverdue = "plazo";         // inputs did not say in time that it is done
-constexpr const char* kSuperseded = "relevado";   // another switch of the same fact came
+constexpr const char* kSuperseded = "relevado";   // another order for the same fact came
 constexpr const char* kUnanswered = "sin_dato";  // inputs contradict each other
 
 }  // namespace
@@ -366,14 +366,14 @@ void DeviceBoard::supersede(const Order& order) {
     const Effect effect = verb(order).effect;
     for (uint8_t at = 0; at < deeds_count_;) {
         const Deed& deed = deeds_[at];
+        const bool is_switch = verb(deed.order).effect == Effect::kSwitch;
         bool same = effect == Effect::kQuery && verb(deed.order).effect == Effect::kQuery;
         for (const Setting& one : verb(order).sets) {
             for (const Setting& other : verb(deed.order).sets) {
-                const bool switches = effect == Effect::kSwitch && verb(deed.order).effect == Effect::kSwitch;
-                same = same || (switches && one.fact == other.fact);
+                same = same || (is_switch && one.fact == other.fact);
             }
         }
-        if (same && effect == Effect::kSwitch) {
+        if (same && is_switch) {
             receipts_.fail(deed.order.head, kSuperseded);
         }
         if (same) {

@@ -1,8 +1,8 @@
 """The second judge: the simulator alone, seed by seed, until an invariant breaks.
 
 Seeds take turns: every kind of fault on both packaged plants, on plants that they draw, and on the examples
-of cells of devices, which have recipes of their own; and plants that die again and again. In some turns about
-half of the tasks are for several cells.
+of cells of devices, which have recipes of their own; plants that die again and again; plants on two hosts. In
+some turns about half of the tasks are for several cells.
 """
 
 from __future__ import annotations
@@ -82,8 +82,8 @@ def _runner(root: Path) -> Any:
         def of(self, seed: int) -> Plant:
             return self._plants[seed // len(settings) % len(self._plants)]
 
-    def setting(plants: Any, level: str, *, any_of: bool = False) -> Setting:
-        return Setting(plants=plants, cycles=0, level=level, seconds=SECONDS, any_of=any_of)
+    def setting(plants: Any, level: str, *, any_of: bool = False, standby: bool = False) -> Setting:
+        return Setting(plants=plants, cycles=0, level=level, seconds=SECONDS, any_of=any_of, standby=standby)
 
     with as_file(files("arboleda").joinpath("plants", "shared.yaml")) as shared:
         packaged = Turns(*(Plant(declared=each) for each in (loader.load(shared), loader.load())))
@@ -96,6 +96,7 @@ def _runner(root: Path) -> Any:
         setting(packaged, CRASHES, any_of=True),
         setting(RandomPlants(), MANY, any_of=True),
         setting(examples, CRASHES),
+        setting(packaged, MANY, standby=True),
     )
     collect_rarely()
 

@@ -10,15 +10,16 @@ setup(
         "arboleda": [
             "adapters/vda5050/schemas/*.json",
             "dashboard/assets/*",
-            "dashboard/words/*.yaml",
             "examples/*/*.py",
             "examples/*/*.xml",
             "examples/*/*.yaml",
             "examples/*/*/*.py",
             "examples/*/*/*.urdf",
             "plants/*.yaml",
+            "playback/report/*.html",
             "py.typed",
             "starter/*",
+            "web/languages/*/*.yaml",
         ]
     },
     data_files=[

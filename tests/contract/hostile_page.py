@@ -95,7 +95,7 @@ class Side:
         answer.set_result({"state": "refused", "sentence": f"{text} {EVIL}"})
         return answer
 
-    def operate(self, verb: Verb, scope: str, *, by_hand: bool = False) -> Future[OperatorAnswer]:
+    def operate(self, verb: Verb, scope: str, **_: Any) -> Future[OperatorAnswer]:
         answer: Future[OperatorAnswer] = Future()
         answer.set_result(OperatorAnswer(verb=verb, scope=scope, refusal=EVIL))
         return answer

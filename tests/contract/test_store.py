@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import json
 import os
 import random
@@ -24,7 +25,7 @@ from arboleda.core.choosing import LATER
 from arboleda.model.errors import ArboledaError, StartError
 from arboleda.model.messages import Check, Course, Fact, Journal, Remember, TaskChanged, TaskState, Verb
 from arboleda.model.sentence import OWN
-from arboleda.store import row_sums
+from arboleda.store import row_sums, sqlite
 from arboleda.store.memory_file import VERSION
 from arboleda.store.sqlite import Store
 from arboleda.store.task_rows import TaskHistory, TaskQuery, choice_of, course_of, unchecked_of
@@ -201,40 +202,75 @@ def test_a_file_that_another_program_writes_is_said_to_be(path, monkeypatch):
     writer.close()
 
 
-def test_a_latch_and_the_journal_are_forced_to_the_disk(path, on_connect):
-    said: list[str] = []
-    on_connect(lambda db: db.set_trace_callback(said.append))
+def test_a_commit_waits_for_no_disk_and_a_sync_has_the_log_written_to_it(path, monkeypatch):
+    synced: list[str] = []
+    monkeypatch.setattr(sqlite, "SYNC", lambda file: synced.append(os.readlink(f"/proc/self/fd/{file}")))
     with Store(path) as store:
-        del said[:]
         store.keep(LATCH)
-        store.keep(Remember(fact=Fact.EFFECTOR, name="ra1", value="off"))
         store.journal(ACT, 5.0)
-    modes = [each.rpartition(" ")[2] for each in said if "synchronous" in each]
-    assert modes == ["FULL", "NORMAL", "FULL"]
+        assert synced == []
+        store.sync()
+    assert synced == [f"{path}-wal"]
 
 
-@pytest.mark.parametrize(
-    ("fact", "value", "mode"),
-    [
-        (Fact.EFFECTOR, "switching", "FULL"),
-        (Fact.EFFECTOR, "on", "FULL"),
-        (Fact.EFFECTOR, "off", "NORMAL"),
-        (Fact.QUARANTINE, "ra1", "FULL"),
-        (Fact.QUARANTINE, None, "NORMAL"),
-        (Fact.EMPTIED, "true", "FULL"),
-        (Fact.EMPTIED, None, "FULL"),
-        (Fact.DISPLACED, "true", "FULL"),
-        (Fact.DISPLACED, None, "NORMAL"),
-        (Fact.STORED, "0 7", "FULL"),
-    ],
-)
-def test_what_makes_the_plant_careful_is_forced_to_the_disk(path, on_connect, fact, value, mode):
-    said: list[str] = []
-    on_connect(lambda db: db.set_trace_callback(said.append))
+def test_a_sync_of_a_memory_that_is_not_in_its_place_is_refused(path):
     with Store(path) as store:
-        del said[:]
-        store.keep(Remember(fact=fact, name="ra1", value=value))
-    assert [each.rpartition(" ")[2] for each in said if "synchronous" in each] == [mode]
+        store.keep(LATCH)
+        path.rename(path.with_name("moved.sqlite"))
+        with pytest.raises(ArboledaError, match="was deleted or moved away"):
+            store.sync()
+
+
+GRIP = Remember(fact=Fact.EFFECTOR, name="ra1", value="switching")
+
+
+def on_boot(boot: str, path: Path, monkeypatch: pytest.MonkeyPatch) -> Store:
+    monkeypatch.setattr(sqlite, "this_boot", lambda: boot)
+    store = Store(path)
+    store.open()
+    return store
+
+
+def test_a_memory_lacks_the_last_writes_only_where_its_host_was_switched_off_meanwhile(path, monkeypatch):
+    killed = on_boot("monday", path, monkeypatch)
+    assert not killed.may_lack_writes
+    killed.begin()
+    assert not on_boot("monday", path, monkeypatch).may_lack_writes
+    after = on_boot("tuesday", path, monkeypatch)
+    assert after.may_lack_writes
+    after.close()
+    assert on_boot("tuesday", path, monkeypatch).may_lack_writes  # until a start has made up for it
+    begun = on_boot("tuesday", path, monkeypatch)
+    begun.begin(GRIP)
+    assert begun.facts(Fact.EFFECTOR) == {"ra1": "switching"}
+    assert not on_boot("tuesday", path, monkeypatch).may_lack_writes
+
+
+def test_a_memory_that_was_closed_lacks_nothing(path, monkeypatch):
+    ended = on_boot("monday", path, monkeypatch)
+    ended.begin()
+    ended.close()
+    assert not on_boot("tuesday", path, monkeypatch).may_lack_writes
+
+
+def test_a_memory_whose_sync_failed_may_lack_writes_although_it_was_closed(path, monkeypatch):
+    ended = on_boot("monday", path, monkeypatch)
+    ended.begin()
+    monkeypatch.setattr(sqlite, "SYNC", fail_to_sync)
+    with pytest.raises(ArboledaError):
+        ended.sync()
+    ended.close()
+    assert on_boot("tuesday", path, monkeypatch).may_lack_writes
+
+
+def fail_to_sync(_: int) -> None:
+    raise OSError(errno.EIO, os.strerror(errno.EIO))
+
+
+def test_a_sync_that_fails_is_one_sentence(path, monkeypatch):
+    monkeypatch.setattr(sqlite, "SYNC", fail_to_sync)
+    with Store(path) as store, pytest.raises(ArboledaError, match=r"cannot be used \(Input/output error\)"):
+        store.sync()
 
 
 @pytest.mark.parametrize(("version", "later"), [(1, ("cell", "said")), (2, ("said",)), (3, ())])
@@ -391,17 +427,6 @@ def queued(id, text="sis_a 0B 1"):
 
 def ended(id, state=TaskState.DONE, **why):
     return replace(queued(id), state=state, **why)
-
-
-def test_every_change_of_a_task_is_forced_to_the_disk(path, on_connect):
-    said: list[str] = []
-    on_connect(lambda db: db.set_trace_callback(said.append))
-    with Store(path) as store:
-        for change in (queued("a"), ended("a", TaskState.RUNNING), ended("a")):
-            store.keep(Remember(fact=Fact.STEP, name="a", value="{}"))
-            del said[:]
-            store.task(change, "storage", 1.0)
-            assert [each.rpartition(" ")[2] for each in said if "synchronous" in each] == ["FULL"]
 
 
 @pytest.mark.parametrize(

@@ -1,20 +1,36 @@
-"""What the docs say of the operators' verbs is what the command line and the API say."""
+"""Every verb has its row, its procedure and its words, and stands on the page that is made of them."""
 
 from __future__ import annotations
 
+import os
+import subprocess
+import sys
 from pathlib import Path
 
-from arboleda.model.messages import Verb
+import pytest
+
+from arboleda.core.operator import TABLE
+from arboleda.model.verbs import Verb
 from arboleda.views.verb_words import ABOUT
 
-PAGE = Path(__file__).parents[2] / "docs/how-to/operate.md"
+ROOT = Path(__file__).parents[2]
+PAGE = ROOT / "docs/reference/verbs.md"
 
 
-def test_every_verb_has_its_row_in_the_docs() -> None:
-    rows = [
-        f"| `{verb.value}` | {words.does} | {words.refused} | {', '.join(words.scopes)} |"
-        for verb, words in ABOUT.items()
-    ]
-    section = PAGE.read_text(encoding="utf-8").partition("## Verbs\n")[2].partition("\n## ")[0]
-    assert [line for line in section.splitlines() if line.startswith("| `")] == rows
-    assert list(ABOUT) == list(Verb)
+def test_the_page_is_what_the_script_prints() -> None:
+    environ = {**os.environ, "PYTHONPATH": str(ROOT / "src/arboleda")}
+    script = [sys.executable, ROOT / "scripts/verb-reference"]
+    printed = subprocess.run(script, env=environ, capture_output=True, text=True, check=True).stdout
+    assert PAGE.read_text(encoding="utf-8") == printed, "run `make reference`"
+
+
+def test_every_verb_has_a_procedure_and_words() -> None:
+    assert list(TABLE) == list(ABOUT) == list(Verb)
+
+
+@pytest.mark.parametrize("verb", Verb)
+def test_every_verb_has_words_for_each_of_its_arguments(verb: Verb) -> None:
+    words = ABOUT[verb]
+    assert {each.name for each in verb.arguments} == words.arguments.keys()
+    assert (words.by_hand is not None) is verb.row.by_hand
+    assert (TABLE[verb].declared is not None) is verb.row.by_hand

@@ -81,7 +81,11 @@ MOTION = (
     mutant(
         "done_is_true",
         "An arm counts as there when one of its joints is.",
-        edit(JointMotion.reached, "return all(", "return any("),
+        edit(
+            JointMotion.reached,
+            "if not abs(value - goal) <= tolerance:\n            return False\n    return True",
+            "if abs(value - goal) <= tolerance:\n            return True\n    return False",
+        ),
         seeds=SHARED,
         weather={"plant_stall": 20.0},
         likely=38,

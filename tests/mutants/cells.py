@@ -37,6 +37,16 @@ TASKS = (
         weather="none",
     ),
     mutant(
+        "nothing_of_an_ended_task_moves",
+        "A task that is cancelled ends at once, and goes on with its work.",
+        edit(
+            CellRun.cancel,
+            "if held or not self.run.recovering:\n        self._recover()",
+            "if self.task is not None:\n        self._finish(self.task, TaskState.CANCELLED)",
+        ),
+        weather={"operator_cancel": 20.0},
+    ),
+    mutant(
         "ended_tasks_stay_ended",
         "To cancel a task that has ended is not refused.",
         edit(

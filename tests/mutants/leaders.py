@@ -20,6 +20,13 @@ LEADERS = (
         standby=True,
     ),
     mutant(
+        "a_lead_is_over_before_the_next_begins",
+        "A leader is sure of itself for a fifth longer than it may.",
+        edit(Lease.renewed, "asked_at + SURE_S", "asked_at + 1.2 * SURE_S"),
+        weather=CHANGES,
+        standby=True,
+    ),
+    mutant(
         "each_number_is_led_once",
         "A standby leads under the number that it proposes.",
         edit(LeaderRow.lead, "max(self.epoch + 1, proposed)", "proposed"),
@@ -31,7 +38,7 @@ LEADERS = (
         "A board forgets under which number it has heard a leader beat.",
         edit(Receipts.objection, "self.least is not None and goal.epoch < self.least", "False"),
         weather=LATE,
-        likely=42,
+        likely=141,
         standby=True,
     ),
     mutant(

@@ -14,7 +14,6 @@ from arboleda.dispatch.dispatcher import Dispatcher
 from arboleda.recipes.parameters import Slot
 from arboleda.trees import steps
 from arboleda.trees.cell_zones import CellZones
-from arboleda.trees.stations import Stations
 from arboleda.views import oee, view
 from arboleda.wire import status
 from arboleda.wire.board import Board
@@ -146,12 +145,6 @@ PEOPLE = (
         edit(Operator._override, "self._dispatcher.memory.vacate([zone])", ""),
         seeds=SHARED,
         weather={"brown_out": 15.0, "operator_override": 40.0, "operator_stop": 5.0},
-    ),
-    mutant(
-        "racks_hold_what_was_put",
-        "Of the parts in a rack only the last one is known.",
-        edit(Stations.store, "self.stored | numbers", "numbers"),
-        weather="none",
     ),
 )
 

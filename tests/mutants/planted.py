@@ -8,8 +8,8 @@ from arboleda.core.leaving import leaves_unkept
 from arboleda.core.operator import _not_yet
 from arboleda.dispatch import evidence
 from arboleda.model.messages import Course
-from arboleda.trees.stations import Stations
-from arboleda.trees.trail import Known, put_back
+from arboleda.trees.places import Places
+from arboleda.trees.trail import Known, command_kept, put_back
 from arboleda.trees.tree_run import TreeRun
 from arboleda.trees.walk_back import WalkBack, fate
 from arboleda.views import view
@@ -74,6 +74,13 @@ PLANTED = (
         likely=6,
     ),
     mutant(
+        "tasks_go_on_from_what_was_kept",
+        "It is not kept that the command of a step is done, as where that ended while its cell was held.",
+        edit(command_kept, '"done": entry.state is State.DONE', '"done": False'),
+        weather={"operator_hold": 40.0, "operator_resume": 20.0},
+        likely=3,
+    ),
+    mutant(
         "no_step_is_done_twice",
         "A task that is walked back begins at the first step of its sequence.",
         edit(put_back, "next(going, node.children[0])", "node.children[0]"),
@@ -83,8 +90,8 @@ PLANTED = (
         "commands_follow_the_recipe",
         "A board may have taken any commands since where its task stands was kept.",
         edit(Known.explains, "if now == before:", "if True:"),
-        weather={**DIES, "power_cut": 12.0},
-        likely=22,
+        weather={**DIES, "power_cut": 12.0, "slow_disk": 12.0},
+        likely=28,
     ),
     mutant(
         "effector_on_only_between_pick_and_place",
@@ -94,9 +101,19 @@ PLANTED = (
         likely=5,
     ),
     mutant(
+        "books_of_parts_are_true",
+        "Of the parts in a rack only the last one is known.",
+        edit(
+            Places._move,
+            "self._parts[target] = max(parts, 0)",
+            "self._parts = {**dict.fromkeys(self._parts, 0), target: max(parts, 0)}",
+        ),
+        weather="none",
+    ),
+    mutant(
         "verbs_do_what_they_say",
         "A station keeps its part though somebody takes it out.",
-        edit(Stations.unload, "self.stored - {station}", "self.stored"),
+        edit(Places.set, "self._parts |= parts", "pass"),
         weather={"operator_unload": 60.0},
     ),
     mutant(

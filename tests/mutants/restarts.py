@@ -7,6 +7,7 @@ from arboleda.core.leaving import is_too_late, leaves_unkept
 from arboleda.core.plant import Plant
 from arboleda.core.task_queue import TaskQueue
 from arboleda.model.task import Task
+from arboleda.trees.walk_back import WalkBack
 
 from .mutant import edit, mutant
 
@@ -38,6 +39,12 @@ RESTARTS = (
         "A task that was at work begins from its first step.",
         edit(Intake.take_back, "Task.of(kept, text.parse(", "Task(kept.id, text.parse("),
         weather=DIES,
+    ),
+    mutant(
+        "tasks_go_on_from_what_was_kept",
+        "Nobody looks whether a device has booted since its task was kept.",
+        edit(WalkBack._told_more, "if belief.boot_id != known.boot:", "if False:"),
+        weather={**DIES, "reboot": 20.0},
     ),
     mutant(
         "one_pick_one_place_over_all_starts",

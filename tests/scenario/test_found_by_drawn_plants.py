@@ -38,6 +38,38 @@ ASSUMES_HOMED = """
 """
 
 FOUND = {
+    "after a restart a path that ends where it begins was taken for the way to its start": Found(
+        seed=1015,
+        seconds=85.0,
+        faults=(Fault(kind="full_disk", at=64.95, seconds=11.083, target="plant"),),
+        file="""
+            name: drawn_1015
+            paths: {zx: [2, 5, 2], AZ: [8]}
+            cells:
+              cell_1:
+                arm: {name: arm_1, model: scara, link: mqtt, evidence: ids}
+                mobile: {name: mobile_1, link: ros, evidence: ids, speed_mm_s: 100.9}
+                home: {deg: [15.2, -99.0], mm: 7.3}
+                pickup: {deg: [0.0, 0.0], mm: 0.0}
+                stations: {0: {deg: [-49.9, 23.1], mm: 59.2}}
+        """,
+    ),
+    "an arm that lifts nothing at all, as its part belongs where it lies, had been said to hold none": Found(
+        seed=1,
+        faults=(Fault(kind="no_grip", at=0.0, seconds=60.0, target="arm_1"),),
+        file="""
+            name: drawn_1015
+            timing: {dwell_s: 0.2, piece_debounce_s: 0.05}
+            cells:
+              cell_1:
+                arm: {name: arm_1, model: scara, link: mqtt, evidence: ids, speeds: {q3_mm_s: 54.8}}
+                mobile: {name: mobile_1, link: mqtt, evidence: ids, assume_homed: true}
+                home: {deg: [15.2, -99.0], mm: 7.3}
+                pickup: {deg: [0.0, 0.0], mm: 0.0}
+                paths: {56: [1]}
+                stations: {0: {deg: [0.0, 0.0], mm: 0.0}}
+        """,
+    ),
     "nobody could put a board right that reports joints and says that it is not homed": Found(
         seed=10,
         faults=(Fault(kind="brown_out", at=48.361, seconds=9.488, target="mobile_1_board", amount=2.961),),

@@ -30,8 +30,8 @@ def test_a_test_of_the_page_passes(
 
 
 def test_the_page_has_a_plant_a_recipe_and_tests() -> None:
-    assert set(FILES) - set(TESTS) == {"my_plant.yaml", "there_and_back.py"}
-    assert len(TESTS) == 4
+    assert set(FILES) - set(TESTS) == {"my_plant.yaml", "there_and_back.py", "bench.yaml", "tidy.py"}
+    assert len(TESTS) == 5
 
 
 def test_every_kind_and_level_of_faults_is_on_the_page() -> None:

@@ -41,7 +41,7 @@ def attended(rig: Rig, at_most_s: float = 200.0) -> None:
         if rig.wait(2.0, until=lambda: state(rig) in ENDED):
             return
         if rig.plant.dispatcher.question("operator") is not None:
-            rig.operate(Verb.ANSWER, "operator good")
+            rig.operate(Verb.ANSWER, "operator", answer="good")
         for first in rig.plant.advice("cell")[:1]:
             if isinstance(first.do, Verb):
                 rig.operate(first.do, first.scope)
@@ -134,6 +134,39 @@ def test_what_takes_no_time_ends(folder: Path, body: str, ends: TaskState, why: 
     rig.wait(30.0, until=lambda: state(rig) in ENDED)
     assert state(rig) is ends
     assert str(rig.outcomes()["one"].sentence or "") == why
+
+
+ANSWERED = '<Fallback><mill_says door="closed"/><AlwaysSuccess/></Fallback>'
+CONDITION = '<ScriptCondition code="1 == 2"/>'
+UNANSWERED = "door"  # a word of the sentence with which the condition above fails
+
+
+@pytest.mark.parametrize(
+    ("body", "is_named"),
+    [
+        (ANSWERED + CONDITION, False),
+        (f"<Fallback>{ANSWERED.replace('AlwaysSuccess', 'AlwaysFailure')}{CONDITION}</Fallback>", True),
+        (f'<Fallback><mill_says door="closed"/><Sequence>{ANSWERED}{CONDITION}</Sequence></Fallback>', True),
+        (
+            f'<Parallel failure_count="2"><mill_says door="closed"/><Sequence><Sleep msec="50"/>'
+            f"<Sequence><AlwaysSuccess/></Sequence>{CONDITION}</Sequence></Parallel>",
+            True,
+        ),
+        (
+            '<RetryUntilSuccessful num_attempts="2"><Sequence><Inverter>'
+            f'<mill_says door="closed"/></Inverter>{CONDITION}</Sequence></RetryUntilSuccessful>',
+            False,
+        ),
+    ],
+    ids=["in the row before", "not answered", "answered after it", "beside it", "inverted"],
+)
+def test_a_condition_fails_a_tree_without_a_failure_that_was_answered(
+    folder: Path, body: str, is_named: bool
+) -> None:
+    rig = ran(folder, "<mill_open/>" + body)
+    said = str(rig.outcomes()["one"].sentence)
+    assert state(rig) is TaskState.FAILED
+    assert (UNANSWERED in said) is is_named and (said == "the tree tend has failed") is not is_named
 
 
 def ran(

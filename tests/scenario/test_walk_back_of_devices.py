@@ -123,17 +123,17 @@ def test_a_switch_that_was_done_before_its_board_took_it_is_known_to_have_been_o
 def test_an_answer_stays_given_and_an_open_question_is_asked_again() -> None:
     rig = begin(attended(refill), "tending refill")
     assert rig.wait(10.0, until=lambda: asked(rig) == "Is the pallet full?")
-    assert rig.operate(Verb.ANSWER, "ana yes") is None
+    assert rig.operate(Verb.ANSWER, "ana", answer="yes") is None
     restart(rig)
     assert asked(rig) is None
     resumed(rig, "tending")
     assert rig.wait(10.0, until=lambda: asked(rig) == "Is it really?")
     restart(rig)
     assert asked(rig) is None, "nobody is asked before somebody resumes"
-    assert rig.operate(Verb.ANSWER, "ana yes") is not None
+    assert rig.operate(Verb.ANSWER, "ana", answer="yes") is not None
     resumed(rig, "tending")
     assert asked(rig) == "Is it really?"
-    assert rig.operate(Verb.ANSWER, "ana yes") is None
+    assert rig.operate(Verb.ANSWER, "ana", answer="yes") is None
     assert rig.wait(20.0, until=lambda: state(rig) is TaskState.DONE)
     answers = view.task_by_id(rig.plant, "one")["answers"]  # type: ignore[index]
     assert [each["asked"] for each in answers] == ["Is the pallet full?", "Is it really?"]
@@ -236,8 +236,14 @@ def test_work_that_a_machine_finishes_by_itself_is_not_begun_again() -> None:
     assert sent(rig).count("oven bake") == 1
 
 
-@pytest.mark.parametrize("reached", [0, 1, 2])
-def test_what_a_power_cut_made_the_plant_forget_is_not_begun_again(reached: int) -> None:
+@pytest.mark.parametrize(
+    ("reached", "why"),
+    [
+        (0, "pump has taken commands of which this plant knows nothing"),
+        (1, "pump proves neither that it has done this nor that it has not"),
+    ],
+)
+def test_what_a_power_cut_made_the_plant_forget_is_not_begun_again(reached: int, why: str) -> None:
     rig = begin(load(EXAMPLES / "lab_bench" / "plant.yaml"), "bench weigh 20")
     assert rig.wait(10.0, until=lambda: "pump dispense" in sent(rig))
     rig.cut_power(reached)
@@ -248,7 +254,7 @@ def test_what_a_power_cut_made_the_plant_forget_is_not_begun_again(reached: int)
     rig.wait(10.0)
     if rig.operate(Verb.RESUME, "bench") is not None:
         held = str(reasons.of_hold(rig.plant.cells["bench"]))
-        assert "pump has taken commands of which this plant knows nothing" in held
+        assert why in held
     rig.wait(20.0)
     assert sent(rig).count("pump dispense") == 1
 
@@ -281,7 +287,7 @@ def attended_to(rig: Rig) -> list[str]:
         if rig.wait(5.0, until=lambda: state(rig) in ENDED):
             break
         if rig.plant.dispatcher.question("operator") is not None:
-            rig.operate(Verb.ANSWER, "operator good")
+            rig.operate(Verb.ANSWER, "operator", answer="good")
         for first in rig.plant.advice("tending")[:1]:
             assert isinstance(first.do, Verb)
             if rig.operate(first.do, first.scope) is None:

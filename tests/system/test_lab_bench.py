@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -30,5 +31,6 @@ def test_a_recipe_that_is_never_built_keeps_the_plant_from_starting(
     (tmp_path / "recipes.py").write_text(endless, "utf-8")
     up = arboleda("up", "--plant", str(tmp_path / "plant.yaml"), "--no-ros")
     assert up.wait() == 2
-    assert "building incubate for bench takes more than 10 s" in " ".join(up.output.split())
+    told = " ".join(up.output.split())
+    assert re.search("building incubate for bench takes more than (10 s of processor time|40 s)", told)
     assert "Traceback" not in up.output and "broker:" not in up.output

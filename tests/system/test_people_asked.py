@@ -92,7 +92,8 @@ def test_a_press_answers_and_the_task_goes_on(page: Any) -> None:
 
 
 def test_an_answer_that_is_refused_says_why_and_the_question_stays(page: Any) -> None:
-    page.evaluate("document.querySelector('[data-act=answer]').dataset.of = 'ana maybe'")
+    button = "document.querySelector('[data-act=answer]')"
+    page.evaluate(button + """.dataset.arguments = '{"answer": "maybe"}'""")
     page.click("[data-act=answer]")
     page.wait_for_selector("#answer[data-s=bad]:has-text('answers: yes, no parts left')")
     assert page.locator("[data-act=answer]").count() == 2

@@ -18,11 +18,11 @@ SLOW_S = 0.15
 ON_A_SLOW_DISK = f"""
 import time
 from arboleda.store.sqlite import Store
-write = Store._write
-def slowly(self, *statements, durable):
-    time.sleep({SLOW_S} if durable else 0.0)
-    write(self, *statements, durable=durable)
-Store._write = slowly
+wait = Store._wait_for_disk
+def slowly(self):
+    time.sleep({SLOW_S})
+    wait(self)
+Store._wait_for_disk = slowly
 from arboleda.cli.main import main
 main()
 """

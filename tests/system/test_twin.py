@@ -15,6 +15,8 @@ import pytest
 import yaml
 
 from arboleda.dashboard.shell import assets
+from arboleda.dashboard.twin import bodies
+from arboleda.dashboard.twin.parts import PART_HEIGHT_M
 from arboleda.kinds.arm import Arm
 from arboleda.kinds.mobile import Mobile
 from arboleda.model.plant_model import MotionState, PlantModel, Robot
@@ -28,6 +30,8 @@ from arboleda.wire.values import Presence, Telemetry
 from ..chromium import FEW_FRAMES, browsers, leave
 from ..patience import PATIENCE_MS
 from ..unit.description import drawn
+from ..unit.kinds.test_places import PLANT as PARTS_AT_PLACES
+from ..unit.kinds.test_places import written
 from .conftest import SHIPPED, Process, paths
 
 pytestmark = [pytest.mark.system, pytest.mark.requires("chromium", "playwright", "xacro", "urdf_parser_py")]
@@ -275,6 +279,52 @@ def test_an_arm_of_ones_own_is_drawn_where_its_telemetry_puts_it(tmp_path: Path,
             lambda: same(page.evaluate("arboledaTwin.links()")["tender"], place.links(heard.last("tender")))
         )
         follow(place, heard.poses["tender"], [(at, robots["tender"]) for at, robots in kept()])
+
+
+def middle_of_part(tool: Sequence[float]) -> tuple[float, ...]:
+    """Where the middle of a part is that this frame of a tool takes."""
+    return tuple(tool[4 * row + 3] + tool[4 * row + 2] * PART_HEIGHT_M / 2 for row in range(3))
+
+
+def close_to(drawn: Sequence[Sequence[float]], wanted: Sequence[Sequence[float]]) -> bool:
+    return len(drawn) == len(wanted) and all(
+        any(math.dist(one, other) < ACCURACY for other in drawn) for one in wanted
+    )
+
+
+def test_parts_are_drawn_at_their_places_and_in_the_hand(tmp_path: Path, look: Any, look_flat: Any) -> None:
+    file = written(tmp_path, PARTS_AT_PLACES, 'take("rack_1"), put("nest")')
+    model = loader.load(file)
+    robot = Place(model, "mover")
+    (space,) = model.cells[0].spaces
+    tip = bodies.tip(bodies.read(robot_urdf(model, "mover")))
+
+    def at(name: str) -> tuple[float, ...]:
+        return middle_of_part(robot.links(tuple(space.targets[name].joints))[tip])
+
+    with running(tmp_path / "state", "--no-ros", "--plant", str(file)) as plant:
+        page = look(plant.page)
+        assert page.evaluate("arboledaTwin.parts()") == []
+        answer = page.request.post(f"{plant.page}/api/cells/lab/load", data={"place": "bin", "parts": 2})
+        assert answer.ok, answer.text()
+        wait_for(lambda: close_to(page.evaluate("arboledaTwin.parts()"), [at("bin")]))
+        labels = "[...document.querySelectorAll('.twin-labels span')].map(each => each.textContent)"
+        page.wait_for_function(f"{labels}.includes('bin: 2')")
+        drawn_now = "arboledaTwin.drawn()['books/lab'], arboledaTwin.links().mover"
+        kept = keep(page, f"[arboledaTwin.parts(), {drawn_now}]")
+        submit(page, "lab try")
+        wait_for(lambda: ended(page, 1), 40.0)
+        wait_for(lambda: close_to(page.evaluate("arboledaTwin.parts()"), [at("rack_2"), at("nest")]))
+        carried = 0
+        for _, (parts, books, links) in kept():
+            wanted = [at(name) for name, count in books["places"].items() if count]
+            if books["carriers"]:
+                wanted.append(middle_of_part(links[tip]))
+                carried += 1
+            assert close_to(parts, wanted)
+        assert carried > 3
+        flat = look_flat(plant.page)
+        wait_for(lambda: close_to(flat.evaluate("arboledaTwin.parts()"), [at("rack_2"), at("nest")]))
 
 
 def test_nothing_is_sent_to_a_page_that_shows_something_else(plant: Plant, look: Any) -> None:

@@ -33,6 +33,7 @@ from arboleda.simulator.world import World
 from arboleda.store.sqlite import IN_MEMORY, Store
 from arboleda.store.task_rows import TaskHistory
 from arboleda.views import view
+from arboleda.views.remembered import RestingCells
 from arboleda.web.api import make_app
 from arboleda.web.auth import Role
 
@@ -95,12 +96,12 @@ def _first_command(model: PlantModel) -> None:
 
 def views(cells: int) -> Iterator[Act]:
     """Views after one cell has changed."""
-    yard = Yard(_model(cells))
+    yard, resting = Yard(_model(cells)), RestingCells()
     out = begin_task(yard)
-    view.snapshot(yard.plant)
+    view.snapshot(yard.plant, resting.part)
     while not is_over(out):
         out = go_on(yard, command_in(out))
-        yield partial(view.snapshot, yard.plant)
+        yield partial(view.snapshot, yard.plant, resting.part)
 
 
 def recorded_steps() -> Iterator[Act]:

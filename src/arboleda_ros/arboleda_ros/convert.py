@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import cache
 
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Float32MultiArray, MultiArrayDimension, String, UInt8
@@ -39,7 +40,17 @@ COMMANDS: dict[type[Robot], tuple[type[Command], ...]] = {
 
 def commands_of(robot: Robot) -> tuple[type[Command], ...]:
     """The kinds of command a robot takes."""
-    return nearest(COMMANDS, type(robot)) or (Stop,)
+    return _taken_by(type(robot))
+
+
+def _taken_by(kind: type[Robot]) -> tuple[type[Command], ...]:
+    return nearest(COMMANDS, kind) or (Stop,)
+
+
+@cache
+def _topics(kind: type[Robot]) -> dict[str, type[Command]]:
+    """The commands that robots of a class take, by the last word of their plain topics."""
+    return {PLAIN[each]: each for each in _taken_by(kind)}
 
 
 def message_type(kind: type[Command]) -> type:
@@ -88,7 +99,7 @@ def labelled_command(robot: Robot, message: Float32MultiArray | String) -> tuple
     if isinstance(robot, Device):
         return order.read(robot, message.data)
     labels = [dim.label for dim in message.layout.dim]
-    topics = {PLAIN[kind]: kind for kind in commands_of(robot)}
+    topics = _topics(robot.__class__)
     if len(labels) < 2 or labels[1] not in topics:
         raise PayloadError(
             f"{robot.name}: the labels are {ascii(labels)[:60]}; id=<command id> and one of "

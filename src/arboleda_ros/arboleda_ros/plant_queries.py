@@ -11,6 +11,7 @@ from uuid import uuid4
 
 from arboleda.model.errors import ArboledaError
 from arboleda.model.messages import OperatorAnswer, OperatorRequest, Outcome, TaskChanged, TaskRequest, Verb
+from arboleda.model.verbs import from_text
 
 LOG = logging.getLogger("arboleda.ros")
 ANSWER_S = 1.0
@@ -36,11 +37,19 @@ class Asker:
         self._waiting: dict[str, Future[Any]] = {}
 
     def operate(self, verb: Verb, scope: str = "", **more: bool) -> tuple[bool, str]:
-        """Carry out an operator's verb; returns whether it was done or is under way, and a sentence."""
-        try:
-            answer = self._ask(
-                lambda token: OperatorRequest(at=self._clock(), verb=verb, scope=scope, request=token, **more)
+        """Carry out an operator's verb; returns whether it was done or is under way, and a sentence.
+
+        The scope of a message has the verb's arguments, as a person types them.
+        """
+        of, told = from_text(verb, scope)
+
+        def asked(token: str) -> OperatorRequest:
+            return OperatorRequest(
+                at=self._clock(), verb=verb, scope=of, arguments=told, request=token, **more
             )
+
+        try:
+            answer = self._ask(asked)
         except NoAnswer as error:
             return False, str(error)
         except Exception:  # a caller must not wait for an answer that never comes

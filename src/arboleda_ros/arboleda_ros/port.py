@@ -126,7 +126,9 @@ class Port:
         guarded = self._guarded(topic, handle)
         if speakers is None:
             return guarded, None
-        return speakers.guarded(topic, guarded), self._guarded(topic, partial(speakers.matched, topic))
+        repeats = handle.repeats if isinstance(handle, statuses.StatusListener) else None
+        on_match = self._guarded(topic, partial(speakers.matched, topic))
+        return speakers.guarded(topic, guarded, repeats), on_match
 
     def _listen_as_offered(
         self,

@@ -132,7 +132,7 @@ def _app(link: Link, name: str) -> App:
         recording=recording,
     )
     if values.get("standby"):
-        from arboleda.runtime.standby import take_over  # it shows a page, which no other start needs
+        from arboleda.runtime.standby.process import take_over  # it shows a page, which no other start needs
 
         return take_over(model, parts, options, LOG.info)
     return build(model, parts, options)

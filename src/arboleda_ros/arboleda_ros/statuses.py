@@ -57,12 +57,15 @@ class StatusListener:
         at = self._clock()
         self._on_report(self._again(at, data) or self._read(at, data))
 
+    def repeats(self, data: bytes) -> bool:
+        """True for a message with the words of the last one; its number may be another."""
+        return self._last is not None and data[: len(data) - self._tail] == self._words
+
     def _again(self, at: float, data: bytes) -> Report | None:
         """The last report once more, if a message has the same meaning; else None."""
-        end = len(data) - self._tail
-        if self._last is None or data[:end] != self._words:
+        if self._last is None or not self.repeats(data):
             return None
-        number = data[end:-1]
+        number = data[len(data) - self._tail : -1]
         if not self._tail:
             return self._last.again(at)
         allowed = number.isdigit() and int(number) <= UINT32  # any other is parsed and refused

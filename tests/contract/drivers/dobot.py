@@ -120,7 +120,8 @@ class PlayedDobot:
         self._unanswered: list[tuple[int | None, str]] = []  # in order, the number of a move among them
         self._goals: dict[int, tuple[float, ...]] = {}
         self._lock = threading.RLock()
-        self._began_s, self._numbers, self._homes = time.monotonic(), 0, True
+        # It has run for an hour, so that no boot within the test begins in the same second as this one.
+        self._began_s, self._numbers, self._homes = time.monotonic() - 3600, 0, True
         self._stop_word = HALT  # there is one line for both
         self._said = Feedback(mode=Mode.IDLE, command=0, joints_deg=(0.0,) * 6, time_ms=0, run_ms=0)
         self._quiet, self._ending = threading.Event(), threading.Event()
@@ -156,8 +157,9 @@ class PlayedDobot:
         self._quiet.set()
 
     def boots(self) -> None:
-        self._began_s, self._numbers = time.monotonic(), 0
-        self._say(mode=Mode.DISABLED, command=0)
+        with self._lock:  # no frame in between shows the new boot at work
+            self._began_s, self._numbers = time.monotonic(), 0
+            self._say(mode=Mode.DISABLED, command=0)
 
     def vanish(self) -> None:
         self._quiet.set()

@@ -17,6 +17,7 @@ from arboleda.core.leaving import stop_left
 from arboleda.core.text import alternatives, spelled
 from arboleda.model.messages import OperatorAnswer, Verb
 from arboleda.model.sentence import Phrase, Sentence
+from arboleda.model.verbs import Arguments
 from arboleda.store.oee_rows import OeeQuery
 from arboleda.store.task_rows import TaskQuery, TaskRow
 from arboleda.testing import shipped
@@ -133,8 +134,8 @@ class Plant:
             future.set_result(self.answer)
         return future
 
-    def operate(self, verb: Verb, scope: str, *, by_hand: bool = False) -> Future:
-        self.acts.append((verb, scope, by_hand))
+    def operate(self, verb: Verb, scope: str, *, by_hand: bool = False, arguments: Arguments = ()) -> Future:
+        self.acts.append((verb, scope, by_hand, *arguments))
         future: Future = Future()
         if self.unanswered is not None:
             self.unanswered.append(future)

@@ -16,7 +16,7 @@ from arboleda.store.oee_rows import OeeQuery
 from arboleda.store.task_rows import TaskQuery
 
 from ...patience import PATIENCE_S
-from .conftest import LATE, OFFERS, QUEUED, TASK, VIEW
+from .conftest import LATE, OFFER, OFFERS, QUEUED, TASK, VIEW
 
 
 def test_the_view_is_the_plant(web):
@@ -196,7 +196,9 @@ def test_a_plant_that_does_not_answer_is_said_to(web, plant, monkeypatch):
 def test_a_body_that_is_no_task_is_refused_with_a_sentence(web, plant, body):
     answer = web.post("/api/tasks", content=body, headers={"content-type": "application/json"})
     assert answer.status_code == 422
-    assert answer.json()["sentence"].startswith("The body must be JSON")
+    assert answer.json()["sentence"].startswith(
+        f'The body must be JSON like {{"text": "{OFFER["example"]}"}} or '
+    )
     assert plant.texts == []
 
 
@@ -234,16 +236,22 @@ def test_homed_by_hand_is_declared_in_the_body(web, plant, body, by_hand):
 @pytest.mark.parametrize(
     ("scope", "body", "meant"),
     [
-        ("ana", {"answer": "not yet"}, "ana not yet"),
-        ("ana", {"answer": "yes", "question": "1000-12"}, "ana #1000-12 yes"),
-        ("ana yes", None, "ana yes"),
-        ("ana #1000-12 yes", {}, "ana #1000-12 yes"),
+        ("ana", {"answer": "not yet"}, [("answer", "not yet")]),
+        ("ana", {"answer": "yes", "question": "1000-12"}, [("question", "1000-12"), ("answer", "yes")]),
+        ("ana yes", None, [("answer", "yes")]),
+        ("ana #1000-12 yes", {}, [("question", "1000-12"), ("answer", "yes")]),
     ],
 )
 def test_a_person_is_answered_by_arguments_or_within_the_address(web, plant, scope, body, meant):
     answer = web.post(f"/api/cells/{quote(scope)}/answer", json=body)
     assert (answer.status_code, answer.json()["scope"]) == (200, scope)
-    assert plant.acts == [(Verb.ANSWER, meant, False)]
+    assert plant.acts == [(Verb.ANSWER, "ana", False, *meant)]
+
+
+@pytest.mark.parametrize(("scope", "body"), [("sis_a", {"station": 7}), ("sis_a 7", None)])
+def test_a_station_is_unloaded_by_its_number_or_within_the_address(web, plant, scope, body):
+    assert web.post(f"/api/cells/{quote(scope)}/unload", json=body).status_code == 200
+    assert plant.acts == [(Verb.UNLOAD, "sis_a", False, ("station", 7))]
 
 
 @pytest.mark.parametrize(
@@ -251,6 +259,9 @@ def test_a_person_is_answered_by_arguments_or_within_the_address(web, plant, sco
     [
         ("hold", {"answer": "yes"}),
         ("answer", {"question": "1000-12"}),
+        ("answer", {"station": 7}),
+        ("unload", {"station": "7"}),
+        ("unload", {"station": -1}),
         ("answer", {"answer": ""}),
         ("answer", {"answer": "yes", "question": "1 no"}),
     ],

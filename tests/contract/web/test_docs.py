@@ -48,7 +48,7 @@ def test_every_verb_has_its_row_with_scope_deed_and_refusal(web: httpx.Client) -
     rows = re.findall(r"<tr><th>(\w+)</th>(.+?)</tr>", table)
     assert [word for word, _ in rows[1:]] == [verb.value for verb in Verb]
     cells = dict(rows)["cancel"]
-    assert "<td>cell, task id</td>" in cells and "<code>cancelled</code>" in cells
+    assert "<td>a cell, a task</td>" in cells and "<code>cancelled</code>" in cells
     assert page.count('<a href="#Verb">') == 2
 
 

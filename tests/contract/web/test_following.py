@@ -20,8 +20,8 @@ from arboleda.cli.line import PlantSilent
 from arboleda.cli.remote_plant import NoLeader, RemotePlant
 from arboleda.model.errors import ArboledaError
 from arboleda.model.messages import Verb
-from arboleda.runtime.leader import LeaderInfo
-from arboleda.runtime.parts.waiting_room import WaitingRoom
+from arboleda.runtime.standby.leader import LeaderInfo
+from arboleda.runtime.standby.waiting_room import WaitingRoom
 from arboleda.runtime.state import StateDir
 from arboleda.runtime.tokens import TOKENS as FILE
 from arboleda.runtime.web_options import WebOptions

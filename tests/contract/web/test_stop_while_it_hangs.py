@@ -32,19 +32,20 @@ class Robots:
 
 
 class Disk:
-    """A store whose next write hangs until it is let go on."""
+    """A store whose syncs hang once it `hangs`, until they are let go on."""
 
     def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        self.hangs = False
         self.reached, self.let_go = threading.Event(), threading.Event()
-        write = Store._write
+        sync = Store.sync
 
-        def slowly(store: Store, *statements: Any, durable: bool) -> None:
-            if statements[0][0].startswith("INSERT INTO task"):
+        def slowly(store: Store) -> None:
+            if self.hangs:
                 self.reached.set()
                 assert self.let_go.wait(PATIENCE_S)
-            write(store, *statements, durable=durable)
+            sync(store)
 
-        monkeypatch.setattr(Store, "_write", slowly)
+        monkeypatch.setattr(Store, "sync", slowly)
 
 
 @pytest.fixture
@@ -62,6 +63,7 @@ def app(tmp_path: Path, robots: Robots, disk: Disk) -> Iterator[App]:
     made = build(shipped("sis_a"), {"orchestrator", "web"}, Options(state_dir=tmp_path, page=False))
     made.plant.connect(robots)
     made.start()
+    disk.hangs = True
     made.plant.submit("sis_a 0B 1 #a")
     assert disk.reached.wait(PATIENCE_S)
     yield made

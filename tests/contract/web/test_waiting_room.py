@@ -11,8 +11,8 @@ import httpx
 import pytest
 
 from arboleda.runtime import tokens
-from arboleda.runtime.leader import LeaderInfo
-from arboleda.runtime.parts.waiting_room import WaitingRoom
+from arboleda.runtime.standby.leader import LeaderInfo
+from arboleda.runtime.standby.waiting_room import WaitingRoom
 from arboleda.runtime.web_options import WebOptions
 
 LED = LeaderInfo(plant="demo", host="host-a", process=7, url="http://10.0.0.5:8080", epoch=3)

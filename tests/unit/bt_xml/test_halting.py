@@ -39,6 +39,7 @@ class Context:
     def __init__(self) -> None:
         self.now = 0.0
         self.first: Failure | None = None
+        self.leaf = None
         self.time = self.failures = self
 
     def wake_at(self, at: float) -> None:
@@ -49,6 +50,9 @@ class Context:
 
     def forgive(self) -> None:
         self.first = None
+
+    def bring_back(self, failure: Failure, leaf: Behaviour | None = None) -> None:
+        self.first = failure
 
 
 class Acts(Behaviour):
@@ -206,6 +210,7 @@ IN_PYTHON = {
     "retry": lambda kit, *steps: kit.retry(parallel(*steps), pause_s=0.1),
     "repeat": lambda kit, *steps: kit.repeat(parallel(*steps), 2),
     "timeout": lambda kit, *steps: kit.timeout(parallel(*steps), 0.5),
+    "recover": lambda kit, *steps: kit.recover(steps[0], steps[1:]),
     "invert": lambda kit, *steps: kit.invert(parallel(*steps)),
 }
 NO_FRAMES = {

@@ -390,7 +390,7 @@ def test_a_drawn_plant_is_shrunk_with_its_faults_and_replayed_from_the_file(
 
 def _is_rich(plant: Plant) -> bool:
     """Whether there is much to leave out."""
-    return len(plant.declared.cells) == 2 and bool(plant.declared.zones)
+    return not plant.beside and len(plant.declared.cells) == 2 and bool(plant.declared.zones)
 
 
 REBOOT = {"kind": "reboot", "at": 3.25}

@@ -34,6 +34,22 @@ def test_the_folder_is_a_plant_that_does_its_task(tmp_path: Path) -> None:
     assert here.outcome().state.value == "done"
 
 
+@pytest.mark.parametrize(
+    ("step", "warning"),
+    [
+        ('loader.visit("press", loader.grip()),', "ends with 1 more at press of press than it began with"),
+        ("loader.visit(blank, loader.grip()),", "has loader let go of a part at feed, which is full already"),
+        ("machine.open(),", "has loader go to press where door of press is closed"),
+    ],
+)
+def test_a_step_that_is_left_out_of_its_recipe_is_told(tmp_path: Path, step: str, warning: str) -> None:
+    new(tmp_path)
+    recipes = tmp_path / "recipes.py"
+    recipes.write_text(recipes.read_text("utf-8").replace(step, ""), "utf-8")
+    result = CliRunner().invoke(cli, ["check", str(tmp_path / "plant.yaml")])
+    assert warning in " ".join(result.output.split())
+
+
 @pytest.mark.parametrize("page", ["README.md", "README.es.md"])
 def test_what_the_first_page_shows_of_it_is_in_it(tmp_path: Path, page: str) -> None:
     new(tmp_path / "my_plant")

@@ -85,7 +85,7 @@ def test_a_cell_that_is_stopped_is_told_to_be_reset(rig: Rig) -> None:
 def test_what_was_answered_to_the_task_that_runs_is_told() -> None:
     here = asking()
     assert "heard" not in drawn(here.snapshot(), 100)
-    assert here.operate(Verb.ANSWER, "ana yes") is None
+    assert here.operate(Verb.ANSWER, "ana", answer="yes") is None
     assert "tending heard: ana, Is the pallet full again?: yes" in drawn(here.snapshot(), 100)
 
 
@@ -102,7 +102,7 @@ def test_a_question_is_told_with_the_command_of_each_answer() -> None:
         f"arboleda answer {asked} ana yes",
         f"arboleda answer {asked} ana 'no parts left'",
     ]
-    assert here.operate(Verb.ANSWER, "ana yes") is None
+    assert here.operate(Verb.ANSWER, "ana", answer="yes") is None
     assert "is asked" not in drawn(here.snapshot(), 100)
 
 

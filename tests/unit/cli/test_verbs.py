@@ -12,22 +12,24 @@ from arboleda.cli import verbs
 from arboleda.cli.main import cli, main
 from arboleda.model.errors import ArboledaError, TextError
 from arboleda.model.messages import Verb
+from arboleda.model.verbs import Arguments
 from arboleda.views.verb_words import ABOUT
 
-NEED_A_SCOPE = [Verb.CANCEL, Verb.RETRY, Verb.ABANDON, Verb.RELEASE, Verb.HOME, Verb.OVERRIDE, Verb.ANSWER]
+OF_ONE_CELL = [Verb.CANCEL, Verb.RETRY, Verb.ABANDON, Verb.LOAD]
+NEED_A_SCOPE = [*OF_ONE_CELL, Verb.RELEASE, Verb.HOME, Verb.OVERRIDE, Verb.ANSWER]
 PLANT_WIDE = [verb for verb in Verb if verb not in NEED_A_SCOPE]
 
 
 class Notes(list):
-    """Stands for the plant: (verb, scope, by_hand) of every act."""
+    """Stands for the plant: (verb, scope, by_hand, *arguments) of every act."""
 
     def __init__(self) -> None:
         super().__init__()
         self.told: dict[str, object] = {}
         self.end: dict[str, object] = {}
 
-    def operate(self, verb: Verb, scope: str, *, by_hand: bool) -> dict[str, object]:
-        self.append((verb, scope, by_hand))
+    def operate(self, verb: Verb, scope: str, *, by_hand: bool, arguments: Arguments) -> dict[str, object]:
+        self.append((verb, scope, by_hand, *arguments))
         return {"verb": verb.value, "scope": scope, **self.told}
 
     def outcome(self, act: int) -> dict[str, object]:
@@ -80,7 +82,10 @@ def test_what_acts_on_one_thing_does_not_guess_which(acts: Notes, verb: Verb) ->
     assert acts == []
 
 
-@pytest.mark.parametrize("verb", [verb for verb in Verb if verb not in (Verb.OVERRIDE, Verb.ANSWER)])
+ASKS_MORE = (Verb.OVERRIDE, Verb.ANSWER, Verb.LOAD)
+
+
+@pytest.mark.parametrize("verb", [verb for verb in Verb if verb not in ASKS_MORE])
 def test_a_scope_is_passed_on(acts: Notes, verb: Verb) -> None:
     assert arboleda(verb.value, "sis_a")[0] == 0
     assert acts == [(verb, "sis_a", False)]
@@ -88,10 +93,24 @@ def test_a_scope_is_passed_on(acts: Notes, verb: Verb) -> None:
 
 def test_a_person_and_an_answer_are_passed_on(acts: Notes) -> None:
     assert arboleda("answer", "ana", "not", "yet")[0] == 0
-    assert acts == [(Verb.ANSWER, "ana not yet", False)]
+    assert acts == [(Verb.ANSWER, "ana", False, ("answer", "not yet"))]
     assert arboleda("answer", "ana")[0] == 2
     assert arboleda("answer", "--question", "1000-12", "ana", "yes")[0] == 0
-    assert acts[-1] == (Verb.ANSWER, "ana #1000-12 yes", False)
+    assert acts[-1] == (Verb.ANSWER, "ana", False, ("question", "1000-12"), ("answer", "yes"))
+
+
+@pytest.mark.parametrize("words", [("sis_a", "7"), ("sis_a 7",)])
+def test_a_station_is_passed_on(acts: Notes, words: tuple[str, ...]) -> None:
+    assert arboleda("unload", *words) == (0, "done: unload, sis_a 7\n")
+    assert acts == [(Verb.UNLOAD, "sis_a", False, ("station", 7))]
+
+
+def test_a_place_and_a_number_of_parts_are_passed_on(acts: Notes) -> None:
+    assert arboleda("unload", "lab", "nest") == (0, "done: unload, lab nest\n")
+    assert arboleda("load", "lab", "bin", "3") == (0, "done: load, lab bin 3\n")
+    emptied = (Verb.UNLOAD, "lab", False, ("place", "nest"))
+    assert acts == [emptied, (Verb.LOAD, "lab", False, ("place", "bin"), ("parts", 3))]
+    assert arboleda("load", "lab")[0] == 2
 
 
 @pytest.mark.parametrize("scope", ["", " "])

@@ -221,11 +221,30 @@ def test_a_cell_that_raises_on_its_own_is_held_and_the_others_advance(
         return broken_rule() or False if run.cell.name == "sis_a" else sound(run, woken=woken)
 
     monkeypatch.setattr(CellRun, "advance", broken)
+    plant.submit("sis_a 1C 3")
     plant.submit("sis_b 1C 3")
     plant.wait(1.0)
     assert cell_of(plant, "sis_a").state is CellState.HELD
     assert [path.robot for path in plant.commands(FollowPath)] == ["rm_sis_b"]
     assert len(plant.commands(InternalError)) == 1
+
+
+def test_a_task_is_the_business_of_the_cell_that_takes_it(
+    hand: Make, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    plant = hand(Evidence.IDS)
+    plant.awake()
+    sound, advanced = CellRun.advance, set()
+
+    def noted(run: CellRun, *, woken: bool) -> bool:
+        advanced.add(run.cell.name)
+        return sound(run, woken=woken)
+
+    monkeypatch.setattr(CellRun, "advance", noted)
+    before = dict(plant.plant.revisions)
+    plant.submit("sis_b 1C 3")
+    changed = {name for name, number in plant.plant.revisions.items() if number != before[name]}
+    assert advanced == changed == {"sis_b"}
 
 
 def test_cells_that_never_come_to_rest_are_held(hand: Make, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -97,7 +97,9 @@ class Desk:
     def shown(self) -> list[Any]:
         """All that came of it."""
         desk, ledger = self.dispatcher, self.dispatcher.ledger
-        beliefs = [{**vars(belief), "robot": None, "_said": ()} for belief in desk.beliefs.values()]
+        beliefs = [
+            {**vars(belief), "robot": None, "_said": (), "repeats": 0} for belief in desk.beliefs.values()
+        ]
         entries = [
             (id, entry.state, entry.deadline, vars(entry.seen)) for id, entry in ledger.entries.items()
         ]

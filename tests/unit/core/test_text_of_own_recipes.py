@@ -113,6 +113,22 @@ def test_a_recipe_that_another_cell_offers_is_refused() -> None:
         parse("sis_b paint red 1001", split)
 
 
+def test_a_task_without_a_recipe_is_shown_the_form_of_its_own_cell() -> None:
+    model = shipped("sis_a", "sis_b")
+    first, second = model.cells
+    split = replace(
+        model, cells=(replace(first, recipes=(PAINT, REST)), replace(second, recipes=(REST, PAINT)))
+    )
+    second_alone = replace(model, cells=(first, replace(second, recipes=(REST,))))
+    with pytest.raises(TextError, match=r"there are rest; write <arm or cell> rest, e\.g\. sis_b rest$"):
+        parse("sis_b", second_alone)
+    with pytest.raises(TextError) as refused:
+        spelled(split, cell="sis_a")
+    form = "write <cell> paint <colour> <program>, e.g. sis_a paint red 1002, or <arm or cell> rest"
+    named = '{"cell": "sis_a", "recipe": "paint", "values": {"colour": "red", "program": 1002}}'
+    assert str(refused.value).endswith(f"there are paint, rest; {form}, or as JSON {named}")
+
+
 def test_named_values_are_spelled_in_their_order() -> None:
     here = plant(PAINT, REST)
     values = {"program": 1002, "colour": "RED"}

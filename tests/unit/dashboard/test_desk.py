@@ -16,6 +16,7 @@ from arboleda.dashboard.feed import Feed
 from arboleda.dashboard.wording import words
 from arboleda.model.messages import OperatorAnswer, Outcome, Verb
 from arboleda.model.sentence import OWN
+from arboleda.model.verbs import Arguments
 from arboleda.web.auth import Role
 
 WHY = OWN(text="jaw: it is stuck")
@@ -41,10 +42,12 @@ class Plant:
 
     def __init__(self, rows: list[Any] | None = None, **told: Any) -> None:
         self.told, self.rows = told, rows or []
-        self.heard: list[tuple[Verb, str, bool]] = []
+        self.heard: list[tuple[Any, ...]] = []
 
-    def operate(self, verb: Verb, scope: str, *, by_hand: bool = False) -> Future[OperatorAnswer]:
-        self.heard.append((verb, scope, by_hand))
+    def operate(
+        self, verb: Verb, scope: str, *, by_hand: bool = False, arguments: Arguments = ()
+    ) -> Future[OperatorAnswer]:
+        self.heard.append((verb, scope, by_hand, *arguments))
         answer: Future[OperatorAnswer] = Future()
         answer.set_result(OperatorAnswer(verb=verb, scope=scope, **self.told))
         return answer
@@ -53,10 +56,12 @@ class Plant:
         return self.rows.pop(0)
 
 
-def shown(plant: Plant, *, by_hand: bool = False) -> list[tuple[str, bool | None]]:
+def shown(
+    plant: Plant, *, act: str = "release", of: str = "jaw", more: object = False
+) -> list[tuple[str, bool | None]]:
     browser = Browser()
     its: Any = Desk(browser, plant, Feed(plant), words("en"))  # type: ignore[arg-type]
-    asyncio.run(its.asked("release", "jaw", by_hand))
+    asyncio.run(its.asked(act, of, more))
     return browser.shown
 
 
@@ -88,8 +93,22 @@ def test_an_act_that_the_plant_has_forgotten_is_followed_no_more() -> None:
 
 def test_what_was_done_by_hand_is_called_so() -> None:
     plant = Plant(act=7, outcome=Outcome.DONE)
-    assert shown(plant, by_hand=True) == [("Done: Part taken out by hand, jaw.", True)]
+    assert shown(plant, more=True) == [("Done: Part taken out by hand, jaw.", True)]
     assert plant.heard == [(Verb.RELEASE, "jaw", True)]
+
+
+def test_an_answer_goes_to_its_question_and_is_told_without_the_id() -> None:
+    plant = Plant(act=7, outcome=Outcome.DONE)
+    told = {"question": "1000-12", "answer": "yes"}
+    assert shown(plant, act="answer", of="ana", more=told) == [("Done: Answer, ana yes.", True)]
+    assert plant.heard == [(Verb.ANSWER, "ana", False, ("question", "1000-12"), ("answer", "yes"))]
+
+
+@pytest.mark.parametrize("more", [{"station": "7"}, {"answer": "yes"}, ["station", 7], "7", None])
+def test_what_is_no_argument_of_a_verb_does_not_reach_the_plant(more: object) -> None:
+    plant = Plant(act=7, outcome=Outcome.DONE)
+    shown(plant, act="unload", of="sis_a", more=more)
+    assert plant.heard == [(Verb.UNLOAD, "sis_a", False)]
 
 
 def test_a_refusal_says_why() -> None:

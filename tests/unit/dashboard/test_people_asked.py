@@ -33,9 +33,9 @@ def test_the_card_shows_the_question_its_time_and_a_button_for_each_answer(here:
     assert face["text/asked.ana"][0] == "Is the pallet full again?"
     assert face["text/asked_left.ana"][0] == "50 s left to answer"
     asked = question(here)["id"]
-    assert [(each["act"], each["of"], each["label"]) for each in offers(here)] == [
-        ("answer", f"ana #{asked} yes", "yes"),
-        ("answer", f"ana #{asked} no parts left", "no parts left"),
+    assert [(each["act"], each["of"], each["label"], each["arguments"]) for each in offers(here)] == [
+        ("answer", "ana", "yes", {"question": asked, "answer": "yes"}),
+        ("answer", "ana", "no parts left", {"question": asked, "answer": "no parts left"}),
     ]
     assert 'Answers "yes" to: Is the pallet full again?' in offers(here)[0]["does"]
 
@@ -53,7 +53,7 @@ def test_time_that_goes_by_does_not_announce_the_question_or_draw_its_buttons_ag
 
 
 def test_a_button_gives_its_answer_and_the_question_is_gone(here: Told) -> None:
-    assert here.operate(Verb.ANSWER, offers(here)[1]["of"]) is None
+    assert here.operate(Verb.ANSWER, offers(here)[1]["of"], **offers(here)[1]["arguments"]) is None
     face = here.face()
     assert face["rows/answers.ana"] == []
     assert {face[f"text/{key}.ana"][0] for key in ("asked_who", "asked", "asked_left")} == {""}
@@ -66,7 +66,7 @@ def test_title_and_header_tell_who_is_waited_for_as_a_wait(here: Told) -> None:
     assert face["text/sum"] == ["waits for ana", "execute"]
     assert face["row/counts/execute"]["texts"] == ["working (execute): 1"]
     assert here.face("es")["text/title"][0] == "? tending: espera a ana - shop"
-    assert here.operate(Verb.ANSWER, "ana yes") is None
+    assert here.operate(Verb.ANSWER, "ana", answer="yes") is None
     assert here.face()["text/title"] == ["shop", "well"]
     assert here.face()["text/needs"][0] == ""
 

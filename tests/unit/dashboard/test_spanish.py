@@ -12,7 +12,7 @@ from arboleda.dashboard.wording import flat, tree_of, words
 from arboleda.recipes.authoring import CHOOSE, FAIL, FALLBACK, IS, NO_OTHER, PARALLEL, WAIT
 from arboleda.recipes.decorators import INVERT, REPEAT, RETRY, TIMEOUT, TRY
 from arboleda.recipes.handles import BECOMES, DOING, SAYS
-from arboleda.recipes.sharing import WORK
+from arboleda.recipes.holding import WORK
 from arboleda.testing.sim import Sim
 
 ROOT = Path(__file__).parents[3]

@@ -149,7 +149,7 @@ def test_spanish_frees_zones_and_nothing_else() -> None:
     """ "Liberar" is the override of a zone; a latch is "desenclavar", a part "soltar"."""
     frees = {key for key, text in spanish().items() if "liber" in text.lower()}
     about_zones = {"zone.not_quarantined", "refusal.still_works", "refusal.still_uses"}
-    assert frees == about_zones | {key for key in spanish() if "overrid" in key and key != "js.override_seen"}
+    assert frees == about_zones | {key for key in spanish() if "overrid" in key and key != "asks.override"}
 
 
 def test_nothing_about_the_stop_can_be_read_as_for_or_as_stops() -> None:

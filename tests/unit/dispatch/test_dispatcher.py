@@ -82,6 +82,20 @@ def test_at_joints_a_switch_of_a_fact_that_is_told_does_not_settle(make: type, *
     assert (entry.state is State.DONE) is settles
 
 
+@pytest.mark.parametrize("late_s", [1.0, 20.0])  # the second is past the deadline
+def test_what_left_late_settles_from_when_it_left(late_s: float) -> None:
+    dispatcher = Dispatcher(shipped("sis_a", evidence=Evidence.JOINTS), EPOCH, {})
+    dispatcher.report(Report(at=100.0, **STILL, effector=False), 100.0)
+    entry = dispatcher.send(partial(Switch, robot="ra1"), "sis_a", "switching", 100.1)
+    dispatcher.left_late(entry.command.id, late_s)
+    dispatcher.report(Report(at=100.1 + late_s, **STILL, effector=False), 100.1 + late_s)
+    states = []
+    for at in (100.25 + late_s, 100.35 + late_s):
+        dispatcher.expire(at, at)
+        states.append(entry.state)
+    assert states == [State.SENT, State.DONE]
+
+
 def test_a_robot_that_is_back_is_stopped_once_and_not_by_a_word_of_only_where_it_stands(
     latched: Dispatcher,
 ) -> None:

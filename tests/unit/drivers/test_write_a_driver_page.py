@@ -1,96 +1,84 @@
-"""The page on drivers: what it shows works, and `check` says what it says."""
+"""docs/how-to/write-a-driver.md: its driver of a device without ids says what the device truly did."""
 
 from __future__ import annotations
 
-import shutil
 from pathlib import Path
+from textwrap import indent
+from types import SimpleNamespace
+from typing import Any
 
 import pytest
 
-import arboleda.drivers as public
-from arboleda.drivers.supervisor import FIRST_RETRY_S, LAST_RETRY_S
-from arboleda.model.errors import ConfigError
-from arboleda.model.messages import Report
-from arboleda.model.plant_model import Link, MotionState
-from arboleda.plant_file import loader
+from arboleda import drivers
+from arboleda.drivers import MotionState, Report, Stop, StopMode
 
-from ..kinds.station import STATION, plant
+PAGES = Path(__file__).parents[3] / "docs" / "how-to"
+BEFORE = """
+class Page:
+    work = accepted = done = None
+    begun = finishes = False
 
-ROOT = Path(__file__).parents[3]
-PAGE = (ROOT / "docs/how-to/write-a-driver.md").read_text("utf-8")
-EXAMPLE = ROOT / "examples/own_driver"
-CODE = PAGE.split("```python\n")[1].partition("```")[0]
-USE = PAGE.split("```yaml\n")[1].partition("```")[0]
+    def __init__(self):
+        self.said, self.written = [], []
+        self.hear, self.write = self.said.append, self.written.append
+        self.clock = lambda: 1.0
+        self.device = SimpleNamespace(name="press")
 
-
-@pytest.fixture
-def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """A copy of the example, where the commands of the page are typed."""
-    shutil.copytree(EXAMPLE, tmp_path / "shop")
-    monkeypatch.chdir(tmp_path / "shop")
-    return tmp_path / "shop"
+"""
 
 
-def test_the_driver_of_the_page_is_one_and_its_device_is_heard(folder: Path) -> None:
-    Path("drivers/my_plc.py").write_text(CODE, "utf-8")
-    text = (
-        Path("plant.yaml")
-        .read_text("utf-8")
-        .replace("line_tcp.py", "my_plc.py")
-        .replace("line_tcp:", "my_plc:")
-    )
-    Path("plant.yaml").write_text(text, "utf-8")
-    use = loader.load(Path("plant.yaml")).robots["press"].driver
-    assert use is not None
-    driver, heard = use.make(), list[Report]()
-    driver.start(tuple(plant().robots.values()), heard.append, lambda: 5.0)
-    warm = STATION.command(id="9-1", robot="station", verb="warm", values={"celsius": 40.0})
-    with pytest.raises(public.NotSent, match="the PLC knows no"):
-        driver.send(warm)
-    driver.send(public.Stop(id="9-2", robot="station", mode=public.StopMode.HALT))
-    assert [(each.state, each.accepted) for each in heard] == [
-        (MotionState.STOPPED, None),
-        (MotionState.STOPPED, "9-2"),
-    ]
+def page(name: str) -> Any:
+    """The driver of the page, in which the plant hears nothing and nothing leaves."""
+    text = (PAGES / name).read_text("utf-8")
+    code = next(part for part in text.split("```python\n") if part.startswith("def send"))
+    known: dict[str, Any] = {name: getattr(drivers, name) for name in drivers.__all__}
+    known |= {
+        "SimpleNamespace": SimpleNamespace,
+        "WORDS": {"press": "P"},
+        "STOPS": dict.fromkeys(StopMode, "S"),
+    }
+    exec(BEFORE + indent(code.partition("```")[0], "    "), known)
+    return known["Page"]()
 
 
-def test_the_plant_file_of_the_page_is_that_of_the_example(folder: Path) -> None:
-    text = Path("plant.yaml").read_text("utf-8")
-    head, _, _ = text.partition("cells:")
-    _, _, cells = USE.partition("cells:")
-    assert USE.splitlines()[0] in head
-    Path("plant.yaml").write_text(f"{head}cells:{cells}", "utf-8")
-    assert loader.load(Path("plant.yaml")).robots["press"].link is Link.DRIVER
+def press(id: str, on_stop: str = "halt") -> Any:
+    return SimpleNamespace(id=id, verb="press", on_stop=SimpleNamespace(value=on_stop))
 
 
-def test_check_says_of_mistakes_what_the_page_says(folder: Path) -> None:
-    head, _, _ = Path("plant.yaml").read_text("utf-8").partition("cells:")
-    _, _, cells = USE.partition("cells:")
-    found = []
-    good = Path("drivers/line_tcp.py").read_text("utf-8")
-    for plc, driver in (("prt: 1, ", good), ("", good.replace("    def stop(", "    def end("))):
-        rest = f"cells:{cells}kinds:{head.partition('kinds:')[2]}"
-        text = f"uses: [recipes.py, drivers/line_tcp.py]\nname: shop\n{rest}"
-        Path("plant.yaml").write_text(text.replace("{host:", "{" + plc + "host:"), "utf-8")
-        Path("drivers/line_tcp.py").write_text(driver, "utf-8")
-        with pytest.raises(ConfigError) as refusal:
-            loader.load(Path("plant.yaml"))
-        found += refusal.value.problems
-    lines = PAGE.splitlines()
-    assert [problem for problem in found if problem.partition(": ")[2] not in PAGE] == [], found
-    assert all(any(line.partition(": ")[2] == each.partition(": ")[2] for line in lines) for each in found)
+def said(driver: Any, busy: bool) -> tuple[MotionState, str | None, str | None]:
+    driver.heard(busy, ())
+    report: Report = driver.said[-1]
+    return report.state, report.accepted, report.done
 
 
-def test_the_page_names_all_that_is_public_and_the_times_that_there_are() -> None:
-    assert [name for name in public.__all__ if name not in PAGE and name not in UNSAID] == []
-    assert f"after {FIRST_RETRY_S:g} s" in PAGE and f"up to {LAST_RETRY_S:g} s" in PAGE
+STOPPED, MOVING = MotionState.STOPPED, MotionState.MOVING
 
 
-UNSAID = (
-    "Clock",
-    "Driver",
-    "DriverError",
-    "Hear",
-    "Robot",
-    "StopMode",
-)  # types for annotations, and modes by name
+@pytest.fixture(params=["write-a-driver.md", "write-a-driver.es.md"])
+def driver(request: pytest.FixtureRequest) -> Any:
+    return page(request.param)
+
+
+def test_what_stands_still_since_before_is_not_done(driver: Any) -> None:
+    driver.send(press("1-1"))
+    assert driver.written == ["P"]
+    assert said(driver, busy=False) == (STOPPED, None, None)
+    assert said(driver, busy=True) == (MOVING, "1-1", None)
+    assert said(driver, busy=False) == (STOPPED, "1-1", "1-1")
+    driver.send(press("1-2"))
+    assert said(driver, busy=False) == (STOPPED, "1-1", "1-1")
+
+
+def test_what_was_halted_is_never_done(driver: Any) -> None:
+    driver.send(press("1-1"))
+    said(driver, busy=True)
+    driver.send(Stop(id="1-2", robot="press", mode=StopMode.HALT))
+    assert said(driver, busy=False) == (STOPPED, "1-2", None)
+
+
+def test_what_finishes_is_done_in_spite_of_a_stop(driver: Any) -> None:
+    driver.send(press("1-1", "finish"))
+    said(driver, busy=True)
+    driver.send(Stop(id="1-2", robot="press", mode=StopMode.LATCH))
+    assert said(driver, busy=True) == (MOVING, "1-2", None)
+    assert said(driver, busy=False) == (STOPPED, "1-2", "1-1")

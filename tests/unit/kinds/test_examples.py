@@ -189,7 +189,7 @@ class Shop(Bench):
                 answers = asked.answers
                 assert set(answers) == tried(self.case.folder, asked.robot, answers) & set(answers)
                 word = self.case.answers.get(asked.robot, answers[0])
-                assert self.operate(Verb.ANSWER, f"{asked.robot} {word}") is None
+                assert self.operate(Verb.ANSWER, asked.robot, answer=word) is None
         return self.changes[-1].state
 
     @property

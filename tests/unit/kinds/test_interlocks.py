@@ -81,6 +81,8 @@ def test_an_arm_does_not_reach_behind_a_door_that_nobody_knows_to_be_open() -> N
     assert here.plant.zones.holder("vise") == "mill"
     here.submit("tending machine")
     assert here.outcome().reason is Reason.ZONE_UNAVAILABLE
+    kept = "zone vise was not free within 10 s: mill keeps it as long as it does not report door open"
+    assert kept in str(here.changes[-1].sentence)
     assert here.machines["mill"].facts["door"] == "closed"
 
 

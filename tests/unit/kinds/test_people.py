@@ -63,7 +63,7 @@ def test_a_question_is_open_for_no_longer_than_is_left_of_it() -> None:
 
 def test_the_task_goes_on_with_the_answer() -> None:
     here = asking()
-    assert here.operate(Verb.ANSWER, "ana Yes") is None
+    assert here.operate(Verb.ANSWER, "ana", answer="Yes") is None
     assert question(here) is None
     assert here.outcome().state.value == "done"
     assert str(here.plant.acts[-1].sentence) == "answer ana yes"
@@ -78,14 +78,14 @@ def test_an_answer_may_have_any_letters(word: str) -> None:
     here = Bench(attended(full))
     here.submit("tending full")
     assert here.wait(10.0, lambda: question(here) is not None)
-    assert here.operate(Verb.ANSWER, f"ana {word}") is None
+    assert here.operate(Verb.ANSWER, "ana", answer=word) is None
     assert here.outcome().state.value == "done"
 
 
 def test_what_was_answered_is_kept_with_the_task() -> None:
     here = asking()
     assert view.task_by_id(here.plant, "t-1000-1")["answers"] == []  # type: ignore[index]
-    assert here.operate(Verb.ANSWER, "ana Yes") is None
+    assert here.operate(Verb.ANSWER, "ana", answer="Yes") is None
     answers = [{"by": "ana", "asked": "Is the pallet full again?", "answer": "yes"}]
     (cell,) = view.snapshot(here.plant)["cells"]
     assert cell["task"]["answers"] == answers
@@ -96,7 +96,7 @@ def test_what_was_answered_is_kept_with_the_task() -> None:
 
 def test_a_task_has_the_answers_of_its_own() -> None:
     here = asking()
-    assert here.operate(Verb.ANSWER, "ana yes") is None
+    assert here.operate(Verb.ANSWER, "ana", answer="yes") is None
     here.outcome()
     here.submit("tending refill")
     assert here.wait(10.0, lambda: question(here) is not None)
@@ -114,7 +114,7 @@ def test_of_very_many_answers_the_last_ones_are_kept() -> None:
 
 def test_who_was_asked_is_no_robot_that_was_left_moving() -> None:
     here = asking()
-    assert here.operate(Verb.ANSWER, "ana yes") is None
+    assert here.operate(Verb.ANSWER, "ana", answer="yes") is None
     assert here.outcome().state.value == "done"
     lines = parting(view.snapshot(here.plant))
     assert "left: still, effector off" in lines
@@ -123,33 +123,33 @@ def test_who_was_asked_is_no_robot_that_was_left_moving() -> None:
 
 def test_another_answer_is_another_way() -> None:
     here = asking()
-    assert here.operate(Verb.ANSWER, "ana no parts left") is None
+    assert here.operate(Verb.ANSWER, "ana", answer="no parts left") is None
     assert str(here.outcome().sentence) == "there are no parts left"
 
 
 @pytest.mark.parametrize(
-    ("scope", "sentence"),
+    ("person", "word", "sentence"),
     [
-        ("ana maybe", "'maybe' is no answer to what ana is asked; answers: yes, no parts left"),
-        ("ana", "'' is no answer to what ana is asked; answers: yes, no parts left"),
-        ("left yes", "'left' is no person of this plant; people: ana"),
+        ("ana", "maybe", "'maybe' is no answer to what ana is asked; answers: yes, no parts left"),
+        ("ana", "", "'' is no answer to what ana is asked; answers: yes, no parts left"),
+        ("left", "yes", "'left' is no person of this plant; people: ana"),
     ],
 )
-def test_a_wrong_answer_changes_nothing_and_says_what_is_allowed(scope: str, sentence: str) -> None:
+def test_a_wrong_answer_changes_nothing_and_says_what_is_right(person: str, word: str, sentence: str) -> None:
     here = asking()
-    assert here.operate(Verb.ANSWER, scope) == sentence
+    assert here.operate(Verb.ANSWER, person, answer=word) == sentence
     assert question(here) is not None
 
 
 def test_who_is_asked_nothing_answers_nothing() -> None:
     here = Bench(attended(refill))
-    assert here.operate(Verb.ANSWER, "ana yes") == "nobody asks ana anything now"
+    assert here.operate(Verb.ANSWER, "ana", answer="yes") == "nobody asks ana anything now"
 
 
 def test_a_question_that_nobody_answers_ends() -> None:
     here = asking()
     assert here.outcome().reason is Reason.DEADLINE
-    assert here.operate(Verb.ANSWER, "ana yes") == "nobody asks ana anything now"
+    assert here.operate(Verb.ANSWER, "ana", answer="yes") == "nobody asks ana anything now"
 
 
 def test_a_question_is_forgotten_when_its_task_is_cancelled() -> None:
@@ -166,7 +166,7 @@ def test_a_question_stays_while_the_cell_is_held() -> None:
     assert question(here) is not None
     told = "tending is held (by the operator); ana has a question to answer first"
     assert str(reasons.of_hold(here.plant.cells["tending"])) == told
-    assert here.operate(Verb.ANSWER, "ana yes") is None
+    assert here.operate(Verb.ANSWER, "ana", answer="yes") is None
     assert not any("ana" in each.moves for each in here.plant.advice("tending"))
     assert here.operate(Verb.RESUME, "tending") is None
     assert here.outcome().state.value == "done"
@@ -217,15 +217,15 @@ def twice(cell: Kit):  # type: ignore[no-untyped-def]
 def test_an_answer_to_a_question_that_is_over_is_none_to_the_next_one() -> None:
     here = asking(twice)
     first = question(here)["id"]
-    assert here.operate(Verb.ANSWER, f"ana #{first} yes") is None
+    assert here.operate(Verb.ANSWER, "ana", question=first, answer="yes") is None
     assert str(here.plant.acts[-1].sentence) == "answer ana yes"
     assert here.wait(1.0, lambda: question(here) is not None)
-    late = here.operate(Verb.ANSWER, f"ana #{first} yes")
+    late = here.operate(Verb.ANSWER, "ana", question=first, answer="yes")
     assert late == f"question {first} to ana is over; now it is asked: Open the door?"
     assert question(here)["text"] == "Open the door?"
-    assert here.operate(Verb.ANSWER, "ana yes") is None  # the short form is for what is asked now
+    assert here.operate(Verb.ANSWER, "ana", answer="yes") is None  # the short form is for what is asked now
     assert here.outcome().state.value == "done"
-    over = here.operate(Verb.ANSWER, f"ana #{first} yes")
+    over = here.operate(Verb.ANSWER, "ana", question=first, answer="yes")
     assert over == f"question {first} to ana is over; nobody asks ana anything now"
 
 
@@ -236,8 +236,8 @@ def test_an_answer_may_begin_with_what_is_no_id() -> None:
 
     here = asking(numbers)
     asked = question(here)["id"]
-    assert here.operate(Verb.ANSWER, "ana #2") is not None
-    assert here.operate(Verb.ANSWER, f"ana #{asked} #1-2 x") is None
+    assert here.operate(Verb.ANSWER, "ana", answer="#2") is not None
+    assert here.operate(Verb.ANSWER, "ana", question=asked, answer="#1-2 x") is None
     assert here.outcome().state.value == "done"
 
 
@@ -252,7 +252,7 @@ def test_a_task_that_waits_long_for_an_answer_is_not_nearly_done() -> None:
     here.submit("tending look")
     assert here.wait(30.0, lambda: question(here) is not None)
     here.wait(2.0)
-    here.operate(Verb.ANSWER, "ana yes")
+    here.operate(Verb.ANSWER, "ana", answer="yes")
     here.outcome()
     (course,) = (task.course for task in here.plant.intake.tasks.values())
     assert course is not None
@@ -263,6 +263,6 @@ def test_a_task_that_waits_long_for_an_answer_is_not_nearly_done() -> None:
     (promised,) = here.plant.prospects("tending look")
     assert promised.seconds - course.seconds == pytest.approx(after_answer_s)
     asked_at = here.plant.now
-    here.operate(Verb.ANSWER, "ana yes")
+    here.operate(Verb.ANSWER, "ana", answer="yes")
     here.outcome()
     assert here.plant.now - asked_at == pytest.approx(after_answer_s, abs=0.5)

@@ -18,6 +18,7 @@ from arboleda.model.sentence import NOTHING
 from arboleda.recipes import Kit, parallel, recipe, work
 from arboleda.recipes.errors import RecipeError
 from arboleda.testing.following import advised, follow, works
+from arboleda.trees.tree_run import step_of
 
 from .lab import Bench
 from .tending import IDS, LAMP
@@ -234,6 +235,23 @@ def test_two_stops_keep_it_until_both_are_cleared() -> None:
     assert follow(here, "below") == ["reset above", "resume below"]
 
 
+def test_a_clear_that_got_lost_is_given_again(monkeypatch: pytest.MonkeyPatch) -> None:
+    here = Bench(plant())
+    here.wait(1.0)
+    here.operate(Verb.STOP, "below")
+    here.wait(1.0)
+    with monkeypatch.context() as deaf:
+        deaf.setattr(here.boards["lift"], "receive", lambda now_us, event: None)
+        assert here.operate(Verb.CLEAR, "below") is None
+        here.wait(0.5)
+    here.wait(2.0)
+    assert here.plant.cells["below"].state is CellState.CLEARING
+    assert here.operate(Verb.CLEAR, "below") is None
+    here.wait(2.0)
+    assert here.plant.cells["below"].state is CellState.STOPPED
+    assert not here.boards["lift"].latched
+
+
 def test_the_stop_of_the_whole_plant_is_cleared_at_once() -> None:
     here = riding()
     for verb in (Verb.STOP, Verb.CLEAR, Verb.RESET, Verb.RESUME):
@@ -287,6 +305,14 @@ def test_what_a_cell_had_before_a_restart_is_nobodys_before_it_is_heard() -> Non
     assert again.zones.is_quarantined("lift")
 
 
+def test_after_a_restart_it_is_of_the_cell_that_got_it_while_it_waited_for_it() -> None:
+    here = riding()
+    here.submit("above ride")
+    assert here.wait(30.0, lambda: holder(here) == "above")
+    again = Plant(here.model, epoch=9, now=0.0, memory=here.memory)
+    assert again.zones.holder("lift") == "above"
+
+
 def test_a_recipe_can_say_itself_how_long_it_needs_it() -> None:
     @recipe("twice")
     def twice(cell: Kit):  # type: ignore[no-untyped-def]
@@ -296,6 +322,8 @@ def test_a_recipe_can_say_itself_how_long_it_needs_it() -> None:
     here = Bench(plant(twice))
     here.submit("below twice")
     assert here.wait(10.0, lambda: holder(here) == "below")
+    here.wait(0.5)
+    assert str(step_of(here.plant.cells["below"].tree)) == "lift up"
     assert here.wait(5.0, lambda: holder(here) is None)
     assert here.boards["lift"].body.facts["at"] == "high"  # type: ignore[attr-defined]
     assert here.wait(10.0, ended(here, "below"))

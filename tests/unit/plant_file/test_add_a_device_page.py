@@ -49,7 +49,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 def test_check_says_of_the_example_what_the_page_says(folder: Path) -> None:
     outcome = CliRunner().invoke(cli, ["check", "examples/lab_bench/plant.yaml"])
-    assert outcome.exit_code == 0 and outcome.output.strip() in DEVICE.splitlines()
+    assert outcome.exit_code == 0 and outcome.output in DEVICE
 
 
 def test_the_plant_of_the_page_is_one_and_its_mistakes_are_told(folder: Path) -> None:

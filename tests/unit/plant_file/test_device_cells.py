@@ -70,6 +70,12 @@ MISTAKES = {  # id: (text, put in its place, the sentence starts with, and has i
         "5:43: ",
         "int, number, text, bool or a list of words or numbers, is 7",
     ),
+    "limits": (
+        "clamped: bool",
+        "clamped: {min: 0, max: 1}",
+        "5:43: ",
+        "is a mapping; a number with limits is of a kind in Python: Number(1, 60)",
+    ),
     "no words": ("[open, closed]", "[]", "5:18: kinds.oven.facts.lid", "must have at least 1 value, has 0"),
     "words twice": ("[open, closed]", "[open, open]", "5:25: ", '"open" is there twice'),
     "words and numbers": ("[open, closed]", "[open, 1]", "5:18: ", "all words or all numbers"),

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from itertools import pairwise
 from pathlib import Path
+from typing import Any
 from xml.etree import ElementTree
 
 import pytest
@@ -13,6 +14,7 @@ from typer.testing import CliRunner
 from arboleda.cli.main import cli
 from arboleda.dashboard.twin import bodies, kinematics
 from arboleda.dashboard.twin.bodies import Body
+from arboleda.dashboard.twin.kinematics import Point
 from arboleda.model.plant_model import MotionState, PlantModel
 from arboleda.plant_file import layout_check, loader
 from arboleda.plant_file.robot_models import arm_models
@@ -173,6 +175,39 @@ def test_an_arm_may_begin_in_the_middle_of_a_file(tmp_path: Path) -> None:
 def test_an_arm_without_a_shape_is_drawn_by_stand_ins(tmp_path: Path) -> None:
     shapes = [shape["kind"] for each in bodies.links(body(swing(tmp_path))) for shape in each["shapes"]]
     assert "cylinder" in shapes and "sphere" in shapes
+
+
+def test_a_gantry_without_a_shape_is_drawn_by_its_rails(tmp_path: Path) -> None:
+    turned = robot(
+        *map(link, ("frame", "x", "y", "z")),
+        joint("along", "frame x", "prismatic", "1 0 0", SLIDE, xyz="0 0 1"),
+        joint("across", "x y", "prismatic", "1 0 0", SLIDE, xyz="0 0 0").replace(
+            '<origin xyz="0 0 0"/>', f'<origin xyz="0 0 0" rpy="0 0 {math.pi / 2}"/>'
+        ),
+        joint("up", "y z", "prismatic", "0 0 1", 'lower="-0.3" upper="0.2" velocity="0.3"', xyz="0 0 0"),
+    )
+    (tmp_path / "gantry.urdf").write_text(turned)
+    poses = ("{mm: [0, 0, 0]}", "{mm: [100, 200, -250]}", "{0: {mm: [400, 50, -250], approach_mm: 40}}")
+    plant = loader.load(written(tmp_path, "gantry.urdf", poses))
+    drawn = {each["link"]: each["shapes"] for each in bodies.links(body(plant))}
+    rails = {
+        name: [rounded(ends(shape)) for shape in shapes if shape["kind"] == "cylinder"]
+        for name, shapes in drawn.items()
+    }
+    post, along = rails["ra_frame"]
+    assert (post, along) == (((0, 0, 0), (0, 0, 1)), ((0, 0, 1), (0.5, 0, 1)))
+    assert rails["ra_x"] == [((0, 0, 0), (0, 0.5, 0))]
+    assert rails["ra_y"] == [((0, 0, -0.3), (0, 0, 0.2))]
+    assert all(shapes for name, shapes in drawn.items() if name not in ("ra_base_link", "ra_tool0"))
+
+
+def ends(tube: dict[str, Any]) -> tuple[Point, Point]:
+    frame, half = kinematics.pose(tube["xyz"], tube["rpy"]), tube["size"][1] / 2
+    return kinematics.at(frame, (0, 0, -half)), kinematics.at(frame, (0, 0, half))
+
+
+def rounded(points: tuple[Point, Point]) -> tuple[tuple[float, ...], ...]:
+    return tuple(tuple(round(value, 6) + 0.0 for value in point) for point in points)
 
 
 def test_a_mesh_stays_in_the_urdf_and_is_said_to_have_a_stand_in(tmp_path: Path) -> None:

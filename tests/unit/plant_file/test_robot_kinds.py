@@ -116,10 +116,12 @@ def test_a_kind_of_a_file_with_a_problem_is_not_taken_for_another(tmp_path: Path
     assert found == "plant.yaml:6:13: cells.bay.devices.cart: mm_s must be at most 200, is 900"
 
 
-def test_what_goes_cannot_be_shared_whosever_kind_it_is(tmp_path: Path) -> None:
+def test_what_goes_may_be_shared_whosever_kind_it_is_if_it_says_where_it_is(tmp_path: Path) -> None:
     shared = PLANT.replace("cart: {kind: cart, loaded: true, mm_s: 100}", "cart: {shared: wagon}")
-    told = problems(write(tmp_path, shared.replace("cells:", "shared: {wagon: {kind: cart}}\ncells:")))
-    assert any("a robot that goes from place to place belongs to one cell" in each for each in told)
+    told = problems(
+        write(tmp_path, shared.replace("cells:", "shared: {wagon: {kind: cart, evidence: state}}\ncells:"))
+    )
+    assert any("must be ids or joints: a shared robot has to say" in each for each in told)
 
 
 def test_what_such_a_kind_raises_is_told_at_its_line(tmp_path: Path) -> None:

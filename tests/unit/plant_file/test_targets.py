@@ -97,6 +97,12 @@ MISTAKES = {  # id: (text, put in its place, the sentence starts with, and has i
         "29:48: ",
         'is "mil"; did you mean "mill"?',
     ),
+    "an interlock of what says nothing": (
+        "free_while: {mill",
+        "free_while: {loader",
+        "29:48: ",
+        'must be jaw or mill, is "loader"',
+    ),
     "fact of an interlock": ("{door: open}}}", "{dor: open}}}", "29:", "did you mean door?"),
     "home in a zone": ("[tending vise]", "[tending home]", "29:20: ", "robots wait there"),
     "no such target in a zone": ("[tending vise]", "[tending vice]", "29:20: ", 'did you mean "vise"?'),
@@ -132,7 +138,7 @@ def test_what_the_file_describes_works(tmp_path: Path) -> None:
     for blank in ("feed_1", "feed_2"):
         here.submit(f"tending load {blank}")
         here.wait(1.0)
-        assert here.operate(Verb.ANSWER, "ana done") is None
+        assert here.operate(Verb.ANSWER, "ana", answer="done") is None
         assert here.outcome().state.value == "done"
     assert here.machines["mill"].facts["door"] == "open"
 

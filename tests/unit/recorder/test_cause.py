@@ -72,6 +72,13 @@ def named(**changes: Any) -> str:
         ("part_lost", {"reason": Reason.PART_LOST, "key": "part.lost"}),
         ("foreign", {"reason": Reason.STOPPED}),  # the plant knows of no stop
         ("other", {"reason": Reason.PRECONDITION, "key": "x", "said": "nobody knows"}),
+        ("other", {"reason": Reason.REJECTED, "key": "own", "robot": None, "said": "no clear reading"}),
+        (
+            "other",
+            {"reason": Reason.REJECTED, "key": "own", "robot": None, "said": "no", "absences": [(9.5, 1.2)]},
+        ),
+        ("other", {"reason": Reason.REJECTED, "key": "recipe.other_answer", "said": "the scale said so"}),
+        ("refused", {"reason": Reason.REJECTED, "key": "command.refused", "word": "ocupado"}),
     ],
 )
 def test_the_surest_rule_names_the_cause(expected: str, changes: dict[str, Any]) -> None:

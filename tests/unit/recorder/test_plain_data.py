@@ -18,6 +18,7 @@ from arboleda.model.messages import (
     Failure,
     Interference,
     KeptTask,
+    LateDeparture,
     OperatorRequest,
     Reason,
     Receipt,
@@ -32,7 +33,7 @@ from arboleda.model.messages import (
 from arboleda.model.plant_model import MotionState
 from arboleda.model.sentence import Phrase, Sentence
 from arboleda.recorder.errors import NoRecord
-from arboleda.recorder.plain_data import EVENTS, event_from, kept_from, memory_from, plain
+from arboleda.recorder.plain_data import EVENTS, event_from, kept_from, memory_from, message_from, plain
 
 NUMBERS = st.floats() | st.sampled_from([5e-324, -0.0, 0.1 + 0.2, float("inf"), float("nan")])
 TEXTS = st.text(max_size=8)
@@ -104,11 +105,13 @@ STRATEGIES = {
         at=NUMBERS,
         verb=st.sampled_from(Verb),
         scope=TEXTS,
+        arguments=st.just((("station", 7), ("answer", "sí"))),
         by_hand=st.booleans(),
         client=st.booleans(),
         request=WORD,
     ),
     Undelivered: st.builds(Undelivered, at=NUMBERS, id=TEXTS, robot=TEXTS, sentence=SENTENCES),
+    LateDeparture: st.builds(LateDeparture, at=NUMBERS, id=TEXTS, late_s=NUMBERS),
     Interference: st.builds(Interference, at=NUMBERS, robot=TEXTS, sentence=SENTENCES),
     Shutdown: st.builds(Shutdown, at=NUMBERS, drops_waiting=st.booleans()),
 }
@@ -179,3 +182,21 @@ def test_what_has_no_row_of_its_own_is_plain_all_the_same() -> None:
         """A number that is more than one."""
 
     assert plain([Count(3), {2, 1}, ValueError("why"), Odd()]) == [3, [1, 2], "ValueError: why", "Odd"]
+
+
+@pytest.mark.parametrize(
+    ("verb", "scope", "of", "arguments"),
+    [
+        ("unload", "sis_a 7", "sis_a", (("station", 7),)),
+        ("unload", "sis_a", "sis_a", ()),
+        ("answer", "ana #7-1 not yet", "ana", (("question", "7-1"), ("answer", "not yet"))),
+        ("cancel", "no such task", "no such task", ()),
+    ],
+)
+def test_arguments_in_the_scope_of_an_older_record_are_told_apart(verb, scope, of, arguments) -> None:  # type: ignore[no-untyped-def]
+    request = event_from({"type": "OperatorRequest", "at": 1.0, "verb": verb, "scope": scope})
+    assert isinstance(request, OperatorRequest)
+    assert (request.scope, request.arguments) == (of, arguments)
+    said = message_from({"type": "OperatorAnswer", "verb": verb, "scope": scope})
+    assert (said["scope"], said.get("arguments", [])) == (of, plain(arguments))
+    assert message_from(said) == said

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+from copy import deepcopy
 from dataclasses import replace
 from pathlib import Path
 
@@ -9,7 +11,9 @@ import pytest
 
 from arboleda.model.messages import Fact, TaskState, Verb
 from arboleda.recorder import reader
+from arboleda.recorder.plain_data import plain
 from arboleda.recorder.replay import Difference, ReplayedStep, first_difference, plant_of, replayed
+from arboleda.recorder.steps import from_json
 from arboleda.testing.plants import shipped
 
 from .recorded import FILES, Site
@@ -113,3 +117,19 @@ def test_the_files_of_the_plant_are_in_the_record(site: Site) -> None:
 )
 def test_a_difference_says_where_and_what(recorded: object, now: object, found: Difference) -> None:
     assert repr(first_difference(recorded, now)) == repr(found)
+
+
+def test_a_record_with_arguments_within_scopes_is_the_same_again(site: Site) -> None:
+    site.work("sis_a 0B 7", s=60.0)
+    assert site.rig.operate(Verb.UNLOAD, "sis_a", station=7) is None
+    site.end()
+    (step,) = (
+        each.recorded
+        for each in again(site.files[0])
+        if any(hasattr(it, "verb") for it in each.recorded.events)
+    )
+    rows = {"now": step.now, "events": plain(step.events), **deepcopy(step.said), "hash": "another"}
+    for each in (*rows["events"], *rows["messages"]):
+        if each.pop("arguments", None):
+            each["scope"] = "sis_a 7"
+    assert from_json(step.unix_ns, json.dumps(rows).encode()) == step

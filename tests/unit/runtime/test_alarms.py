@@ -132,7 +132,7 @@ def test_a_person_who_is_asked_is_told_with_the_question(told: Told) -> None:
     assert asked["task"]["text"] == "tending refill"
     assert asked["sentence"] == "ana is asked in tending: Is the pallet full again?"
     assert view.needs_in(rig.snapshot()) == {"tending": "asked"}
-    assert rig.operate(Verb.ANSWER, f"ana #{question(rig)['id']} yes") is None
+    assert rig.operate(Verb.ANSWER, "ana", question=question(rig)["id"], answer="yes") is None
     rig.wait(1.0)
     assert told.kinds == ["person_asked", "cell_cleared"]
 
@@ -173,7 +173,7 @@ def test_each_person_who_is_asked_at_the_same_time_is_told(told: Told) -> None:
     ]
     assert told.alarms[1]["alarm"] == told.alarms[0]["id"]
     for person_asked in ("ana", "ben"):
-        assert rig.operate(Verb.ANSWER, f"{person_asked} yes") is None
+        assert rig.operate(Verb.ANSWER, person_asked, answer="yes") is None
         rig.wait(1.0)
     assert told.kinds[-1] == "cell_cleared"
 

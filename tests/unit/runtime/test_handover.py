@@ -10,9 +10,9 @@ import pytest
 from arboleda.model.errors import ArboledaError
 from arboleda.model.messages import OperatorAnswer, Verb
 from arboleda.model.sentence import OWN
-from arboleda.runtime.parts import handover
-from arboleda.runtime.parts.handover import CellResumption, hold_all
-from arboleda.runtime.parts.lease import LeasePart
+from arboleda.runtime.standby import handover
+from arboleda.runtime.standby.handover import CellResumption, hold_all
+from arboleda.runtime.standby.lease import LeasePart
 from arboleda.store.plant_memory import PlantMemory, Superseded
 
 

@@ -29,6 +29,7 @@ def test_what_was_kept_is_remembered(store: Store) -> None:
         Fact.EFFECTOR: {"ra1": "on"},
         Fact.EMPTIED: {"mill": "true"},
         Fact.QUARANTINE: {"mesa": "gone"},
+        Fact.PARTS: {"lab": "nest=1 jaw:nest+"},
         Fact.STORED: {"sis_a": "0 7"},
         Fact.DISPLACED: {"rm": "true"},
         Fact.BOOT: {"rm": "17"},

@@ -11,7 +11,6 @@ from arboleda.adapters import clock
 from arboleda.model.messages import Fact, Remember
 from arboleda.runtime.parts.commit_pace import STALL_KEPT_S, Pace
 from arboleda.runtime.parts.memory_pace import MemoryPace
-from arboleda.store.plant_memory import Statement
 from arboleda.store.sqlite import Store
 from arboleda.wire.status import OK, WARN
 
@@ -24,16 +23,14 @@ class Time:
 
 
 class SlowStore(Store):
-    """A store whose commits take as long as somebody says."""
+    """A store whose syncs take as long as somebody says."""
 
     def __init__(self, time: Time) -> None:
         super().__init__(Path(":memory:"))
-        self.time, self.takes_s, self.durable = time, 0.0, list[bool]()
+        self.time, self.takes_s = time, 0.0
 
-    def _write(self, *statements: Statement, durable: bool) -> None:
+    def _wait_for_disk(self) -> None:
         self.time.now += self.takes_s
-        self.durable.append(durable)
-        super()._write(*statements, durable=durable)
 
 
 @pytest.fixture
@@ -43,14 +40,16 @@ def time(monkeypatch: pytest.MonkeyPatch) -> Time:
     return moved
 
 
-def test_each_synced_commit_is_timed_and_no_other(time: Time) -> None:
+def test_each_sync_is_timed_and_no_commit(time: Time) -> None:
     pace, lengths = MemoryPace(), list[float]()
     pace.observers.append(lengths.append)
     with SlowStore(time) as store:
         store.timing, store.takes_s = pace, 0.25
         store.keep(LATCH)
         store.seen(5.0)
-        assert store.durable == [True, False] and lengths == [pytest.approx(0.25)]
+        assert lengths == []
+        store.sync()
+        assert lengths == [pytest.approx(0.25)]
 
 
 def test_a_slow_disk_is_told_once_and_once_more_when_it_is_over(
@@ -62,14 +61,14 @@ def test_a_slow_disk_is_told_once_and_once_more_when_it_is_over(
         store.timing, store.takes_s = pace, 0.35
         pace.look()
         for _ in range(6):
-            store.keep(LATCH)
+            store.sync()
             pace.look()
         assert [each.is_slow for each in told] == [True]
         assert "waits 0.35 s for it now" in caplog.text
         assert pace.diagnosis()[2:4] == (WARN, str(pace.pace.sentence))
         store.takes_s = 0.001
         for _ in range(20):
-            store.keep(LATCH)
+            store.sync()
             pace.look()
         assert [each.is_slow for each in told] == [True, False] and "fast again" in caplog.text
         assert pace.diagnosis()[2] == OK

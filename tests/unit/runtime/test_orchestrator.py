@@ -10,6 +10,7 @@ import pytest
 
 from arboleda.adapters.broker_login import address
 from arboleda.core.plant import Plant
+from arboleda.dispatch.ledger import Entry
 from arboleda.kinds.arm import SetEffector
 from arboleda.kinds.joints import MoveJoints
 from arboleda.model.commands import Home, Stop, StopMode
@@ -20,6 +21,7 @@ from arboleda.model.messages import (
     Heartbeat,
     InternalError,
     Journal,
+    LateDeparture,
     OperatorAnswer,
     OperatorRequest,
     Remember,
@@ -241,7 +243,7 @@ class Shown(dict):
     __hash__ = None
 
 
-def at_once(plant):
+def at_once(plant, part_of):
     """A snapshot without parts, of which only the version matters."""
     yield from ()
     return Shown(plant.version)
@@ -249,8 +251,12 @@ def at_once(plant):
 
 @pytest.fixture
 def shows(plant, monkeypatch):
-    """The versions that were shown, while the plant's clock says what `now[0]` is."""
+    """The versions that were shown, while the plant's clock says what `now[0]` is.
+
+    Making them takes no processor time here, so no slice of it comes later on a busy machine.
+    """
     now, shown = [100.0], []
+    monkeypatch.setattr(orchestrator.time, "thread_time", lambda: 0.0)
     monkeypatch.setattr(plant.loop, "_clock", lambda: now[0])
     monkeypatch.setattr(orchestrator.view, "in_parts", at_once)
     monkeypatch.setattr(Script, "version", 1, raising=False)
@@ -368,7 +374,7 @@ def slow_parts(plant, shows, monkeypatch):
     spent, made = [0.0], []
     monkeypatch.setattr(orchestrator.time, "thread_time", lambda: spent[0])
 
-    def in_parts(plant):
+    def in_parts(plant, part_of):
         for _ in range(10):
             made.append(plant.version)
             spent[0] += 1.01 * SLICE_S
@@ -522,7 +528,7 @@ def test_an_error_in_a_cell_is_one_line_for_people_and_whole_in_the_log(plant, c
 
 
 def test_a_view_that_cannot_be_made_is_logged_once_and_does_not_end_the_plant(plant, caplog, monkeypatch):
-    def broken(each):
+    def broken(each, part_of):
         raise KeyError("by design")
 
     monkeypatch.setattr(orchestrator.view, "in_parts", broken)
@@ -639,6 +645,17 @@ def test_a_plant_that_cannot_find_out_whether_it_leads_stops_robots_and_nothing_
     assert [type(event) for event in heard] == [Undelivered]
 
 
+def test_what_settles_and_leaves_late_is_told_to_the_plant(plant, monkeypatch):
+    now = plant.plant.now
+    entry = Entry(ON, cell="sis_a", doing=OWN(text="switching"), sent_at=now, deadline=now + 5.0)
+    entry.settles_at = now + 0.2
+    plant.plant.dispatcher.ledger.open(entry)
+    monkeypatch.setattr(orchestrator.clock, "seconds", lambda: now + 0.5)
+    turn(plant, ON, OFF)
+    (late,) = turn(plant)
+    assert (type(late), late.id, late.late_s) == (LateDeparture, ON.id, pytest.approx(0.5))
+
+
 @pytest.mark.parametrize(("renew_s", "begins"), [(None, False), (0.5, True)], ids=["a file", "a database"])
 def test_a_leader_before_that_is_still_on_ros_keeps_no_other_from_leading(
     plant, store, monkeypatch, renew_s, begins
@@ -648,6 +665,7 @@ def test_a_leader_before_that_is_still_on_ros_keeps_no_other_from_leading(
     monkeypatch.setattr(store, "renew_s", renew_s, raising=False)
     monkeypatch.setattr(plant.loop, "start", lambda: started.append(plant))
     monkeypatch.setattr(plant.stops.loop, "start", lambda: None)
+    monkeypatch.setattr(plant.durability, "start", lambda: None)
     plant.connect_ros(topics)
     with nullcontext() if begins else pytest.raises(StartError, match="already commands"):
         plant.start()
@@ -656,3 +674,41 @@ def test_a_leader_before_that_is_still_on_ros_keeps_no_other_from_leading(
 
 def refuse(sentence: str) -> None:
     raise StartError(sentence)
+
+
+@pytest.fixture
+def syncs(plant, store, monkeypatch):
+    """The number of messages that had left by each sync."""
+    found, sync = [], store.sync
+    monkeypatch.setattr(store, "sync", lambda: (found.append(len(plant.robots.seen)), sync())[1])
+    return found
+
+
+def test_a_command_leaves_once_what_was_kept_for_it_is_durable(plant, syncs):
+    turn(plant, Heartbeat(epoch=7), GRIP, ACT, ON)
+    assert syncs == [1]
+
+
+def test_a_command_does_not_wait_until_it_is_durable_where_a_task_stands(plant, syncs):
+    turn(plant, Remember(fact=Fact.STEP, name="a", value="[]"), ON)
+    assert plant.robots.messages == [ON] and syncs == []
+
+
+def test_a_stop_and_a_heartbeat_leave_whatever_is_not_durable(plant, syncs):
+    halt = Stop(id="7-2", robot="ra1", mode=StopMode.HALT)
+    turn(plant, GRIP, halt, Heartbeat(epoch=7))
+    assert plant.robots.messages == [halt, Heartbeat(epoch=7)] and syncs == []
+
+
+def test_a_sync_that_fails_ends_the_plant_and_nobody_is_told_what_it_was_for(
+    plant, store, crashes, monkeypatch
+):
+    monkeypatch.setattr(store, "sync", lambda: refuse("The disk is broken."))
+    told = plant.submit("sis_a 0B 1")
+    plant.plant.says = lambda events: [GRIP, ON, replace(TASK, request=events[0].request)]
+    plant.loop.turn()
+    with pytest.raises(StartError, match="The disk is broken"):
+        told.result(timeout=0)
+    assert plant.robots.messages == [] and [str(each) for each in crashes] == ["The disk is broken."]
+    (undelivered,) = turn(plant)
+    assert undelivered.id == ON.id

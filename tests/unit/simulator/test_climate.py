@@ -10,12 +10,12 @@ import pytest
 from arboleda.model.plant_model import Evidence
 from arboleda.simulator.checks import BadFaults
 from arboleda.simulator.climate import Climate
-from arboleda.simulator.faults import KINDS, OF_DEVICES, Fault
+from arboleda.simulator.faults import KINDS, OF_DEVICES, OF_PLACES, Fault
 from arboleda.simulator.levels import LEVELS
 from arboleda.testing import shipped
 
 MODEL = shipped()
-DRAWN = [name for name, kind in KINDS.items() if kind.weight and name not in OF_DEVICES]
+DRAWN = [name for name, kind in KINDS.items() if kind.weight and name not in (*OF_DEVICES, *OF_PLACES)]
 
 
 def drawn(seed: int, level: str = "normal", minutes: int = 3) -> list[Fault]:

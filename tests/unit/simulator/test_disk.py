@@ -5,7 +5,10 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 
+import pytest
+
 from arboleda.core.intake import HISTORY
+from arboleda.core.leaving import SYNCED_WITHIN_S
 from arboleda.model.messages import Fact, Reason, Remember, TaskChanged, TaskState
 from arboleda.model.sentence import OWN
 from arboleda.runtime.memory import kept_tasks, remembered
@@ -65,42 +68,86 @@ def test_a_start_finds_the_open_tasks_and_the_last_that_ended() -> None:
     assert disk.ended("e0") is not None and disk.ended("open") is None
 
 
+NOW, LATER = 1.0, 1.0 + SYNCED_WITHIN_S  # of commits, and when a thread has synced those
+
+
 def test_a_power_cut_undoes_the_last_commits_that_nothing_has_synced() -> None:
     for reached, effector, zones in ((0, "switching", ["mesa"]), (1, "off", ["mesa"]), (2, "off", [])):
         disk = Disk()
-        disk.commit(fact(Fact.QUARANTINE, "ra1", "mesa"), 1.0)
-        disk.commit(fact(Fact.EFFECTOR, "switching"), 1.0)
-        disk.commit(fact(Fact.EFFECTOR, "off"), 2.0)
-        disk.commit(fact(Fact.QUARANTINE, None, "mesa"), 3.0)
-        assert disk.unsynced == 2
-        disk.cut_power(reached)
+        disk.commit(fact(Fact.QUARANTINE, "ra1", "mesa"), NOW)
+        disk.commit(fact(Fact.EFFECTOR, "switching"), NOW)
+        disk.sync()
+        disk.commit(fact(Fact.EFFECTOR, "off"), NOW)
+        disk.commit(fact(Fact.QUARANTINE, None, "mesa"), NOW)
+        assert disk.unsynced(NOW) == 2
+        disk.cut_power(reached, NOW)
         assert disk.facts[Fact.EFFECTOR] == {"ra1": effector}
         assert [*disk.facts[Fact.QUARANTINE]] == zones
-        assert disk.unsynced == 0
+        assert disk.unsynced(NOW) == 0
 
 
-def test_a_power_cut_does_not_undo_that_an_effector_has_gripped() -> None:
+@pytest.mark.parametrize(("cut_at", "kept"), [(NOW, {}), (LATER, {"a": "1"})])
+def test_a_thread_syncs_a_little_later_what_nobody_waits_for(cut_at: float, kept: dict[str, str]) -> None:
     disk = Disk()
-    disk.commit(fact(Fact.EFFECTOR, "switching"), 1.0)
-    disk.commit(fact(Fact.EFFECTOR, "on"), 2.0)
-    disk.cut_power(0)
-    assert disk.facts[Fact.EFFECTOR] == {"ra1": "on"}
+    disk.commit(fact(Fact.STEP, "1", "a"), NOW)
+    disk.cut_power(0, cut_at)
+    assert disk.facts.get(Fact.STEP, {}) == kept
 
 
-def test_a_commit_that_is_synced_brings_all_before_it_along() -> None:
+def test_a_slow_disk_syncs_later() -> None:
     disk = Disk()
-    disk.commit(fact(Fact.QUARANTINE, "ra1", "mesa"), 1.0)
-    disk.commit(fact(Fact.QUARANTINE, None, "mesa"), 2.0)
-    disk.commit(said("a"), 3.0)
-    disk.cut_power(0)
+    disk.slow.append(2.0)
+    disk.commit(fact(Fact.STEP, "1", "a"), NOW, precedes_commands=False)
+    assert disk.unsynced(NOW + 1.5) == 1 and disk.unsynced(NOW + 2.5) == 0
+
+
+def test_a_command_waits_for_what_it_must_not_precede_and_for_nothing_else() -> None:
+    disk = Disk()
+    disk.slow.append(0.05)
+    disk.commit(fact(Fact.STEP, "1", "a"), NOW, precedes_commands=False)
+    assert disk.let_command_leave(NOW) == 0.0
+    disk.commit(fact(Fact.EFFECTOR, "switching"), NOW)
+    assert disk.let_command_leave(NOW) == pytest.approx(0.05)
+    assert disk.let_command_leave(NOW) == 0.0
+    disk.cut_power(0, NOW)
+    assert disk.facts[Fact.EFFECTOR] == {"ra1": "switching"}
+
+
+def test_a_command_waits_for_a_disk_that_hangs_whatever_it_was_to_keep() -> None:
+    disk = Disk()
+    disk.slow.append(2.0)
+    disk.commit(fact(Fact.STEP, "1", "a"), NOW, precedes_commands=False)
+    assert disk.let_command_leave(NOW + 0.05) == 0.0
+    assert disk.let_command_leave(NOW + 0.5) == pytest.approx(1.5)
+
+
+def test_what_is_told_is_not_undone() -> None:
+    disk = Disk()
+    disk.commit(fact(Fact.QUARANTINE, "ra1", "mesa"), NOW)
+    disk.commit(fact(Fact.QUARANTINE, None, "mesa"), NOW)
+    disk.commit(said("a"), NOW)
+    disk.sync()
+    disk.cut_power(0, NOW)
     assert disk.facts[Fact.QUARANTINE] == {}
     assert disk.found().tasks["a"].state is TaskState.QUEUED
 
 
 def test_what_is_committed_after_a_power_cut_is_kept_as_before() -> None:
     disk = Disk()
-    disk.commit(said("a"), 1.0)
-    disk.cut_power(0)
+    disk.commit(said("a"), NOW)
+    disk.cut_power(1, NOW)
     disk.commit(replace(said("a"), state=TaskState.RUNNING), 2.0)
-    disk.cut_power(0)
+    disk.cut_power(1, 2.0)
     assert disk.tasks["a"].started_at == 2.0
+
+
+def test_a_power_cut_leaves_effectors_of_the_envelope_unsettled() -> None:
+    disk = Disk()
+    begun = '[[3,"",{},{},["ra1"]],["",{},null,{},[],[],{},{},{},null,false,false,null,[],{},[]]]'
+    for message in (said("a"), fact(Fact.STEP, begun, "a"), said("a", TaskState.RUNNING)):
+        disk.commit(message, NOW)
+    disk.sync()
+    disk.commit(fact(Fact.EFFECTOR, "switching"), NOW, precedes_commands=False)
+    disk.commit(fact(Fact.EFFECTOR, "on"), NOW, precedes_commands=False)
+    disk.cut_power(0, NOW)
+    assert disk.facts[Fact.EFFECTOR] == {"ra1": "switching"}

@@ -15,9 +15,10 @@ from arboleda.dispatch.effectors import Effectors
 from arboleda.dispatch.evidence import Verdict
 from arboleda.dispatch.ledger import Feed
 from arboleda.kinds.declared import Device, DeviceKind, DeviceVerb, Effect, FactType
+from arboleda.kinds.person import person
 from arboleda.model.commands import OnStop, Query
 from arboleda.model.messages import Verb
-from arboleda.model.plant_model import Cell, Evidence, Interlock, PlantModel
+from arboleda.model.plant_model import Cell, Evidence, Interlock, Need, Place, PlantModel
 from arboleda.recipes import Choice, Kit, parallel, recipe, work
 from arboleda.sim.board import Board
 from arboleda.sim.machine import MachineBody
@@ -27,6 +28,7 @@ from arboleda.simulator.faults import OF_DEVICES as FAULTS_OF_DEVICES
 from arboleda.simulator.faults import ON_ONE_HOST as JUDGED
 from arboleda.simulator.faults import Fault
 from arboleda.simulator.invariants.devices import DEVICES
+from arboleda.simulator.invariants.places import PLACES
 from arboleda.simulator.judged import INVARIANTS, judged_by
 from arboleda.simulator.judged_world import BrokenInvariant, JudgedWorld
 from arboleda.simulator.run import Simulation
@@ -34,6 +36,8 @@ from arboleda.trees.cell_commands import CellCommands
 from arboleda.trees.cell_devices import CellDevices
 from arboleda.trees.cell_zones import CellZones
 from arboleda.trees.interlocks import Interlocks
+from arboleda.trees.needs import CellNeeds
+from arboleda.trees.places import Places
 from arboleda.wire.bridge import Bridge
 from arboleda.wire.payloads import OrderGoal, encode
 from arboleda.wire.transport import Publication
@@ -110,6 +114,18 @@ def looks(cell: Kit):  # type: ignore[no-untyped-def]
     return work(cell.device("eye").look(), cell.wait(1.0), cell.device("eye").look())
 
 
+@recipe("peeks")
+def peeks(cell: Kit):  # type: ignore[no-untyped-def]
+    """The camera is to look into the mill, whose door is closed."""
+    return work(cell.device("mill").close(), cell.device("eye").look())
+
+
+@recipe("consults")
+def consults(cell: Kit):  # type: ignore[no-untyped-def]
+    """Somebody is asked, whose answers have an accent."""
+    return cell.device("ana").ask("¿Sigue?", ["sí", "no"])
+
+
 RECIPES = (load, both, careless, drops, looks)
 
 
@@ -122,6 +138,60 @@ def shop(*recipes: Any) -> PlantModel:
     lock = Interlock(device="mill", zone="vise", free_while=(("door", "open"),))
     members = (*cell.members, ("mill", mill), ("eye", eye))
     return replace(model, cells=(replace(cell, members=members, interlocks=(lock,)),))
+
+
+def staffed() -> PlantModel:
+    """The shop with somebody in it."""
+    model = shop(consults)
+    (cell,) = model.cells
+    members = (*cell.members, ("ana", person("ana")))
+    return replace(model, cells=(replace(cell, members=members),))
+
+
+def peeping() -> PlantModel:
+    """The shop with a camera that looks into the mill, so it needs the door open."""
+    model = shop(peeks)
+    (cell,) = model.cells
+    need = Need(device="eye", word="look", other="mill", fact="door", value="open")
+    return replace(model, cells=(replace(cell, needs=(need,)),))
+
+
+@recipe("bring", ends_with={"vise": 1})
+def bring(cell: Kit):  # type: ignore[no-untyped-def]
+    """A part is put into the vise and taken out again, which is not what the recipe says of its end."""
+    left, jaw = cell.devices("left", "jaw")
+    put = [left.visit("feed", jaw.close()), left.visit("vise", jaw.open())]
+    return work(*put, left.visit("vise", jaw.close()), left.visit("feed", jaw.open()))
+
+
+@recipe("forgets")
+def forgets(cell: Kit):  # type: ignore[no-untyped-def]
+    """A part is left in the vise, which belongs to the mill."""
+    left, jaw = cell.devices("left", "jaw")
+    return work(left.visit("feed", jaw.close()), left.visit("vise", jaw.open()), left.home())
+
+
+@recipe("keeps")
+def keeps(cell: Kit):  # type: ignore[no-untyped-def]
+    """The gripper keeps its part to the end."""
+    left, jaw = cell.devices("left", "jaw")
+    return work(left.visit("feed", jaw.close()), left.home())
+
+
+@recipe("twice")
+def twice(cell: Kit):  # type: ignore[no-untyped-def]
+    """A second part is taken where there was only one."""
+    left, jaw = cell.devices("left", "jaw")
+    first = [left.visit("feed", jaw.close()), left.visit("vise", jaw.open())]
+    return work(*first, left.visit("feed", jaw.close()), left.visit("feed", jaw.open()))
+
+
+def storing() -> PlantModel:
+    """The shop with a feed that people keep filled, and a vise that belongs to the mill."""
+    model = shop(bring, forgets, keeps, twice)
+    (cell,) = model.cells
+    places = (Place(target="feed", supply=True), Place(target="vise", device="mill"))
+    return replace(model, cells=(replace(cell, places=places),))
 
 
 def run(
@@ -261,6 +331,21 @@ def ignores_needs(patch: Patch) -> None:
     patch.setattr(Dispatcher, "_unmet", lambda self, command, *, was: None)
 
 
+def ignores_needs_of_others(patch: Patch) -> None:
+    """What a verb needs of another device is not looked at."""
+    patch.setattr(CellNeeds, "objection", lambda self, command: None)
+
+
+def books_no_part(patch: Patch) -> None:
+    """What hands do is not booked."""
+    patch.setattr(Places, "_move", lambda self, target, parts: None)
+
+
+def knows_no_place(patch: Patch) -> None:
+    """Nobody looks whether a part is there, or room for one."""
+    patch.setattr(Places, "objection", lambda self, command: None)
+
+
 def ignores_needs_everywhere(patch: Patch) -> None:
     """Neither the plant nor the board of a device looks at what a verb needs."""
     ignores_needs(patch)
@@ -354,6 +439,12 @@ def raises_at_a_verb(patch: Patch) -> None:
     patch.setattr(Dispatcher, "_unmet", fails)
 
 
+def knows_no_accents(patch: Patch) -> None:
+    """A word with an accent is none of the answers."""
+    of_ascii = lambda word, names: next((name for name in names if word.isascii() and name == word), None)  # noqa: E731
+    patch.setattr("arboleda.core.operator.known", of_ascii)
+
+
 def advises_nothing(patch: Patch) -> None:
     """Nobody is told what leads a cell out of a hold."""
     patch.setattr(Plant, "advice", lambda self, cell: ())
@@ -402,20 +493,37 @@ def told(text: str) -> Scenario:
     return scenario
 
 
+def says_yes(watched: JudgedWorld) -> None:
+    """Somebody is asked, and says one of the words that are offered."""
+    watched.world.request_task("tending consults")
+    watched.world.advance(2.0)
+    watched.world.request_verb(Verb.ANSWER, "ana", arguments=(("answer", "sí"),))
+    watched.world.advance(2.0)
+
+
 def no_bug(patch: Patch) -> None:
     """The recipe itself is wrong."""
 
 
+PEEKS = told("peeks")
+OF_PLACES = [each.name for each in PLACES]
 BITES: list[tuple[str, Bug, Scenario | Weather]] = [
     ("what_is_done_was_so", believed_at_once, told("load")),
     ("what_is_done_was_so", believed_on_its_word, {"only_says_done": 20.0}),
     ("what_a_task_left_is_so", believed_on_its_word, {"only_says_done": 20.0}),
     ("needs_hold", ignores_needs_everywhere, told("careless")),
     ("no_command_against_a_need", ignores_needs, told("careless")),
+    ("no_command_against_a_need_of_others", ignores_needs_of_others, PEEKS),
+    ("recipes_end_as_they_say", no_bug, told("bring")),
+    ("done_tasks_leave_nothing_behind", no_bug, told("forgets")),
+    ("done_tasks_leave_nothing_behind", no_bug, told("keeps")),
+    ("books_of_parts_are_true", books_no_part, told("forgets")),
+    ("parts_are_taken_and_put_where_they_can_be", knows_no_place, told("twice")),
     ("finishing_work_is_finished", stops_what_should_finish, stopped_at("cool")),
     ("nothing_is_dropped", no_bug, told("drops")),
     ("nothing_is_dropped", moves_while_its_tool_may_open, {"never_ends": 10.0}),
     ("an_answer_is_to_its_question", any_answer_counts, told("looks")),
+    ("offered_answers_are_accepted", knows_no_accents, says_yes),
     ("commands_of_others_are_told", tells_nobody, {"foreign_command": 10.0}),
     ("bridge_obeys_only_its_plant", obeys_anybody, {"foreign_command": 10.0}),
     ("executed_numbers_rise", takes_old_orders, {"foreign_old": 10.0}),
@@ -445,7 +553,16 @@ def test_it_bites(monkeypatch: Patch, name: str, bug: Bug, how: Scenario | Weath
     monkeypatch.setattr("arboleda.simulator.run.PATIENCE", 1)  # a cell that is held does not wait for long
     monkeypatch.setattr("arboleda.simulator.judged_world.REST_S", 60.0)
     if callable(how):
-        watched = JudgedWorld(shop(*RECIPES), invariants=[each for each in INVARIANTS if each.name == name])
+        model = (
+            peeping()
+            if bug is ignores_needs_of_others
+            else staffed()
+            if bug is knows_no_accents
+            else storing()
+            if name in OF_PLACES
+            else shop(*RECIPES)
+        )
+        watched = JudgedWorld(model, invariants=[each for each in INVARIANTS if each.name == name])
         with pytest.raises(BrokenInvariant, match=name):
             how(watched)
     else:
@@ -455,14 +572,27 @@ def test_it_bites(monkeypatch: Patch, name: str, bug: Bug, how: Scenario | Weath
         assert any(broken is not None and broken.invariant == name for broken in found)
 
 
-SCENARIOS = [each for name, _, each in BITES if callable(each) and name != "nothing_is_dropped"]
+OWN_PLANT = ["nothing_is_dropped", "offered_answers_are_accepted", *OF_PLACES]
+SCENARIOS = [each for name, _, each in BITES if callable(each) and name not in OWN_PLANT]
 
 
 @pytest.mark.parametrize("how", sample(SCENARIOS, every=2))
 def test_it_finds_nothing_where_there_is_no_bug(how: Scenario) -> None:
-    how(JudgedWorld(shop(*RECIPES)))
+    how(JudgedWorld(peeping() if how is PEEKS else shop(*RECIPES)))
+
+
+def test_an_answer_that_is_not_offered_may_be_refused() -> None:
+    watched = JudgedWorld(staffed())
+    watched.world.request_task("tending consults")
+    watched.world.advance(2.0)
+    watched.world.request_verb(Verb.ANSWER, "ana", arguments=(("answer", "quizá"),))
+    says_yes(watched)
 
 
 def test_every_invariant_of_devices_has_a_bug() -> None:
-    assert {each.name for each in DEVICES} <= {name for name, _, _ in BITES}
+    elsewhere = {
+        "a_shared_device_is_handed_on_empty_at_home",  # test_shared_robots.py
+        "numbers_lie_within_their_limits",  # tests/mutants/test_bugs_of_devices.py
+    }
+    assert {each.name for each in (*DEVICES, *PLACES)} <= {name for name, _, _ in BITES} | elsewhere
     assert {name for name, _, _ in BITES} <= {each.name for each in INVARIANTS}

@@ -294,7 +294,7 @@ def twice(order: Any, context: Context) -> Any:
 
     def once() -> list[Any]:
         gripped = steps.grip(context, arm, pickup, check=False)
-        return [(pickup, gripped), (station, steps.let_go(context, arm, station, check=False))]
+        return [(pickup, gripped), (station, steps.let_go(context, arm, check=False))]
 
     return steps.task("storage", steps.tour(context, arm, [*once(), *once()]), context)
 

@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 
 from arboleda.campaigns.plants import Plant
-from arboleda.campaigns.random_plants import RandomPlants, loaded
+from arboleda.campaigns.random_plants import loaded, of_storage
 from arboleda.model.errors import ConfigError
 from arboleda.model.plant_model import Evidence, Link, PlantModel
 from arboleda.plant_file import shapes
@@ -30,7 +30,7 @@ def drawn(seed: int, attempt: int = 0) -> dict[str, Any]:
 
 @pytest.fixture(scope="module")
 def taken() -> list[Plant]:
-    return [RandomPlants().of(seed) for seed in SEEDS]
+    return [of_storage(seed) for seed in SEEDS]
 
 
 @pytest.fixture

@@ -417,3 +417,9 @@ def test_whom_an_operator_put_right_is_known_by_the_request_that_was_granted(by_
     world.advance(1.01)
     assert record.robots["ra1"].displaced is world.plant.dispatcher.beliefs["ra1"].displaced
     assert record.robots["ra1"].displaced is boots_again, "the routine, too, ends at once where it stands"
+
+
+def test_a_value_is_new_until_it_was_asked_for(record):
+    asked = [record.is_new("status", value) for value in (None, 1, 1, 2, 1)]
+    assert asked == [True, True, False, True, True]
+    assert record.is_new("another thing", 1)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from arboleda.model.messages import TaskChanged, TaskState
+from arboleda.model.messages import Check, KeptTask, TaskChanged, TaskState
 from arboleda.simulator.recorded.tasks import SURE, Tasks
 
 
@@ -38,3 +38,13 @@ def test_an_old_task_that_ends_once_more_is_no_answer(tasks: Tasks) -> None:
 def test_an_old_id_that_the_plant_has_forgotten_may_be_a_new_task(tasks: Tasks) -> None:
     say(tasks, "lot0", TaskState.QUEUED, asked_again=True)
     assert [(change.before, change.answer) for change in tasks.changes] == [(None, False)]
+
+
+def test_of_a_task_that_nobody_told_to_be_done_the_row_on_the_disk_says_what_nobody_checked() -> None:
+    tasks = Tasks(["sis_a"])
+    row = KeptTask(
+        id="lot", text="sis_a 0B 7", cell="sis_a", state=TaskState.DONE, ended_at=1.0, unchecked=(Check.GRIP,)
+    )
+    tasks.restart([row], 2.0)
+    known = tasks.known("lot")
+    assert known is not None and known.said.sentence

@@ -129,7 +129,7 @@ def test_a_leader_with_a_slow_clock_that_is_cut_off_is_no_second_leader(
     monkeypatch.setattr("arboleda.simulator.hosts.hosts.LOOK_S", 0.01)
     cut_off_with_a_slow_clock()
     monkeypatch.setattr(leading, "SURE_S", LEASE_S)  # without the margin for clocks it is one
-    with pytest.raises(BrokenInvariant, match="one_leader_at_a_time"):
+    with pytest.raises(BrokenInvariant, match="a_lead_is_over_before_the_next_begins"):
         cut_off_with_a_slow_clock()
 
 

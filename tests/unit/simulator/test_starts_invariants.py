@@ -151,7 +151,8 @@ def test_all_of_them_hold_however_often_the_plant_dies(kind: str, seed: int) -> 
 
 
 def test_every_one_of_them_has_a_bug_and_judges_where_it_can() -> None:
-    assert {each.name for each in (*STARTS, one_pick_one_place_over_all_starts)} == {
+    rest = {"tasks_go_on_from_what_was_kept"}  # it needs boots, and has its bugs in tests/mutants
+    assert {each.name for each in (*STARTS, one_pick_one_place_over_all_starts)} == rest | {
         name for name, _ in BITES
     }
     assert {*STARTS, one_pick_one_place_over_all_starts} <= {*INVARIANTS}

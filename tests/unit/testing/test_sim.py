@@ -273,7 +273,7 @@ WRONG = {
     ),
     "past": (lambda sim: sim.fault("reboot", "ra1", at=-1), "0 or more; is -1", ""),
     "seconds": (lambda sim: sim.fault("mute", "ra1", seconds=-1), "at and seconds are 0 or more", ""),
-    "verb": (lambda sim: sim.operate("hlod"), "'hlod' is not a verb; there are stop, clear", "'hold'?"),
+    "verb": (lambda sim: sim.operate("hodl"), "'hodl' is not a verb; there are stop, clear", "'hold'?"),
     "cell": (lambda sim: sim.cell("sis_b"), "'sis_b' is not a cell of this plant; there are sis_a", ""),
     "robot": (lambda sim: sim.robot("ra"), "'ra' is not a robot of this plant; there are ra1, rm_sis_a", ""),
     "recipe": (lambda sim: sim.recipe("stor", None), "'stor' is not a recipe; there are storage", ""),
@@ -300,3 +300,34 @@ def test_what_is_simulated_is_chosen_before_it_starts(sim: Sim, choice: tuple[ob
     name, *arguments = choice
     with pytest.raises(Misuse, match=f"sim.{name} comes before the simulation starts"):
         getattr(sim, str(name))(*arguments)
+
+
+def test_a_device_answers_as_a_test_has_prepared() -> None:
+    sim = Sim()
+    sim.plant("examples/lab_bench/plant.yaml")
+    sim.answers("scale", "weigh", "short")
+    states = []
+    for _ in range(2):
+        task = sim.submit("bench weigh 10")
+        sim.run(until=lambda task=task: task.ended)
+        states.append(task.state)
+    assert states == ["failed", "done"]
+
+
+@pytest.mark.parametrize(
+    ("asked", "sentence"),
+    [
+        (("scale", "weigh", "much"), "scale weigh never answers 'much'; its answers are enough, short"),
+        (("scale", "tare", "enough"), "'tare' is not a verb by which scale is asked; there are weigh"),
+        (
+            ("operator", "ask", "yes"),
+            "operator is asked nothing; a person answers by sim.operate('answer', ...)",
+        ),
+    ],
+)
+def test_an_answer_that_a_device_never_gives_is_a_misuse(asked: tuple[str, str, str], sentence: str) -> None:
+    sim = Sim()
+    sim.plant("examples/lab_bench/plant.yaml")
+    with pytest.raises(Misuse) as error:
+        sim.answers(*asked)
+    assert str(error.value).startswith(sentence)

@@ -18,6 +18,7 @@ from arboleda.trees.leaves import Unless
 
 from ...cells import with_poses, with_robot
 
+MADE_BY_CODE = "ae0d51165bde685fa42ee56dc501189c"
 SHOWN = """
 from arboleda.trees import fingerprint
 from arboleda.testing import shipped
@@ -94,3 +95,19 @@ def test_a_step_that_has_taken_in_its_cell_does_not_count_its_queue_either() -> 
     (cell,) = shipped("sis_a").cells
     assert named(cell) == named(replace(cell, queue_limit=7, goes_on=True))
     assert named(cell) != named(replace(cell, name="other"))
+
+
+def test_the_source_of_a_recipe_stands_for_its_functions() -> None:
+    def source(holds: Callable[[], bool], source: str) -> str:
+        return fingerprint.of_tree(steps.sequence("work", Unless("a", holds)), {}, source=source)
+
+    written_so, written_otherwise = (lambda: later(1.0)), (lambda: later(2.0))
+    assert source(written_so, "one") == source(written_otherwise, "one")
+    assert source(written_so, "one") != source(written_so, "another")
+    assert source(waits(1.0), "one") != source(waits(2.0), "one")  # what it has taken in still counts
+
+
+def test_a_version_that_hashed_code_is_still_understood() -> None:
+    """The words of a value have not changed; of functions it had those of the interpreter."""
+    cell = shipped("sis_a").cells[0]
+    assert fingerprint.of_cell(replace(cell, recipes=()), "storage", {}, by_code=True) == MADE_BY_CODE

@@ -34,4 +34,4 @@ def test_what_another_version_kept_is_refused(kept: str) -> None:
 def test_what_is_damaged_is_refused(kept: str) -> None:
     begun, now = json.loads(kept)
     with pytest.raises(ValueError, match="damaged"):
-        Trail.read(json.dumps([begun[:-1], now]))
+        Trail.read(json.dumps([begun[:-2], now]))

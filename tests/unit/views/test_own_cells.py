@@ -117,8 +117,9 @@ def test_diagnostics_have_each_fact(bench: Bench) -> None:
 
 
 def test_nothing_is_drawn_of_what_offers_no_drawing(bench: Bench) -> None:
-    assert geometry.places(bench.plant.model) == {"robots": [], "cells": [], "zones": []}
-    assert twin_view.positions(bench.plant)["parts"] == {"bench": None}
+    assert geometry.places(bench.plant.model) == {"robots": [], "cells": [], "parts": [], "zones": []}
+    drawn = twin_view.positions(bench.plant)
+    assert (drawn["parts"], drawn["books"]["bench"]) == ({"bench": None}, {"places": {}, "carriers": {}})
 
 
 def test_what_a_cell_offers_is_a_form() -> None:

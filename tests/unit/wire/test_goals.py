@@ -7,7 +7,7 @@ import pytest
 from arboleda.kinds.joints import MoveJoints
 from arboleda.recipes.storage_layout import StorageLayout
 from arboleda.testing import shipped
-from arboleda.wire.goals import refusal
+from arboleda.wire.forms import form_of
 
 ARM = StorageLayout(shipped("sis_a").cell("sis_a")).arm
 
@@ -19,4 +19,4 @@ def test_a_goal_beyond_its_limit_by_more_than_float32_loses_is_refused(
     for joint in range(len(ARM.joints)):
         for limit, sign in ((ARM.joints[joint].upper, 1.0), (ARM.joints[joint].lower, -1.0)):
             q = tuple(limit + sign * beyond if each == joint else 0.0 for each in range(len(ARM.joints)))
-            assert refusal(ARM, MoveJoints(id="1-1", robot=ARM.name, q=q)) == word
+            assert form_of(ARM).refusal(ARM, MoveJoints(id="1-1", robot=ARM.name, q=q)) == word

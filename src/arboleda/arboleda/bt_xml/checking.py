@@ -9,7 +9,7 @@ from graphlib import CycleError, TopologicalSorter
 
 from arboleda.model.outside import among, quoted
 
-from . import endings, names, nodes, script, values, variable_types, variables
+from . import endings, ends, names, nodes, script, target_groups, values, variable_types, variables
 from .findings import Findings, Place
 from .forest import Forest, Node
 from .markup import Attribute
@@ -50,6 +50,8 @@ def check(
         for node in endings.unreached(tree.root):
             findings.warning(node.place, f"{_named(node)} can never be reached, by what stands before it")
     _check_loops(forest, findings)
+    ends.check(forest, findings)
+    target_groups.check(forest, findings)
     for place, name in variables.unwritten(forest, checker.kind):
         findings.warning(place, f"the variable {quoted(name)} is read, and nothing in these files writes it")
     for clash in variable_types.clashes(forest, checker.kind):

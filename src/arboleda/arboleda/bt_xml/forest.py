@@ -72,14 +72,25 @@ class Tree:
 
 
 @dataclass(frozen=True, kw_only=True)
+class Metadata:
+    """Metadata of a model: a key with a text, which are no port."""
+
+    key: str
+    text: str
+    place: Place
+
+
+@dataclass(frozen=True, kw_only=True)
 class Forest:
     """Trees of a file and of those that it includes.
 
-    `main`: the tree to execute, if that is clear. `is_whole`: every included file was read.
+    `metadata`: those of the models of trees. `main`: the tree to execute, if that is clear. `is_whole`:
+    every included file was read.
     """
 
     trees: Mapping[str, Tree]
     models: Mapping[str, Kind]
+    metadata: Mapping[str, tuple[Metadata, ...]] = field(default_factory=dict)
     main: str | None
     is_whole: bool = True
 

@@ -26,18 +26,33 @@ TELLS = "tells"
 def of_cell(cell: Cell, own: Iterable[WrittenNode] = ()) -> dict[str, Kind]:
     """The kinds of nodes of a cell by name, with those in Python; ConfigError if two have the same name."""
     found: dict[str, Kind] = {}
-    for role, device in cell.roles.items():
-        for kind in _of_device(cell, role, device):
-            if kind.name in found:
-                raise ConfigError(
-                    (f"{cell.name}: two of its devices make a node {kind.name}; rename a role",)
-                )
-            found[kind.name] = kind
+    for role, kind in _of_devices(cell):
+        if kind.name in found:
+            raise ConfigError((_twice(cell, kind.name, role),))
+        found[kind.name] = kind
     for node in own:
         if node.name in found:
             raise ConfigError((f"{cell.name}: its devices make a node {node.name}; rename that in Python",))
         found[node.name] = _of_python(cell, node)
     return found
+
+
+def roles(cell: Cell) -> dict[str, str]:
+    """The role of the device that makes each node, by the name of the node."""
+    return {kind.name: role for role, kind in _of_devices(cell)}
+
+
+def _of_devices(cell: Cell) -> Iterator[tuple[str, Kind]]:
+    for role, device in cell.roles.items():
+        yield from ((role, kind) for kind in _of_device(cell, role, device))
+
+
+def _twice(cell: Cell, node: str, role: str) -> str:
+    """The sentence for a node that two devices would make, or one of them twice."""
+    others = [other for other, kind in _of_devices(cell) if kind.name == node and other != role]
+    if not others:
+        return f"{cell.name}: {role} makes a node {node} twice; rename a verb of its kind"
+    return f"{cell.name}: {others[0]} and {role} both make a node {node}; rename one of these roles"
 
 
 def of_cells(cells: Sequence[Cell], own: Iterable[WrittenNode] = ()) -> dict[str, Kind]:

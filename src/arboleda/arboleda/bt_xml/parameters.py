@@ -10,7 +10,7 @@ from arboleda.model.facts import shown
 from arboleda.model.plant_model import Cell
 from arboleda.model.recipe import Limits, Parameter
 
-from . import nodes, values
+from . import nodes, target_groups, values
 from .findings import Findings, Place
 from .forest import Forest, Node
 from .nodes import Kind, Port, PortDirection
@@ -46,11 +46,24 @@ def of_tree(forest: Forest, main: str) -> list[Port]:
     return [each for each in ports if each.way is PortDirection.IN]
 
 
-def parameter(forest: Forest, main: str, port: Port, kinds: KindsOf) -> Parameter:
-    """The recipe's parameter for a port of its main tree; `kinds`: the leaves that a cell has."""
+def parameter(
+    forest: Forest, main: str, port: Port, kinds: KindsOf, *, group: str | None, names_place: bool = False
+) -> Parameter:
+    """The recipe's parameter for a port of its main tree; `kinds`: the leaves that a cell has.
+
+    `group`: the targets of which it is one, if it says so. `names_place`: the end of the tree says how many
+    parts are there, so that it can only be a place.
+    """
 
     def allowed(cell: Cell) -> _Allowed:
-        return _allowed(port, [use.port for use in _uses(forest, kinds(cell), main, port.name, 0)])
+        found = _allowed(port, [use.port for use in _uses(forest, kinds(cell), main, port.name, 0)])
+        if group is not None:
+            targets = target_groups.words(cell, group)
+            found = _Allowed([each for each in targets if each in found.words or not found.words])
+        if not names_place:
+            return found
+        places = {place.target for place in cell.places}
+        return _Allowed([word for word in found.words if word in places])
 
     def value(cell: Cell, word: str) -> object:
         limits = allowed(cell).limits

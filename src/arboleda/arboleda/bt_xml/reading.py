@@ -11,13 +11,14 @@ from arboleda.model.outside import quoted
 
 from . import names, nodes
 from .findings import Findings, Mark, Place, XmlFault
-from .forest import Forest, Node, Tree
+from .forest import Forest, Metadata, Node, Tree
 from .markup import Element, Markup, parse
 from .nodes import Category, Kind, Port, PortDirection
 from .values import plain_type
 
 MOST_FILES = 50
 ROOT, TREE, MODELS, INCLUDE = "root", "BehaviorTree", "TreeNodesModel", "include"
+METADATA, ONE_OF_METADATA = "MetadataFields", "Metadata"
 TAGS = {each.value: each for each in Category}
 FORMATS = ("3", "4")
 Fetch = Callable[[str, str, str], tuple[str, bytes]]
@@ -43,7 +44,13 @@ def read(file: str, content: bytes, findings: Findings, fetch: Fetch = nothing_b
     main = reader.main
     if main is None and len(reader.trees) == 1:
         main = next(iter(reader.trees))
-    return Forest(trees=reader.trees, models=reader.models, main=main, is_whole=reader.is_whole)
+    return Forest(
+        trees=reader.trees,
+        models=reader.models,
+        metadata=reader.metadata,
+        main=main,
+        is_whole=reader.is_whole,
+    )
 
 
 @dataclass
@@ -52,6 +59,7 @@ class _Reader:
     fetch: Fetch
     trees: dict[str, Tree] = field(default_factory=dict)
     models: dict[str, Kind] = field(default_factory=dict)
+    metadata: dict[str, tuple[Metadata, ...]] = field(default_factory=dict)
     main: str | None = None
     is_whole: bool = True
     _files: set[str] = field(default_factory=set)
@@ -74,6 +82,7 @@ class _Reader:
         for element in markup.root.children:
             if element.name == MODELS:
                 self.models |= page.models(element)
+                self.metadata |= page.metadata(element)
         for element in markup.root.children:
             if element.name == TREE:
                 self._add(page, element, alone=len(markup.root.all(TREE)) == 1)
@@ -216,6 +225,16 @@ class _Page:
                     )
                 found[name] = self._kind(child, name, TAGS[child.name])
         return found
+
+    def metadata(self, element: Element) -> dict[str, tuple[Metadata, ...]]:
+        """The metadata of the models of trees, by tree."""
+        trees = element.all(Category.SUBTREE.value)
+        return {name: tuple(self._metadata(each)) for each in trees if (name := each.value("ID"))}
+
+    def _metadata(self, model: Element) -> Iterator[Metadata]:
+        for each in (each for fields in model.all(METADATA) for each in fields.all(ONE_OF_METADATA)):
+            for key, attribute in each.attributes.items():
+                yield Metadata(key=key, text=attribute.value, place=self.place(attribute.mark))
 
     def _kind(self, element: Element, name: str, category: Category) -> Kind:
         fewest, most = nodes.children(category)

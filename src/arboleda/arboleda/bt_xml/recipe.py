@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import partial
 
 from py_trees.behaviour import Behaviour
 
@@ -11,26 +12,32 @@ from arboleda.model.outside import quoted
 from arboleda.model.plant_model import Cell
 from arboleda.model.recipe import Recipe
 from arboleda.model.task import Order
+from arboleda.recipes.holding import held
 from arboleda.recipes.nodes import WrittenNode
-from arboleda.recipes.sharing import held
 from arboleda.trees import steps
 from arboleda.trees.context import Context
 
-from . import leaves, parameters, runnable
+from . import ends, leaves, parameters, runnable, target_groups
+from .findings import Findings, Place
 from .forest import Forest
 from .nodes import Kind
-from .running.build import Builder
+from .running.build import Builder, control
 from .running.devices import Devices
-from .running.errors import TreeError
+from .running.errors import TreeError, TreeMistakes
 from .running.memory import Scope
-from .running.root import Main
+from .running.root import Main, Rescue
 
 
 @dataclass(frozen=True, kw_only=True)
 class TreeRecipe(Recipe):
-    """Recipe of a file; `file` is its name for people. `own`: the nodes in Python that it may use."""
+    """Recipe of a file; `file` is its name for people, `place` that of its main tree.
+
+    `own`: the nodes in Python that it may use. `groups`: the group of targets of which a parameter is one.
+    """
 
     file: str
+    place: Place
+    groups: Mapping[str, str] = field(compare=False)
     own: Mapping[str, WrittenNode] = field(compare=False)
 
 
@@ -42,19 +49,41 @@ def tree_recipe(name: str, file: str, forest: Forest, own: Mapping[str, WrittenN
     main = forest.main
     assert main is not None
 
+    end = ends.of_tree(forest, main)
+
     def kinds(cell: Cell) -> Mapping[str, Kind]:
         return leaves.of_cell(cell, own.values())
 
     def build(order: Order, context: Context) -> Behaviour:
         runnable.check_in_cell(forest, context.cell.name, kinds(context.cell))
+        _check_end(name, end, order, context.cell)
         return _built(name, forest, main, order, Devices(context, [], own))
 
+    ending, groups = {each.what for each in end}, target_groups.of_tree(forest, main)
     known = tuple(
-        parameters.parameter(forest, main, port, kinds) for port in parameters.of_tree(forest, main)
+        parameters.parameter(
+            forest, main, port, kinds, group=groups.get(port.name), names_place=port.name in ending
+        )
+        for port in parameters.of_tree(forest, main)
     )
     return TreeRecipe(
-        name=name, build=build, parameters=known, about=_about(forest, main), file=file, own=own
+        name=name,
+        build=build,
+        parameters=known,
+        about=_about(forest, main),
+        ends_with=tuple((each.what, each.value) for each in end),
+        file=file,
+        place=forest.trees[main].place,
+        groups=groups,
+        own=own,
     )
+
+
+def _check_end(name: str, end: tuple[ends.End, ...], order: Order, cell: Cell) -> None:
+    findings = Findings()
+    ends.check_in_cell(name, end, order.values, cell, findings)
+    if findings.mistakes:
+        raise TreeMistakes(findings.mistakes)
 
 
 def _about(forest: Forest, main: str) -> str:
@@ -66,7 +95,8 @@ def _built(name: str, forest: Forest, main: str, order: Order, devices: Devices)
     context, causes = devices.context, devices.causes
     context.parts.forget_origins()
     scope = Scope(values={key: _variable(value) for key, value in order.values.items()})
-    builder = Builder(forest, devices.make, context.time, devices.kinds)
+    rescues = {"TryCatch": control(partial(Rescue, failures=context.failures, causes=causes))}
+    builder = Builder(forest, devices.make, context.time, devices.kinds, controls=rescues)
     tree = builder.tree(main, scope)
     changed = {(id(place), key) for place, key in builder.written}
     for place, key, node in devices.fixed:

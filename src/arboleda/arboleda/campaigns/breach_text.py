@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from pathlib import Path
 
 from rich.console import Console
 from rich.text import Text
@@ -11,7 +12,7 @@ from arboleda.model.counting import counted
 from arboleda.simulator.run import Result
 
 from .plants import Plant, notes
-from .random_plants import as_yaml
+from .random_plants import as_yaml, keep
 from .setting import rules
 from .words import told
 
@@ -52,8 +53,18 @@ def plant(console: Console, drawn: Plant) -> None:
     _say(console, "  plant      as much of its file as is enough:")
     for line in as_yaml(drawn.file).splitlines():
         _say(console, f"    {line}", "yellow")
+    for name, text in drawn.beside.items():
+        _say(console, f"  {name}")
+        for line in text.splitlines():
+            _say(console, f"    {line}", "yellow")
     for note in notes([drawn]):
         _say(console, f"  note       {note}")
+
+
+def kept(console: Console, drawn: Plant, folder: Path | None) -> None:
+    """Write a drawn plant into a folder where one is named, and say so."""
+    if folder is not None:
+        _say(console, f"  plant      {keep(drawn, folder)}")
 
 
 def timeline(console: Console, result: Result) -> None:

@@ -2,22 +2,38 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from types import TracebackType
+from typing import Generic, Protocol, TypeVar
 
-from arboleda.simulator.run import Result
-
-from .setting import Setting, Tick
+Tick = Callable[[], None]
 
 
-class Campaign:
+class Judged(Protocol):
+    """Result that is true in `broken` where something broke."""
+
+    @property
+    def broken(self) -> object: ...
+
+
+R = TypeVar("R", bound=Judged)
+Made = TypeVar("Made", covariant=True)
+
+
+class Runs(Protocol[Made]):
+    """Runs of numbers, which are seeds, in this process or in others: all of it can be pickled."""
+
+    def run(self, seed: int, *, tick: Tick | None = None) -> Made: ...
+
+
+class Campaign(Generic[R]):
     """Campaign: runs `seeds` in turn, to the first broken one with `until_failure`.
 
     `minutes` is the number simulated so far; `tick` is called now and then meanwhile.
     """
 
     def __init__(
-        self, setting: Setting, seeds: Iterable[int], *, until_failure: bool = False, tick: Tick
+        self, setting: Runs[R], seeds: Iterable[int], *, until_failure: bool = False, tick: Tick
     ) -> None:
         self.setting = setting
         self.seeds = iter(seeds)
@@ -25,7 +41,7 @@ class Campaign:
         self._until_failure = until_failure
         self._minutes = 0
 
-    def __enter__(self) -> Campaign:
+    def __enter__(self) -> Campaign[R]:
         return self
 
     def __exit__(
@@ -37,14 +53,14 @@ class Campaign:
     def minutes(self) -> int:
         return self._minutes
 
-    def results(self) -> Iterator[Result]:
+    def results(self) -> Iterator[R]:
         """Results of seeds in the order of their ends; after a failure, seeds that had begun still end."""
         for result in self._run():
             if result.broken and self._until_failure:
                 self.seeds = iter(())
             yield result
 
-    def _run(self) -> Iterator[Result]:
+    def _run(self) -> Iterator[R]:
         while (seed := next(self.seeds, None)) is not None:
             yield self.setting.run(seed, tick=self._passed)
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -25,13 +25,15 @@ class FaultsFile:
     """`climate` is what Climate.from_file and script_from take; of a broken seed also which it is, and how
     long it ran.
 
-    `plant_file` is the content of the plant's file, where it was drawn; `standby`: it ran on two hosts.
+    `plant_file` is the content of the plant's file, where it was drawn, `plant_files` those beside it;
+    `standby`: it ran on two hosts.
     """
 
     climate: Any
     seed: int | None = None
     plant: str | None = None
     plant_file: dict[str, Any] | None = None
+    plant_files: dict[str, str] = field(default_factory=dict)
     seconds: float | None = None
     standby: bool = False
 
@@ -56,9 +58,13 @@ def _broken(path: Path, rows: list[dict[str, Any]], seed: int | None) -> FaultsF
         if seed in (None, row["seed"]):
             seconds = row["broken"]["minutes"] * MINUTE_S
             climate = {key: row["broken"][key] for key in SIMULATED if key in row["broken"]}
-            file = row["broken"].get("plant_file")
             return FaultsFile(
-                climate=climate, seed=row["seed"], plant=row["plant"], plant_file=file, seconds=seconds
+                climate=climate,
+                seed=row["seed"],
+                plant=row["plant"],
+                plant_file=row["broken"].get("plant_file"),
+                plant_files=row["broken"].get("plant_files", {}),
+                seconds=seconds,
             )
     there = f"; there are {', '.join(str(row['seed']) for row in broken)}" if broken else ""
     raise ConfigError((f"{path}: has no broken seed{'' if seed is None else f' {seed}'}{there}",))

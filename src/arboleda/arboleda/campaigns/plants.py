@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, Protocol
 
 from arboleda.model.plant_model import Link, PlantModel
 from arboleda.recorder.preamble import NO_FILES, PlantFiles
+from arboleda.simulator.plants.devices import DrawnDevices
 
 ELSEWHERE = (Link.ROS, Link.NONE, Link.DRIVER)  # robots without a board on MQTT, which get a virtual one
 
@@ -17,16 +18,25 @@ ELSEWHERE = (Link.ROS, Link.NONE, Link.DRIVER)  # robots without a board on MQTT
 class Plant:
     """One plant: `declared` as its file says it, `file` its content where no file of the user has it.
 
-    `files` are the ones that it was read from, for its record.
+    `beside` are the texts of files beside that by name, `drawn` what both were written from, where that is
+    more than they say. `files` are the ones that it was read from, for its record.
     """
 
     declared: PlantModel
     file: dict[str, Any] | None = None
+    beside: Mapping[str, str] = field(default_factory=dict)
+    drawn: DrawnDevices | None = None
     files: PlantFiles = NO_FILES
 
     @property
     def name(self) -> str:
         return self.declared.name
+
+    @property
+    def plain(self) -> dict[str, Any]:
+        """Its content as plain data for `--json`; empty for a file of the user."""
+        beside = {"plant_files": dict(self.beside)} if self.beside else {}
+        return {} if self.file is None else {"plant_file": self.file, **beside}
 
     @cached_property
     def model(self) -> PlantModel:

@@ -2,51 +2,106 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, replace
 from functools import lru_cache
+from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 import yaml
 
-from arboleda.model.errors import ConfigError
+from arboleda.model.errors import ArboledaError, ConfigError
 from arboleda.plant_file import loader
 from arboleda.plant_file.robot_models import arm_models, mobile_models
 from arboleda.recorder.preamble import PlantFiles
 from arboleda.simulator import plants
+from arboleda.simulator.chance import Dice
+from arboleda.simulator.plants import devices
+from arboleda.simulator.plants.devices import DrawnDevices
 
 from .plants import Plant
 
 ATTEMPTS = 200  # files drawn for one seed; `check` accepts about every second one
 RECENT = 16  # drawn plants that are kept
+OF_DEVICES = 0.5  # how often a plant has cells of devices
+NOTHING: Mapping[str, str] = {}
 
 
 @dataclass(frozen=True, kw_only=True)
 class RandomPlants:
-    """A plant file of its own for each seed, the first one that `arboleda check` takes."""
+    """A plant of its own for each seed, the first one that `arboleda check` takes; half are of devices."""
 
     def of(self, seed: int) -> Plant:
-        return _drawn(seed)
+        return (of_devices if Dice(seed, "sort of plant").chance(OF_DEVICES) else of_storage)(seed)
 
 
-def loaded(file: dict[str, Any]) -> Plant:
-    """The plant of such a content; ConfigError as for a user's file."""
-    name, content = f"{file.get('name', 'plant')}.yaml", as_yaml(file).encode()
+def loaded(drawn: dict[str, Any] | DrawnDevices, beside: Mapping[str, str] = NOTHING) -> Plant:
+    """The plant of such a content and the files beside it; ConfigError as for a user's file."""
+    if isinstance(drawn, DrawnDevices):
+        return replace(loaded(drawn.file, drawn.beside), drawn=drawn)
+    name, content = f"{drawn.get('name', 'plant')}.yaml", as_yaml(drawn).encode()
+    if beside:
+        return _in_a_folder(drawn, name, beside)
     files = PlantFiles(plant=name, contents={name: content})
-    return Plant(declared=loader.parse(name, content), file=file, files=files)
+    return Plant(declared=loader.parse(name, content), file=drawn, files=files)
+
+
+def _in_a_folder(file: dict[str, Any], name: str, beside: Mapping[str, str]) -> Plant:
+    """The plant, read from a folder of its own as that of a person."""
+    with TemporaryDirectory(prefix="arboleda-drawn-") as made:
+        path = Path(made) / name
+        for each, text in {name: as_yaml(file), **beside}.items():
+            (path.parent / each).write_text(text, encoding="utf-8")
+        declared, files = loader.load_with_files(path)
+    return Plant(declared=declared, file=file, beside=beside, files=files)
+
+
+def keep(plant: Plant, folder: Path) -> Path:
+    """Write the files of a plant into a folder; the path of the plant file."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        for name, content in plant.files.contents.items():
+            (folder / name).write_bytes(content)
+    except OSError as error:
+        raise ArboledaError(f"{folder}: the plant cannot be written there: {error.strerror}") from None
+    return folder / plant.files.plant
+
+
+def smaller(plant: Plant) -> Iterator[dict[str, Any] | DrawnDevices]:
+    """Smaller plants to try instead of this one; nothing for a plant of the user."""
+    if plant.drawn is not None:
+        yield from devices.smaller(plant.drawn)
+    elif plant.file is not None and not plant.beside:
+        yield from plants.smaller(plant.file)
 
 
 def as_yaml(file: dict[str, Any]) -> str:
     """The content of a plant file, roughly as a person would write it."""
-    return yaml.safe_dump(file, sort_keys=False, default_flow_style=None, width=110)
+    return yaml.safe_dump(file, sort_keys=False, default_flow_style=None, width=110, allow_unicode=True)
+
+
+def of_devices(seed: int) -> Plant:
+    """The first plant with cells of devices that this seed draws and `arboleda check` takes."""
+    return _first(devices.draw, seed)
+
+
+def of_storage(seed: int) -> Plant:
+    """The same, with cells of an arm, a mobile robot and a rack."""
+    return _first(_storage, seed)
 
 
 @lru_cache(maxsize=RECENT)
-def _drawn(seed: int) -> Plant:
-    arms = {name: model.joints for name, model in arm_models().items()}
-    mobiles = {name: model.speed for name, model in mobile_models().items()}
+def _first(draw: Callable[[int, int], dict[str, Any] | DrawnDevices], seed: int) -> Plant:
     for attempt in range(ATTEMPTS):
         try:
-            return loaded(plants.draw(seed, attempt, arms=arms, mobiles=mobiles))
+            return loaded(draw(seed, attempt))
         except ConfigError as refusal:
             last = refusal
     raise last
+
+
+def _storage(seed: int, attempt: int) -> dict[str, Any]:
+    arms = {name: model.joints for name, model in arm_models().items()}
+    mobiles = {name: model.speed for name, model in mobile_models().items()}
+    return plants.draw(seed, attempt, arms=arms, mobiles=mobiles)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable
 
 from rich.box import SIMPLE_HEAD
@@ -9,6 +10,7 @@ from rich.table import Table
 from rich.text import Text
 
 from arboleda.model.counting import counted
+from arboleda.simulator.findings import Finding
 
 from .tally import Tally
 from .words import seeds, short
@@ -37,6 +39,33 @@ def _counts(heading: str, counts: Iterable[tuple[str, int]]) -> Table:
     return drawn
 
 
+def findings(tally: Tally) -> list[Text]:
+    """A line for each finding of a recipe, the most frequent first; then what recipes themselves ask for."""
+    lines = [
+        Text(f"{each.kind.value} {_times(count)} without any fault: {_where(each)}: {each.sentence}", "red")
+        for each, count in _by_count(tally.findings)
+    ]
+    as_written = [
+        Text(f"failed {_times(count)} as the recipe says: {_where(each)}: {each.sentence}", "dim")
+        for each, count in _by_count(tally.as_written)
+    ]
+    return [*lines, *as_written]
+
+
+def _by_count(counted: Counter[Finding]) -> list[tuple[Finding, int]]:
+    return sorted(counted.items(), key=lambda item: (-item[1], item[0].recipe, item[0].step))
+
+
+def _times(count: int) -> str:
+    return "once" if count == 1 else f"{count:,} times"
+
+
+def _where(finding: Finding) -> str:
+    step = f', step "{finding.step}"' if finding.step else ""
+    seed = "" if finding.seed is None else f" of seed {finding.seed}"
+    return f'recipe {finding.recipe}{step} ({finding.reason}), as in "{finding.task}"{seed}'
+
+
 def amount(tally: Tally) -> str:
     """The amount simulated: seeds, cycles, faults and the plant's time."""
     done = [seeds(tally.rows), counted(tally.cycles, "cycle"), counted(tally.faults.total(), "fault")]
@@ -50,11 +79,14 @@ def speed(tally: Tally, elapsed_s: float) -> str:
 
 
 def verdict(tally: Tally) -> Text:
-    """The verdict: held or broken."""
+    """The verdict: held, broken, or found."""
     if not tally.rows:
         return Text("no seed came to its end", style="yellow")
     if tally.broken:
         share = f"{counted(len(tally.broken), 'seed')} of {len(tally.rows):,}"
         return Text(f"BROKEN: an invariant did not hold in {share}", style="bold red")
+    if tally.findings:
+        share = counted(tally.findings.total(), "finding")
+        return Text(f"FOUND: {share} in recipes, where nothing had gone wrong", style="bold red")
     checks = f" {short(tally.checks)} checks of" if tally.checks else ""
     return Text(f"HELD:{checks} {counted(len(tally.judged), 'invariant')}", style="bold green")

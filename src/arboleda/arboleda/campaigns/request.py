@@ -84,7 +84,7 @@ class Request:
     def plants(self) -> Plants:
         """The plants that the seeds run on; a broken seed of a file runs on the plant that is in there."""
         if self.told is not None and self.told.plant_file is not None:
-            return PlantRotation(plants=(loaded(self.told.plant_file),))
+            return PlantRotation(plants=(loaded(self.told.plant_file, self.told.plant_files),))
         return RandomPlants() if self.drawn_plants else PlantRotation(plants=self._by_files)
 
     @property

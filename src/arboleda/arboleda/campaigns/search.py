@@ -10,12 +10,12 @@ from arboleda.model.errors import ConfigError
 from arboleda.model.plant_model import PlantModel
 from arboleda.simulator.checks import BadFaults
 from arboleda.simulator.faults import KINDS, Fault
-from arboleda.simulator.plants import smaller
+from arboleda.simulator.plants.devices import DrawnDevices
 from arboleda.simulator.run import MINUTE_S, Plan, Result
 from arboleda.simulator.shrink import Progress, explicit, shrink
 
 from .plants import Plant
-from .random_plants import loaded
+from .random_plants import loaded, smaller
 from .setting import Setting
 
 ATTEMPTS = 250  # runs on smaller plants, at most
@@ -58,12 +58,12 @@ class _Search:
 
     def smaller_plant(self) -> bool:
         """Leave out part after part of a drawn plant, again while that helps; True if any could go."""
-        file, found, at = self.plant.file, False, 0
-        while file is not None and self._runs < ATTEMPTS:
-            rest = list(smaller(file))[at:]
+        found, at = False, 0
+        while self._runs < ATTEMPTS:
+            rest = list(smaller(self.plant))[at:]
             taken = next((number for number, less in enumerate(rest) if self._breaks(less)), None)
             if taken is not None:
-                file, at, found = rest[taken], at + taken, True
+                at, found = at + taken, True
             elif at > 0:
                 at = 0  # what was needed before may not be needed any more
             else:
@@ -73,9 +73,9 @@ class _Search:
     def _on_this_plant(self, plan: Plan, seconds: float) -> Result:
         return self._setting.attempt(self.plant, self.best.seed, plan, seconds)
 
-    def _breaks(self, file: dict[str, Any]) -> bool:
+    def _breaks(self, less: dict[str, Any] | DrawnDevices) -> bool:
         try:
-            plant = loaded(file)
+            plant = loaded(less)
             self._setting.script(plant.model)
         except (ConfigError, BadFaults):
             return False

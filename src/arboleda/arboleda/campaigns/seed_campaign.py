@@ -25,12 +25,15 @@ HELD, BROKEN, INTERRUPTED = 0, 1, 130  # exit statuses
 
 
 class SeedCampaign:
-    """SeedCampaign: a campaign in a terminal; `file` gets its result."""
+    """SeedCampaign: a campaign in a terminal; `file` gets its result, `keep` the drawn plant that broke."""
 
-    def __init__(self, request: Request, console: Console, file: Path | None) -> None:
+    def __init__(
+        self, request: Request, console: Console, file: Path | None, keep: Path | None = None
+    ) -> None:
         self._request = request
         self._console = console
         self._file = file
+        self._keep = keep
         self._tally = Tally(setting=request.setting)
         self._began = time.monotonic()
         self._elapsed_s = 0.0
@@ -43,7 +46,7 @@ class SeedCampaign:
         try:
             self._simulate(jobs)
             self._shrink()
-            status = BROKEN if self._tally.broken else HELD
+            status = BROKEN if self._tally.broken or self._tally.findings else HELD
         except KeyboardInterrupt:
             self._say("interrupted; so far:", "yellow")
         self._report()
@@ -65,7 +68,7 @@ class SeedCampaign:
         finally:
             self._elapsed_s = self._since()
 
-    def _campaign(self, jobs: int) -> Campaign:
+    def _campaign(self, jobs: int) -> Campaign[Result]:
         request = self._request
         jobs = jobs if request.count is None else min(jobs, request.count)
         tick, until_failure = lambda: self._tick(), request.until_failure
@@ -111,6 +114,8 @@ class SeedCampaign:
                 self._story(self._shrunk, len(result.faults))
             else:
                 self._line(seed, result)
+        for line in report.findings(tally):
+            self._console.print(line, soft_wrap=True)
         self._console.print(report.verdict(tally), soft_wrap=True)
 
     def _story(self, shrunk: ShrunkBreach, injected: int) -> None:
@@ -123,6 +128,7 @@ class SeedCampaign:
         self._say(f"  replay     {self._request.replay(told.seed)}", "bold")
         if self._file:
             self._say(f"             {self._request.replay_shrunk(self._file, told.seed)}", "bold")
+        breach_text.kept(self._console, shrunk.plant, self._keep)
         self._say("")
 
     def _line(self, seed: int, result: Result) -> None:

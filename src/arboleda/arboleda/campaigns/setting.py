@@ -15,10 +15,10 @@ from arboleda.simulator.judged import judged_by
 from arboleda.simulator.run import NO_EXCEPTION, BrokenInvariant, Plan, Result, Simulation
 from arboleda.simulator.scripted_people import Script, script_from
 
+from .campaign import Tick as Tick
 from .plants import Plant, Plants
 
 Tell = Callable[[str], None]
-Tick = Callable[[], None]
 MakePlant = Callable[..., CorePlant]
 
 copyreg.pickle(BrokenInvariant, lambda broken: (BrokenInvariant, (broken.invariant, broken.sentence)))

@@ -17,9 +17,11 @@ from arboleda.model.errors import ArboledaError, StartError
 from arboleda.simulator.levels import LEVELS
 from arboleda.store.postgres.seeds import SeedRow, SeedRows
 
+from . import report
 from .plants import PlantRotation
 from .request import Request
 from .seed_campaign import BROKEN, HELD, INTERRUPTED
+from .tally import Tally
 
 LOOK_S = 1.0  # between two looks for a seed that a worker has given back
 
@@ -70,7 +72,10 @@ def work(request: Request, console: Console, store: str, file: Path | None) -> i
 
 def _run(request: Request, seed: int) -> SeedRow:
     result = request.setting.run(seed)
-    broken = None if result.broken is None else str(result.broken)
+    tally = Tally(setting=request.setting)
+    tally.add(result)
+    found = "; ".join(map(str, report.findings(tally))) if result.findings else None
+    broken = found if result.broken is None else str(result.broken)
     return SeedRow(seed=seed, digest=result.digest, broken=broken, cycles=result.cycles)
 
 

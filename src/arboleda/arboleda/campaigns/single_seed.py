@@ -17,8 +17,16 @@ from .seed_campaign import BROKEN, HELD, INTERRUPTED
 from .tally import Tally
 
 
-def run(request: Request, console: Console, *, trace: bool, record: Path | None, file: Path | None) -> int:
-    """Run the first seed and return the exit status."""
+def run(
+    request: Request,
+    console: Console,
+    *,
+    trace: bool,
+    record: Path | None,
+    file: Path | None,
+    keep: Path | None = None,
+) -> int:
+    """Run the first seed and return the exit status; `keep` is the folder that gets its plant."""
     if trace:
         breach_text.plant(console, request.plants.of(request.first))
     flown: list[str] = []
@@ -40,8 +48,11 @@ def run(request: Request, console: Console, *, trace: bool, record: Path | None,
     for line in flown:
         console.print(Text(line), soft_wrap=True)
     console.print(Text(f"digest {result.digest}: {report.amount(tally)}"), soft_wrap=True)
+    for line in report.findings(tally):
+        console.print(line, soft_wrap=True)
     console.print(report.verdict(tally), soft_wrap=True)
-    return BROKEN if result.broken else HELD
+    breach_text.kept(console, request.plants.of(result.seed), keep)
+    return BROKEN if result.broken or result.findings else HELD
 
 
 def _flown(request: Request, *, trace: bool, record: Path, said: list[str]) -> Result:

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import json
+from collections import Counter
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
 from arboleda import __version__
 from arboleda.model.errors import ArboledaError
+from arboleda.simulator.findings import Finding
 
 from .request import Request
 from .search import ShrunkBreach
@@ -46,8 +48,14 @@ def summary(request: Request, tally: Tally, shrunk: ShrunkBreach | None, *, comp
             "faults": dict(sorted(tally.faults.items())),
             "outcomes": dict(sorted(tally.outcomes.items())),
         },
+        "findings": _counted(tally.findings),
+        "as_written": _counted(tally.as_written),
         "seeds": rows,
     }
+
+
+def _counted(found: Counter[Finding]) -> list[dict[str, Any]]:
+    return [{**asdict(each), "kind": each.kind.value, "count": count} for each, count in found.items()]
 
 
 def _broken(request: Request, tally: Tally, seed: int, shrunk: ShrunkBreach | None) -> dict[str, Any] | None:
@@ -68,6 +76,6 @@ def _broken(request: Request, tally: Tally, seed: int, shrunk: ShrunkBreach | No
         "shrunk": fewest is not None,
         "faults": [asdict(fault) for fault in best.faults],
         **({"people": request.told.climate["people"]} if request.told and request.has_people else {}),
-        **({} if plant.file is None else {"plant_file": plant.file}),
+        **plant.plain,
         "replay": request.replay(seed),
     }

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections import Counter
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
+from arboleda.simulator.findings import Finding
 from arboleda.simulator.run import NO_EXCEPTION, Result
 
 from .setting import Setting
@@ -20,6 +21,8 @@ class Tally:
     broken: dict[int, Result] = field(default_factory=dict)
     faults: Counter[str] = field(default_factory=Counter)
     outcomes: Counter[str] = field(default_factory=Counter)
+    findings: Counter[Finding] = field(default_factory=Counter)
+    as_written: Counter[Finding] = field(default_factory=Counter)
     cycles: int = 0
     checks: int = 0
     judged: set[str] = field(default_factory=lambda: {NO_EXCEPTION})
@@ -36,6 +39,8 @@ class Tally:
         self.faults.update(faults)
         self.outcomes.update(result.outcomes)
         self.cycles += result.cycles
+        _take(self.findings, result.findings, result.seed)
+        _take(self.as_written, result.as_written, result.seed)
         self.checks += result.checks.total()
         self.judged |= result.checks.keys()
         self.seconds += result.seconds
@@ -47,8 +52,14 @@ class Tally:
             "seconds": round(result.seconds, 3),
             "faults": dict(sorted(faults.items())),
             "outcomes": dict(sorted(result.outcomes.items())),
-            **({} if plant.file is None else {"plant_file": plant.file}),
+            **plant.plain,
             "broken": None,
         }
         if result.broken:
             self.broken[result.seed] = result
+
+
+def _take(found: Counter[Finding], more: Counter[Finding], seed: int) -> None:
+    """Add the findings of a seed; each is named with the task and the seed that brought it first."""
+    for each, count in more.items():
+        found[replace(each, seed=seed)] += count

@@ -15,10 +15,8 @@ from types import TracebackType
 from typing import Any
 
 from arboleda.model.errors import ArboledaError
-from arboleda.simulator.run import Result
 
-from .campaign import Campaign
-from .setting import Setting
+from .campaign import Campaign, R, Runs
 
 AHEAD = 2  # seeds that are handed out to each worker
 TICK_S = 0.5
@@ -38,7 +36,7 @@ def collect_rarely() -> None:
     gc.set_threshold(YOUNG)
 
 
-class Workers(Campaign):
+class Workers(Campaign[R]):
     """Workers: `jobs` processes inside a `with` block, which end with it in any case.
 
     Enter it before any thread is started, as it forks the workers if the system can.
@@ -50,10 +48,10 @@ class Workers(Campaign):
         self._others = frozenset(active_children())
         self._passed_by = context.Value("Q", 0)  # minutes, of all workers
         self._pool = ProcessPoolExecutor(jobs, context, _Worker.prepare, (self.setting, self._passed_by))
-        self._under_way: dict[Future[Result], int] = {}
+        self._under_way: dict[Future[R], int] = {}
         self._jobs = jobs
 
-    def __enter__(self) -> Campaign:
+    def __enter__(self) -> Campaign[R]:
         self._hand_out(self._jobs * AHEAD)
         return self
 
@@ -69,7 +67,7 @@ class Workers(Campaign):
     def minutes(self) -> int:
         return self._passed_by.get_obj().value  # without the lock, which a killed worker may hold
 
-    def _run(self) -> Iterator[Result]:
+    def _run(self) -> Iterator[R]:
         while self._under_way:
             ended, _ = wait(self._under_way, TICK_S, FIRST_COMPLETED)
             self.tick()
@@ -77,7 +75,7 @@ class Workers(Campaign):
                 yield self._result(future)
                 self._hand_out(1)
 
-    def _result(self, future: Future[Result]) -> Result:
+    def _result(self, future: Future[R]) -> R:
         try:
             result = future.result()
         except BrokenProcessPool as error:
@@ -94,18 +92,18 @@ class Workers(Campaign):
 class _Worker:
     """The data and the work of a worker process."""
 
-    setting: Setting
+    setting: Runs[Any]
     minutes: Any  # of all workers
 
     @classmethod
-    def prepare(cls, setting: Setting, minutes: Any) -> None:
+    def prepare(cls, setting: Runs[Any], minutes: Any) -> None:
         cls.setting, cls.minutes = setting, minutes
         collect_rarely()
         signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the parent, who ends the workers
         Thread(target=_end_with_parent, daemon=True).start()
 
     @classmethod
-    def run(cls, seed: int) -> Result:
+    def run(cls, seed: int) -> Any:
         return cls.setting.run(seed, tick=cls.passed)
 
     @classmethod

@@ -15,8 +15,8 @@ MISSING = "the benchmarks are not installed here; `make install` in Arboleda's o
 HELP = """Measure this machine: ours against a floor of the same run, so that figures of two machines compare.
 
 \b
-arboleda bench                   all of them, about twelve minutes
-arboleda bench --quick           all of them, about two minutes, figures less certain
+arboleda bench                   all of them, about twenty minutes
+arboleda bench --quick           all of them, at most ten minutes, figures less certain
 arboleda bench reaction chain    these two
 arboleda bench --list            which there are
 
@@ -29,7 +29,7 @@ Names = Annotated[list[str] | None, typer.Argument(metavar="[NAME]...", help="Be
 Json = Annotated[
     Path | None, typer.Option("--json", metavar="FILE", help="Write every figure and the machine there.")
 ]
-Quick = Annotated[bool, typer.Option("--quick", help="Short runs: about two minutes for all of them.")]
+Quick = Annotated[bool, typer.Option("--quick", help="Short runs: at most ten minutes for all of them.")]
 Listed = Annotated[bool, typer.Option("--list", help="Name the benchmarks and what they measure, and exit.")]
 
 

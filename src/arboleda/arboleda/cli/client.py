@@ -14,8 +14,9 @@ from urllib.parse import quote, urlencode
 from arboleda.model.errors import ArboledaError
 from arboleda.model.messages import ENDED, Outcome, TaskState, Verb
 from arboleda.model.outside import plain
+from arboleda.model.verbs import Arguments
 from arboleda.runtime import endpoints
-from arboleda.runtime.leader import of_standby
+from arboleda.runtime.standby.leader import of_standby
 from arboleda.runtime.state import Running, find_running, running_plants
 
 from .line import TIMEOUT_S, Answer, FarLine, Line, PlantSilent
@@ -71,11 +72,13 @@ class PlantClient:
         """One task by its id."""
         return self._ask("GET", f"/api/tasks/{task}")
 
-    def operate(self, verb: Verb, scope: str = "", *, by_hand: bool = False) -> dict[str, Any]:
+    def operate(
+        self, verb: Verb, scope: str = "", *, by_hand: bool = False, arguments: Arguments = ()
+    ) -> dict[str, Any]:
         """Have the plant (no scope), a cell, robot, zone or task carry out a verb; Refused if it does not."""
         where = f"cells/{quote(scope, safe='')}" if scope else "plant"
-        body = {"by_hand": True} if by_hand else None
-        stops = verb is Verb.STOP
+        body = (dict(arguments) | ({"by_hand": True} if by_hand else {})) or None
+        stops = verb.row.stops
         return self._ask("POST", f"/api/{where}/{verb.value}", body, repeatable=stops, urgent=stops)
 
     def outcome(self, act: int) -> dict[str, Any]:

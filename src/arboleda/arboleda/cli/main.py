@@ -24,7 +24,7 @@ from arboleda.model.errors import ArboledaError, ConfigError, QueueFull, StartEr
 from arboleda.model.messages import TaskState
 from arboleda.model.outside import plain
 from arboleda.model.plant_model import Link, PlantModel
-from arboleda.plant_file import layout_check, loader, tree_file
+from arboleda.plant_file import advance_check, loader, plant_check, tree_file
 from arboleda.plant_file.urdf import robot_urdf
 from arboleda.recorder.errors import NoRecord
 from arboleda.recorder.preamble import Recording
@@ -44,6 +44,7 @@ from . import (
     new,
     nodes,
     oee,
+    prove,
     record,
     replay,
     report,
@@ -395,6 +396,7 @@ def _watch(reached: PlantClient, *, as_json: bool) -> None:
 
 token.add_to(cli)
 simulate.add_to(cli)
+prove.add_to(cli)
 conformance.add_to(cli)
 firmware_config.add_to(cli)
 bench.add_to(cli)
@@ -411,6 +413,9 @@ def check(
         typer.Option("--plant", metavar="FILE", help="The plant whose devices a tree is to tell what to do."),
     ] = None,
     cell: nodes.CellName = None,
+    ends: Annotated[
+        bool, typer.Option("--ends", help="Say what is so once a task of each recipe is done.")
+    ] = False,
 ) -> None:
     """Check a plant file, or behavior trees in the XML of BehaviorTree.CPP; every problem at once, each with
     its line. Exit status: 0 good, 2 problems.
@@ -424,12 +429,14 @@ def check(
         return
     if plant is not None or cell is not None:
         raise typer.BadParameter("--plant and --cell are for files of trees, *.xml")
-    model = loader.load(file)
+    model, missed = loader.load_with_offers(file)
     for note in loader.notes(model):
         print(f"{file}: note: {note}")
-    for warning in (*loader.warnings(model), *layout_check.warnings(model)):
+    for warning in plant_check.warnings(model):
         print(f"{file}: warning: {warning}")
     print(f"{file}: good: plant {model.name}; cells {', '.join(cell.name for cell in model.cells)}")
+    for line in (*loader.offers(model, missed), *(advance_check.ends(model) if ends else ())):
+        print(f"  {line}")
 
 
 cli.command()(tree.tree)
@@ -594,7 +601,7 @@ def _run(
     patience_s: float | None = None,
 ) -> None:
     from arboleda.runtime.build import OF_BOARDS, PARTS, build
-    from arboleda.runtime.standby import take_over
+    from arboleda.runtime.standby.process import take_over
 
     from . import session
 

@@ -7,12 +7,11 @@ from collections.abc import Mapping, Sequence
 from click import Context, HelpFormatter
 from typer.core import TyperGroup
 
+from arboleda.model.verbs import Verb
+
 SECTIONS: Mapping[str, tuple[str, ...]] = {
     "Run a plant": ("up", "run", "submit", "status", "tasks", "oee", "token", "service", "site", "handover"),
-    "Operate it": (
-        *("stop", "clear", "reset", "hold", "resume", "cancel", "retry", "abandon", "release", "home"),
-        *("override", "unload", "answer"),
-    ),
+    "Operate it": tuple(verb.value for verb in Verb),
     "Make it yours": (
         *(
             "new",
@@ -27,7 +26,7 @@ SECTIONS: Mapping[str, tuple[str, ...]] = {
             "certs",
         ),
     ),
-    "Put it to the test": ("simulate", "bench"),
+    "Put it to the test": ("simulate", "prove", "bench"),
     "Look back": ("logs", "record", "replay", "report", "backup", "restore"),
 }
 LONGEST = 1000  # characters of a first sentence

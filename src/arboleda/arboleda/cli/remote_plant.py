@@ -11,7 +11,7 @@ from pathlib import Path
 from arboleda.model.errors import ArboledaError
 from arboleda.runtime import tokens
 from arboleda.runtime.endpoints import Place, with_tokens
-from arboleda.runtime.leader import LeaderInfo, of_leader
+from arboleda.runtime.standby.leader import LeaderInfo, of_leader
 from arboleda.runtime.stores import leadership_of
 from arboleda.web.auth import Role
 

@@ -297,7 +297,13 @@ def _why(cell: dict[str, Any]) -> str | None:
     """The obstacle of a cell and its remedy; a latch is reported for all robots together."""
     if cell["state"] == CellState.STOPPED and cell["advice"]:
         return f"{cell['name']} is {cell['state']}; {cell['advice'][0]['said']}"
-    return cell["held_by"] or cell["not_ready"]
+    return cell["held_by"] or cell["not_ready"] or _to_do_by_hand(cell)
+
+
+def _to_do_by_hand(cell: dict[str, Any]) -> str | None:
+    """What a person is advised to do first at a cell that takes tasks all the same."""
+    first = next(iter(cell["advice"]), None)
+    return f"{cell['name']}: {first['said']}" if first is not None and first["hand"] else None
 
 
 def _obstacles(snapshot: dict[str, Any]) -> list[str]:

@@ -30,7 +30,8 @@ arboleda simulate --seeds 9999 --store postgresql://... --worker  on as many hos
 arboleda simulate --faults out.json --trace  what broke in there, with the faults it takes
 arboleda simulate --faults night.yaml        what a plant did: arboleda record export night.yaml
 
-Exit status: 0 every invariant held, 1 one was broken, 2 bad input, 130 Ctrl-C."""
+Exit status: 0 every invariant held, 1 one was broken, or a task failed where nothing had
+gone wrong, 2 bad input, 130 Ctrl-C."""
 
 Plant = Annotated[
     Path | None,
@@ -90,6 +91,14 @@ Record = Annotated[
     ),
 ]
 Trace = Annotated[bool, typer.Option("--trace", help="Print all that happens in one seed.")]
+KeepPlant = Annotated[
+    Path | None,
+    typer.Option(
+        "--keep-plant",
+        metavar="DIR",
+        help="Write a drawn plant to this folder: of the one seed, or of the broken one that is shrunk.",
+    ),
+]
 Jobs = Annotated[
     int | None,
     typer.Option(metavar="N", min=1, help="How many processes share the seeds. [default: one per processor]"),
@@ -122,6 +131,7 @@ def simulate(
     json: Json = None,
     record: Record = None,
     trace: Trace = False,
+    keep_plant: KeepPlant = None,
     jobs: Jobs = None,
     store: StoreAddress = "",
     worker: Worker = False,
@@ -157,6 +167,8 @@ def simulate(
         raise typer.BadParameter(
             "--worker needs --store, and is one process: not with --jobs, --trace, --record, --until-failure"
         )
+    if keep_plant is not None and worker:
+        raise typer.BadParameter("--keep-plant is not for a --worker, which shrinks nothing")
     if json is not None:
         check_writable(json)
     if record is not None:
@@ -170,5 +182,7 @@ def simulate(
 
         raise typer.Exit(work(request, console, store, json))
     if alone:
-        raise typer.Exit(single_seed.run(request, console, trace=trace, record=record, file=json))
-    raise typer.Exit(SeedCampaign(request, console, json).run(jobs or processors()))
+        raise typer.Exit(
+            single_seed.run(request, console, trace=trace, record=record, file=json, keep=keep_plant)
+        )
+    raise typer.Exit(SeedCampaign(request, console, json, keep_plant).run(jobs or processors()))

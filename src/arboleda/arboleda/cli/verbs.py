@@ -1,16 +1,18 @@
-"""The operator's verbs as commands, `arboleda stop` to `arboleda override`: one table, three shapes."""
+"""The operators' verbs as commands, `arboleda stop` to `arboleda answer`, made of their rows and words."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import Annotated, Any
+from collections.abc import Callable, Iterator
+from inspect import Parameter, Signature
+from typing import Any
 
 import typer
 
 from arboleda.model.errors import ArboledaError, TextError
-from arboleda.model.messages import Outcome, Verb
+from arboleda.model.messages import Outcome
 from arboleda.model.outside import plain
-from arboleda.views.verb_words import ABOUT, PLANT, VerbWords
+from arboleda.model.verbs import Argument, Arguments, Scope, Verb, as_text, from_text
+from arboleda.views.verb_words import ABOUT, VerbWords, scope_words
 
 from .client import LONGEST, PlantClient
 from .line import VerbRefused
@@ -18,32 +20,15 @@ from .plant_options import PlantFile, StateFolder, StoreAddress, TokensFile, cli
 
 STATUS = "Exit status: 0 done, 1 no plant, 2 refused, 3 failed, 4 still under way."
 FAILED, UNENDED = 3, 4
-HomedByHand = Annotated[
-    bool,
-    typer.Option("--by-hand", help="Move nothing: you declare that the robot stands at its reference."),
-]
-TakenOut = Annotated[
-    bool,
-    typer.Option("--by-hand", help="Open nothing: you declare that you have taken the part out."),
-]
-Question = Annotated[
-    str | None,
-    typer.Option("--question", metavar="ID", help="Only if this is still what is asked, by its id."),
-]
-Yes = Annotated[bool, typer.Option("--yes", help="Do not ask.")]
-
-
 WORDS = {Outcome.UNDER_WAY: "still under way", Outcome.UNCHECKED: "sent, not checked"}
+BEHIND = "behind"  # the parameter of what stands behind the scope
 STATUSES = {Outcome.FAILED: FAILED, Outcome.UNDER_WAY: UNENDED}
-LABELS = {Verb.STOP: "stop (software)"}
 
 
 def add_to(cli: typer.Typer) -> None:
     """Add a command per verb."""
-    makers = {Verb.HOME: _home, Verb.RELEASE: _release, Verb.OVERRIDE: _override, Verb.ANSWER: _answer}
     for verb, words in ABOUT.items():
-        act = makers.get(verb, _plain)(verb, _argument(words.scopes))
-        cli.command(verb.value, help=about(words), short_help=words.brief)(act)
+        cli.command(verb.value, help=about(words), short_help=words.brief)(_command(verb))
 
 
 def about(words: VerbWords) -> str:
@@ -52,10 +37,75 @@ def about(words: VerbWords) -> str:
     return f"{does[:1].upper()}{does[1:]}.\n\nRefused: {words.refused}.\n\n{STATUS}"
 
 
-def _argument(scopes: tuple[str, ...]) -> Any:
-    *others, last = [each for each in scopes if each != PLANT]
-    default, note = (None, " [default: the whole plant]") if PLANT in scopes else (..., "")
-    help, metavar = f"A {' or '.join([*others, last])}.{note}", "SCOPE" if others or note else last.upper()
+def _command(verb: Verb) -> Callable[..., None]:
+    """The command of a verb: typer reads its parameters from its signature."""
+
+    def act(**told: Any) -> None:
+        scope, sure = told["scope"], ABOUT[verb].sure
+        if sure and not told["yes"]:
+            typer.confirm(sure.format(scope=scope), abort=True)
+        reached = client(*(told[each.name] for each in PLANT_OPTIONS))
+        arguments = tuple(_values(verb, told))
+        _ask(verb, scope, reached, by_hand=told.get("by_hand", False), arguments=arguments)
+
+    parameters = [*_parameters(verb), *PLANT_OPTIONS]
+    act.__signature__ = Signature(parameters)  # type: ignore[attr-defined]
+    act.__annotations__ = {each.name: each.annotation for each in parameters}
+    return act
+
+
+PLANT_OPTIONS = (
+    Parameter("plant", Parameter.KEYWORD_ONLY, default=None, annotation=PlantFile),
+    Parameter("state", Parameter.KEYWORD_ONLY, default=None, annotation=StateFolder),
+    Parameter("store", Parameter.KEYWORD_ONLY, default="", annotation=StoreAddress),
+    Parameter("tokens", Parameter.KEYWORD_ONLY, default=None, annotation=TokensFile),
+)
+
+
+def _parameters(verb: Verb) -> Iterator[Parameter]:
+    """The scope, the arguments and the options of a verb."""
+    words = ABOUT[verb]
+    yield _parameter("scope", str | None, _scope(verb))
+    behind = [each for each in verb.arguments if not each.mark]
+    if behind:
+        yield _behind(behind, words)
+    for each in (each for each in verb.arguments if each.mark):
+        help = words.arguments[each.name]
+        yield _parameter(each.name, str | None, typer.Option(None, f"--{each.name}", metavar="ID", help=help))
+    if words.by_hand is not None:
+        yield _parameter("by_hand", bool, typer.Option(False, "--by-hand", help=words.by_hand.option))
+    if words.sure:
+        yield _parameter("yes", bool, typer.Option(False, "--yes", help="Do not ask."))
+
+
+def _parameter(name: str, annotation: Any, default: Any) -> Parameter:
+    return Parameter(name, Parameter.KEYWORD_ONLY, default=default, annotation=annotation)
+
+
+def _behind(arguments: list[Argument], words: VerbWords) -> Parameter:
+    """Words behind the scope: the arguments in their order."""
+    needed = any(each.needed for each in arguments)
+    metavar = " ".join(each.name.upper() for each in arguments)
+    help = " ".join(words.arguments[each.name] for each in arguments)
+    argument = typer.Argument(... if needed else None, metavar=metavar, help=help, show_default=False)
+    return _parameter(BEHIND, list[str], argument)
+
+
+def _values(verb: Verb, told: dict[str, Any]) -> Iterator[tuple[str, int | str]]:
+    """The arguments of a verb as they were given."""
+    for each in verb.arguments:
+        if each.mark and told[each.name] is not None:
+            yield each.name, told[each.name].removeprefix(each.mark)
+    if told.get(BEHIND):
+        yield from from_text(verb, " ".join([told["scope"] or "", *told[BEHIND]]))[1]
+
+
+def _scope(verb: Verb) -> Any:
+    everywhere = Scope.PLANT in verb.row.scopes
+    words = scope_words(verb)[1:] if everywhere else scope_words(verb)
+    default, note = (None, " [default: the whole plant]") if everywhere else (..., "")
+    help = f"{' or '.join(words).capitalize()}.{note}"
+    metavar = "SCOPE" if note or len(words) > 1 else words[0].split()[-1].upper()
     return typer.Argument(default, metavar=metavar, help=help, callback=_named, show_default=False)
 
 
@@ -65,91 +115,25 @@ def _named(scope: str | None) -> str | None:
     return scope
 
 
-def _plain(verb: Verb, argument: Any) -> Callable[..., None]:
-    def act(
-        scope: str | None = argument,
-        plant: PlantFile = None,
-        state: StateFolder = None,
-        store: StoreAddress = "",
-        tokens: TokensFile = None,
-    ) -> None:
-        _ask(verb, scope, client(plant, state, store, tokens))
-
-    return act
-
-
-def _home(verb: Verb, argument: Any) -> Callable[..., None]:
-    def act(
-        scope: str | None = argument,
-        by_hand: HomedByHand = False,
-        plant: PlantFile = None,
-        state: StateFolder = None,
-        store: StoreAddress = "",
-        tokens: TokensFile = None,
-    ) -> None:
-        _ask(verb, scope, client(plant, state, store, tokens), by_hand=by_hand)
-
-    return act
-
-
-def _release(verb: Verb, argument: Any) -> Callable[..., None]:
-    def act(
-        scope: str | None = argument,
-        by_hand: TakenOut = False,
-        plant: PlantFile = None,
-        state: StateFolder = None,
-        store: StoreAddress = "",
-        tokens: TokensFile = None,
-    ) -> None:
-        _ask(verb, scope, client(plant, state, store, tokens), by_hand=by_hand)
-
-    return act
-
-
-def _override(verb: Verb, argument: Any) -> Callable[..., None]:
-    def act(
-        scope: str | None = argument,
-        yes: Yes = False,
-        plant: PlantFile = None,
-        state: StateFolder = None,
-        store: StoreAddress = "",
-        tokens: TokensFile = None,
-    ) -> None:
-        question = f"A robot may still stand in {scope}. Have you seen that it is free?"
-        if not yes:
-            typer.confirm(question, abort=True)
-        _ask(verb, scope, client(plant, state, store, tokens))
-
-    return act
-
-
-def _answer(verb: Verb, argument: Any) -> Callable[..., None]:
-    def act(
-        person: Annotated[str, typer.Argument(help="Who is asked.", callback=_named)],
-        answer: Annotated[list[str], typer.Argument(help="One of the answers that are offered.")],
-        question: Question = None,
-        plant: PlantFile = None,
-        state: StateFolder = None,
-        store: StoreAddress = "",
-        tokens: TokensFile = None,
-    ) -> None:
-        named = [] if question is None else [f"#{question.removeprefix('#')}"]
-        _ask(verb, " ".join([person, *named, *answer]), client(plant, state, store, tokens))
-
-    return act
-
-
-def _ask(verb: Verb, scope: str | None, reached: PlantClient, *, by_hand: bool = False) -> None:
+def _ask(
+    verb: Verb,
+    scope: str | None,
+    reached: PlantClient,
+    *,
+    by_hand: bool = False,
+    arguments: Arguments = (),
+) -> None:
+    of, told = (scope or "", arguments) if arguments else from_text(verb, scope or "")
     try:
-        answer = reached.operate(verb, scope or "", by_hand=by_hand)
+        answer = reached.operate(verb, of, by_hand=by_hand, arguments=told)
         if answer.get("outcome") == Outcome.UNDER_WAY.value:
             answer = reached.outcome(answer["act"])
     except ArboledaError as error:
-        if verb is not Verb.STOP or isinstance(error, VerbRefused | TextError):
+        if not verb.row.stops or isinstance(error, VerbRefused | TextError):
             raise
         raise ArboledaError(f"The stop was not confirmed, use the hard-wired button: {error}") from error
-    did = LABELS.get(verb, verb.value) + (" by hand" if by_hand else "")
-    _tell(answer, f"{did}, {plain(scope or 'the whole plant')}")
+    did = (ABOUT[verb].called or verb.value) + (" by hand" if by_hand else "")
+    _tell(answer, f"{did}, {plain(as_text(verb, of, told) or 'the whole plant')}")
 
 
 def _tell(answer: dict[str, Any], did: str) -> None:

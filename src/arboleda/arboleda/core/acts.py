@@ -10,6 +10,7 @@ from functools import reduce
 from arboleda.dispatch.ledger import Entry, State
 from arboleda.model.messages import Outcome, Verb
 from arboleda.model.sentence import BOTH, Phrase, Sentence
+from arboleda.model.verbs import Arguments
 
 HALTED = Phrase("act.halted", "{robot} was halted while {doing}")
 UNCHECKED = Phrase("act.unchecked", "{robot} was told, and does not report whether it did it")
@@ -32,6 +33,7 @@ class OperatorAct:
     at: float
     verb: Verb
     scope: str
+    arguments: Arguments = ()
     cell: str | None  # None for the whole plant and for a zone, which several cells may share
     sentence: Sentence
     outcome: Outcome

@@ -18,6 +18,8 @@ class Hand(str, Enum):
     REFERENCE = "reference"  # a robot that only its own controls can home
     CHECK = "check"  # a zone: that really nobody is in it
     FREE = "free"  # a device that is in the way of a zone
+    TAKE_OUT = "take_out"  # what lies at a place; its scope is that of the verb, the cell and the place
+    PUT_IN = "put_in"  # a part that is missing at a place, the same
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -44,11 +46,14 @@ DO: dict[Verb | Hand, Phrase] = {
     Hand.REPAIR: Phrase("do.repair", "repair {scope}"),
     Hand.REFERENCE: Phrase("do.reference", "home {scope} at its own controls"),
     Hand.FREE: Phrase("do.free", "get {scope} out of the way by its own controls"),
+    Hand.TAKE_OUT: Phrase("do.take_out", "see that {scope} is empty and say so (unload {scope})"),
+    Hand.PUT_IN: Phrase("do.put_in", "put a part at {scope} and say so (load {scope})"),
     Hand.CHECK: Phrase("do.check", "see that nobody is in {scope}"),
 }
 BY_HAND: dict[Verb, Phrase] = {
-    Verb.HOME: Phrase("do.home_by_hand", "home {scope} --by-hand"),
-    Verb.RELEASE: Phrase("do.release_by_hand", "release {scope} --by-hand"),
+    verb: Phrase(f"do.{verb.value}_by_hand", f"{verb.value} {{scope}} --by-hand")
+    for verb in Verb
+    if verb.row.by_hand
 }
 THEN = Phrase("do.then", "{first}, then {second}")
 OR = Phrase("do.or", "{first} or {second}")

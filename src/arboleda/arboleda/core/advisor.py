@@ -8,6 +8,7 @@ from dataclasses import replace
 from arboleda.dispatch.dispatcher import MAY_LET_GO
 from arboleda.model.messages import OperatorRequest, Reason, Verb
 from arboleda.model.sentence import Phrase, Sentence
+from arboleda.trees import places
 
 from . import reasons
 from .advice import Advice, Hand
@@ -59,6 +60,7 @@ class Advisor:
         readying = [*self._readying(run, asked)]
         yield from readying
         if not (readying and readying[0].do is Verb.STOP):
+            yield from _mending_books(run)
             yield from _running_again(run)
 
     def _held(self, run: CellRun, asked: frozenset[str]) -> Iterator[Advice]:
@@ -69,7 +71,11 @@ class Advisor:
         if (readying and readying[0].do is Verb.STOP) or (run.awaits and not readying):
             return
         homed = [
-            each.scope for each in readying if each.do is Verb.HOME and each.scope in run.cell.workspaces
+            each.scope
+            for each in readying
+            if each.do is Verb.HOME
+            and each.scope in run.cell.workspaces
+            and run.context.devices.has(each.scope)
         ]
         if run.task is None:
             yield from self._recovering(run, asked)
@@ -158,7 +164,8 @@ class Advisor:
         if by_routine:
             yield from _letting_go(run, robot)
             if robot in run.cell.zone_users:
-                zones = run.cell.workspaces[robot].zones
+                cells = [each.cell for each in self._runs[robot] if robot in each.cell.workspaces]
+                zones = frozenset[str]().union(*(cell.workspaces[robot].zones for cell in cells))
                 awaited = run.context.zones.awaited(robot, zones)
                 machines = set(run.cell.interlocked).intersection(awaited.values())
                 if any(run.context.robots.belief(each).moves for each in machines):
@@ -185,7 +192,10 @@ class Advisor:
             other = self._run_of(holder)
             if other.state is CellState.EXECUTE and holder in other.cell.shared:
                 continue  # it is not ours to move while a task of another cell uses it
-            if (facts := other.context.zones.interlocks.in_the_way(holder, its)) is not None:
+            locks = other.context.zones.interlocks
+            if (facts := locks.in_the_way(holder, its)) is not None:
+                if run.context.zones.awaited(holder, locks.led_into(holder, its)):
+                    continue  # there it would meet whoever is in that zone
                 yield Advice(do=Hand.FREE, scope=holder, why=IN_THE_WAY(device=holder, facts=facts))
                 continue
             if other is run and _can_leave(run, holder):
@@ -283,6 +293,14 @@ def _running_again(run: CellRun) -> Iterator[Advice]:
         yield Advice(do=Verb.RESUME, scope=run.cell.name, why=run.queue.why_paused, moves=moves)
 
 
+def _mending_books(run: CellRun) -> Iterator[Advice]:
+    """To make room at a place, or to bring a part there, where the last task failed for want of that."""
+    trouble = run.place_trouble
+    if trouble is not None and run.context.places.is_so_still(trouble):
+        hand = Hand.TAKE_OUT if trouble.key == places.FULL.key else Hand.PUT_IN
+        yield Advice(do=hand, scope=f"{run.cell.name} {trouble.values['place']}", why=trouble)
+
+
 def _can_bring_back(run: CellRun) -> bool:
     """True where a robot carries what holds a part, and a recovery knows where that belongs.
 
@@ -295,7 +313,7 @@ def _can_bring_back(run: CellRun) -> bool:
 
 def _recovered(run: CellRun) -> tuple[str, ...]:
     """The robots that a recovery moves."""
-    return tuple(run.cell.workspaces)
+    return tuple(filter(run.context.devices.has, run.cell.workspaces))
 
 
 def _movers(run: CellRun) -> tuple[str, ...]:

@@ -20,6 +20,8 @@ from arboleda.model.task import Task
 from arboleda.trees import steps
 from arboleda.trees.context import Context
 from arboleda.trees.keeping import Keeping
+from arboleda.trees.leaves import title_of
+from arboleda.trees.places import trouble_in
 from arboleda.trees.tree_run import TreeRun, path_of
 from arboleda.trees.walk_back import NO_PART
 
@@ -66,6 +68,7 @@ class CellRun:
         self.awaits: Sentence | None = None  # for what a task of an earlier start waits before it can go on
         self.trouble: Failure | None = None  # why it is held
         self.stranded: Sentence | None = None  # why no step of a held task can go on from there
+        self.place_trouble: Sentence | None = None  # for which the last task failed
         self.in_vain: set[tuple[Verb, str]] = set()  # what was done to get on, and failed, since it worked
         self.dirty = False
         self.closed = False
@@ -86,6 +89,11 @@ class CellRun:
         """The time at which the cell is to be looked at although nothing happens, s of the plant's time."""
         walk = self.keeping.walk
         return self.context.time.next_deadline if walk is None else walk.due
+
+    @property
+    def envelope(self) -> Sequence[str]:
+        """The effectors that its task may tell to switch before this is durable."""
+        return self.keeping.envelope if self.task is not None and self.task.ended_at is None else ()
 
     @property
     def not_ready(self) -> Sentence | None:
@@ -404,16 +412,18 @@ class CellRun:
     def _start(self, task: Task) -> None:
         self.task, self._cancelling, self._recovers_anew = task, False, False
         self.in_vain.clear()
+        self.place_trouble = None
         self.context.answers = task.answers
         self.become(Cause.TASK)
         task.become(TaskState.RUNNING, self.context.time.plant_now)
         self._changed(task)
         self.context.start_afresh()
+        self.context.places.begin()
         self._look(self.run.begin(lambda: self.keeping.make(task.order)))
 
     def uproot(self, robot: str) -> None:
         """A robot that goes from pose to pose is homed: a task that is held can only be abandoned."""
-        if self.task is not None and robot in self.cell.workspaces:
+        if self.task is not None and robot in self.cell.workspaces and self.context.devices.has(robot):
             self.stranded = HOMED_MEANWHILE(arm=robot)
 
     def let_go(self, robot: str) -> None:
@@ -451,8 +461,9 @@ class CellRun:
             self.become(Cause.ENDED)
         if task is None:
             return
+        self.place_trouble = None if found is None else trouble_in(found.sentence)
         if found is not None:
-            task.fail(found, path_of(leaf) if leaf else None)
+            task.fail(found, path_of(leaf) if leaf else None, title_of(leaf) if leaf else None)
         if self._cancelling:
             self._finish(task, TaskState.CANCELLED)
         elif task.failure:

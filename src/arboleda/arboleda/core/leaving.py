@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from arboleda.model.commands import Command, Stop, StopMode
-from arboleda.model.messages import Heartbeat, Notice, OperatorAnswer, OperatorRequest, Outcome
+from arboleda.model.messages import Heartbeat, LateDeparture, Notice, OperatorAnswer, OperatorRequest, Outcome
 from arboleda.model.sentence import Phrase, Sentence
 
 from .plant import Plant
@@ -18,7 +18,10 @@ LEFT_UNKEPT = Phrase(
     "stop.left_unkept",
     "the stop has left for {scope}, and the plant has not kept it ({why}); a restart would not know of it",
 )
+WORTH_TELLING_S = 0.02  # a commit takes a few ms
 EVERYTHING = Phrase("stop.everything", "the whole plant")
+SYNCED_WITHIN_S = 0.01  # from a write to its sync where nobody waits: one for what all cells write meanwhile
+MOST_UNSYNCED_S = 0.1  # only stops leave a plant of which a write has not been durable for so long
 
 
 class StopLeft(OperatorAnswer):
@@ -70,6 +73,15 @@ def is_too_late(message: Command | Notice, plant: Plant, now: float) -> bool:
     """True where the plant was away between its step and now: what was right then is not sent any more."""
     stale = now - plant.now > plant.away_after_s
     return stale and isinstance(message, Command) and not ends_motion(message)
+
+
+def late_departure(message: Command | Notice, plant: Plant, now: float) -> LateDeparture | None:
+    """The event for a command that leaves now and counts as done by its time alone, well after its step."""
+    entry = plant.dispatcher.ledger.entries.get(message.id) if isinstance(message, Command) else None
+    late_s = now - plant.now
+    if entry is None or entry.settles_at is None or late_s < WORTH_TELLING_S:
+        return None
+    return LateDeparture(at=now, id=entry.command.id, late_s=late_s)
 
 
 def leaves_unkept(message: Command | Notice) -> bool:

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from functools import partial, reduce
 
 from arboleda.dispatch.belief import ONLY_DRAWN
@@ -17,10 +17,11 @@ from arboleda.model.outside import quoted
 from arboleda.model.plant_model import Evidence, Link, PlantModel
 from arboleda.model.recipe import known
 from arboleda.model.sentence import Phrase, Sentence, Value
+from arboleda.model.verbs import Arguments, Scope, as_text, lasting
 
 from . import reasons
 from .acts import ENDED, Acts, OperatorAct, outcome_of
-from .advice import AND, DO, OR
+from .advice import AND, DO, OR, sentence
 from .cell import NOT_YET, CellRun
 from .cell_states import Cause, CellState
 from .intake import Intake
@@ -34,10 +35,8 @@ class Refused(ArboledaError):
 PLANT = Phrase("scope.plant", "plant")
 DID = Phrase("did.verb", "{verb}")
 DID_BY_HAND = Phrase("did.by_hand", "{verb} by hand")  # only read, in journals
-DECLARED_BY_HAND = {
-    Verb.HOME: Phrase("did.declared_homed", "home {scope} by hand"),
-    Verb.RELEASE: Phrase("did.declared_empty", "release {scope} by hand: the part was taken out"),
-}
+DECLARED_HOMED = Phrase("did.declared_homed", "home {scope} by hand")
+DECLARED_EMPTY = Phrase("did.declared_empty", "release {scope} by hand: the part was taken out")
 DID_BY_CLIENT = Phrase("did.by_client", "{verb} by its client")
 NO_TASK = Phrase(
     "refusal.no_task",
@@ -55,6 +54,12 @@ STILL_USES = Phrase(
     "refusal.still_uses",
     "{cell} has not given up its work with {device}; stop {cell}, then override {device}",
 )
+GOES_BACK = Phrase(
+    "refusal.goes_back",
+    "{device} stays with {cell} until it is heard, holds no part and is at home; "
+    "then it is free without an override",
+)
+WITH_OTHER = Phrase("refusal.with_other", "{device}, which cells share, is with {cell} now")
 NOT_HELD = Phrase("refusal.device_not_held", "no cell holds {device} now; say which one, {cells}")
 STAYS_STOPPED = Phrase(
     "refusal.stays_stopped", "{device} stays stopped while {cells} is; clear {cells} first"
@@ -64,6 +69,10 @@ STOPS_SHARED = Phrase(
 )
 NO_STATION = Phrase("refusal.no_station", "{station} is not a station of {cell}")
 STATION_EMPTY = Phrase("refusal.station_empty", "no part is known to be in station {station} of {cell}")
+NO_PLACE = Phrase("refusal.no_place", "{place} is no place of {cell}; there are {known}")
+NO_PLACES = Phrase("refusal.no_places", "{cell} has no places for parts; its plant file names none")
+PLACE_EMPTY = Phrase("refusal.place_empty", "no part is known to be at {place} of {cell}")
+PARTS_OF_PLACE = Phrase("refusal.parts_of_place", "{place} of {cell} holds 1 to {most} parts, not {parts}")
 RACK_EMPTY = Phrase("refusal.rack_empty", "no part is known to be in the rack of {cell}")
 TASK_ENDED = Phrase("refusal.task_ended", "task {task} has ended already ({state})")
 TASK_STATES = {state: Phrase(f"task_state.{state.value}", state.value) for state in TaskState}
@@ -106,6 +115,10 @@ NO_FAULT = Phrase("refusal.no_fault", "{cell} is held without a fault; resume {c
 RELEASE_FIRST = Phrase("refusal.release_first", "{arm} may hold a part; release {arm} first")
 RELEASE_ALL_FIRST = Phrase("refusal.release_all_first", "{devices} may each hold a part; {releases} first")
 HOLDS_NOTHING = Phrase("refusal.holds_nothing", "no part is known to be in {devices}")
+HOLDS_NOTHING_ANY_MORE = Phrase(
+    "refusal.holds_nothing_any_more",
+    "no part is known to be in {devices}, so nothing has to be said of it; go on with {next}",
+)
 NO_PERSON = Phrase("refusal.no_person", "{person} is no person of this plant; people: {known}")
 NOT_ASKED = Phrase("refusal.not_asked", "nobody asks {person} anything now")
 NO_ANSWER = Phrase("refusal.no_answer", "{word} is no answer to what {person} is asked; answers: {known}")
@@ -115,11 +128,11 @@ OTHER_QUESTION = Phrase(
 QUESTION_OVER = Phrase(
     "refusal.question_over", "question {question} to {person} is over; nobody asks {person} anything now"
 )
+NO_ARGUMENT = Phrase("refusal.no_argument", "{verb} takes no argument {argument}")
 NO_RUNNING_TASK = Phrase("refusal.no_running_task", "{cell} has no running task")
 
 BROKE = Phrase("act.broke", "{cell} failed on an internal error meanwhile; the log has its details")
 SHOWN = 10  # tasks that a sentence names
-QUESTION_ID = re.compile(r"#[0-9]+-[0-9]+")
 
 
 class Operator:
@@ -141,6 +154,8 @@ class Operator:
         self._intake = intake
         self._clock = clock
         self._scopes = scopes(dispatcher.model)
+        cells_of = dispatcher.model.cells_of.items()
+        self._alone = {name: cells[found[0].name] for name, found in cells_of if len(found) == 1}
         self.acts = Acts()
         self._sent: list[Entry] = []  # the commands of the act that is being done
         self._defects: list[Sentence] = []  # what broke in it
@@ -160,6 +175,7 @@ class Operator:
             at=self._clock(),
             verb=request.verb,
             scope=scope,
+            arguments=arguments_of(request),
             cell=self._cell_of(request, scope),
             sentence=self._with_shared(request.verb, scope, _did(request, scope)),
             outcome=outcome,
@@ -176,7 +192,7 @@ class Operator:
         """The outcome of an act in the step in which it is asked."""
         if self._defects:
             return Outcome.FAILED, self._defects[0]
-        return (Outcome.SENT, None) if verb is Verb.STOP else outcome_of(self._sent)
+        return (Outcome.SENT, None) if verb.row.stops else outcome_of(self._sent)
 
     def look(self) -> bool:
         """Journal what has become of acts that devices carry out; whether one has ended."""
@@ -197,7 +213,14 @@ class Operator:
                 self._cells[entry.cell].in_vain.add(tried)
 
     def _journal(self, act: OperatorAct, sentence: Sentence, outcome: Outcome | None = None) -> None:
-        entry = Journal(verb=act.verb, scope=act.scope, cell=act.cell, sentence=sentence, outcome=outcome)
+        entry = Journal(
+            verb=act.verb,
+            scope=act.scope,
+            arguments=act.arguments,
+            cell=act.cell,
+            sentence=sentence,
+            outcome=outcome,
+        )
         self._dispatcher.outbox.append(entry)
 
     def refusal(self, request: OperatorRequest) -> Sentence | None:
@@ -210,39 +233,44 @@ class Operator:
 
     def _planned(self, request: OperatorRequest, scope: str) -> Callable[[], None]:
         """What does the request, everything that speaks against it looked at; Refused says what does."""
-        if request.verb is Verb.OVERRIDE:
-            return self._planned_override(scope)
-        if request.verb is Verb.UNLOAD:
-            return self._planned_unloading(scope)
-        if request.verb is Verb.ANSWER:
-            return self._planned_answer(scope)
-        if request.verb is Verb.CANCEL and scope.lstrip("#") in self._intake.tasks:
+        if request.arguments:
+            _require_its_own(request)
+        procedure = TABLE[request.verb]
+        if procedure.plan is not None:
+            return procedure.plan(self, request, scope)
+        return self._planned_in_cells(procedure, self._robots(scope), self._cells_in(request.verb, scope))
+
+    def _planned_cancelling(self, request: OperatorRequest, scope: str) -> Callable[[], None]:
+        """Of one task, or of those that run in a scope."""
+        if scope.lstrip("#") in self._intake.tasks:
             return self._planned_cancel(scope.lstrip("#"), _cancelled_by(request))
-        if request.verb is Verb.CANCEL:
-            scope = self._known_scope(scope)
-        robots = self._robots(scope)
-        if request.verb is Verb.HOME:
-            return self._planned_homing(robots, by_hand=request.by_hand)
+        scope = self._known_scope(scope)
         cells = self._cells_in(request.verb, scope)
-        if request.verb is Verb.RELEASE and request.by_hand:
+        return self._planned_in_cells(TABLE[request.verb], self._robots(scope), cells)
+
+    def _planned_release(self, request: OperatorRequest, scope: str) -> Callable[[], None]:
+        robots, cells = self._robots(scope), self._cells_in(request.verb, scope)
+        if request.by_hand:
             return self._planned_emptying(robots, cells)
-        return self._planned_in_cells(request.verb, robots, cells)
+        return self._planned_in_cells(TABLE[request.verb], robots, cells)
 
     def _cells_in(self, verb: Verb, scope: str) -> list[CellRun]:
         """The cells of a scope; what is no matter of all that share a device is one of who holds it."""
         if scope in self._cells:
             return [self._cells[scope]]
         cells = self._of_robots(self._robots(scope))
-        if scope not in self._dispatcher.model.shared or verb in OF_ALL_WHO_SHARE:
+        if scope not in self._dispatcher.model.shared or verb.row.of_all_who_share:
             return cells
         holder = self._zones.holder(scope)
+        if holder is None and verb is Verb.RELEASE:
+            return [cell for cell in cells if cell.context.devices.answers_for(scope)]
         if holder is None:
             raise Refused(NOT_HELD(device=scope, cells=tuple(cell.cell.name for cell in cells)))
         return [cell for cell in cells if cell.cell.name == holder]
 
     def _with_shared(self, verb: Verb, scope: str, did: Sentence) -> Sentence:
         """The sentence about an act, and that the stop of one cell stopped what it shares with others."""
-        cell = self._cells.get(scope) if verb is Verb.STOP else None
+        cell = self._cells.get(scope) if verb.row.stops else None
         if cell is None or not cell.cell.shared:
             return did
         cells_of = self._dispatcher.model.cells_of
@@ -250,15 +278,13 @@ class Operator:
         others.pop(scope)
         return STOPS_SHARED(did=did, devices=cell.cell.shared, cells=tuple(others), scope=scope)
 
-    def _planned_in_cells(self, verb: Verb, robots: set[str], cells: list[CellRun]) -> Callable[[], None]:
-        check, act = ACTS[verb]
-        refusals = {cell.cell.name: why for cell in cells if (why := check(self, cell, robots))}
-        must = MUST_ALL.get(verb, ())
-        firm = [cell.cell.name for cell in cells if cell.state in must and cell.cell.name in refusals]
+    def _planned_in_cells(self, row: Procedure, robots: set[str], cells: list[CellRun]) -> Callable[[], None]:
+        refusals = {cell.cell.name: why for cell in cells if (why := row.check(self, cell, robots))}
+        firm = [cell.cell.name for cell in cells if cell.state in row.must_all and cell.cell.name in refusals]
         if firm or len(refusals) == len(cells):
             raise Refused(refusals[firm[0]] if firm else next(iter(refusals.values())))
         able = [cell for cell in cells if cell.cell.name not in refusals]
-        acts = [FIRST[verb], act] if verb in FIRST else [act]
+        acts = [row.do] if row.first is None else [row.first, row.do]
         return partial(self._do_in, able, acts, robots)
 
     def _of_robots(self, robots: set[str]) -> list[CellRun]:
@@ -286,10 +312,10 @@ class Operator:
 
     def _cell_of(self, request: OperatorRequest, scope: str) -> str | None:
         """The one cell that a request is for; None where it is for more."""
-        task = self._intake.tasks.get(scope.lstrip("#")) if request.verb is Verb.CANCEL else None
+        task = self._intake.tasks.get(scope.lstrip("#")) if Scope.TASK in request.verb.row.scopes else None
         if task is not None:
             return task.order.cell
-        name, _, _ = scope.lower().partition(" ")  # a station is named by its cell and number
+        name = scope.lower()
         cells = self._dispatcher.model.cells_of.get(name, ())
         return name if name in self._cells else cells[0].name if len(cells) == 1 else None
 
@@ -315,14 +341,16 @@ class Operator:
             raise Refused(NO_SCOPE(scope=quoted(scope), known=(*self._cells, *self._dispatcher.beliefs)))
         return set(robots)
 
-    def _planned_override(self, zone: str) -> Callable[[], None]:
+    def _planned_override(self, request: OperatorRequest, zone: str) -> Callable[[], None]:
         holder = self._zones.holder(zone)
         cell = self._cells.get(holder or "")
         if cell is not None and cell.tree is not None and self._zones.is_quarantined(zone):
             raise Refused(STILL_USES(cell=cell.cell.name, device=zone))
+        if cell is not None and zone in cell.cell.shared and not self._is_left_anywhere(zone):
+            raise Refused(GOES_BACK(device=zone, cell=cell.cell.name))
         known = self._dispatcher.model.cell_of  # without who is no longer in the plant file
         if holder in known and self._zones.is_quarantined(zone) and self._works(holder):
-            name = self._dispatcher.model.cell_of[holder].name  # what it does there counts on the zone
+            name = self.in_charge(holder).cell.name  # what it does there counts on the zone
             raise Refused(STILL_WORKS(robot=holder, zone=zone, cell=name))
         try:
             self._zones.require_quarantined(zone)
@@ -335,36 +363,75 @@ class Operator:
         self._dispatcher.memory.vacate([zone])
         self._dispatcher.wake({*granted, *self._zones.robbed})
 
+    def _is_left_anywhere(self, device: str) -> bool:
+        """True for a shared device that goes nowhere and holds no part, so that any cell may have it next."""
+        robot = self._dispatcher.model.robots[device]
+        return not robot.goes and robot.held_fact is None
+
+    def in_charge(self, robot: str) -> CellRun:
+        """The cell of a robot; of a shared one that which holds it, else the first that does not work."""
+        if (alone := self._alone.get(robot)) is not None:
+            return alone
+        runs = [self._cells[cell.name] for cell in self._dispatcher.model.cells_of[robot]]
+        idle = [run for run in runs if run.state is CellState.IDLE]
+        return next((run for run in runs if run.context.devices.holds(robot)), (idle or runs)[0])
+
     def _works(self, arm: str) -> bool:
         """True where a tree counts on what an arm has, or the arm moves without one: homing needs none."""
-        cell = self._cells[self._dispatcher.model.cell_of[arm].name]
+        cell = self.in_charge(arm)
         moves = any(entry.is_work for entry in self._dispatcher.ledger.of_robot(arm))
         return moves or cell.tree is not None
 
-    def _planned_unloading(self, scope: str) -> Callable[[], None]:
-        """`sis_a 7` is one station, `sis_a` the whole rack of a cell."""
-        name, _, station = scope.partition(" ")
-        robots = self._robots(name)
-        cells = [cell for cell in self._of_robots(robots) if robots & set(cell.cell.holders)]
-        if station and not any(station == str(n) for cell in cells for n in range(len(cell.cell.stations))):
-            raise Refused(NO_STATION(station=quoted(station), cell=_whole(name)))
-        number = int(station) if station else None
-        stored = [cell.context.stations.stored for cell in cells]
-        if not any(each if number is None else number in each for each in stored):
-            if number is None:
-                raise Refused(RACK_EMPTY(cell=_whole(name)))
-            raise Refused(STATION_EMPTY(station=number, cell=name))
-        return partial(self._unload, cells, number)
+    def _planned_unloading(self, request: OperatorRequest, scope: str) -> Callable[[], None]:
+        """Of one place or station; without either, of all places and the whole rack of each cell."""
+        robots, station, place = self._robots(scope), request.argument("station"), request.argument("place")
+        cells = [cell for cell in self._with_books(scope) if robots & set(cell.cell.holders)]
+        if place is not None:
+            name = str(place).lower()
+            cell = _with_place(cells, _whole(scope), name)
+            return self._planned_removal([(cell, [name])], PLACE_EMPTY(place=name, cell=cell.cell.name))
+        if station is None:
+            every = [(cell, [*cell.context.places.counts]) for cell in cells]
+            return self._planned_removal(every, RACK_EMPTY(cell=_whole(scope)))
+        racks = [(cell, dict[Value, str](enumerate(cell.cell.station_targets))) for cell in cells]
+        found = [(cell, [rack[station]]) for cell, rack in racks if station in rack]
+        if not found:
+            raise Refused(NO_STATION(station=quoted(str(station)), cell=_whole(scope)))
+        return self._planned_removal(found, STATION_EMPTY(station=station, cell=_whole(scope)))
 
-    def _unload(self, cells: list[CellRun], number: int | None) -> None:
-        for cell in cells:
-            cell.context.stations.unload(number)
+    def _planned_removal(
+        self, places: list[tuple[CellRun, list[str]]], refusal: Sentence
+    ) -> Callable[[], None]:
+        """Of these places; Refused where all are empty."""
+        full = [cell.context.places.full.intersection(names) for cell, names in places]
+        if not any(full):
+            raise Refused(refusal)
+        return partial(self._set_parts, [(cell, dict.fromkeys(names, 0)) for cell, names in places])
 
-    def _planned_answer(self, scope: str) -> Callable[[], None]:
-        """`operator good`: a person, and one of the answers to what is being asked; `operator #1-7 good` is
-        for the question of that id, and no other one.
-        """
-        person, id, word = _answered(scope)
+    def _planned_loading(self, request: OperatorRequest, scope: str) -> Callable[[], None]:
+        """Of one place of a cell: with so many parts, else with all that it holds."""
+        place, parts = str(request.argument("place") or "").lower(), request.argument("parts")
+        cell = _with_place(self._with_books(scope), _whole(scope), place)
+        most = next(each.holds for each in cell.cell.counted if each.target == place)
+        number = most if parts is None else parts
+        if isinstance(number, str) or not 1 <= number <= most:
+            told = quoted(number) if isinstance(number, str) else number
+            raise Refused(PARTS_OF_PLACE(place=place, cell=cell.cell.name, most=most, parts=told))
+        return partial(self._set_parts, [(cell, {place: number})])
+
+    def _with_books(self, scope: str) -> list[CellRun]:
+        """The cells whose places a scope means: of a cell its own alone, whatever it shares with others."""
+        robots = self._robots(scope)
+        return [self._cells[scope]] if scope in self._cells else self._of_robots(robots)
+
+    def _set_parts(self, parts: list[tuple[CellRun, dict[str, int]]]) -> None:
+        for cell, numbers in parts:
+            cell.context.places.set(numbers)
+        self._dispatcher.wake([cell.cell.name for cell, _ in parts])
+
+    def _planned_answer(self, request: OperatorRequest, person: str) -> Callable[[], None]:
+        """One of the answers to what is being asked; where it names a question, only to that one."""
+        id, word = request.argument("question"), str(request.argument("answer") or "")
         people = [name for name, robot in self._dispatcher.model.robots.items() if robot.link is Link.SCREEN]
         if person not in people:
             raise Refused(NO_PERSON(person=quoted(person), known=tuple(people) or NONE()))
@@ -375,7 +442,7 @@ class Operator:
             raise Refused(NOT_ASKED(person=person))
         assert isinstance(entry.command, Question)
         if id not in (None, entry.command.id):
-            raise Refused(OTHER_QUESTION(question=id or "", person=person, text=entry.command.text))
+            raise Refused(OTHER_QUESTION(question=str(id), person=person, text=entry.command.text))
         answer = known(word, entry.command.answers)
         if answer is None:
             raise Refused(NO_ANSWER(word=quoted(word), person=person, known=entry.command.answers))
@@ -400,16 +467,29 @@ class Operator:
         for cell in cells:
             if cell.state in AT_WORK:
                 raise Refused(HOLD_FIRST(cell=cell.cell.name, state=cell.state.said))
-        able = [(cell, name) for cell in cells for name in cell.cell.holders if name in robots]
+        able = [(cell, name) for cell in cells for name in self._holders(cell, robots)]
         if not able:
-            raise Refused(NO_EFFECTOR(robot=sorted(robots)[0]))
+            raise Refused(self._none_able(robots, sorted(robots)[0]))
         holding = [(cell, name) for cell, name in able if name in cell.context.parts.holding]
         if not holding:
-            raise Refused(HOLDS_NOTHING(devices=tuple(dict.fromkeys(name for _, name in able))))
+            raise Refused(_nothing_held(able))
         for cell, name in holding:
             if (told := cell.context.commands.first_of(name)) is not None:
                 raise Refused(STILL_DOING(robot=name, doing=told.doing))
         return partial(self._empty, holding)
+
+    def _holders(self, cell: CellRun, robots: set[str]) -> list[str]:
+        """Those of the robots that hold parts for this cell; what it shares may be with another one."""
+        found = [name for name in cell.cell.holders if name in robots]
+        return [*filter(cell.context.devices.answers_for, found)] if cell.cell.shared else found
+
+    def _none_able(self, robots: set[str], first: str) -> Sentence:
+        """Why nothing can be released: nothing holds parts, or what does is with another cell."""
+        for device in sorted(robots.intersection(self._dispatcher.model.shared)):
+            holder = self._zones.holder(device)
+            if holder is not None and self._dispatcher.model.robots[device].held_fact is not None:
+                return WITH_OTHER(device=device, cell=holder)
+        return NO_EFFECTOR(robot=first)
 
     def _empty(self, holding: list[tuple[CellRun, str]]) -> None:
         for cell, name in holding:
@@ -417,8 +497,11 @@ class Operator:
             self._dispatcher.effectors.declare_empty(self._dispatcher.beliefs[name])
             self._dispatcher.wake([name])
 
-    def _planned_homing(self, robots: set[str], *, by_hand: bool) -> Callable[[], None]:
+    def _planned_homing(self, request: OperatorRequest, scope: str) -> Callable[[], None]:
         """What is only drawn, and what has no homing, is left out; asked for alone, it is refused."""
+        robots, by_hand = self._robots(scope), request.by_hand
+        if scope in self._cells and self._cells[scope].cell.shared:
+            robots = self._here(scope, robots)
         robots = self._homing & robots or robots
         for name in sorted(robots):
             obstacle = self._not_homeable(name, by_hand=by_hand)
@@ -427,6 +510,14 @@ class Operator:
         if not by_hand and (occupied := self.not_free_for_homing(robots)):
             raise Refused(occupied)
         return partial(self._home, robots, by_hand=by_hand)
+
+    def _here(self, scope: str, robots: set[str]) -> set[str]:
+        """The robots that are homed with a cell: none of those that another one has now."""
+        shared = self._cells[scope].cell.shared
+        found = {name for name in robots if name not in shared or self._zones.holder(name) in (None, scope)}
+        if self._homing.isdisjoint(found) and (others := sorted(self._homing & robots)):
+            raise Refused(WITH_OTHER(device=others[0], cell=self._zones.holder(others[0]) or ""))
+        return found
 
     def _home(self, robots: set[str], *, by_hand: bool) -> None:
         for name in sorted(robots):
@@ -438,15 +529,19 @@ class Operator:
 
     def home(self, name: str) -> Entry:
         """Have a robot run its homing routine; it keeps everybody out of its zones meanwhile."""
-        cell = self._cells[self._dispatcher.model.cell_of[name].name]
+        cell = self.in_charge(name)
         cell.uproot(name)
-        if name in cell.cell.zone_users:
-            cell.context.zones.forsake()
-            cell.context.zones.claim(name)
-        return self._dispatcher.home(name, self._clock())
+        users = [run for run in self._of_robots({name}) if name in run.cell.zone_users]
+        for run in (each for each in users if each.state in AT_REST):
+            run.context.zones.forsake()
+        if name in cell.cell.shared:
+            cell.context.devices.claim(name)
+        for run in users:
+            run.context.zones.claim(name)
+        return self._dispatcher.home(name, cell.cell.name, self._clock())
 
     def _uproot(self, name: str) -> None:
-        self._cells[self._dispatcher.model.cell_of[name].name].uproot(name)
+        self.in_charge(name).uproot(name)
 
     def not_free_for_homing(self, robots: set[str]) -> Sentence | None:
         """Why robots may not set out for their reference: from where they stand they may cross any zone."""
@@ -454,17 +549,20 @@ class Operator:
         for cell in self._of_robots(robots):
             for name, space in cell.cell.workspaces.items():
                 for zone in sorted(space.zones) if name in robots else ():
-                    kept = None if cell.context.zones.is_for_task(zone) else self._zones.holder(zone)
+                    for_task = cell.state in AT_REST and cell.context.zones.is_for_task(zone)
+                    kept = None if for_task else self._zones.holder(zone)
                     holder = kept or taken.setdefault(zone, name)
                     if holder != name:
                         return MAY_CROSS(arm=name, zone=zone, holder=holder)
         return None
 
     def _not_homeable(self, name: str, *, by_hand: bool) -> Sentence | None:
-        cell = self._cells[self._dispatcher.model.cell_of[name].name]
+        cell = self._alone.get(name) or self.in_charge(name)
         belief = self._dispatcher.beliefs[name]
         if refusal := _in(CellState.IDLE, CellState.HELD)(self, cell, set()):
             return refusal
+        if name in cell.cell.shared and (stopped := cell.context.devices.not_reset(name)) is not None:
+            return stopped.sentence
         if name not in self._reached:
             return ONLY_DRAWN(robot=name)
         if not belief.robot.homes:
@@ -503,7 +601,8 @@ class Operator:
 
     def _clear(self, cell: CellRun, robots: set[str]) -> None:
         kept = self._kept_stopped(cell, robots)
-        unstopped = set(cell.cell.shared) - self._dispatcher.latched  # only another robot was stopped
+        was_stopped = cell.context.devices.is_stopped  # also if it was cleared: that may have got lost
+        unstopped = {name for name in cell.cell.shared if not was_stopped(name)}
         for robot in cell.cell.robots:
             if robot.name in robots - unstopped and robot.name not in kept:
                 self._dispatcher.unlatch(robot.name)
@@ -543,20 +642,22 @@ class Operator:
     def _not_releasable(self, cell: CellRun, robots: set[str]) -> Sentence | None:
         if cell.state in AT_WORK:
             return HOLD_FIRST(cell=cell.cell.name, state=cell.state.said)
-        able = [name for name in cell.cell.holders if name in robots]
+        able = self._holders(cell, robots)
         if not able:
-            return NO_EFFECTOR(robot=next(each.name for each in cell.cell.robots if each.name in robots))
+            first = next(each.name for each in cell.cell.robots if each.name in robots)
+            return self._none_able(robots, first)
         found = (self._dispatcher.obstacle_to_opening(name) for name in able)
         obstacle = next((each for each in found if each), None)
         return NOT_OPENED(why=obstacle.sentence) if obstacle else None
 
     def _release(self, cell: CellRun, robots: set[str]) -> None:
-        for name in cell.cell.holders:
-            if name in robots:
-                cell.let_go(name)
-                make = self._dispatcher.model.robots[name].let_go
-                now, name_of_cell = self._clock(), cell.cell.name
-                self._sent.append(self._dispatcher.send(make, name_of_cell, RELEASING(), now, by_hand=True))
+        for name in self._holders(cell, robots):
+            if name in cell.cell.shared:
+                cell.context.devices.claim(name)
+            cell.let_go(name)
+            make = self._dispatcher.model.robots[name].let_go
+            now, name_of_cell = self._clock(), cell.cell.name
+            self._sent.append(self._dispatcher.send(make, name_of_cell, RELEASING(), now, by_hand=True))
 
 
 def scopes(model: PlantModel) -> dict[str, frozenset[str]]:
@@ -569,31 +670,44 @@ def scopes(model: PlantModel) -> dict[str, frozenset[str]]:
 def scope_of(request: OperatorRequest) -> str:
     """Whom or what a request names; only task ids tell capitals apart."""
     scope = request.scope.strip()
-    return scope if request.verb is Verb.CANCEL else scope.lower()
+    return scope if Scope.TASK in request.verb.row.scopes else scope.lower()
 
 
-def _answered(scope: str) -> tuple[str, str | None, str]:
-    """The person, the id of the question where it is named, and the answer."""
-    person, _, rest = scope.partition(" ")
-    first, _, word = rest.strip().partition(" ")
-    if QUESTION_ID.fullmatch(first):
-        return person, first.removeprefix("#"), word.strip()
-    return person, None, rest.strip()
+def arguments_of(request: OperatorRequest) -> Arguments:
+    """What a request is told beside its scope, in the letters of what is told of it."""
+    return tuple((name, each.lower() if isinstance(each, str) else each) for name, each in request.arguments)
+
+
+def _require_its_own(request: OperatorRequest) -> None:
+    """Refused where a verb is told what it does not take."""
+    takes = [each.name for each in request.verb.arguments]
+    for name, _ in request.arguments:
+        if name not in takes:
+            raise Refused(NO_ARGUMENT(verb=request.verb.value, argument=quoted(name)))
 
 
 def _did(request: OperatorRequest, scope: str) -> Sentence:
     """The sentence about the act of an operator, or of a task's own client."""
-    if request.verb is Verb.ANSWER:
-        person, _, word = _answered(scope)
-        scope = f"{person} {word}"
-    if request.by_hand and request.verb in DECLARED_BY_HAND:
-        return DECLARED_BY_HAND[request.verb](scope=_whole(scope))
+    scope = as_text(request.verb, scope, lasting(request.verb, arguments_of(request)))
+    declared = TABLE[request.verb].declared
+    if request.by_hand and declared is not None:
+        return declared(scope=_whole(scope))
     did = DID_BY_CLIENT if request.client else DID
     return did(verb=DO[request.verb](scope=_whole(scope)))
 
 
 def _whole(scope: str) -> Value:
     return scope or PLANT()
+
+
+def _with_place(cells: list[CellRun], scope: Value, place: str) -> CellRun:
+    """The cell with that place; Refused names the places that there are."""
+    known = tuple(name for cell in cells for name in cell.context.places.counts)
+    if not known:
+        raise Refused(NO_PLACES(cell=scope))
+    if place not in known:
+        raise Refused(NO_PLACE(place=quoted(place), cell=scope, known=known))
+    return next(cell for cell in cells if place in cell.context.places.counts)
 
 
 def _always(operator: Operator, cell: CellRun, robots: set[str]) -> Sentence | None:
@@ -646,6 +760,17 @@ def _not_abandonable(operator: Operator, cell: CellRun, robots: set[str]) -> Sen
     return refusal
 
 
+def _nothing_held(able: list[tuple[CellRun, str]]) -> Sentence:
+    """That no part is known to be in devices, and what leads on where they keep a cell waiting."""
+    devices = tuple(dict.fromkeys(name for _, name in able))
+    ways = [each for cell, _ in able[:1] for each in cell.ways_out(cell.cell.name)]
+    return (
+        HOLDS_NOTHING_ANY_MORE(devices=devices, next=sentence(ways))
+        if ways
+        else HOLDS_NOTHING(devices=devices)
+    )
+
+
 def _release_first(holding: list[str]) -> Sentence:
     """That parts are to be released first, by everybody that may hold one."""
     if len(holding) == 1:
@@ -665,8 +790,16 @@ BY_OPERATOR = Phrase("task.cancelled_by_operator", "cancelled by the operator")
 BY_CLIENT = Phrase("task.cancelled_by_client", "cancelled by the client")
 ACTS_TOLD = {
     phrase.key: phrase
-    for phrases in (DO.values(), DECLARED_BY_HAND.values(), ENDED.values())
-    for phrase in (*phrases, PLANT, DID, DID_BY_HAND, DID_BY_CLIENT)
+    for phrase in (
+        *DO.values(),
+        *ENDED.values(),
+        DECLARED_HOMED,
+        DECLARED_EMPTY,
+        PLANT,
+        DID,
+        DID_BY_HAND,
+        DID_BY_CLIENT,
+    )
 }
 """All that is said of what operators did, by key."""
 CANCELLED_BY_OPERATOR = Failure(reason=Reason.CANCELLED, sentence=BY_OPERATOR())
@@ -677,27 +810,62 @@ def _cancelled_by(request: OperatorRequest) -> Failure:
     return CANCELLED_BY_CLIENT if request.client else CANCELLED_BY_OPERATOR
 
 
-Check = Callable[[Operator, CellRun, "set[str]"], "Sentence | None"]
-Do = Callable[[Operator, CellRun, "set[str]"], None]
-ACTS: dict[Verb, tuple[Check, Do]] = {
-    Verb.STOP: (_always, lambda operator, cell, robots: cell.stop()),
-    Verb.CLEAR: (Operator._not_clearable, Operator._clear),
-    Verb.RESET: (_not_resettable, Operator._reset),
-    Verb.HOLD: (_not_holdable, lambda operator, cell, robots: cell.hold()),
-    Verb.RESUME: (Operator._not_resumable, lambda operator, cell, robots: cell.resume()),
-    Verb.CANCEL: (_not_cancellable, lambda operator, cell, robots: cell.cancel(CANCELLED_BY_OPERATOR)),
-    Verb.RETRY: (_not_retryable, lambda operator, cell, robots: cell.retry()),
-    Verb.ABANDON: (_not_abandonable, lambda operator, cell, robots: cell.abandon()),
-    Verb.RELEASE: (Operator._not_releasable, Operator._release),
-}
-# What is done in all cells before the act itself in any: no robot's stop waits for what ends in other cells.
-FIRST: dict[Verb, Do] = {Verb.STOP: Operator._latch}
-OF_ALL_WHO_SHARE = (Verb.STOP, Verb.CLEAR, Verb.RESET)
-AT_WORK = (CellState.EXECUTE, CellState.HOLDING, CellState.ABORTING)
 STOPPING = (CellState.ABORTING, CellState.ABORTED)
 UNTIL_RESET = (*STOPPING, CellState.CLEARING, CellState.STOPPED)
-# A cell in one of these states that cannot follow keeps the verb from all the scope; others are left out.
-MUST_ALL: dict[Verb, tuple[CellState, ...]] = {
-    Verb.CLEAR: (CellState.ABORTING, CellState.ABORTED, CellState.CLEARING),
-    Verb.RESET: (CellState.CLEARING,),
+AT_REST = (CellState.IDLE, CellState.HELD)
+AT_WORK = (CellState.EXECUTE, CellState.HOLDING, CellState.ABORTING)
+Check = Callable[[Operator, CellRun, "set[str]"], "Sentence | None"]
+Do = Callable[[Operator, CellRun, "set[str]"], None]
+Plan = Callable[[Operator, OperatorRequest, str], Callable[[], None]]
+
+
+def _nothing(operator: Operator, cell: CellRun, robots: set[str]) -> None:
+    """Leave the cell to what is planned for all the scope."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Procedure:
+    """What the plant does at a verb: in each cell that `check` has nothing against, `do`.
+
+    `first` is done in all cells before `do` in any: no robot's stop waits for what ends in other cells. A
+    cell in a state of `must_all` that cannot follow keeps the verb from all the scope; others are left out.
+    `plan` is for a verb that is done otherwise than cell by cell. `declared` tells what was done by hand.
+    """
+
+    check: Check = _always
+    do: Do = _nothing
+    first: Do | None = None
+    must_all: tuple[CellState, ...] = ()
+    plan: Plan | None = None
+    declared: Phrase | None = None
+
+
+TABLE: dict[Verb, Procedure] = {
+    Verb.STOP: Procedure(first=Operator._latch, do=lambda operator, cell, robots: cell.stop()),
+    Verb.CLEAR: Procedure(
+        check=Operator._not_clearable,
+        do=Operator._clear,
+        must_all=(CellState.ABORTING, CellState.ABORTED, CellState.CLEARING),
+    ),
+    Verb.RESET: Procedure(check=_not_resettable, do=Operator._reset, must_all=(CellState.CLEARING,)),
+    Verb.HOLD: Procedure(check=_not_holdable, do=lambda operator, cell, robots: cell.hold()),
+    Verb.RESUME: Procedure(check=Operator._not_resumable, do=lambda operator, cell, robots: cell.resume()),
+    Verb.CANCEL: Procedure(
+        check=_not_cancellable,
+        do=lambda operator, cell, robots: cell.cancel(CANCELLED_BY_OPERATOR),
+        plan=Operator._planned_cancelling,
+    ),
+    Verb.RETRY: Procedure(check=_not_retryable, do=lambda operator, cell, robots: cell.retry()),
+    Verb.ABANDON: Procedure(check=_not_abandonable, do=lambda operator, cell, robots: cell.abandon()),
+    Verb.RELEASE: Procedure(
+        check=Operator._not_releasable,
+        do=Operator._release,
+        plan=Operator._planned_release,
+        declared=DECLARED_EMPTY,
+    ),
+    Verb.HOME: Procedure(plan=Operator._planned_homing, declared=DECLARED_HOMED),
+    Verb.OVERRIDE: Procedure(plan=Operator._planned_override),
+    Verb.UNLOAD: Procedure(plan=Operator._planned_unloading),
+    Verb.LOAD: Procedure(plan=Operator._planned_loading),
+    Verb.ANSWER: Procedure(plan=Operator._planned_answer),
 }

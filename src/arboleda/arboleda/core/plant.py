@@ -24,7 +24,9 @@ from arboleda.model.messages import (
     Heartbeat,
     Interference,
     InternalError,
+    Journal,
     KeptTask,
+    LateDeparture,
     Notice,
     OperatorAnswer,
     OperatorRequest,
@@ -36,6 +38,7 @@ from arboleda.model.messages import (
     TaskRequest,
     TaskState,
     Undelivered,
+    outlives_power,
 )
 from arboleda.model.outside import plain
 from arboleda.model.plant_model import Cell, PlantModel
@@ -63,6 +66,7 @@ OWN_CYCLE = Phrase("cell.own_cycle", "{arm} is in its own cycle; its plant file 
 # was away for longer finds robots that stand, however long the plant file lets them be silent.
 SHORTEST_ABSENCE_S, LONGEST_STALL_S = 1.0, 1.5
 Request = TaskRequest | OperatorRequest
+SETTLES_IN = 3  # reports that say the same: by then it shows that a robot stands still
 ROUND_BOUND = 100  # rounds over the cells in one step; more means cells that never leave each other in peace
 
 
@@ -72,7 +76,9 @@ class Plant:
     `memory` is what earlier starts had to keep: latches, effectors, zones that may be occupied; `kept` are
     their tasks in the order of acceptance: those that have not ended, and the last that have. `recipes` stand
     in for those of the cells. `next_deadline` is when `step` is due again without any event, s; a plant that
-    is stepped more than `away_after_s` after its last step was away.
+    is stepped more than `away_after_s` after its last step was away. `revisions`: by cell, a number that
+    changes whenever anything that is told of it may have, but for times, the rate of reports, and what it
+    shares.
     """
 
     def __init__(
@@ -112,6 +118,8 @@ class Plant:
         }
         self._order = {name: number for number, name in enumerate(self.cells)}
         self._touched = set(self.cells)  # those to which something happened that they may wait for
+        self.revisions = dict.fromkeys(self.cells, 0)
+        self._revised: set[str] = set()  # in this step
         self._wakes: dict[str, float] = {}  # when trees are to be woken, by cell
         self._next_wake = math.inf
         self._changes = 0
@@ -124,7 +132,9 @@ class Plant:
 
     def step(self, now: float, events: Iterable[Event]) -> list[Command | Notice]:
         """Take in `events` in order, then deadlines up to `now` (s, never decreasing); what must go out."""
-        away_s = now - self.now
+        events, away_s = [*events], now - self.now
+        if LateDeparture in map(type, events):
+            events = self._without_late_departures(events)
         if self._steps and away_s > self.away_after_s:
             self._come_back(away_s)
             events = _requests_last(events, now)
@@ -137,7 +147,9 @@ class Plant:
             else:
                 for name in self._touched:  # whoever asks finds judged what was heard before
                     self._guard(name, self.cells[name].look_back)
-                self._touched.update(self.cells)
+                if not isinstance(event, TaskRequest):  # that is the business of the cell which takes it
+                    self._touched.update(self.cells)
+                    self._revised.update(self.cells)
                 self._told_errors.clear()
                 HANDLERS[type(event)](self, event)
         self._expire(now)
@@ -148,11 +160,30 @@ class Plant:
         self._advance()
         if self._operator.acts.under_way:
             self._changes += self._operator.look()
+            self._revised.update(self.cells)
+        for name in self._revised:
+            self.revisions[name] += 1
+        self._revised.clear()
         self._beat()
         self.next_deadline = self._earliest()
         out = self.dispatcher.outbox.copy()
         self.dispatcher.outbox.clear()
         return out
+
+    def _without_late_departures(self, events: list[Event]) -> list[Event]:
+        """The other events: what left late is due later, whatever was heard meanwhile."""
+        for event in events:
+            if isinstance(event, LateDeparture):
+                self.dispatcher.left_late(event.id, event.late_s)
+        self.next_deadline = self._earliest()
+        return [event for event in events if not isinstance(event, LateDeparture)]
+
+    def precedes_commands(self, kept: Remember | Journal | TaskChanged) -> bool:
+        """True for what has to be durable before a command leaves; not for effectors in an envelope."""
+        if not outlives_power(kept):
+            return False
+        names = [kept.name] if isinstance(kept, Remember) and kept.fact is Fact.EFFECTOR else []
+        return not any(name in run.envelope for name in names for run in self.cells.values())
 
     @property
     def version(self) -> int:
@@ -234,8 +265,9 @@ class Plant:
 
     def _at_work(self, holder: str) -> bool:
         """True where the work of a robot, or a cell, comes to an end by itself."""
-        if holder in self.cells:
-            return self.cells[holder].state is CellState.EXECUTE
+        cell = self.cells.get(self.zones.holder(holder) or holder)  # of a shared robot that which has it
+        if cell is not None:
+            return cell.state is CellState.EXECUTE
         executes = any(run.state is CellState.EXECUTE for run in self._runs.get(holder, ()))
         return executes or bool(self.dispatcher.ledger.of_robot(holder))
 
@@ -277,7 +309,9 @@ class Plant:
         ledger = self.dispatcher.ledger
         soon = math.nextafter(self.now, math.inf)  # after a hold, rounding may bring a wake so much earlier
         if self._next_wake <= soon:
-            self._touched.update(name for name, at in self._wakes.items() if at <= soon)
+            woken = [name for name, at in self._wakes.items() if at <= soon]
+            self._touched.update(woken)
+            self._revised.update(woken)
         if not self._touched and not ledger.changed:
             return
         touched, self._touched = self._touched, set()
@@ -286,9 +320,11 @@ class Plant:
             touched |= changed
             in_order = sorted(touched, key=self._order.__getitem__)
             did = {name for name in in_order if self._advanced(name, woken=name in changed)}
+            self._revised |= changed | did
             self._plan(touched)
             if did:
                 self._changes += 1
+                self._watch_shared()
             elif not ledger.changed:
                 return
             touched = did
@@ -301,7 +337,8 @@ class Plant:
         before = len(self.dispatcher.outbox)
         try:
             did = self.cells[name].advance(woken=woken)
-            self._keep_trail(self.cells[name], before)
+            if did or woken:
+                self._keep_trail(self.cells[name], before)
         except Exception as error:  # noqa: BLE001 - whatever it is, it ends the work of this cell, not the plant
             self._break_down(name, error)
             return False
@@ -336,6 +373,7 @@ class Plant:
     def _break_down(self, cell: str, error: Exception) -> None:
         """Hold a cell in which something raised; the error is told whole, once until somebody acts."""
         self._changes += 1
+        self._revised.add(cell)
         text = plain(" ".join(str(error).split()))
         sentence = BROKE_IN_STEP(cell=cell, kind=type(error).__name__, error=text)
         failure = Failure(reason=Reason.INTERNAL, sentence=sentence)
@@ -363,6 +401,7 @@ class Plant:
         self.dispatcher.outbox.append(Absence(seconds=away_s))
         self._to_home.clear()
         self._touched.update(self.cells)
+        self._revised.update(self.cells)
         self._changes += 1
         for name, cell in self.cells.items():
             if cell.state is CellState.EXECUTE:
@@ -376,9 +415,14 @@ class Plant:
     def _watch_zones(self) -> None:
         inside = self.zones.robots
         for name, cell in self.cells.items() if inside else ():
-            for robot in (*cell.cell.zone_users, *cell.cell.interlocked):
+            movers = filter(cell.context.devices.answers_for, cell.cell.zone_users)
+            for robot in (*movers, *cell.cell.interlocked):
                 if robot in inside:
                     self._guard(name, partial(self._watch_zones_of, cell, robot))
+        self._watch_shared()
+
+    def _watch_shared(self) -> None:
+        """What an idle cell still holds of shared devices goes back; those that are silent stay with it."""
         for device in self.model.shared:
             holder = self.cells.get(self.zones.holder(device) or "")
             if holder is not None:
@@ -403,10 +447,15 @@ class Plant:
         if runs is None:
             return
         try:
+            before = self.dispatcher.effectors.version
             self.dispatcher.report(report, self.now)
+            is_news = self.dispatcher.beliefs[report.robot].repeats < SETTLES_IN
+            is_news = is_news or self.dispatcher.effectors.version != before
             for run in runs:
                 if run.state is not CellState.EXECUTE:  # what such a cell waits for shows in reports
                     self._touched.add(run.cell.name)
+                if is_news or run.state is not CellState.IDLE:
+                    self._revised.add(run.cell.name)
                 if report.piece is not None and run.context.sensors.awaited:
                     run.context.sensors.awaited = False  # who goes on waiting asks again
                     self.dispatcher.ledger.changed.add(run.cell.name)
@@ -417,9 +466,10 @@ class Plant:
 
     def _home_at_start(self, robot: str) -> None:
         belief = self.dispatcher.beliefs[robot]
+        self._revised.update(run.cell.name for run in self._runs[robot])
         if not belief.answered or belief.homed is None:
             return
-        if self.cells[self.model.cell_of[robot].name].state not in (CellState.IDLE, CellState.HELD):
+        if self._operator.in_charge(robot).state not in (CellState.IDLE, CellState.HELD):
             return
         if belief.unhomed and self._operator.not_free_for_homing({robot}):
             return
@@ -447,6 +497,8 @@ class Plant:
                     task.choice = OWN(text=plain(request.choice))
                 self._refuse_trigger(request, task)
                 self.cells[task.order.cell].queue.add(task)
+                self._touched.add(task.order.cell)
+                self._revised.add(task.order.cell)
                 self.intake.remember(task)
         except (TextError, QueueFull) as refusal:
             for_now = isinstance(refusal, QueueFull)
@@ -485,6 +537,7 @@ class Plant:
         answer = OperatorAnswer(
             verb=request.verb,
             scope=request.scope,
+            arguments=request.arguments,
             refusal=refusal,
             request=request.request,
             act=act.number if act else None,

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import json
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from difflib import get_close_matches
 
 from arboleda.model.errors import TextError
@@ -21,6 +22,10 @@ TOO_LONG = Phrase("text.too_long", "the task text has {number} characters; at mo
 EMPTY = Phrase("text.empty", "the task text is empty; {form}")
 NEITHER = Phrase("text.neither", "{word} is neither a {first} of {cell} nor {others}; {form}")
 NO_RECIPE = Phrase("text.no_recipe", "the task names no recipe of {cell}; there are {there}; {form}")
+NO_RECIPE_NAMED = Phrase(
+    "text.no_recipe_named",
+    "the task names no recipe of {cell}; there are {there}; {form}, or as JSON {example}",
+)
 ONE_WORD = Phrase("text.one_word", "the task has {number} word; {form}")
 WORDS = Phrase("text.words", "the task has {number:,} words; {form}")
 ONLY_DRAWN = Phrase(
@@ -88,10 +93,14 @@ def alternatives(text: str, plant: PlantModel) -> tuple[Order, ...]:
 
 def example(cell: Cell, recipe: Recipe) -> Order:
     """One order of a recipe: the first word of each parameter, and the last one of the last."""
+    return _order(cell, recipe, _example_words(cell, recipe), None)
+
+
+def _example_words(cell: Cell, recipe: Recipe) -> dict[str, str]:
     words = {each.name: each.words(cell)[0] for each in recipe.parameters}
     for last in recipe.parameters[-1:]:
         words[last.name] = last.words(cell)[-1]
-    return _order(cell, recipe, words, None)
+    return words
 
 
 def spelled(
@@ -164,7 +173,8 @@ def _cell_and_recipe(words: list[str], plant: PlantModel) -> tuple[Cell, Recipe]
         return cell, default
     if not second and default is None:
         there = tuple(each.name for each in cell.recipes)
-        raise TextError(NO_RECIPE(cell=cell.name, there=there, form=_form(plant)))
+        form = _form_of(cell) if cell.recipes else _form(plant)
+        raise TextError(NO_RECIPE(cell=cell.name, there=there, form=form))
     if default is None or meant:
         raise TextError(_unknown(RECIPE(), second, [each.name for each in cell.recipes], cell.name))
     first = default.parameters[0] if default.parameters else None
@@ -210,7 +220,10 @@ def _recipe_of(cell: Cell, word: str, plant: PlantModel) -> Recipe:
     names = [each.name for each in cell.recipes]
     default = next((each for each in cell.recipes if each.is_default), None)
     if not word and default is None:
-        raise TextError(NO_RECIPE(cell=cell.name, there=tuple(names), form=_form(plant)))
+        if not cell.recipes:
+            raise TextError(NO_RECIPE(cell=cell.name, there=(), form=_form(plant)))
+        form, example = _form_of(cell), named_example(cell)
+        raise TextError(NO_RECIPE_NAMED(cell=cell.name, there=tuple(names), form=form, example=example))
     name = known(word, names) if word or default is None else default.name
     if name is None:
         raise TextError(_unknown(RECIPE(), word, names, cell.name))
@@ -275,9 +288,29 @@ def _cell(word: str, plant: PlantModel, *, robots: bool) -> Cell:
 
 def _form(plant: PlantModel) -> Sentence:
     """The form of tasks, with an example of the first cell that offers something."""
-    forms = list(dict.fromkeys(each.form() for each in plant.recipes))
     cell = next(cell for cell in plant.cells if cell.recipes)
-    recipe = next(each for each in plant.recipes if each in cell.recipes)
+    return _form_among(plant.recipes, cell)
+
+
+def _form_of(cell: Cell) -> Sentence:
+    """The form of the tasks of a cell, with an example."""
+    return _form_among(cell.recipes, cell)
+
+
+def named_example(cell: Cell) -> str:
+    """An example of a task of a cell as JSON, its recipe and values by name."""
+    (recipe, *_) = sorted(cell.recipes, key=lambda each: not each.is_default)
+    values: dict[str, object] = {}
+    for each in recipe.parameters:
+        word = _example_words(cell, recipe)[each.name]
+        value = each.value(cell, word)
+        values[each.name] = value if isinstance(value, int | float) and shown(value) == word else word
+    return json.dumps({"cell": cell.name, "recipe": recipe.name, "values": values}, ensure_ascii=False)
+
+
+def _form_among(recipes: Sequence[Recipe], cell: Cell) -> Sentence:
+    forms = list(dict.fromkeys(each.form() for each in recipes))
+    recipe = next(each for each in recipes if each in cell.recipes)
     shown = example(cell, recipe).text
     if len(forms) == 1:
         return FORM(form=forms[0], example=shown)

@@ -16,6 +16,7 @@ from arboleda.core.advice import BY_HAND
 from arboleda.model.errors import ArboledaError
 from arboleda.model.messages import Outcome, Verb
 from arboleda.model.sentence import Sentence, in_json
+from arboleda.model.verbs import Arguments, as_text, lasting
 from arboleda.store.task_rows import PAGE
 from arboleda.web.auth import SUBMIT, allowed
 
@@ -43,7 +44,7 @@ class Desk(OpenPage):
         self._feed = feed
 
     async def asked(self, act: str, of: str, more: object) -> None:
-        """Do what the page asks for; `more` is True if a robot was homed by hand."""
+        """Do what the page asks for; `more` is True for what was done by hand, or has a verb's arguments."""
         if act == DOWNLOAD:
             self._download()
         elif act not in {SUBMIT, demo.END} and act not in VERBS:
@@ -56,7 +57,7 @@ class Desk(OpenPage):
             self._plant.end_demo()
             self.say(self._words("demo.ended"), good=True)
         elif act != Verb.STOP or not self._is_stopped(of):
-            await self._operate(Verb(act), of, by_hand=more is True)
+            await self._operate(Verb(act), of, more)
 
     def _name(self, act: str) -> str:
         return self._words("demo.end") if act == demo.END else self._words.of("verb", act)
@@ -69,8 +70,10 @@ class Desk(OpenPage):
         elif task is not None:
             self.say(self._words("tasks.taken", text=task["text"], id=task["id"]), good=True)
 
-    async def _operate(self, verb: Verb, scope: str, *, by_hand: bool) -> None:
-        answer = await self._answered(self._plant.operate(verb, scope, by_hand=by_hand))
+    async def _operate(self, verb: Verb, scope: str, more: object) -> None:
+        by_hand, arguments = more is True, _arguments(verb, more)
+        asked = self._plant.operate(verb, scope, by_hand=by_hand, arguments=arguments)
+        answer = await self._answered(asked)
         if answer is None:
             return
         if answer.refusal is not None:
@@ -82,7 +85,7 @@ class Desk(OpenPage):
             self.say(self._words.say(answer.why), good=False)
             return
         name = f"{verb.value}_by_hand" if by_hand and verb in BY_HAND else verb.value
-        where = _without_number(scope) if verb is Verb.ANSWER else scope or self._words("panel.plant")
+        where = as_text(verb, scope, lasting(verb, arguments)) or self._words("panel.plant")
         act = {"what": self._words.of("verb", name), "where": where}
         self._tell(answer.outcome or Outcome.DONE, answer.why, act)
         if answer.outcome is Outcome.UNDER_WAY and answer.act is not None:
@@ -132,9 +135,11 @@ class Desk(OpenPage):
         self._client.download(whole.encode(), "arboleda-timeline.json", "application/json")
 
 
-def _without_number(scope: str) -> str:
-    """A person and an answer as people say them: without the number of the question."""
-    return " ".join(word for word in scope.split() if not word.startswith("#"))
+def _arguments(verb: Verb, more: object) -> Arguments:
+    """The arguments of a verb in what a page sends."""
+    told = more if isinstance(more, dict) else {}
+    takes = [each for each in verb.arguments if type(told.get(each.name)) is each.type]
+    return tuple((each.name, told[each.name]) for each in takes)
 
 
 VERBS = frozenset(verb.value for verb in Verb)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from arboleda.web.languages import texts
+
 from .page_api import Layout
 from .tags import link, live, rows, tag, way
 from .wording import LANGUAGES, Words
@@ -74,7 +76,7 @@ def _tools(words: Words, role: str | None, *, sounds: bool = True) -> None:
                 type="button",
                 classes="tool",
                 lang=language,
-                title=words(f"language.{language}"),
+                title=texts(language, "page")["name"],
                 data_language=language,
                 aria_pressed="true" if language == words.language else "false",
             )

@@ -3,43 +3,46 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
-from arboleda.model.messages import Verb
+from arboleda.model.verbs import STATION, Devices, Scope, Verb
 from arboleda.views.view import devices_once
 
 from .page_api import Layout
 from .tags import act_button, live, rows, tag
 from .wording import Words
 
+PLANT, CELL, DEVICE = "plant", "cell", "device"
+HOLDER, MOVER, MOVER_ALONE = "holder", "mover", "mover_alone"  # for verbs that are not for all
+KINDS = {Scope.PLANT: PLANT, Scope.CELL: CELL, Scope.ROBOT: DEVICE}
+
 
 @dataclass(frozen=True, kw_only=True)
 class Offer:
-    """The scopes that a verb is offered to, and the number of times that a person must confirm it."""
+    """A verb as it is offered, by hand or not, and the kinds of scopes to which it is."""
 
-    scopes: str
-    asks: int = 0
+    verb: Verb
+    scopes: tuple[str, ...]
     by_hand: bool = False
 
 
-PLANT, CELL, DEVICE = "plant", "cell", "device"
-HOLDER, MOVER, MOVER_ALONE = "holder", "mover", "mover_alone"  # for verbs that are not for all
-OFFERS: dict[str, tuple[Verb, Offer]] = {
-    "stop": (Verb.STOP, Offer(scopes="plant cell device")),
-    "clear": (Verb.CLEAR, Offer(scopes="plant cell device")),
-    "reset": (Verb.RESET, Offer(scopes="plant cell")),
-    "hold": (Verb.HOLD, Offer(scopes="plant cell")),
-    "resume": (Verb.RESUME, Offer(scopes="plant cell")),
-    "retry": (Verb.RETRY, Offer(scopes="cell")),
-    "abandon": (Verb.ABANDON, Offer(scopes="cell")),
-    "cancel": (Verb.CANCEL, Offer(scopes="cell")),
-    "release": (Verb.RELEASE, Offer(scopes="holder", asks=1)),
-    "release_by_hand": (Verb.RELEASE, Offer(scopes="holder", asks=1, by_hand=True)),
-    "unload": (Verb.UNLOAD, Offer(scopes="plant cell")),
-    "home": (Verb.HOME, Offer(scopes="mover", asks=1)),
-    "home_by_hand": (Verb.HOME, Offer(scopes="mover_alone", asks=1, by_hand=True)),
-}
+def offers(verb: Verb) -> Iterator[tuple[str, Offer]]:
+    """The ways in which a verb is offered, by the names of their words; none for what is elsewhere."""
+    kinds = tuple(KINDS[scope] for scope in verb.row.scopes if scope in KINDS)
+    if verb.row.devices is not Devices.ALL:
+        kinds = (HOLDER if verb.row.devices is Devices.HOLDERS else MOVER,)
+    if verb.needs_arguments:
+        return
+    if kinds:
+        yield verb.value, Offer(verb=verb, scopes=kinds)
+    if kinds and verb.row.by_hand:
+        alone = tuple(MOVER_ALONE if kind == MOVER else kind for kind in kinds)
+        yield f"{verb.value}_by_hand", Offer(verb=verb, scopes=alone, by_hand=True)
+
+
+OFFERS = dict(offer for verb in Verb for offer in offers(verb))
 
 
 def build(layout: Layout, words: Words) -> None:
@@ -49,10 +52,10 @@ def build(layout: Layout, words: Words) -> None:
         for cell in layout["cells"]:
             live("p", f"advice.{cell['name']}", classes="advice", data_advice=cell["name"])
         with tag("ul", classes="verbs"):
-            racks = any(cell["stations"] for cell in layout["cells"])
-            for name, (verb, offer) in OFFERS.items():
-                if racks or verb is not Verb.UNLOAD:
-                    _verb(name, verb, offer, words)
+            stores = any(cell["stations"] or cell["places"] for cell in layout["cells"])
+            for name, offer in OFFERS.items():
+                if stores or STATION not in offer.verb.arguments:
+                    _verb(name, offer, words)
         tag("p", words("panel.not_safety"), classes="hint")
         _suggestions(layout)
     zones(words, "acts")
@@ -93,16 +96,16 @@ def _scope(scope: str, text: str | None, *kinds: str) -> Any:
     return tag("button", text, type="button", classes="choice", data_scope=scope, data_kind=" ".join(kinds))
 
 
-def _verb(name: str, verb: Verb, offer: Offer, words: Words) -> None:
+def _verb(name: str, offer: Offer, words: Words) -> None:
     does = words(f"does.{name}")
-    with tag("li", classes="verb", data_verb=name, data_scopes=offer.scopes):
+    with tag("li", classes="verb", data_verb=name, data_scopes=" ".join(offer.scopes)):
         act_button(
             words(f"verb.{name}"),
-            verb.value,
+            offer.verb.value,
             "$scope",
             does,
-            classes=f"verb-{verb.value}",
-            data_asks=json.dumps([words(f"asks.{name}")] * offer.asks),
+            classes=f"verb-{offer.verb.value}",
+            data_asks=json.dumps(words.asks(name)),
             **({"data_by_hand": "true"} if offer.by_hand else {}),
         )
         tag("p", does, data_does=does)

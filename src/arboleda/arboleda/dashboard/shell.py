@@ -13,12 +13,13 @@ from nicegui import Client, app, ui
 
 from arboleda.model.errors import StartError
 from arboleda.web.api import refuse
+from arboleda.web.languages import spoken
 
 from . import trees
 from .page_api import Layout
 from .page_budget import PageBudget
 from .tags import markup, tag
-from .wording import LANGUAGES, Words
+from .wording import Words
 
 RECONNECT_S = 30.0
 LANGUAGE_COOKIE = "arboleda_language"
@@ -58,9 +59,8 @@ def serve(server: FastAPI, layout: Layout, build: Callable[[Request, Client], No
 
 def language_of(request: Request) -> str:
     """The language of the address, else the one chosen before, else the browser's first that is known."""
-    spoken = [each.strip()[:2].lower() for each in request.headers.get("accept-language", "").split(",")]
-    asked = [request.query_params.get("lang"), request.cookies.get(LANGUAGE_COOKIE), *spoken]
-    return next((each for each in asked if each in LANGUAGES), LANGUAGES[0])
+    browser = request.headers.get("accept-language", "").split(",")
+    return spoken([request.query_params.get("lang"), request.cookies.get(LANGUAGE_COOKIE), *browser])
 
 
 def role_shown(request: Request) -> str | None:
@@ -107,8 +107,8 @@ def parts_of(parts: Parts, layout: Layout) -> Parts:
 
 def head(said: Words, *scripts: str) -> str:
     """The page's head: its styles, its scripts, and the few words that these use themselves."""
-    spoken = {key[3:]: text for key, text in said.flat.items() if key.startswith("js.")}
-    data = json.dumps({"language": said.language, "words": spoken}).replace("<", "\\u003c")
+    used = {key[3:]: text for key, text in said.flat.items() if key.startswith("js.")}
+    data = json.dumps({"language": said.language, "words": used}).replace("<", "\\u003c")
     styles = "".join(
         f'<link rel="stylesheet" href="{assets()}/{name}.css">' for name in ("page", "twin", "record")
     )

@@ -74,6 +74,9 @@ def _card(layout: dict[str, Any], devices: list[dict[str, Any]], words: Words) -
         if device["asked"]:
             _asked(device["name"])
     rows(f"ways.{cell}", ["", ""], classes="ways")
+    if layout["places"] or layout["stations"]:
+        columns = [words(f"column.{each}") for each in ("place", "parts", "note", "acts")]
+        rows(f"places.{cell}", columns, classes="places")
     if any(device["position"] is None for device in devices):
         rows(f"devices.{cell}", ["", "", ""], classes="devices")
         heard(f"heard.{cell}", words)

@@ -3,29 +3,32 @@
 from __future__ import annotations
 
 from functools import cache
-from importlib import resources
 from typing import Any
 
-import yaml
-
 from arboleda.model.sentence import Phrase, Sentence
+from arboleda.views.verb_words import page_words
+from arboleda.web.languages import FIRST, contents
+from arboleda.web.languages import LANGUAGES as LANGUAGES  # of pages
 
-LANGUAGES = ("en", "es")
 SENTENCES = "sentences"  # the plant's sentences by key; English ones are in its phrases
 
 
 class Words:
     """Words: `words("tasks.send")` for the page's texts, `of` for the plant's words, `say` its sentences."""
 
-    def __init__(self, language: str, tree: dict[str, Any]) -> None:
+    def __init__(self, language: str, tree: dict[str, Any], english: dict[str, Any]) -> None:
         self.language = language
         self._sentences: dict[str, str] = tree.get(SENTENCES, {})
         self._said: dict[Sentence, str] = {}
-        self.flat = flat({key: value for key, value in tree.items() if key != SENTENCES})
+        self.flat = {**_texts(english), **_texts(tree)}
 
     def __call__(self, key: str, **values: Any) -> str:
         """The text of a key, with values put in; KeyError if there is no such key."""
         return self.flat[key].format(**values) if values else self.flat[key]
+
+    def asks(self, name: str) -> list[str]:
+        """What a person must confirm before this verb, one question after the other."""
+        return [self.flat[key] for key in (f"asks.{name}", f"asks.{name}_again") if key in self.flat]
 
     def of(self, group: str, word: str) -> str:
         """The page's word for the plant's `word`; the word itself if the language has none."""
@@ -52,6 +55,11 @@ class Words:
         return phrase.others.get(self.language) or self._sentences.get(phrase.key) or phrase.english
 
 
+def _texts(tree: dict[str, Any]) -> dict[str, str]:
+    """The page's own texts in the contents of a language's file."""
+    return flat({key: value for key, value in tree.items() if key != SENTENCES})
+
+
 def flat(tree: dict[str, Any], prefix: str = "") -> dict[str, str]:
     """Nested keys as one level, with dots between them."""
     found: dict[str, str] = {}
@@ -62,13 +70,13 @@ def flat(tree: dict[str, Any], prefix: str = "") -> dict[str, str]:
 
 
 def tree_of(language: str) -> dict[str, Any]:
-    """The contents of a language's file."""
-    file = resources.files(__package__).joinpath("words", f"{language}.yaml")
-    return yaml.safe_load(file.read_text(encoding="utf-8"))
+    """The contents of a language's file; what it does not say of an operator's verb is in English."""
+    tree = contents(language, "page")
+    return tree | {group: english | tree.get(group, {}) for group, english in page_words().items()}
 
 
 @cache
 def words(language: str) -> Words:
     """The words of a language; English if it is not one of LANGUAGES."""
-    known = language if language in LANGUAGES else LANGUAGES[0]
-    return Words(known, tree_of(known))
+    known = language if language in LANGUAGES else FIRST
+    return Words(known, tree_of(known), tree_of(FIRST))

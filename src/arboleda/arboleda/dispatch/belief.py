@@ -77,6 +77,7 @@ class Belief:
         self.state_no = 0
         self.state_at = 0.0
         self.reports = 0
+        self.repeats = 0  # of them, since the last that said something else
         self.rate_hz: float | None = None
         self._counted = (0.0, 0)  # when the rate was counted last, and the number of reports then
         self.piece_at = 0.0
@@ -117,6 +118,7 @@ class Belief:
         """Take over a report that only repeats what an online robot said last; False: it is to be merged."""
         if not self.online or report.at < self.position_at or report.words != self._said:
             return False
+        self.repeats += 1
         self._count(report)
         self._hear(report)
         if report.at - self._counted[0] >= RATE_S:
@@ -125,6 +127,7 @@ class Belief:
 
     def merge(self, report: Report) -> None:
         """Take over what the report says; what it leaves out stays."""
+        self.repeats = 0
         self._count(report)
         if report.epoch is not None and report.epoch != self.epoch:
             self.barred = False  # a bridge that restarted knows of no stop

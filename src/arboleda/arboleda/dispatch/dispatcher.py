@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections import deque
 from collections.abc import Callable, Iterable
 from dataclasses import replace
 from functools import partial
@@ -65,6 +66,7 @@ NOT_STOPPED = Phrase(
 UNSENT = (Link.NONE, Link.SCREEN)  # nothing leaves the plant for these
 LATCHED, CLEARED = "on", "cleared"  # a stop as it is kept: until clear, and until reset
 DISPLACED = "true"
+NOT_GIVEN_KEPT = 16  # of the last commands that never left
 HOMING_S = 30.0  # a slow search for the switch, and back off it
 BROKEN_OFF = frozenset({Reason.LINK_LOST, Reason.REBOOTED, Reason.STOPPED, Reason.CANCELLED, Reason.INTERNAL})
 """What befell a command that its device might have carried out."""
@@ -112,6 +114,8 @@ class Dispatcher:
         self._last_work: dict[str, Entry] = {}  # of each robot
         # how often a robot refused a command, and the last why
         self.rejected: dict[str, tuple[int, Sentence | None]] = {}
+        self.not_given: deque[Entry] = deque(maxlen=NOT_GIVEN_KEPT)  # commands of tasks that never left
+        self.not_given_count = 0
         # a place that was told before may be older than the last move of an earlier start
         self.sure_from = -math.inf
         self._count = 0
@@ -142,7 +146,10 @@ class Dispatcher:
         obstacle = self._obstacle_to(command, by_hand=by_hand, was=True) or barrier(command)
         if obstacle is not None:
             failure = replace(obstacle, sentence=NOT_GIVEN(why=obstacle.sentence, doing=doing))
-            entry.refuse(failure, too_early=self._may_be_the_end_of_its_last_move(command.robot))
+            entry.refuse(failure, too_early=self.may_come_to_rest(command.robot))
+            if not by_hand:
+                self.not_given.append(entry)
+                self.not_given_count += 1
             return entry
         entry.origin = self.beliefs[command.robot].position
         entry.before = self.beliefs[command.robot].receipt
@@ -157,6 +164,14 @@ class Dispatcher:
             self._forget_place(command.robot)
         self._leave(command)
         return entry
+
+    def left_late(self, id: str, late_s: float) -> None:
+        """Count the time in which a command settles from when it left, be it past its deadline."""
+        entry = self.ledger.entries.get(id)
+        if entry is not None and entry.settles_at is not None:
+            entry.settles_at += late_s
+            entry.deadline = max(entry.deadline, entry.settles_at)
+            self.ledger.plan(entry)
 
     def cancel(self, entry: Entry, now: float) -> None:
         """Ask an open command to end, once: work that can be halted is, a query is forgotten."""
@@ -221,9 +236,8 @@ class Dispatcher:
         """A cleared robot's cell was reset: the stop is over."""
         self.memory.remember(Fact.LATCH, robot, None)
 
-    def home(self, robot: str, now: float) -> Entry:
-        """Have a robot run its homing routine."""
-        cell = self.model.cell_of[robot].name
+    def home(self, robot: str, cell: str, now: float) -> Entry:
+        """Have a robot run its homing routine, on the word of its cell."""
         return self.send(partial(Home, robot=robot), cell, HOMING(), now)
 
     def _displace(self, belief: Belief, *, displaced: bool) -> None:
@@ -480,6 +494,11 @@ class Dispatcher:
                 return Failure(reason=Reason.PRECONDITION, sentence=sentence)
         return None
 
+    def may_come_to_rest(self, robot: str) -> bool:
+        """True where a robot takes a command soon: it may have ended its last move, or was told to halt."""
+        halts = any(entry.state is State.CANCELLING for entry in self.ledger.of_robot(robot))
+        return halts or self._may_be_the_end_of_its_last_move(robot)
+
     def _may_be_the_end_of_its_last_move(self, robot: str) -> bool:
         """True where "moving" may be a late report of a move that the position has already proved done.
 
@@ -517,8 +536,9 @@ class Dispatcher:
     def _settles_at(self, command: Command, now: float, deadline: float) -> float | None:
         """The time at which a command without an answer counts as done; None where the robot must report.
 
-        So does an effector that reports nothing; and a move, by a robot that tells no position, to where its
-        last move ended: it may have nothing to say, and has `stop_timeout_s` to say that it moves.
+        So does a switch of which nothing is reported, after the time that it takes; and a move, by a robot
+        that tells no position, to where its last move ended: it may have nothing to say, and has
+        `stop_timeout_s` to say that it moves.
         """
         belief = self.beliefs[command.robot]
         evidence_level = belief.robot.evidence
@@ -529,7 +549,7 @@ class Dispatcher:
         told = command.sets and all(belief.fact(name) is not None for name, _ in command.sets)
         if evidence_level is Evidence.JOINTS and told:
             return None
-        return now + self.model.timing.effector_settle_s
+        return now + self.model.timing.effector_settle_s + command.takes_s
 
     def _is_there(self, command: Command) -> bool:
         """True for a motion that ends where the robot's last one, which was done, has left it."""

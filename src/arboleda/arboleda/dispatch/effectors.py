@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from enum import Enum
+
 from arboleda.model.commands import Command, Switch
 from arboleda.model.grips import Grip, Grips
 from arboleda.model.messages import Fact, Report
@@ -22,12 +25,22 @@ AS_REBOOTED = Phrase("effector.as_rebooted", "as its board rebooted")
 EMPTIED = "true"
 
 
+class Handling(Enum):
+    """Step of a part's way through an effector."""
+
+    TOLD_TO_TAKE = "told to take"
+    HELD = "held"
+    TOLD_TO_LET_GO = "told to let go"
+    EMPTY = "empty"
+    TAKEN_OUT = "taken out"  # by a person
+
+
 class Effectors:
     """Books of all effectors of a plant. `version` changes whenever a grip does.
 
     `unopened` are the robots whose last command to let go failed. `opened` says of each that let go unbidden
     since the last command to its effector how that went. `cut_off` may still be switching on a command of an
-    earlier start.
+    earlier start. `watchers` of an effector are told at once of each step of a part's way through it.
     """
 
     def __init__(
@@ -41,6 +54,7 @@ class Effectors:
         self.opened: dict[str, Sentence] = {}
         self.cut_off: set[str] = set()
         self.version = 0
+        self.watchers: dict[str, list[Callable[[str, Handling], None]]] = {name: [] for name in holders}
         self._emptied = {name for name in holders if memory.value(Fact.EMPTIED, name) is not None}
         self._memory = memory
         self._ledger = ledger
@@ -57,6 +71,9 @@ class Effectors:
         self._set_emptied(command.robot, emptied=False)
         if not command.grips:
             self.grips.open(command.robot, command.id)
+        if not command.grips or self.grips[command.robot] is Grip.OFF:
+            told = Handling.TOLD_TO_TAKE if command.grips else Handling.TOLD_TO_LET_GO
+            self._tell(command.robot, told)
         self.set(command.robot, Grip.SWITCHING)
 
     def declare_empty(self, belief: Belief) -> None:
@@ -67,12 +84,15 @@ class Effectors:
         self.cut_off.discard(robot)
         if belief.held_in(belief):
             self._set_emptied(robot, emptied=True)
-        self.set(robot, Grip.OFF)
+        self.set(robot, Grip.OFF, taken_out=True)
 
-    def set(self, robot: str, grip: Grip) -> None:
-        """Book what an effector is known to be."""
+    def set(self, robot: str, grip: Grip, *, taken_out: bool = False) -> None:
+        """Book what an effector is known to be; `taken_out`: what it held is in somebody's hand."""
         if self.grips.set(robot, grip):
             self.version += 1
+            if grip is not Grip.SWITCHING:
+                empty = Handling.TAKEN_OUT if taken_out else Handling.EMPTY
+                self._tell(robot, Handling.HELD if grip is Grip.ON else empty)
             self._memory.remember(Fact.EFFECTOR, robot, grip.value)
         if grip is Grip.OFF:
             self.unopened.discard(robot)
@@ -116,6 +136,10 @@ class Effectors:
         if evidence.rebooted(before, belief, report):
             self.grips.forget_opening(tool)
         self.grips.will_not_open(tool, report.rejected, report.failed)
+
+    def _tell(self, robot: str, handling: Handling) -> None:
+        for watcher in self.watchers[robot]:
+            watcher(robot, handling)
 
     def _set_emptied(self, robot: str, *, emptied: bool) -> None:
         (self._emptied.add if emptied else self._emptied.discard)(robot)

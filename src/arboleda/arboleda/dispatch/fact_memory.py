@@ -1,4 +1,4 @@
-"""Facts that outlive the plant: stops, grips, occupied zones, stations with a part, steps of tasks."""
+"""Facts that outlive the plant: stops, grips, occupied zones, places with parts, steps of tasks."""
 
 from __future__ import annotations
 

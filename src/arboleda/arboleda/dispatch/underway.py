@@ -40,7 +40,7 @@ class Unnamed:
 
 
 class UnderWay:
-    """The commands to each arm that shares zones that no report has settled.
+    """The commands to each arm that shares zones, or is shared, that no report has settled.
 
     Until then the arm may carry out something that it has not heard yet, so where it stands does not prove
     that it stays there. An arm that tells command ids, and can be stopped, settles them by naming them.
@@ -50,7 +50,8 @@ class UnderWay:
     """
 
     def __init__(self, model: PlantModel) -> None:
-        users = [model.robots[name] for cell in model.cells for name in cell.zone_users]
+        names = (name for cell in model.cells for name in (*cell.zone_users, *cell.shared_movers))
+        users = [model.robots[name] for name in names]
         self._naming = frozenset(robot.name for robot in users if _names_commands(robot))
         self._others = frozenset(robot.name for robot in users) - self._naming
         self.ids: dict[str, list[str]] = {}

@@ -111,9 +111,11 @@ class DeviceVerb:
     parameters: tuple[tuple[str, FactType], ...] = ()
     sets: tuple[tuple[str, Value | Slot], ...] = ()
     needs: Facts = ()
+    needs_of_others: Facts = ()  # facts of other devices of the cell, by role: "reader.lid"
     takes_s: float = 0.0
     at_most_s: float
     on_stop: OnStop = OnStop.HALT
+    works_on_part: bool = False  # there has to be a part at the device
     holds: bool = False  # the fact that it sets tells whether the device holds a part
     answers: tuple[Value, ...] = ()  # to a query; the first is what a virtual device answers
     sets_by: Computed | None = None  # the facts by its values, in place of `sets`
@@ -257,6 +259,10 @@ class VerbCall(Command):
     made: Facts = field(repr=False, compare=False)  # the facts that it sets with these values
 
     @property
+    def word(self) -> str:
+        return self.verb
+
+    @property
     def given(self) -> dict[str, object]:
         return {"robot": self.robot, "verb": self.verb, **dict(self.values)}
 
@@ -272,6 +278,10 @@ class VerbCall(Command):
     @property
     def needs(self) -> Facts:
         return self.told.needs
+
+    @property
+    def works_on_part(self) -> bool:
+        return self.told.works_on_part
 
     @property
     def at_most_s(self) -> float:

@@ -17,6 +17,7 @@ TEXT = FactType(type=str, first="")
 PATIENCE, LEAST_S = 3.0, 2.0  # a verb may take so many times `takes_s`, and never less than this
 LONGEST_WORD = 64
 SLOT = "$"
+OF_OTHER = "."  # between a role and a fact of its device, in what a verb needs
 
 
 class ListError(Exception):

@@ -58,6 +58,7 @@ class Verb:
       that a virtual device shows afterwards, by name; for a query, the answer. None: no further facts; for a
       query, the first answer.
     - `on_stop`: HALT ends the verb at a stop, FINISH lets it go on.
+    - `works_on_part`: there has to be a part at a place of the device for the verb to begin.
     - `holds_part`: the one bool among `sets` tells whether the device holds a part.
     - `answers`: all answers to a query, words or numbers.
 
@@ -71,6 +72,7 @@ class Verb:
     takes_s: Seconds = 0.0
     at_most_s: float | None = None
     on_stop: OnStop = OnStop.HALT
+    works_on_part: bool = False
     holds_part: bool = False
     answers: Sequence[Value] = ()
     virtual: Computed | None = None
@@ -83,6 +85,7 @@ def motion(
     needs: Mapping[str, Value] | None = None,
     takes_s: Seconds = 0.0,
     at_most_s: float | None = None,
+    works_on_part: bool = False,
     virtual: Computed | None = None,
 ) -> Verb:
     """Returns a verb that moves something of the device, and that a stop halts.
@@ -96,6 +99,7 @@ def motion(
         needs=needs or {},
         takes_s=takes_s,
         at_most_s=at_most_s,
+        works_on_part=works_on_part,
         virtual=virtual,
     )
 
@@ -108,6 +112,7 @@ def process(
     takes_s: Seconds = 0.0,
     at_most_s: float | None = None,
     finishes: bool = False,
+    works_on_part: bool = False,
     virtual: Computed | None = None,
 ) -> Verb:
     """Returns a verb for work that the device does by itself, such as a machine's program.
@@ -123,6 +128,7 @@ def process(
         takes_s=takes_s,
         at_most_s=at_most_s,
         on_stop=OnStop.FINISH if finishes else OnStop.HALT,
+        works_on_part=works_on_part,
         virtual=virtual,
     )
 
@@ -161,6 +167,7 @@ def query(
     needs: Mapping[str, Value] | None = None,
     takes_s: Seconds = 0.0,
     at_most_s: float | None = None,
+    works_on_part: bool = False,
     virtual: Computed | None = None,
 ) -> Verb:
     """Returns a verb that asks the device a question, such as a camera's verdict on a part.
@@ -175,5 +182,6 @@ def query(
         takes_s=takes_s,
         at_most_s=at_most_s,
         answers=answers,
+        works_on_part=works_on_part,
         virtual=virtual,
     )

@@ -55,9 +55,11 @@ def verb_of(name: str, verb: Verb, facts: Mapping[str, FactType]) -> DeviceVerb:
         parameters=tuple(slots.items()),
         sets=() if callable(verb.sets) else tuple(_sets(name, verb.sets, facts, slots)),
         needs=tuple(_needs(name, verb.needs, facts)),
+        needs_of_others=tuple(each for each in verb.needs.items() if rules.OF_OTHER in each[0]),
         takes_s=takes_s,
         at_most_s=_seconds(f"{name}.at_most_s", at_most_s, at_least=1e-3),
         on_stop=verb.on_stop,
+        works_on_part=verb.works_on_part,
         holds=verb.holds_part,
         answers=_listed(f"{name}.answers", verb.answers).words if verb.effect is Effect.QUERY else (),
         sets_by=verb.sets if callable(verb.sets) else None,
@@ -87,6 +89,8 @@ def _needs(
     verb: str, needs: Mapping[str, Value], facts: Mapping[str, FactType]
 ) -> Iterator[tuple[str, Value]]:
     for name, value in needs.items():
+        if rules.OF_OTHER in name:
+            continue
         yield name, _value(f"{verb}.needs.{name}", _fact(f"{verb}.needs", name, facts), value)
 
 

@@ -10,4 +10,7 @@ Row = TypeVar("Row")
 
 def nearest(rows: Mapping[type[Any], Row], kind: type[Any]) -> Row | None:
     """The row of a class, or of its nearest base that has one; None where none has."""
-    return next((rows[base] for base in kind.__mro__ if base in rows), None)
+    for base in kind.__mro__:  # no generator: most have a row of their own, and commands ask this five times
+        if base in rows:
+            return rows[base]
+    return None

@@ -7,6 +7,8 @@ from enum import Enum
 
 from .facts import Facts
 
+GO, GRIP, LET_GO = "go", "grip", "let_go"
+"""The names of a robot's own commands in a plant file."""
 LABELS = ("id", "heard")  # what a command carries on its way beside what it was made with
 Position = tuple[float, ...] | int
 """Where a robot is, as its kind reports it: the joints of an arm, the node of a mobile robot."""
@@ -38,6 +40,11 @@ class Command:
     where that has none."""
 
     @property
+    def word(self) -> str:
+        """The verb by which a plant file speaks of it; empty where it never does."""
+        return ""
+
+    @property
     def given(self) -> dict[str, object]:
         """What it was made with, by name, as screens show it."""
         return {each.name: getattr(self, each.name) for each in fields(self) if each.name not in LABELS}
@@ -51,6 +58,11 @@ class Command:
     def needs(self) -> Facts:
         """The facts that must be true when it is given."""
         return ()
+
+    @property
+    def works_on_part(self) -> bool:
+        """Whether there has to be a part at its device for it."""
+        return False
 
     @property
     def at_most_s(self) -> float | None:
@@ -71,6 +83,10 @@ class Motion(Work):
     """Moves the robot: halted when its step is left, ends when the evidence says so."""
 
     @property
+    def word(self) -> str:
+        return GO
+
+    @property
     def way(self) -> tuple[Position, ...]:
         """The positions it comes by, of several the first where it begins, the last its goal.
 
@@ -87,9 +103,20 @@ class Switch(Command):
     """Sets something that stays as it is set: never halted, ends when it is reported, or has settled."""
 
     @property
+    def word(self) -> str:
+        if self.grips is None:
+            return ""
+        return GRIP if self.grips else LET_GO
+
+    @property
     def grips(self) -> bool | None:
         """True: its robot may hold a part from now on; False: it lets go; None: it has to do with no part."""
         return None
+
+    @property
+    def takes_s(self) -> float:
+        """The time that it takes by what is declared of it, s."""
+        return 0.0
 
 
 class Query(Command):

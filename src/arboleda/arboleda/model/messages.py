@@ -13,6 +13,8 @@ from .facts import Facts, Value
 from .grips import Grip
 from .plant_model import MotionState
 from .sentence import NOTHING, Sentence
+from .verbs import Arguments
+from .verbs import Verb as Verb  # of whose requests and answers this module tells
 
 
 class Reason(str, Enum):
@@ -119,24 +121,6 @@ class KeptTask:
     unchecked: tuple[Check, ...] = field(default=(), repr=False)
 
 
-class Verb(str, Enum):
-    """What an operator can ask for; the same words on every screen."""
-
-    STOP = "stop"
-    CLEAR = "clear"
-    RESET = "reset"
-    HOLD = "hold"
-    RESUME = "resume"
-    CANCEL = "cancel"
-    RETRY = "retry"
-    ABANDON = "abandon"
-    RELEASE = "release"
-    HOME = "home"
-    OVERRIDE = "override"
-    UNLOAD = "unload"
-    ANSWER = "answer"
-
-
 @dataclass(frozen=True, kw_only=True)
 class Heartbeat:
     """The plant is alive; `epoch` names this start of it."""
@@ -194,6 +178,7 @@ class OperatorAnswer:
     act: int | None = field(default=None, repr=False)
     outcome: Outcome | None = field(default=None, repr=False)
     why: Sentence | None = field(default=None, repr=False)
+    arguments: Arguments = field(default=(), repr=False)
 
 
 class Fact(str, Enum):
@@ -203,7 +188,10 @@ class Fact(str, Enum):
     EFFECTOR = "effector"  # arm -> "on", "off" or "switching"
     EMPTIED = "emptied"  # device that says that it holds a part -> "true" while a person has taken that out
     QUARANTINE = "quarantine"  # zone -> the robot that may still be in it
-    STORED = "stored"  # cell -> the numbers of its stations with a part, "0 7"
+    PARTS = "parts"  # cell -> its places with parts, as `trees/places.py` writes them
+    STORED = (
+        "stored"  # by version 0.1: cell -> the numbers of its stations with a part, "0 7"; now in `parts`
+    )
     DISPLACED = "displaced"  # robot that cannot say so -> "true" while its position means nothing
     BOOT = "boot"  # such a robot -> the boot in which it was heard last
     STEP = "step"  # running task -> where its tree stands, as `trees/trail.py` writes it
@@ -230,6 +218,7 @@ class Journal:
     cell: str | None
     sentence: Sentence
     outcome: Outcome | None = field(default=None, repr=False)
+    arguments: Arguments = field(default=(), repr=False)
 
 
 def outlives_power(kept: Remember | Journal | TaskChanged) -> bool:
@@ -376,6 +365,15 @@ class Undelivered:
 
 
 @dataclass(frozen=True, kw_only=True)
+class LateDeparture:
+    """A command left this process so many seconds after the step that gave it: a commit came between."""
+
+    at: float
+    id: str
+    late_s: float
+
+
+@dataclass(frozen=True, kw_only=True)
 class Interference:
     """Somebody else commanded a robot that its link lets everybody command."""
 
@@ -397,10 +395,8 @@ class Shutdown:
 
 @dataclass(frozen=True, kw_only=True)
 class OperatorRequest:
-    """An operator's act; `scope` is "" for the plant, a cell, a robot, a zone (override) or a task (cancel).
-
-    The scope of `unload` may be a cell and a station, that of `answer` is a person and the
-    answer, and between them, after a #, the id of the question where only that one is meant.
+    """An operator's act; `scope` is "" for the plant, a cell, a robot, a zone (override), a task (cancel) or
+    a person (answer), `arguments` are those of its verb.
 
     `by_hand` declares what a person has done: a robot stands at its reference (home), the part that a device
     held was taken out (release). `client` (cancel): who asks is no
@@ -413,6 +409,11 @@ class OperatorRequest:
     by_hand: bool = False
     client: bool = False
     request: str | None = None
+    arguments: Arguments = field(default=(), repr=False)
+
+    def argument(self, name: str) -> int | str | None:
+        """What it is told by this name; None where it is told nothing."""
+        return next((value for known, value in self.arguments if known == name), None)
 
 
-Event = Report | TaskRequest | OperatorRequest | Undelivered | Interference | Shutdown
+Event = Report | TaskRequest | OperatorRequest | Undelivered | LateDeparture | Interference | Shutdown

@@ -9,7 +9,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 from .commands import Command, Position
-from .facts import Facts
+from .facts import Facts, Value
 from .movement import Movement
 from .recipe import Recipe
 from .sentence import NOTHING, OWN, Sentence
@@ -364,18 +364,56 @@ class Workspace:
 
 @dataclass(frozen=True, kw_only=True)
 class Interlock:
-    """A zone that a device occupies whenever it does not say all of `free_while`: a mill whose door is not
-    open, a lift that is not down.
+    """A zone that a device occupies whenever it does not say all of `free_while`, a mill whose door is not
+    open, a lift that is not down; and while it carries out one of the verbs `held_while`.
     """
 
     device: str
     zone: str
-    free_while: Facts
+    free_while: Facts = ()
+    held_while: frozenset[str] = frozenset()
 
     def is_ended_by(self, command: Command) -> bool:
         """Whether a command may make the device occupy the zone."""
         free = dict(self.free_while)
-        return any(free.get(name, value) != value for name, value in command.sets)
+        return command.word in self.held_while or any(
+            free.get(name, value) != value for name, value in command.sets
+        )
+
+
+@dataclass(frozen=True, kw_only=True)
+class Place:
+    """A target where parts lie, at most `holds` of them.
+
+    `device`: the device of the cell in or under which it is. A `supply` is kept full by people, an `output`
+    emptied by them: so they are when a task begins.
+    """
+
+    target: str
+    holds: int = 1
+    device: str | None = None
+    supply: bool = False
+    output: bool = False
+
+    @cached_property
+    def by_people(self) -> bool:
+        """Whether people keep it as tasks need it."""
+        return self.supply or self.output
+
+
+@dataclass(frozen=True, kw_only=True)
+class Need:
+    """A fact of another device of the cell without which a device is not told a verb.
+
+    `device` and `other` are names of devices, `word` that of the verb: of a robot that goes also "go", "grip"
+    and "let_go".
+    """
+
+    device: str
+    word: str
+    other: str
+    fact: str
+    value: Value
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -395,6 +433,8 @@ class Cell:
     zone_wait_s: float = 30.0
     recipes: tuple[Recipe, ...] = ()
     interlocks: tuple[Interlock, ...] = ()
+    needs: tuple[Need, ...] = ()
+    places: tuple[Place, ...] = ()
     arrays: tuple[tuple[str, tuple[str, ...]], ...] = ()  # groups of targets by name, in order
     grids: tuple[tuple[str, int, int], ...] = ()  # of those that are made of corners: rows and columns
     shared: tuple[str, ...] = ()  # the names of those devices that other cells have, too
@@ -425,12 +465,26 @@ class Cell:
         return dict(self.arrays)
 
     @cached_property
+    def station_targets(self) -> tuple[str, ...]:
+        """The targets, by number, where the taker of the handover leaves parts until people take them out."""
+        return () if self.handover is None else self.groups.get(STATIONS, ())
+
+    @cached_property
     def stations(self) -> tuple[Pose, ...]:
-        """The poses, by number, where the taker of the handover leaves parts until people take them out."""
-        if self.handover is None:
-            return ()
-        targets = self.reach[self.handover.taker].targets
-        return tuple(targets[name] for name in self.groups.get(STATIONS, ()))
+        """The poses of these."""
+        targets = self.reach[self.handover.taker].targets if self.handover is not None else {}
+        return tuple(targets[name] for name in self.station_targets)
+
+    @cached_property
+    def rack(self) -> tuple[Place, ...]:
+        """The stations as places without a guard: a part may come before a person has taken the last one."""
+        declared = {place.target for place in self.places}
+        return tuple(Place(target=name) for name in self.station_targets if name not in declared)
+
+    @cached_property
+    def counted(self) -> tuple[Place, ...]:
+        """The places of which there are books."""
+        return (*self.places, *self.rack)
 
     @cached_property
     def paths(self) -> dict[str, Path]:
@@ -500,6 +554,19 @@ class Cell:
     def own(self) -> tuple[str, ...]:
         """The names of its robots that no other cell has."""
         return tuple(robot.name for robot in self.robots if robot.name not in self.shared)
+
+    @cached_property
+    def shared_movers(self) -> tuple[str, ...]:
+        """Those that it shares and that go from place to place."""
+        return tuple(name for name in self.shared if name in self.reach)
+
+    def together(self, shared: Iterable[str]) -> frozenset[str]:
+        """These shared devices with what is only held with them: a robot's tool, and the robot of a tool."""
+        names = set(shared)
+        for space in self.spaces:
+            if space.tool is not None and not names.isdisjoint((space.robot.name, space.tool.name)):
+                names |= {space.robot.name, space.tool.name}
+        return frozenset(names)
 
     @cached_property
     def interlocked(self) -> tuple[str, ...]:

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 from unicodedata import normalize
 
 from py_trees.behaviour import Behaviour
 
-from .facts import shown
+from .facts import Value, shown
 from .sentence import Phrase
 
 if TYPE_CHECKING:
@@ -91,6 +91,9 @@ class Recipe:
     role of the one robot that works in it, whose name may stand for that of the cell; None where the whole
     cell works. `alone_called`: that role in sentences, where they exist in several languages. `part_from`:
     the group of targets at whose first one the part of a task waits; None where a robot brings it.
+    `ends_with`: what is so once a task is done: the number of parts at a place, which a parameter may name,
+    or the value of a fact, as ("reader.lid", "open"). `source`: the hash of all files that it was written in,
+    by which a task that is kept finds the recipe changed; "" where nobody knows them.
     """
 
     name: str
@@ -101,6 +104,12 @@ class Recipe:
     alone: str | None = None
     alone_called: Phrase | None = None
     part_from: str | None = None
+    ends_with: tuple[tuple[str, Value], ...] = ()
+    source: str = field(default="", compare=False)
+
+    def end_of(self, values: Mapping[str, object]) -> dict[str, Value]:
+        """What is so once a task with these values is done, by place or "role.fact"."""
+        return {str(values.get(what, what)): value for what, value in self.ends_with}
 
     def form(self) -> str:
         """How a task of it is written."""

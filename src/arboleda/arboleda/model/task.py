@@ -52,6 +52,7 @@ class Task:
         self.state = TaskState.QUEUED
         self.failure: Failure | None = None
         self.failed_in: str | None = None  # the path of the leaf that named its failure
+        self.failed_step: Sentence | None = None  # the name of that leaf, in this start of the plant
         self.started_at: float | None = None
         self.ended_at: float | None = None
         self.attempts = 0  # how often its work was begun, or its step given again by a retry
@@ -89,7 +90,7 @@ class Task:
         else:
             self.ended_at = now
 
-    def fail(self, failure: Failure, leaf: str | None = None) -> None:
-        """Keep the first cause of a failure, and the path of its leaf; later ones are consequences."""
+    def fail(self, failure: Failure, leaf: str | None = None, step: Sentence | None = None) -> None:
+        """Keep the first cause of a failure, and path and name of its leaf; later ones are consequences."""
         if self.failure is None:
-            self.failure, self.failed_in = failure, leaf
+            self.failure, self.failed_in, self.failed_step = failure, leaf, step

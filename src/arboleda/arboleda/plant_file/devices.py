@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass
-from functools import partial
 
 from arboleda.kinds import WrittenKind
 from arboleda.kinds.declared import Device, DeviceKind, DeviceVerb, Effect
 from arboleda.model.plant_model import Cell, Evidence, Retry, Robot
 from arboleda.recipes.storage_layout import ARM, MOBILE
 
-from . import handovers, own_kinds, shared, targets
+from . import handovers, needs, own_kinds, places, shared, targets
 from .arrays import arrays
 from .deadlines import ROUNDING_S, SHOWN_S
 from .document import Document, Place, choice, nearest, shown
@@ -74,7 +73,7 @@ def shared_devices(document: Document, kinds: Kinds) -> dict[str, Robot]:
     def read(place: Place) -> Robot | None:
         return _device(document, place, kinds)
 
-    found = shared.shared_devices(document, read, partial(kinds.goes, document))
+    found = shared.shared_devices(document, read)
     shared.check_use(document)
     return found
 
@@ -100,7 +99,7 @@ def device_cell(document: Document, place: Place, kinds: Kinds, common: Mapping[
         for role in names
     }
     members = {role: device for role, device in found.items() if device is not None}
-    tools = _tools(document, (*place, "devices"), members)
+    tools = _tools(document, (*place, "devices"), members, sharing)
     if shape is None or retry is None or len(members) < len(found):
         return None
     spaces = targets.workspaces(document, place, members, tools)
@@ -115,6 +114,8 @@ def device_cell(document: Document, place: Place, kinds: Kinds, common: Mapping[
         spaces=spaces,
         handover=handover,
         recipes=handovers.recipes(document, place, handover, members, dict(groups)),
+        needs=needs.needs(document, place, members),
+        places=places.places(document, place, members, spaces, dict(groups)),
         arrays=groups,
         grids=tuple((each.group, each.rows, each.columns) for each in arrays(document, place)),
         shared=tuple(sharing.values()),
@@ -128,14 +129,26 @@ def device_cell(document: Document, place: Place, kinds: Kinds, common: Mapping[
     )
 
 
-def _tools(document: Document, place: Place, members: Mapping[str, Robot]) -> dict[str, Robot]:
-    """The devices that robots carry, by the role of the robot."""
-    tools: dict[str, Robot] = {}
+def _tools(
+    document: Document, place: Place, members: Mapping[str, Robot], sharing: Mapping[str, str]
+) -> dict[str, Robot]:
+    """The devices that robots carry, by the role of the robot; `sharing` has the shared ones by role."""
+    roles, carried = {name: role for role, name in sharing.items()}, shared.tools(document)
+    tools: dict[str, Robot] = {
+        role: members[roles[carried[name]]]
+        for role, name in sharing.items()
+        if role in members and roles.get(carried.get(name, "")) in members
+    }
     robots = [role for role, device in members.items() if device.goes]
     for role, device in members.items():
         here = (*place, role, "tool_of")
-        carrier = document.value(here) if role not in robots and document.has(here) else None
+        own = role not in robots and role not in sharing
+        carrier = document.value(here) if own and document.has(here) else None
         if carrier is None:
+            continue
+        if carrier in sharing:
+            how = f'declare it under "shared", with tool_of: {sharing[carrier]}'
+            document.problem(here, f"{carrier} is shared, and so is what it carries; {how}")
             continue
         if carrier not in robots:
             there = f"must be {choice(robots)}" if robots else "no device of this cell is a robot"

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from xml.etree.ElementTree import Element, SubElement, tostring
 
 from arboleda.dashboard.twin import bodies, kinematics, stand_in
@@ -11,7 +11,7 @@ from arboleda.kinds.joints import Joint
 
 from .robot_models import millimetres
 from .shapes import OffsetShape
-from .urdf_file import Chain
+from .urdf_file import Axis, Chain
 
 ROOT, TOOL = "base_link", "tool0"
 UPRIGHT = 0.999  # how vertical a sliding joint is that lifts
@@ -30,7 +30,7 @@ def drawing(chain: Chain, mount: OffsetShape | None = None, tool: OffsetShape | 
         names[TOOL] = _free(robot, "link", f"{TOOL}_of_model")
     _rename(robot, names)
     if robot.find("link/visual") is None:
-        _add_stand_ins(robot)
+        _add_stand_ins(robot, {axis.name: axis for axis in chain.axes})
     if ROOT in names:
         _fix(robot, ROOT, (ROOT, names.get(chain.base, chain.base)), mount)
     if TOOL in names:
@@ -82,10 +82,15 @@ def _fix(robot: Element, new: str, ends: tuple[str, str], offset: OffsetShape | 
     SubElement(joint, "origin", {"xyz": in_words(xyz), "rpy": in_words(rpy)})
 
 
-def _add_stand_ins(robot: Element) -> None:
+def _add_stand_ins(robot: Element, axes: Mapping[str, Axis]) -> None:
     for link in robot.findall("link"):
-        ends = [_xyz(joint) for joint in robot.findall("joint") if _parent(joint) == link.get("name")]
-        for shape in stand_in.shapes(ends):
+        joints = [joint for joint in robot.findall("joint") if _parent(joint) == link.get("name")]
+        rails = [
+            _rail(joint, axes[joint.get("name", "")])
+            for joint in joints
+            if joint.get("type") == "prismatic" and joint.get("name", "") in axes
+        ]
+        for shape in stand_in.shapes(map(_xyz, joints), rails):
             visual = SubElement(link, "visual")
             SubElement(visual, "origin", {"xyz": in_words(shape["xyz"]), "rpy": in_words(shape["rpy"])})
             sizes = dict(zip(("radius", "length"), map(repr, shape["size"]), strict=False))
@@ -98,8 +103,19 @@ def _parent(joint: Element) -> str | None:
 
 
 def _xyz(joint: Element) -> list[float]:
-    origin = joint.find("origin")
-    return [float(value) for value in (origin.get("xyz", "0 0 0") if origin is not None else "0 0 0").split()]
+    return _numbers(joint.find("origin"), "xyz", "0 0 0")
+
+
+def _rail(joint: Element, axis: Axis) -> tuple[list[float], list[float]]:
+    """The way along which a sliding joint brings what it carries."""
+    turned = _numbers(joint.find("origin"), "rpy", "0 0 0")
+    along = _numbers(joint.find("axis"), "xyz", "1 0 0")
+    length = math.hypot(*along) or 1.0
+    return stand_in.rail(_xyz(joint), turned, [each / length for each in along], axis.lower, axis.upper)
+
+
+def _numbers(element: Element | None, key: str, default: str) -> list[float]:
+    return [float(value) for value in (default if element is None else element.get(key, default)).split()]
 
 
 def in_words(values: Iterable[float]) -> str:

@@ -9,8 +9,8 @@ from typing import TypeVar
 
 from arboleda.kinds import rules
 from arboleda.kinds.declared import DeviceKind, DeviceVerb, Effect, FactType, Slot
-from arboleda.kinds.rules import SLOT
-from arboleda.model.facts import Value
+from arboleda.kinds.rules import OF_OTHER, SLOT
+from arboleda.model.facts import Facts, Value
 from arboleda.recipes.handles import DeviceHandle
 from arboleda.wire import mqtt_limits
 
@@ -22,6 +22,7 @@ T = TypeVar("T")
 Types = Mapping[str, "FactType | None"]
 SECTION: Place = ("kinds",)
 PLAIN = {"int": rules.INT, "number": rules.NUMBER, "text": rules.TEXT, "bool": rules.BOOL}
+WITH_LIMITS = "; a number with limits is of a kind in Python: Number(1, 60)"
 OF_STEPS = tuple(
     name for name, _ in inspect.getmembers(DeviceHandle, inspect.isfunction) if not name.startswith("_")
 )
@@ -68,6 +69,7 @@ def _verb(document: Document, place: Place, facts: Types) -> DeviceVerb | None:
     slots = _types(document, (*place, "with"), "a parameter", ("self",))
     sets = _facts(document, (*place, "sets"), facts, slots)
     needs = _facts(document, (*place, "needs"), facts, None)
+    others = _needs_of_others(document, (*place, "needs"))
     answers = _answers(document, place, shape.effect) if shape else None
     parameters = _right(slots)
     if shape is None or parameters is None or sets is None or needs is None:
@@ -78,9 +80,11 @@ def _verb(document: Document, place: Place, facts: Types) -> DeviceVerb | None:
         parameters=tuple(parameters.items()),
         sets=sets,
         needs=tuple((fact, value) for fact, value in needs if not isinstance(value, Slot)),
+        needs_of_others=others,
         takes_s=shape.takes_s,
         at_most_s=shape.at_most_s or rules.patience_s(shape.takes_s),
         on_stop=shape.on_stop,
+        works_on_part=document.has((*place, "works_on")),
         holds=document.has((*place, "holds")),
         answers=answers or (),
     )
@@ -160,7 +164,7 @@ def _type(document: Document, place: Place) -> FactType | None:
     if isinstance(value, list):
         return _listed(document, place)
     if not isinstance(value, str) or value not in PLAIN:
-        hint = nearest(value, PLAIN) if isinstance(value, str) else ""
+        hint = nearest(value, PLAIN) if isinstance(value, str) else WITH_LIMITS * isinstance(value, dict)
         allowed = choice([*PLAIN, "a list of words or numbers"])
         document.problem(place, f"must be {allowed}, is {shown(value)}{hint}")
         return None
@@ -185,6 +189,8 @@ def _facts(
     mapping = document.read_plain(MAPPING, place)
     values: dict[str, Value | Slot | None] = {}
     for name in document.keys(place):
+        if slots is None and OF_OTHER in name:
+            continue
         here, type, value = (*place, name), facts.get(name), document.value((*place, name))
         if name not in facts:
             there = f"facts: {', '.join(facts)}" if facts else "this kind has none"
@@ -197,6 +203,11 @@ def _facts(
             values[name] = _value(document, here, type)
     right = _right(values)
     return None if mapping is None or right is None else tuple(right.items())
+
+
+def _needs_of_others(document: Document, place: Place) -> Facts:
+    """The needs that name a role and a fact of its device, as "reader.lid"; each cell checks them."""
+    return tuple((name, document.value((*place, name))) for name in document.keys(place) if OF_OTHER in name)
 
 
 def _slot(document: Document, place: Place, fact: FactType, slots: Types) -> Slot | None:

@@ -8,6 +8,7 @@ from dataclasses import replace
 from functools import partial
 from importlib.resources import files
 from pathlib import Path
+from typing import NamedTuple
 
 from arboleda.model.errors import ConfigError
 from arboleda.model.plant_model import Cell, ForeignCommands, MqttVersion, PlantModel, Robot, Timing
@@ -26,11 +27,13 @@ from .python_uses import PythonUses, Watch
 from .recipe_check import MOST, Trial, combinations
 from .recipe_trial import Verdict, brought
 from .shapes import FileShape, RecordShape, TimingShape
+from .shared import check_homes
 from .storage_form import check_sections, storage_cell
 from .yaml_marks import LARGEST
 from .zones import with_zones, zones
 
 Offers = Callable[[Sequence[Cell]], Mapping[str, tuple[Recipe, ...]]]
+Misses = Mapping[str, Mapping[str, str]]
 SHIPPED = "plant.yaml"
 RECORD: Place = ("record",)
 REPORTS: Place = ("reports",)
@@ -43,12 +46,18 @@ def load(path: Path | None = None, *, recipes: bool = True) -> PlantModel:
     Without `recipes` no Python is run: cells of devices offer nothing, and a plant with devices of kinds in
     Python has no cells.
     """
-    return _parsed(*_content(path), recipes=recipes)[0]
+    return _parsed(*_content(path), recipes=recipes).plant
+
+
+def load_with_offers(path: Path | None = None) -> tuple[PlantModel, Misses]:
+    """The same plant, and by cell and recipe why a cell does not offer what a file brings."""
+    parsed = _parsed(*_content(path), recipes=True)
+    return parsed.plant, parsed.missed
 
 
 def load_recorded(path: Path | None = None) -> tuple[PlantModel, Recording | None]:
     """The same plant, and the beginning of its record; None if its file says `record: off`."""
-    plant, document = _parsed(*_content(path), recipes=True)
+    plant, document, _ = _parsed(*_content(path), recipes=True)
     if document.value(RECORD) == OFF:
         return plant, None
     reports = document.has(REPORTS) and document.value(REPORTS) == ON
@@ -57,13 +66,13 @@ def load_recorded(path: Path | None = None) -> tuple[PlantModel, Recording | Non
 
 def load_with_files(path: Path | None = None) -> tuple[PlantModel, PlantFiles]:
     """The same plant, and all files that were read for it."""
-    plant, document = _parsed(*_content(path), recipes=True)
+    plant, document, _ = _parsed(*_content(path), recipes=True)
     return plant, _files(document)
 
 
 def parse(name: str, content: bytes, folder: Path | None = None, *, recipes: bool = True) -> PlantModel:
     """The same for the content of a file that problems call `name`; `folder` has the files beside it."""
-    return _parsed(name, content, folder, recipes=recipes)[0]
+    return _parsed(name, content, folder, recipes=recipes).plant
 
 
 def _content(path: Path | None) -> tuple[str, bytes, Path | None]:
@@ -73,11 +82,19 @@ def _content(path: Path | None) -> tuple[str, bytes, Path | None]:
     return str(path), user_file.read_bytes(path, LARGEST), path.parent
 
 
-def _parsed(name: str, content: bytes, folder: Path | None, *, recipes: bool) -> tuple[PlantModel, Document]:
+class _Parsed(NamedTuple):
+    plant: PlantModel
+    document: Document
+    missed: Misses
+
+
+def _parsed(name: str, content: bytes, folder: Path | None, *, recipes: bool) -> _Parsed:
     document = Document(name, content, folder)
     document.files[(folder or Path()) / Path(name).name] = content
+    missed: Misses = {}
     if recipes:
         code = brought(document, content)
+        missed = code.missed
         plant = drivers.with_drivers(document, _plant(document, code.used, code.offered), code.used)
     elif own_kinds.needs_python(document):
         plant = _named(document)
@@ -86,7 +103,7 @@ def _parsed(name: str, content: bytes, folder: Path | None, *, recipes: bool) ->
     document.finish()
     if plant is None:
         raise ConfigError((f"{document.name}: the file cannot be read as a plant",))
-    return plant, document
+    return _Parsed(plant, document, missed)
 
 
 def _files(document: Document) -> PlantFiles:
@@ -119,7 +136,8 @@ def trial(name: str, content: bytes, folder: Path | None, watch: Watch) -> Verdi
     document, found = Document(name, content, folder), Verdict()
 
     def tried(cells: Sequence[Cell]) -> dict[str, tuple[Recipe, ...]]:
-        found.offers = Trial(document=document, used=used, watch=watch).run(cells)
+        tried_here = Trial(document=document, used=used, watch=watch)
+        found.offers, found.missed = tried_here.run(cells), tried_here.missed
         return {}
 
     used = own_recipes.imported(document, own_recipes.listed(document), watch)
@@ -154,6 +172,16 @@ def notes(plant: PlantModel) -> tuple[str, ...]:
         if number > MOST and recipe not in RECIPES
     ]
     return (*own_models, *sampled)
+
+
+def offers(plant: PlantModel, missed: Misses) -> tuple[str, ...]:
+    """Lines that say which cells offer which recipes, and why a cell does not offer another one."""
+    lines: dict[str, list[str]] = {}
+    for cell in plant.cells:
+        known = ", ".join(each.name for each in cell.recipes) or "no recipe"
+        others = "".join(f"; not {name}: {why}" for name, why in missed.get(cell.name, {}).items())
+        lines.setdefault(f"{known}{others}", []).append(cell.name)
+    return tuple(f"{', '.join(names)}: {line}" for line, names in lines.items())
 
 
 def broker_users(path: Path) -> dict[str, str]:
@@ -199,6 +227,7 @@ def _plant(document: Document, used: PythonUses, recipes: Offers) -> PlantModel 
     whole = [cell for cell in cells if cell is not None]
     regions = zones(document, whole)
     _check_ports(document, shape)
+    check_homes(document, whole)
     zoned = {cell.name: with_zones(document, cell, regions) for cell in whole}
     offers = recipes(list(zoned.values()))
     if timing is None:

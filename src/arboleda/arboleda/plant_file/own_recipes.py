@@ -28,10 +28,12 @@ from arboleda.recipes.storage import RECIPES
 
 from . import tree_includes, user_file
 from .document import Document, Place, nearest, shown
+from .lost_steps import KEEP, LostSteps, noting
 from .moving_kinds import as_read
-from .python_uses import LONGEST, PythonUses, Spot, Watch, Written, said
+from .python_uses import LONGEST, PythonUses, Spot, Watch, Written, said, unwatched
 from .registry import IN_PYTHON, RESERVED
 from .shapes import NAME_RULE, WORDS, is_name
+from .source_text import source_of
 
 SECTION: Place = ("uses",)
 NODE = re.compile("[A-Za-z_][A-Za-z0-9_]*", re.ASCII)
@@ -53,19 +55,24 @@ def listed(document: Document) -> tuple[str, ...]:
 
 def imported(document: Document, words: Sequence[str], watch: Watch) -> PythonUses:
     """Everything that the used files and modules bring; problems of failed imports are kept."""
-    used = PythonUses(watch=watch)
+    used = PythonUses(watch=watch, lost=None if watch is unwatched else LostSteps())
     for index, word in enumerate(words):
         place = (*SECTION, index)
         if word.endswith(TREES):
             _trees(document, place, word, used)
             continue
-        is_file = word.endswith(ENDING) or "/" in word
-        module = (_file if is_file else _module)(document, place, word, used, watch)
+        module = (_file if _is_file(word) else _module)(document, place, word, used, watch)
         if module is None:
             used.is_whole = False
         else:
             _collect(document, place, module, used)
+    if all(_is_file(word) for word in words):  # of an installed module nobody knows which files are its own
+        used.source = source_of(document.files, document.folder)
     return used
+
+
+def _is_file(word: str) -> bool:
+    return word.endswith((ENDING, TREES)) or "/" in word
 
 
 def _file(document: Document, place: Place, word: str, used: PythonUses, watch: Watch) -> ModuleType | None:
@@ -89,7 +96,7 @@ def _file(document: Document, place: Place, word: str, used: PythonUses, watch: 
     watch(Spot(file=known_as), "importing this")
     try:
         with _importing(path.parent, document.files):
-            module = _run(path, source)
+            module = _run(path, source, used.lost)
     except (Exception, SystemExit) as error:  # noqa: BLE001 - it is user code: whatever it raises is told
         spot = used.where(error, Spot(file=known_as))
         used.keep(document, spot.problem(f"cannot be imported: {said(error)}"))
@@ -161,11 +168,17 @@ def _beside(path: Path) -> list[Path]:
     return sorted(path.parent.glob(f"*{ENDING}")) if path.parent.is_dir() else []
 
 
-def _run(path: Path, source: bytes) -> ModuleType:
-    """Run a file as a module of its own; Python keeps no compiled file of it beside the user's."""
-    code = compile(source, str(path), "exec", dont_inherit=True)
+def _run(path: Path, source: bytes, lost: LostSteps | None) -> ModuleType:
+    """Run a file as a module of its own; Python keeps no compiled file of it beside the user's.
+
+    `lost`, where given, is told what statements make.
+    """
+    tree = ast.parse(source, str(path))
+    code = compile(tree if lost is None else noting(tree), str(path), "exec", dont_inherit=True)
     module = ModuleType(f"arboleda_uses_{sha256(str(path).encode()).hexdigest()[:12]}_{path.stem}")
     module.__file__ = str(path)
+    if lost is not None:
+        setattr(module, KEEP, lost.note)
     sys.modules[module.__name__] = module  # where dataclasses and annotations look for it
     exec(code, module.__dict__)
     return module

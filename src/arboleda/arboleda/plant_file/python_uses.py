@@ -17,6 +17,7 @@ from arboleda.model.recipe import Recipe
 from arboleda.recipes import WrittenNode
 
 from .document import Document
+from .lost_steps import LostSteps
 from .robot_kind import RobotKind
 
 LONGEST = 500  # characters of a path, or of what an error says
@@ -50,8 +51,10 @@ class PythonUses:
     kinds: dict[str, KindInPython] = field(default_factory=dict)
     drivers: dict[str, DriverSpec] = field(default_factory=dict)
     nodes: dict[str, WrittenNode] = field(default_factory=dict)  # for trees that are written as XML
+    source: str = ""  # the hash of its files, by which a kept task finds its recipe changed; "": not known
     files: dict[str, str] = field(default_factory=dict)  # Python's name of a file: people's name
     watch: Watch = unwatched
+    lost: LostSteps | None = None  # what statements make, where recipes are only tried
     is_whole: bool = True  # False: something could not be imported, so a name may be missing
     may_import: bool = True  # False: it was tried elsewhere, and must not be run here
     installed: tuple[str, ...] = ()  # kinds that packages register
@@ -86,6 +89,8 @@ def said(error: BaseException) -> str:
     """An error as the end of a sentence."""
     if isinstance(error, ArboledaError):
         return str(error)
+    if isinstance(error, RecursionError):
+        return "it calls itself without an end"
     if isinstance(error, SystemExit):
         return f"it ends the program (SystemExit: {error})"
     try:

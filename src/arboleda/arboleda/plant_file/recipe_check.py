@@ -17,7 +17,7 @@ from arboleda.model.commands import Work
 from arboleda.model.errors import ConfigError
 from arboleda.model.outside import plain
 from arboleda.model.plant_model import Cell, PlantModel
-from arboleda.model.recipe import Recipe, spelling
+from arboleda.model.recipe import Parameter, Recipe, spelling
 from arboleda.model.task import Order
 from arboleda.recipes.errors import RoleError
 from arboleda.trees.context import Context
@@ -26,11 +26,12 @@ from arboleda.views import tree_view
 
 from .document import Document, Place, choice, nearest, shown
 from .own_recipes import SECTION
-from .python_uses import LONGEST, PythonUses, Watch, said
+from .python_uses import LONGEST, PythonUses, Spot, Watch, said
 
 MOST = 200  # combinations of parameters that are tried
 HOW_TO_CHOOSE = "; give it to a node that lists its values, or its port a type: int, double, bool"
 WAIT = "cell.wait(seconds)"
+DO_IT = "let it stand in what the recipe returns, as in work(...)"
 AT_MOST = "becomes(..., at_most_s=...) of a device"
 NOT_WOKEN: Mapping[type[Behaviour], str] = {
     timers.Timer: WAIT,
@@ -57,15 +58,26 @@ class Trial:
     watch: Watch
     offers: dict[str, list[str]] = field(default_factory=dict)
     misfits: dict[str, list[str]] = field(default_factory=dict)  # by recipe: why not
+    missed: dict[str, dict[str, str]] = field(default_factory=dict)  # by cell and recipe: why not
 
     def run(self, cells: Sequence[Cell]) -> dict[str, list[str]]:
-        """The names of the recipes that each cell offers, in their order."""
+        """The names of the recipes that each cell offers, in their order.
+
+        Where the file has a mistake, a recipe may fit a cell that could not be read, or not whole.
+        """
+        is_sound = not self.document.kept[0]
         for cell in cells:
             named = self._named(cell)
             asked = list(self.used.recipes) if named is None else named
             fitting = [name for name in asked if self._fits(cell, self.used.recipes[name], named is not None)]
             self.offers[cell.name] = fitting
             self._check_default(cell, fitting)
+        if is_sound:
+            self._check_all_fit(cells)
+        return self.offers
+
+    def _check_all_fit(self, cells: Sequence[Cell]) -> None:
+        """Keep the problems of recipes that no cell offers, and of cells that offer none."""
         offered = {name for names in self.offers.values() for name in names}
         for name, problems in self.misfits.items():
             if name not in offered:
@@ -73,10 +85,9 @@ class Trial:
         for cell in cells:
             if not (self.offers[cell.name] or cell.recipes) and self._brings_all(offered):
                 place = ("cells", cell.name)
-                self.document.problem(
-                    place, 'offers no recipe: none that "uses" brings fits its devices', at=place
-                )
-        return self.offers
+                why = "; ".join(self.missed.get(cell.name, {}).values())
+                none = 'offers no recipe: none that "uses" brings fits its devices'
+                self.document.problem(place, f"{none}{why and f' ({why})'}", at=place)
 
     def _brings_all(self, offered: Collection[str]) -> bool:
         """True if no misfit says so already: some recipe fits another cell, or the files bring none."""
@@ -108,7 +119,7 @@ class Trial:
         """True if the cell has what a recipe needs or names it; problems with building its trees are kept."""
         spot = self.used.spot(recipe)
         if not named and (empty := _without_value(cell, recipe)):
-            self.misfits.setdefault(recipe.name, []).append(spot.problem(empty))
+            self._miss(cell, recipe, empty, spot.problem(empty))
             return False
         if unfit := _unspellable(cell, recipe):
             self._keep([spot.problem(unfit)])
@@ -116,14 +127,14 @@ class Trial:
         plant = Plant(PlantModel(name="trial", cells=(replace(cell, recipes=(recipe,)),)), epoch=0, now=0.0)
         context = plant.cells[cell.name].context
         problems: dict[str, None] = {}
-        for number, order in enumerate(_orders(cell, recipe)):
+        for number, order in enumerate(orders(cell, recipe)):
             self.watch(spot, f"building {recipe.name} for {cell.name}")
             try:
                 found = self._look(recipe, order, context)
             except RoleError as error:
                 problem = self.used.where(error, spot).problem(f"{recipe.name}: {error}")
                 if number == 0 and not named:
-                    self.misfits.setdefault(recipe.name, []).append(problem)
+                    self._miss(cell, recipe, str(error), problem)
                     return False
                 found = (problem,)
             problems |= dict.fromkeys(found)
@@ -133,6 +144,8 @@ class Trial:
     def _look(self, recipe: Recipe, order: Order, context: Context) -> Sequence[str]:
         """The problems of an order's tree, with their places; RoleError if a device is missing."""
         spot = self.used.spot(recipe)
+        if self.used.lost is not None:
+            self.used.lost.made.clear()
         try:
             tree = recipe.build(order, context)
         except RoleError:
@@ -142,7 +155,18 @@ class Trial:
         except (Exception, SystemExit) as error:  # noqa: BLE001 - it is user code: whatever it raises is told
             return [self.used.where(error, spot).problem(f"{recipe.name} cannot be built: {said(error)}")]
         objection = _objection(tree)
-        return [] if objection is None else [spot.problem(f"{recipe.name} {objection}")]
+        found = [] if objection is None else [spot.problem(f"{recipe.name} {objection}")]
+        return [*found, *self._lost(recipe)]
+
+    def _lost(self, recipe: Recipe) -> Iterator[str]:
+        """Problems of steps that were made and stand nowhere."""
+        for name, file, line in self.used.lost.lost() if self.used.lost is not None else ():
+            spot = Spot(file=self.used.files.get(file, file), line=line)
+            yield spot.problem(f"{recipe.name} makes the step {name} and does it nowhere; {DO_IT}")
+
+    def _miss(self, cell: Cell, recipe: Recipe, why: str, problem: str) -> None:
+        self.misfits.setdefault(recipe.name, []).append(problem)
+        self.missed.setdefault(cell.name, {})[recipe.name] = why
 
     def _keep(self, problems: Sequence[str]) -> None:
         self.document.keep_those_of(ConfigError(tuple(problems)))
@@ -178,7 +202,7 @@ def combinations(cell: Cell, recipe: Recipe) -> int:
     return math.prod(len(each.words(cell)) for each in recipe.parameters)
 
 
-def _orders(cell: Cell, recipe: Recipe) -> Iterator[Order]:
+def orders(cell: Cell, recipe: Recipe) -> Iterator[Order]:
     """Every task of a recipe; of more than MOST, so many, with each value of each parameter if possible."""
     words = [each.words(cell) for each in recipe.parameters]
     total = combinations(cell, recipe)
@@ -216,9 +240,15 @@ def _without_value(cell: Cell, recipe: Recipe) -> str | None:
     """The sentence that a parameter has no possible value in a cell, for want of targets; else None."""
     for each in recipe.parameters:
         if not each.words(cell):
-            how = HOW_TO_CHOOSE if isinstance(recipe, TreeRecipe) else ""
-            return f"{each.name} of {recipe.name} has no value to choose{how}"
+            return f"{each.name} of {recipe.name} has no value to choose{_how_to_choose(cell, recipe, each)}"
     return None
+
+
+def _how_to_choose(cell: Cell, recipe: Recipe, parameter: Parameter) -> str:
+    if not isinstance(recipe, TreeRecipe):
+        return ""
+    group = recipe.groups.get(parameter.name)
+    return HOW_TO_CHOOSE if group is None else f"; {cell.name} has no targets {shown(group)}"
 
 
 def _unspellable(cell: Cell, recipe: Recipe) -> str | None:

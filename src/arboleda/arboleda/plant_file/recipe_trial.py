@@ -7,6 +7,7 @@ import faulthandler
 import json
 import os
 import re
+import signal
 import subprocess
 import sys
 from collections.abc import Iterator, Sequence
@@ -25,7 +26,8 @@ from .document import Document
 from .problems import Kept
 from .python_uses import PythonUses, Spot, unwatched
 
-LONGEST_S = 10.0  # for the import of a file, and for each build of a recipe
+LONGEST_S = 10.0  # of processor time for the import of a file, and for each build of a recipe
+WAITS = 4.0  # times as long it may take by the clock, on a busy machine or waiting for something
 STUCK_S = 60.0  # by then the watch of the other process has hung as well
 SLOW = f"nothing came of it for {STUCK_S:g} s; try again when this machine has less to do"
 PATH = "import sys, json; sys.path[:] = json.loads(sys.argv[1]); "
@@ -36,27 +38,36 @@ PLANT, REQUEST, RESULT, PHASE, STACK = "plant", "request.json", "result.json", "
 
 @dataclass
 class Verdict:
-    """The result of a trial: marked problems of the plant file, those of other files, and offers."""
+    """The result of a trial: marked problems of the plant file, those of other files, and offers.
+
+    `missed` has by cell and recipe why a cell does not offer it.
+    """
 
     here: list[Kept] = field(default_factory=list)
     elsewhere: list[str] = field(default_factory=list)
     offers: dict[str, list[str]] = field(default_factory=dict)
+    missed: dict[str, dict[str, str]] = field(default_factory=dict)
 
 
 @dataclass
 class PlantPython:
-    """The Python of a plant, and the recipes that each of its cells offers."""
+    """The Python of a plant, and the recipes that each of its cells offers; `missed`: why not the others."""
 
     document: Document
     used: PythonUses = field(default_factory=PythonUses)
     offers: dict[str, list[str]] = field(default_factory=dict)
+    missed: dict[str, dict[str, str]] = field(default_factory=dict)
 
     def offered(self, cells: Sequence[Cell]) -> dict[str, tuple[Recipe, ...]]:
         """The recipes of one's own for each of these cells."""
         known = {cell.name: self.offers.get(cell.name, []) for cell in cells}
         rows = {name: [self.used.recipes[each] for each in offers] for name, offers in known.items()}
         beside = {cell.name: cell.recipes for cell in cells}  # those that come with its shape
-        return {name: _marked(self.document, name, each, beside[name]) for name, each in rows.items() if each}
+        return {
+            name: _marked(self.document, name, each, beside[name], self.used.source)
+            for name, each in rows.items()
+            if each
+        }
 
 
 def brought(document: Document, content: bytes) -> PlantPython:
@@ -80,16 +91,17 @@ def brought(document: Document, content: bytes) -> PlantPython:
     has_effect = of_devices or used.recipes or any(drivers.named(document))
     if words and not has_effect:
         document.problem(own_recipes.SECTION, "brings no recipe, so this has no effect; delete it")
-    return PlantPython(document, used, found.offers)
+    return PlantPython(document, used, found.offers, found.missed)
 
 
 def _marked(
-    document: Document, cell: str, recipes: Sequence[Recipe], beside: Sequence[Recipe]
+    document: Document, cell: str, recipes: Sequence[Recipe], beside: Sequence[Recipe], source: str
 ) -> tuple[Recipe, ...]:
-    """The recipes of a cell; one is marked as the default of tasks: the one it names, or its only one."""
+    """The recipes of a cell with their source; one is marked as the default of tasks: the one it names, or
+    its only one."""
     default = document.value((*CELLS, cell, "default_recipe"))
     alone = len(recipes) == 1 and not beside
-    return tuple(replace(each, is_default=each.name == default or alone) for each in recipes)
+    return tuple(replace(each, is_default=each.name == default or alone, source=source) for each in recipes)
 
 
 def verdict(name: str, beside: Path | None, content: bytes) -> Verdict:
@@ -128,17 +140,23 @@ def _write_whole(path: Path, data: dict[str, Any]) -> None:
 
 @contextmanager
 def watching(folder: Path, longest_s: float) -> Iterator[Any]:
-    """A watch that ends this process, with the line that it was at, if something takes too long."""
+    """A watch that ends this process, with the line that it was at, if something takes too much of the
+    processor's time, or WAITS times as long by the clock.
+    """
     with open(folder / STACK, "w", encoding="utf-8") as stack:
+        faulthandler.register(signal.SIGPROF, file=stack, chain=True)  # whose own action ends the process
 
         def watch(spot: Spot, doing: str) -> None:
             _write_whole(folder / PHASE, {**vars(spot), "doing": doing})
-            faulthandler.dump_traceback_later(longest_s, exit=True, file=stack)
+            signal.setitimer(signal.ITIMER_PROF, longest_s)
+            faulthandler.dump_traceback_later(WAITS * longest_s, exit=True, file=stack)
 
         try:
             yield watch
         finally:
+            signal.setitimer(signal.ITIMER_PROF, 0.0)
             faulthandler.cancel_dump_traceback_later()
+            faulthandler.unregister(signal.SIGPROF)
 
 
 def _run(folder: Path) -> int | None:
@@ -181,4 +199,6 @@ def broken_off(folder: Path, status: int | None) -> str:
         if Path(file).parent == beside:  # the innermost comes first
             spot = Spot(file=str(Path(spot.file).parent / Path(file).name), line=int(line))
             break
-    return spot.problem(f"{phase['doing']} takes more than {LONGEST_S:g} s; this is where it was then")
+    by_clock = f"{WAITS * LONGEST_S:g} s"
+    limit = f"{LONGEST_S:g} s of processor time" if status == -signal.SIGPROF else by_clock
+    return spot.problem(f"{phase['doing']} takes more than {limit}; this is where it was then")

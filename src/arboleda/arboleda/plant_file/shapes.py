@@ -150,6 +150,8 @@ class DeviceCellShape(Shape):
     groups: Any = None
     paths: Any = None
     handover: Any = None
+    needs: Any = None
+    places: Any = None
     drive_to_start: bool = True
     piece_check: Annotated[Any, AfterValidator(_piece_check)] = Cell.piece_check
     zone_wait_s: Duration = Cell.zone_wait_s
@@ -162,6 +164,15 @@ class HandoverShape(Shape):
     giver: str
     at: str
     by_path: dict[str, str] = Field(default_factory=dict)
+
+
+class PlaceShape(Shape):
+    """One row of `places:`; `of` is the role of the device in or under which the place is."""
+
+    holds: Annotated[int, Field(ge=1, le=10_000)] = 1
+    of: str = ""
+    supply: bool = False
+    output: bool = False
 
 
 class KindShape(Shape):
@@ -182,6 +193,7 @@ class VerbShape(Shape):
     at_most_s: Duration = 0.0
     on_stop: Annotated[OnStop, Field(strict=False)] = OnStop.HALT
     holds: Literal["part"] = "part"
+    works_on: Literal["part"] = "part"
     answers: Any = None
 
 
@@ -375,12 +387,14 @@ class PalletizingShape(Shape):
 class ZoneShape(Shape):
     """One zone under `zones:`; a pose is written `<cell> <pose>`, a move as its two ends.
 
-    `free_while` has the devices that occupy it by themselves, and their facts while they do not.
+    `free_while` has the devices that occupy it by themselves, and their facts while they do not; `held_while`
+    those that occupy it while they carry out one of some verbs.
     """
 
     poses: list[str] = Field(default_factory=list)
     moves: list[Annotated[list[str], Field(min_length=2, max_length=2)]] = Field(default_factory=list)
     free_while: dict[str, Any] = Field(default_factory=dict)
+    held_while: dict[str, Any] = Field(default_factory=dict)
 
 
 STRICT = ConfigDict(strict=True)

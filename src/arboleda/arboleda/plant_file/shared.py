@@ -2,23 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 
-from arboleda.model.plant_model import Robot
+from arboleda.model.plant_model import Cell, Evidence, Link, Pose, Robot
 
 from .document import Document, Place, choice, nearest, shown
 from .shapes import MAPPING, NAME_RULE, SharedRoleShape, is_name
 
 SECTION = "shared"  # key of the file; in a role of a cell, the key for the device's name
-OF_A_CELL = ("name", "tool_of")
+TOOL_OF = "tool_of"
 Read = Callable[[Place], "Robot | None"]
 
 
-def shared_devices(document: Document, read: Read, goes: Callable[[Place], bool]) -> dict[str, Robot]:
-    """The devices by name, as `read` reads one; the problems of the others are kept.
-
-    A robot that `goes` from place to place is a problem, too.
-    """
+def shared_devices(document: Document, read: Read) -> dict[str, Robot]:
+    """The devices by name, as `read` reads one; the problems of the others are kept."""
     if not document.has((SECTION,)):
         return {}
     document.read_plain(MAPPING, (SECTION,))
@@ -27,13 +24,25 @@ def shared_devices(document: Document, read: Read, goes: Callable[[Place], bool]
         place: Place = (SECTION, name)
         if not is_name(name):
             document.problem(place, f"a shared device must be {NAME_RULE}", at=place)
-        device = None if _refused(document, place, goes(place)) else read(place)
-        if device is None:
+        if document.has((*place, "name")):
+            why = "a shared device has no name: its key is its name"
+            document.problem((*place, "name"), why, at=(*place, "name"))
             continue
-        if device.held_fact is not None:
-            rule = "a shared device holds no part: no other cell would know whose that is"
-            document.problem((*place, "kind"), f"{rule}; give each cell its own")
-        found[name] = device
+        device = read(place)
+        if device is not None and _shows_its_place(document, place, device):
+            found[name] = device
+    for name, device in found.items():
+        _check_tool(document, (SECTION, name), device, found)
+    return found
+
+
+def tools(document: Document) -> dict[str, str]:
+    """The names of the tools that shared robots carry, by the names of the robots."""
+    names, found = document.keys((SECTION,)), dict[str, str]()
+    for name in names:
+        robot = document.value((SECTION, name, TOOL_OF))
+        if robot in names:
+            found.setdefault(str(robot), name)
     return found
 
 
@@ -71,6 +80,7 @@ def check_use(document: Document) -> None:
         if names and len(names) == len(document.keys((*place, "devices"))):
             rule = "all its devices are shared; a cell has at least one of its own"
             document.problem((*place, "devices"), rule, at=(*place, "devices"))
+        _check_use_in(document, place)
     for name in document.keys((SECTION,)):
         if name not in used:
             place = (SECTION, name)
@@ -80,14 +90,68 @@ def check_use(document: Document) -> None:
             )
 
 
-def _refused(document: Document, place: Place, goes: bool) -> bool:
-    """True if a shared device has something that only devices of one cell can have; each is a problem."""
-    if goes:
-        rule = "a robot that goes from place to place belongs to one cell; what is shared stays where it is"
-        document.problem((*place, "kind"), rule)
+def check_homes(document: Document, cells: Sequence[Cell]) -> None:
+    """Keep a problem for each cell in which the home of a shared robot is another one than in the first."""
+    first: dict[str, tuple[str, Pose]] = {}
+    for cell in cells:
+        roles = {robot.name: role for role, robot in cell.roles.items()}
+        for name in cell.shared_movers:
+            home = cell.reach[name].home
+            other, at = first.setdefault(name, (cell.name, home))
+            if (home.q, home.above) != (at.q, at.above):
+                place: Place = ("cells", cell.name, "targets", home.name, roles[name])
+                rule = f"{name} has another {home.name} in {other}"
+                why = "what one cell leaves is where the next one begins, so make them equal"
+                document.problem(place, f"{rule}; {why}", at=place)
+
+
+def _check_use_in(document: Document, cell: Place) -> None:
+    """Keep a problem for each shared robot without its tool in a cell, and for paths and handovers of it."""
+    names = named(document, cell)
+    for robot, tool in tools(document).items():
+        for one, other in ((robot, tool), (tool, robot)):
+            if one in names.values() and other not in names.values():
+                role = next(role for role, name in names.items() if name == one)
+                at = (*cell, "devices", role)
+                pair = f"{robot} carries {tool}" if one == robot else f"{tool} goes with {robot}"
+                how = f"name {other} in a role, too, {{shared: {other}}}"
+                document.problem(at, f"{pair}, so a cell has both; {how}", at=at)
+    for role, name in names.items():
+        if document.has((*cell, "paths", role)):
+            rule = f"{name} is shared, and no cell knows the ways of another one's paths; give it targets"
+            document.problem((*cell, "paths", role), rule, at=(*cell, "paths", role))
+    for key in ("taker", "giver"):
+        place = (*cell, "handover", key)
+        if document.has(place) and document.value(place) in names:
+            rule = f"{names[document.value(place)]} is shared; a handover is between two robots of one cell"
+            document.problem(place, rule)
+
+
+def _shows_its_place(document: Document, place: Place, device: Robot) -> bool:
+    """True unless it goes from place to place and cannot say that it is where the next cell expects it."""
+    if not device.goes:
         return True
-    own = [key for key in OF_A_CELL if document.has((*place, key))]
-    for key in own:
-        why = "its key is its name" if key == "name" else "it would go with a robot of one cell"
-        document.problem((*place, key), f"a shared device has no {key}: {why}", at=(*place, key))
-    return bool(own)
+    if device.link is Link.NONE:
+        document.problem((*place, "link"), "is only drawn; cells share what can be told something")
+    elif device.evidence is Evidence.STATE:
+        why = "a shared robot has to say that it is at home before another cell has it"
+        document.problem((*place, "evidence"), f"must be ids or joints: {why}")
+    else:
+        return True
+    return False
+
+
+def _check_tool(document: Document, place: Place, device: Robot, devices: Mapping[str, Robot]) -> None:
+    here = (*place, TOOL_OF)
+    if not document.has(here):
+        return
+    carrier, robots = document.value(here), [name for name, each in devices.items() if each.goes]
+    if carrier in document.keys((SECTION,)) and carrier not in devices:
+        return  # what is wrong with it is told there
+    if carrier not in robots:
+        there = f"must be {choice(robots)}" if robots else "no shared device is a robot"
+        document.problem(here, f"{there}, is {shown(carrier)}{nearest(str(carrier), robots)}")
+    elif device.held_fact is None:
+        document.problem(here, f"{device.name} holds no part: none of its verbs has holds: part")
+    elif (first := tools(document)[str(carrier)]) != device.name:
+        document.problem(here, f"{carrier} carries {first} already")

@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TypeVar
+from typing import Any, TypeVar
 
 from arboleda.kinds.declared import UseError
-from arboleda.model.plant_model import Cell, Crossing, Interlock, Pose, Workspace
+from arboleda.model.facts import Value
+from arboleda.model.plant_model import Cell, Crossing, Interlock, Pose, Robot, Workspace
 from arboleda.recipes.storage import plan_problems
 from arboleda.trees import zone_plan
 
 from .document import Document, Place, choice, nearest, shown
 from .pose_confusion import alike_crossings, confusions
-from .shapes import MAPPING, NAME_RULE, ZoneShape, is_name
+from .shapes import MAPPING, NAME_RULE, WORDS, ZoneShape, is_name
 
 SECTION: Place = ("zones",)
 WAITS = "robots wait there, so it must be outside all zones"
@@ -120,8 +121,11 @@ def _zone(document: Document, name: str, cells: Sequence[Cell]) -> Zone:
     shape = document.read(ZoneShape, place)
     if shape is None:
         return Zone(name=name, poses={}, moves={})
-    if not (shape.poses or shape.moves):
-        document.problem(place, "a zone has poses, moves or both; this one is empty")
+    interlocks = _interlocks(document, place, cells)
+    if not (shape.poses or shape.moves) and len(shape.free_while.keys() | shape.held_while.keys()) < 2:
+        document.problem(
+            place, "a zone has poses, moves, or two devices that may be in it; this one is empty"
+        )
     listed = _spots(document, (*place, "poses"), shape.poses, cells)
     poses = _once(document, (*place, "poses"), listed, "the pose is there twice")
     ends = [_spots(document, (*place, "moves", i), pair, cells) for i, pair in enumerate(shape.moves)]
@@ -131,30 +135,64 @@ def _zone(document: Document, name: str, cells: Sequence[Cell]) -> Zone:
         name=name,
         poses=poses,
         moves=_once(document, (*place, "moves"), moves, twice),
-        interlocks=_interlocks(document, place, cells),
+        interlocks=interlocks,
     )
 
 
 def _interlocks(document: Document, place: Place, cells: Sequence[Cell]) -> tuple[Interlock, ...]:
-    """The devices of `free_while`, each with the facts that it says while it is not in the zone."""
-    here = (*place, "free_while")
-    devices = {device.name: device for cell in cells for device in cell.robots if device.verb_names}
-    found = []
-    for name in document.keys(here):
-        if name not in devices:
-            if name not in _named_devices(document):  # else what is wrong with it is told there
-                there = f"must be {choice(devices)}" if devices else "there is no declared device"
-                sentence = f"{there}, is {shown(name)}{nearest(name, devices)}"
-                document.problem(here, sentence, at=(*here, name))
-            continue
-        facts = document.read_plain(MAPPING, (*here, name)) or {}
-        for fact, value in facts.items():
-            try:
-                devices[name].kind.check_fact(fact, value)
-            except UseError as error:
-                document.problem((*here, name, fact), str(error))
-        found.append(Interlock(device=name, zone=str(place[-1]), free_while=tuple(facts.items())))
-    return tuple(found)
+    """The devices that are in a zone by themselves, each with when it is and when it is not."""
+    robots = {device.name: device for cell in cells for device in cell.robots}
+    free = _of_devices(document, (*place, "free_while"), robots, _facts)
+    held = _of_devices(document, (*place, "held_while"), robots, _verbs)
+    return tuple(
+        Interlock(
+            device=name,
+            zone=str(place[-1]),
+            free_while=free.get(name, ()),
+            held_while=frozenset(held.get(name, ())),
+        )
+        for name in dict.fromkeys((*free, *held))
+    )
+
+
+def _of_devices(
+    document: Document,
+    place: Place,
+    robots: Mapping[str, Robot],
+    read: Callable[[Document, Place, Any], tuple[T, ...]],
+) -> dict[str, tuple[T, ...]]:
+    """What is said of each device in a mapping by their names; problems of wrong names are kept."""
+    found = {}
+    devices = {name: robot for name, robot in robots.items() if robot.verb_names}
+    for name in document.keys(place):
+        if name in devices:
+            found[name] = read(document, (*place, name), devices[name])
+        elif name in robots or name not in _named_devices(
+            document
+        ):  # else what is wrong with it is told there
+            there = f"must be {choice(devices)}" if devices else "there is no declared device"
+            sentence = f"{there}, is {shown(name)}{nearest(name, devices)}"
+            document.problem(place, sentence, at=(*place, name))
+    return found
+
+
+def _facts(document: Document, place: Place, device: Any) -> tuple[tuple[str, Value], ...]:
+    facts = document.read_plain(MAPPING, place) or {}
+    for fact, value in facts.items():
+        try:
+            device.kind.check_fact(fact, value)
+        except UseError as error:
+            document.problem((*place, fact), str(error))
+    return tuple(facts.items())
+
+
+def _verbs(document: Document, place: Place, device: Any) -> tuple[str, ...]:
+    verbs = document.read_plain(WORDS, place) or []
+    for index, verb in enumerate(verbs):
+        if verb not in device.verb_names:
+            there = f"must be {choice(device.verb_names)}, is {shown(verb)}"
+            document.problem((*place, index), f"{there}{nearest(verb, device.verb_names)}")
+    return tuple(verbs)
 
 
 def _named_devices(document: Document) -> list[str]:

@@ -10,32 +10,36 @@ def weigh(cell, dose: Choice["5", "10"]):
 from __future__ import annotations
 
 import inspect
+import math
 from collections.abc import Callable, Collection, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import partial, reduce, wraps
 from importlib import import_module
 from typing import Any
 
 from py_trees import common, composites
-from py_trees.behaviour import Behaviour
 
 from arboleda.model.facts import Value, shown
 from arboleda.model.messages import Failure, Reason
 from arboleda.model.outside import among, quoted
-from arboleda.model.plant_model import Robot
+from arboleda.model.plant_model import Cell, Robot
 from arboleda.model.recipe import Recipe
-from arboleda.model.sentence import Phrase, as_sentence
+from arboleda.model.sentence import Phrase, Sentence, as_sentence
 from arboleda.model.task import Order
 from arboleda.trees import steps
 from arboleda.trees.context import Context
 from arboleda.trees.leaves import Dwell, Require, Unless, titled
 
-from .decorators import Again, AtMost, Forgiven, Inverted, Times
+from .decorators import Again, AtMost, Forgiven, Inverted, Rescue, Times
 from .errors import RecipeError, RoleError
-from .handles import Ask, Step, chain, flat, handle, named, said
+from .handles import Ask, Step, asked_in, chain, flat, handle, is_list, named, said, usable
+from .holding import WORK, held
 from .parameters import parameter
-from .sharing import WORK, check_at_once, held, using
+from .sharing import check_at_once, using
 
+RETURNS = "a recipe returns a step, e.g. work(...)"
+MOST_TIMES = 100_000  # that something is done again
+MOST_NESTED, MOST_SHOWN = 50, 4  # recipes within each other; those of them that a sentence names
 FINAL = frozenset({Reason.STOPPED, Reason.CANCELLED, Reason.PART_LOST, Reason.INTERRUPTED, Reason.INTERNAL})
 CHOOSE = Phrase("step.choose", "choose")
 IS = Phrase("step.is", "is {answer}")
@@ -44,6 +48,7 @@ FAIL = Phrase("step.fail", "fail")
 WAIT = Phrase("step.wait", "wait")
 PARALLEL = Phrase("step.parallel", "parallel")
 FALLBACK = Phrase("step.fallback", "fallback")
+RECOVER = Phrase("step.recover", "recover")
 OTHER_ANSWER = Phrase("recipe.other_answer", "{robot} answered {answer}; the recipe knows {known}")
 
 
@@ -71,6 +76,7 @@ def recipe(
     alone: str | None = None,
     alone_called: Phrase | None = None,
     part_from: str | None = None,
+    ends_with: Mapping[str, Value] | None = None,
 ) -> Callable[[Callable[..., Step]], WrittenRecipe]:
     """Makes a recipe of a function of a Kit and parameters that are annotated with what they can be.
 
@@ -78,7 +84,8 @@ def recipe(
     the first line of the docstring. `is_default`: a task that names no recipe means this one. `alone`: the
     role of the one robot that works in it, whose name may stand for that of the cell; `alone_called`: that
     role in sentences. `part_from`: the group of targets at whose first one the part of a task waits, where no
-    robot brings it.
+    robot brings it. `ends_with`: what is so once a task is done, `{"nest": 1, "reader.lid": "open"}`: the
+    number of parts at a place, which a parameter may name, and facts.
     """
 
     def made(function: Callable[..., Step]) -> WrittenRecipe:
@@ -90,8 +97,11 @@ def recipe(
             forms = f"{missing}: Choice[1, 2] or {missing}=Choice(1, 2)"
             raise RecipeError(f"{name}: {missing} needs what it can be, e.g. {forms}")
 
+        end = tuple((ends_with or {}).items())
+
         @wraps(function)
         def build(order: Order, context: Context) -> Step:
+            check_end(name, {str(order.values.get(what, what)): value for what, value in end}, context.cell)
             return _build(name, title, function, order, context)
 
         known = tuple(each for each in read.values() if each is not None)
@@ -105,6 +115,7 @@ def recipe(
             alone=alone,
             alone_called=alone_called,
             part_from=part_from,
+            ends_with=end,
             function=function,
         )
 
@@ -124,11 +135,27 @@ def _build(
     name: str, title: Phrase | None, function: Callable[..., Step], order: Order, context: Context
 ) -> Step:
     context.parts.forget_origins()
-    step = function(Kit(context), **order.values)
-    if not isinstance(step, Behaviour):
-        raise RecipeError(f"{name} returns {quoted(step)}; a recipe returns a step, e.g. work(...)")
+    making = Making(running=((name, order.values),))
+    step = usable(function(Kit(context, making), **order.values), f"{name} returns", RETURNS)
+    check_asked(step, making)
     called = title() if title else name
     return steps.task(called, flat([held(context, step)]), context, notes_origins=True)
+
+
+def check_end(name: str, end: Mapping[str, Value], cell: Cell) -> None:
+    """RecipeError where a cell never says whether a task has ended as its recipe says."""
+    places = {place.target: place for place in cell.places}
+    members: Sequence[tuple[str, Any]] = [each for each in cell.members if each[1].verb_names]
+    facts = {f"{role}.{fact}": (device, fact) for role, device in members for fact in device.fact_names}
+    for what, value in end.items():
+        if what not in places and what not in facts:
+            raise RecipeError(f"{name} ends with {quoted(what)}; {among(what, (*places, *facts))}")
+        if what in places and not (type(value) is int and 0 <= value <= places[what].holds):
+            most = places[what].holds
+            raise RecipeError(f"{name} ends with {quoted(value)} at {what}, which holds 0 to {most}")
+        if what in facts:
+            device, fact = facts[what]
+            device.kind.check_fact(fact, value)
 
 
 def _reason(word: Reason | str) -> Reason:
@@ -139,6 +166,63 @@ def _reason(word: Reason | str) -> Reason:
         raise RecipeError(f"retry knows no cause {quoted(word)}; {known}") from None
 
 
+@dataclass(frozen=True, kw_only=True)
+class Making:
+    """A recipe in the making: those that run each other in it, and what was chosen by whose answer."""
+
+    running: tuple[tuple[str, Mapping[str, object]], ...] = ()
+    chosen: list[tuple[Step, Ask]] = field(default_factory=list)
+
+    def within(self, name: str, values: Mapping[str, object]) -> Making:
+        """The same, of a recipe in it; RecipeError where it would run itself without an end."""
+        running = (*self.running, (name, values))
+        if running[-1] in self.running or len(running) > MOST_NESTED:
+            names = " > ".join(each for each, _ in running[-MOST_SHOWN:])
+            raise RecipeError(f"{name} runs itself without an end: {names}")
+        return Making(running=running, chosen=self.chosen)
+
+
+def check_asked(step: Step, making: Making) -> None:
+    """RecipeError where something is chosen by an answer that nobody has been asked for by then."""
+    if not making.chosen:
+        return
+    order = {id(node): number for number, node in enumerate(step.iterate())}  # children before their parents
+    for node, asked in making.chosen:
+        first = order.get(id(next(node.iterate())), -1)  # a choice that stands nowhere is none
+        if first >= 0 and order.get(id(asked), first) >= first:
+            how = "let it stand before, as in work(seen, cell.choose(seen, ...))"
+            raise RecipeError(
+                f"choose looks at the answer of {asked.name}, which is not asked by then; {how}"
+            )
+
+
+def _one(step: Step | Sequence[Step], where: str) -> Step:
+    """The step, or several of them as one."""
+    return usable(step, f"{where} is given") if not is_list(step) else chain(WORK(), flat(list(step), where))
+
+
+def _several(parts: Sequence[Step], where: str) -> list[Step]:
+    """The steps, each of them whole; RecipeError where there is none, or one twice."""
+    if not parts:
+        raise RecipeError(f"{where} has no step")
+    steps = [usable(each, f"{where} is given") for each in parts]
+    if len({id(each) for each in steps}) < len(steps):
+        raise RecipeError(f"{where} has one step twice; call what makes it again for the other place")
+    return steps
+
+
+def _times(times: object, where: str, least: int) -> int:
+    if type(times) is not int or not least <= times <= MOST_TIMES:
+        raise RecipeError(f"{where} takes a whole number from {least} to {MOST_TIMES:,}; is {quoted(times)}")
+    return times
+
+
+def _seconds(seconds: object, where: str) -> float:
+    if isinstance(seconds, bool) or not isinstance(seconds, int | float) or not 0 <= seconds < math.inf:
+        raise RecipeError(f"{where} is a number of seconds from 0; is {quoted(seconds)}")
+    return seconds
+
+
 def work(*parts: Step | Sequence[Step]) -> Step:
     """One step after the other."""
     return chain(WORK(), flat(parts))
@@ -146,17 +230,19 @@ def work(*parts: Step | Sequence[Step]) -> Step:
 
 def parallel(*parts: Step) -> Step:
     """All at the same time, done once all are; where one fails, the others are halted."""
-    check_at_once(parts)
+    branches = _several(parts, "parallel")
+    check_at_once(branches)
     policy = common.ParallelPolicy.SuccessOnAll(synchronise=True)  # else what is done would be done again
-    node = composites.Parallel(str(PARALLEL()), policy=policy, children=list(parts))
+    node = composites.Parallel(str(PARALLEL()), policy=policy, children=branches)
     return steps.framed(titled(node, PARALLEL()))
 
 
 class Kit:
     """Kit of a recipe: the devices and targets of its cell, and the steps around steps."""
 
-    def __init__(self, context: Context) -> None:
+    def __init__(self, context: Context, making: Making | None = None) -> None:
         self._context = context
+        self._making = making or Making()
 
     def devices(self, *roles: str) -> list[Any]:
         """The devices in these roles, to be told what to do."""
@@ -193,47 +279,59 @@ class Kit:
         its first use to its last. What this cell does not share is its own anyway.
         """
         names = [roles] if isinstance(roles, str) else roles
-        shared = frozenset(self._named(role).name for role in names).intersection(self._context.cell.shared)
-        return using(self._context, shared, flat(parts)) if shared else work(*parts)
+        cell = self._context.cell
+        shared = cell.together({self._named(role).name for role in names}.intersection(cell.shared))
+        return using(self._context, shared, flat(parts, "using")) if shared else work(*parts)
 
     def run(self, other: WrittenRecipe, **values: object) -> Step:
         """Another recipe as a step of this one."""
-        return other.function(self, **values)
+        if not isinstance(other, WrittenRecipe):
+            raise RecipeError(
+                f"run is given {quoted(other)}; it takes a recipe, a function with @recipe before it"
+            )
+        making = self._making.within(other.name, values)
+        return usable(other.function(Kit(self._context, making), **values), f"{other.name} returns", RETURNS)
 
     def choose(self, asked: Step, ways: Mapping[Value, Step | Sequence[Step]]) -> Step:
         """A way for each answer to a step that asks a device or a person; another answer is a failure."""
-        if not isinstance(asked, Ask):
+        question = asked_in(asked)
+        if question is None:
             raise RecipeError(f"choose looks at the answer of a device's step; {named(asked)} has none")
-        asked.check(ways)
+        question.check(ways)
 
         def answers(value: Value) -> bool:
-            return asked.answer == value
+            return question.answer == value
 
         def other() -> Failure | None:
             """A way that was taken and failed has named its cause."""
-            told = asked.answer
+            told = question.answer
             if told in ways:
                 return self._context.failures.first
             known = tuple(map(shown, ways))
-            sentence = OTHER_ANSWER(robot=asked.name, answer=said(told), known=known)
+            sentence = OTHER_ANSWER(robot=question.name, answer=said(told), known=known)
             return Failure(reason=Reason.REJECTED, sentence=sentence)
 
         def branch(value: Value, way: Step | Sequence[Step]) -> Step:
             chosen = Unless(IS(answer=shown(value)), partial(answers, value))
-            return steps.framed(steps.sequence(shown(value), chosen, *flat([way])))
+            return steps.framed(steps.sequence(shown(value), chosen, *flat([way], "choose")))
 
         branches = [branch(value, way) for value, way in ways.items()]
         other_way = Require(NO_OTHER(), self._context.failures, other)
-        return steps.framed(steps.selector(CHOOSE(), *branches, other_way))
+        node = steps.framed(steps.selector(CHOOSE(), *branches, other_way))
+        node.asked = question  # type: ignore[attr-defined]
+        self._making.chosen.append((node, question))
+        return node
 
     def fail(self, sentence: str) -> Step:
         """The task has failed, with this sentence."""
+        if not isinstance(sentence, str | Sentence) or not str(sentence).strip():
+            raise RecipeError(f"fail is given {quoted(sentence)}; it takes the words that people are told")
         failure = Failure(reason=Reason.REJECTED, sentence=as_sentence(sentence))
         return Require(FAIL(), self._context.failures, lambda: failure)
 
     def wait(self, seconds: float) -> Step:
         """Nothing for so long; the time stands still while the cell is held."""
-        return Dwell(WAIT(), self._context.time, seconds)
+        return Dwell(WAIT(), self._context.time, _seconds(seconds, "wait"))
 
     def retry(
         self,
@@ -248,22 +346,31 @@ class Kit:
         Without `causes` after any failure that another try may mend: not a stop, not a part that is lost.
         """
         reasons = set(Reason) - FINAL if causes is None else {_reason(each) for each in causes}
-        return Again(step, self._context, times=times, pause_s=pause_s, causes=reasons)
+        most, pause = _times(times, "times of retry", 0), _seconds(pause_s, "pause_s of retry")
+        return Again(_one(step, "retry"), self._context, times=most, pause_s=pause, causes=reasons)
 
     def repeat(self, step: Step, times: int) -> Step:
         """The step `times` times, one after the other."""
-        return Times(step, self._context.time, times=times)
+        return Times(_one(step, "repeat"), self._context.time, times=_times(times, "times of repeat", 1))
 
     def timeout(self, step: Step, seconds: float) -> Step:
         """The step, which is left and has failed after so many seconds."""
-        return AtMost(step, self._context, seconds=seconds)
+        return AtMost(_one(step, "timeout"), self._context, seconds=_seconds(seconds, "timeout"))
 
     def fallback(self, *parts: Step) -> Step:
         """The first step that does not fail; where all do, the last one's failure counts."""
-        *others, last = parts
+        *others, last = _several(parts, "fallback")
         forgiven = [Forgiven(each, self._context.failures) for each in others]
         return steps.framed(steps.selector(FALLBACK(), *forgiven, last))
 
+    def recover(self, work: Step | Sequence[Step], rescue: Step | Sequence[Step]) -> Step:
+        """The work, and where it fails the rescue after it; it has failed then for the cause of the work,
+        whatever becomes of the rescue.
+        """
+        tried = _one(work, "recover")
+        rescued = Rescue(_one(rescue, "recover"), self._context.failures)
+        return steps.framed(steps.selector(RECOVER(), tried, rescued))
+
     def invert(self, step: Step) -> Step:
         """The step, which has to fail."""
-        return Inverted(step, self._context.failures)
+        return Inverted(_one(step, "invert"), self._context.failures)

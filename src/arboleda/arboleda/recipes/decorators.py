@@ -13,19 +13,23 @@ from py_trees.common import Status
 from py_trees.decorators import Decorator
 
 from arboleda.model.messages import Failure, Reason
-from arboleda.model.sentence import Phrase
+from arboleda.model.sentence import Phrase, Sentence
 from arboleda.trees.cell_time import CellTime
 from arboleda.trees.context import Context
 from arboleda.trees.failures import Failures
 from arboleda.trees.leaves import title_of, titled
-from arboleda.trees.trail import Keeps
+from arboleda.trees.trail import Keeps, failure_kept, read_failure
 
 RETRY = Phrase("step.retry", "retry {step}")
 REPEAT = Phrase("step.repeat", "repeat {step}")
 TIMEOUT = Phrase("step.timeout", "timeout {step}")
 TRY = Phrase("step.forgive", "try {step}")
+RESCUE = Phrase("step.rescue", "rescue: {step}")
 INVERT = Phrase("step.invert", "invert {step}")
 TOO_LATE = Phrase("recipe.too_late", "{step} did not end within {seconds:g} s")
+RESCUE_FAILED = Phrase("recipe.rescue_failed", "{cause}; and the rescue failed: {second}")
+NO_RESCUE = frozenset({Reason.STOPPED, Reason.CANCELLED, Reason.INTERRUPTED, Reason.INTERNAL})
+"""Reasons of a failure after which nothing of the task may go on."""
 NOT_FAILED = Phrase("recipe.not_failed", "{step} was to fail, and did not")
 
 
@@ -147,6 +151,64 @@ class Forgiven(Around):
         if self.decorated.status is Status.FAILURE:
             self.failures.forgive()
         return self.decorated.status
+
+
+class Rescue(Around):
+    """Its step is done because another one has failed, whose cause stays that of the failure.
+
+    Meanwhile the cause is put aside, so that what the step retries or answers is its own.
+    """
+
+    def __init__(self, child: Behaviour, failures: Failures) -> None:
+        super().__init__(RESCUE, child)
+        self.failures = failures
+        self.cause: Failure | None = None
+        self.leaf: Behaviour | None = None
+
+    def initialise(self) -> None:
+        self.cause, self.leaf = self.failures.first, self.failures.leaf
+        self.failures.forgive()
+
+    def kept(self) -> Mapping[str, Any] | None:
+        if self.status is not Status.RUNNING or self.cause is None:
+            return None
+        return {"cause": failure_kept(self.cause)}
+
+    def restore(self, state: Mapping[str, Any]) -> None:
+        self.cause = read_failure(*state["cause"])
+
+    def tick(self) -> Iterator[Behaviour]:
+        first = self.failures.first
+        if self.status is not Status.RUNNING and first is not None and first.reason in NO_RESCUE:
+            self.status = Status.FAILURE
+            yield self
+            return
+        yield from super().tick()
+
+    def update(self) -> Status:
+        if self.decorated.status is Status.RUNNING:
+            return Status.RUNNING
+        if self.cause is not None:
+            self.failures.bring_back(with_second(self.cause, self.failures.first), self.leaf)
+        return Status.FAILURE
+
+    def terminate(self, new_status: Status) -> None:
+        if new_status is Status.INVALID and self.status is Status.RUNNING and self.cause is not None:
+            self.failures.bring_back(self.cause, self.leaf)
+
+
+def with_second(cause: Failure, second: Failure | None) -> Failure:
+    """The first cause, with what a rescue failed for."""
+    if second is None:
+        return cause
+    told = RESCUE_FAILED(cause=cause.sentence, second=second.sentence)
+    return Failure(reason=cause.reason, sentence=told)
+
+
+def first_cause(sentence: Sentence) -> Sentence:
+    """The sentence of the first cause, without what a rescue failed for."""
+    cause = sentence.values.get("cause") if sentence.key == RESCUE_FAILED.key else None
+    return first_cause(cause) if isinstance(cause, Sentence) else sentence
 
 
 class Inverted(Around):

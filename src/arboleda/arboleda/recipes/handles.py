@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
-from typing import Any
+from typing import Any, TypeGuard, TypeVar
 
 from py_trees import composites
 from py_trees.behaviour import Behaviour
@@ -22,19 +22,22 @@ from arboleda.model.recipe import spelling
 from arboleda.model.sentence import Phrase, Sentence
 from arboleda.trees import paths, steps, zone_plan
 from arboleda.trees.context import Context
-from arboleda.trees.leaves import Act, Await, Require, titled
+from arboleda.trees.leaves import Act, Await, Leaf, Require, titled
 
 from .errors import RecipeError
 from .sharing import check_holds_none
 
 Step = Behaviour
+StepOf = TypeVar("StepOf", bound=Behaviour)
 LONGEST_QUESTION, LONGEST_ANSWER = 300, 60
+TWICE = (
+    "{step} stands at two places; a step has one place: call what makes it again for the other, or repeat it"
+)
 NOT_SO = Phrase("recipe.not_so", "{robot} says {told} of {fact}; {value} is needed")
 NOT_YET = Phrase("recipe.not_yet", "{robot} did not say {value} of {fact} within {seconds:g} s")
 TOUR = Phrase("step.tour", "tour")
 FOLLOW = Phrase("step.follow", "follow path {path}")
 VISIT = Phrase("step.visit", "visit {pose}")
-HOME = Phrase("step.go_home", "go home")
 ASK = Phrase("step.ask", "ask {person}")
 SAYS = Phrase("step.says", "says")
 BECOMES = Phrase("step.becomes", "becomes")
@@ -79,6 +82,34 @@ class Ask(Act):
                 raise RecipeError(f"choose has no way for {quoted(answer)}, which {self.name} may answer")
 
 
+class FactCheck(Require):
+    """Check of what a device says: each of these `facts` has this value."""
+
+    device = ""
+    facts: Mapping[str, Value] = {}
+
+
+class FactWait(Await):
+    """Wait until a device says so: each of these `facts` has this value."""
+
+    device = ""
+    facts: Mapping[str, Value] = {}
+
+
+class AskInZones(composites.Sequence):
+    """Question to a device that is in zones while it answers: it takes them before."""
+
+    def __init__(self, asked: Ask, zones: Sequence[Step]) -> None:
+        super().__init__(asked.name, memory=True, children=[*zones, asked])
+        self.asked = asked
+
+
+def asked_in(step: object) -> Ask | None:
+    """The question of a step that asks, also one in zones."""
+    found = step.asked if isinstance(step, AskInZones) else step
+    return found if isinstance(found, Ask) else None
+
+
 class Handle:
     """A device of the cell, in whatever it can be asked; its kind adds what it can be told."""
 
@@ -89,7 +120,9 @@ class Handle:
     def says(self, **facts: Value) -> Step:
         """A check: the device says so, else the task fails."""
         self._check(facts)
-        return Require(SAYS(), self._context.failures, partial(self._objection, facts))
+        step = FactCheck(SAYS(), self._context.failures, partial(self._objection, facts))
+        step.device, step.facts = self._device.name, facts
+        return step
 
     def becomes(self, *, at_most_s: float, **facts: Value) -> Step:
         """Wait until the device says so, at most `at_most_s` s."""
@@ -102,13 +135,17 @@ class Handle:
             )
             return Failure(reason=Reason.DEADLINE, sentence=sentence)
 
-        return Await(BECOMES(), self._context, lambda: not self._unsaid(facts), at_most_s, late)
+        step = FactWait(BECOMES(), self._context, lambda: not self._unsaid(facts), at_most_s, late)
+        step.device, step.facts = self._device.name, facts
+        return step
 
-    def _of(self, act: Act) -> Act:
-        """A command to the device, noted where cells share that."""
+    def _of(self, step: StepOf) -> StepOf:
+        """A step with commands to the device, noted where cells share that; work in it is noted already."""
         if self._device.name in self._context.cell.shared:
-            act.uses = self._device.name
-        return act
+            for node in step.iterate():
+                if isinstance(node, Leaf) and node.uses is None:
+                    node.uses = self._device.name
+        return step
 
     def _check(self, facts: Mapping[str, Value]) -> None:
         """UseError for what the device never says."""
@@ -161,8 +198,9 @@ class DeviceHandle(Handle):
             asked = Ask(f"{name} {words}", self._context, make, DOING(order=words))
             asked.answers, asked.by, asked.asked = told.told.answers, name, words
             self._of(asked)
-            return asked
+            return titled(AskInZones(asked, zones), asked.title) if zones else asked
 
+        step.__name__, step.__qualname__ = verb, f"{self._device.name}.{verb}"
         return step
 
 
@@ -224,9 +262,10 @@ class RobotHandle(Handle):
     def visit(self, target: str, *work: Step | Sequence[Step]) -> Step:
         """Go to a target and do the work there."""
         pose = self._pose(target)
-        check_holds_none("a visit", flat(work))
-        parts = steps.visit_from_anywhere(self._context, self._device.name, pose, flat(work))
-        return steps.sequence(VISIT(pose=pose.said), *parts)
+        there = flat(work, "visit")
+        check_holds_none("a visit", there)
+        parts = steps.visit_from_anywhere(self._context, self._device.name, pose, there)
+        return self._of(steps.sequence(VISIT(pose=pose.said), *parts))
 
     def tour(self, *stops: str | Pick | Place) -> Step:
         """Go from target to target, take hold and let go there, and stay at the last one.
@@ -240,14 +279,15 @@ class RobotHandle(Handle):
             why = f"{zone_plan.lying(poses[-1])}; it waits there" if poses else "it has no stops"
             raise RecipeError(f"{name}: a tour has to end outside all zones, and {why}")
         visits = [(pose, self._work(stop, pose)) for stop, pose in zip(stops, poses, strict=True)]
-        return chain(TOUR(), steps.tour(self._context, name, visits))
+        return self._of(chain(TOUR(), steps.tour(self._context, name, visits)))
 
     def _work(self, stop: str | Pick | Place, pose: Pose) -> list[Step]:
         if isinstance(stop, str):
             return []
         check = self._context.cell.piece_check if stop.check is None else stop.check
-        switch = steps.grip if isinstance(stop, Pick) else steps.let_go
-        return switch(self._context, self._device.name, pose, check=check)
+        if isinstance(stop, Pick):
+            return steps.grip(self._context, self._device.name, pose, check=check)
+        return steps.let_go(self._context, self._device.name, check=check)
 
     def follow(self, path: str) -> Step:
         """Drive over a path of the cell, by its code; first to its start, where the cell allows that."""
@@ -255,24 +295,23 @@ class RobotHandle(Handle):
         codes = [each.code for each in space.paths]
         if path not in codes:
             raise RecipeError(f"{self._device.name} has no path {quoted(path)}; {among(path, codes)}")
-        return chain(FOLLOW(path=path), paths.follow(self._context, self._device.name, space.path(path)))
+        follow = paths.follow(self._context, self._device.name, space.path(path))
+        return self._of(chain(FOLLOW(path=path), follow))
 
     def home(self) -> Step:
         """Go where it waits."""
         home = self._context.cell.reach[self._device.name].home
         parts = steps.visit_from_anywhere(self._context, self._device.name, home, [])
-        return steps.sequence(HOME(), *parts)
+        return self._of(steps.sequence(steps.GO_HOME(), *parts))
 
     def grip(self) -> Step:
         """Take hold of a part."""
         self._context.cell.workspaces[self._device.name].hand.grip(id="")  # what it cannot is told at once
-        return steps.unchecked_grip(self._context, self._device.name)
+        return self._of(steps.unchecked_grip(self._context, self._device.name))
 
     def let_go(self) -> Step:
         """Let go of what it holds."""
-        name = self._device.name
-        store = partial(self._context.stations.store_below, name)
-        return steps.effector(self._context, name, on=False, then=store)
+        return self._of(steps.effector(self._context, self._device.name, on=False))
 
     def brings_back_to(self, target: str) -> None:
         """A recovery brings what it holds there; else it is where the part was taken."""
@@ -310,11 +349,13 @@ class Chain(composites.Sequence):
     """Steps one after the other, which another sequence takes in as its own: fewer nodes are ticked."""
 
     frame = True
+    is_taken = False  # its steps are those of another sequence
 
     def dissolved(self) -> list[Step]:
         """Its steps, of which it is no longer the parent."""
         steps = list(self.children)
         self.remove_all_children()
+        self.is_taken = True
         return steps
 
 
@@ -325,7 +366,38 @@ def chain(title: Sentence, parts: Sequence[Step]) -> Chain:
     return made
 
 
-def flat(parts: Sequence[Step | Sequence[Step]]) -> list[Step]:
-    """The steps in their order; those of a chain in its place."""
-    steps = [step for part in parts for step in ([part] if isinstance(part, Behaviour) else part)]
-    return [each for step in steps for each in (step.dissolved() if isinstance(step, Chain) else [step])]
+def flat(parts: Sequence[Step | Sequence[Step]], where: str = "work") -> list[Step]:
+    """The steps in their order; those of a chain in its place. RecipeError for what is no step."""
+    listed: list[Step] = []
+    for part in parts:
+        if not isinstance(part, Behaviour) and is_list(part):
+            listed += part
+        else:
+            listed.append(part)  # type: ignore[arg-type]
+    found: list[Step] = []
+    for step in listed:
+        usable(step, f"{where} is given")
+        if isinstance(step, Chain):
+            found += step.dissolved()
+        else:
+            found.append(step)
+    if len(set(map(id, found))) < len(found):
+        twice = next(step for number, step in enumerate(found) if step in found[:number])
+        raise RecipeError(TWICE.format(step=twice.name))
+    return found
+
+
+def is_list(part: object) -> TypeGuard[Iterable[Any]]:
+    return isinstance(part, Iterable) and not isinstance(part, str | Behaviour)
+
+
+def usable(step: object, told: str, rule: str = "it takes steps, e.g. mill.open()") -> Step:
+    """The step, which nothing else has used; RecipeError for anything else, which begins with `told`."""
+    if not isinstance(step, Behaviour):
+        if callable(step):
+            name = getattr(step, "__qualname__", type(step).__name__)
+            raise RecipeError(f"{told} {name} without its parentheses: write {name}()")
+        raise RecipeError(f"{told} {quoted(step)}; {rule}")
+    if step.parent is not None or (isinstance(step, Chain) and step.is_taken):
+        raise RecipeError(TWICE.format(step=step.name))
+    return step

@@ -22,19 +22,18 @@ from dataclasses import dataclass, field
 from inspect import Parameter as Declared
 from typing import Any
 
-from py_trees.behaviour import Behaviour
-
 from arboleda.model.facts import Value
 from arboleda.model.outside import quoted
 from arboleda.model.plant_model import Cell
 from arboleda.model.recipe import Limits
 from arboleda.trees.context import Context
 
-from .authoring import Kit, notes_of
+from .authoring import Kit, Making, check_asked, notes_of
 from .errors import RecipeError
-from .handles import Step
+from .handles import Step, usable
 from .parameters import Choice, Number, Target, parameter
 
+RETURNS = "a node returns a step, e.g. work(...)"
 CHILD = "child"
 PLAIN = (int, float, bool, str)
 Function = Callable[..., Any]
@@ -66,9 +65,11 @@ class WrittenNode:
 
     def build(self, context: Context, children: Sequence[Step], values: Mapping[str, Value]) -> Step:
         """Its step, around its children; RecipeError where it is none."""
-        step = self.function(Kit(context), *children, **values)
-        if not isinstance(step, Behaviour):
-            raise RecipeError(f"{self.name} returns {quoted(step)}; a node returns a step, e.g. work(...)")
+        making = Making()
+        step = usable(
+            self.function(Kit(context, making), *children, **values), f"{self.name} returns", RETURNS
+        )
+        check_asked(step, making)
         there = {id(each) for each in step.iterate()}
         if any(id(each) not in there for each in children):
             raise RecipeError(f"{self.name} returns a step in which one of its children is not")

@@ -152,6 +152,7 @@ BY_KEY = {
     "device.let_go": "opened",
     "command.gave_up": "gave_up",
     "command.refused": "refused",
+    "command.refused_late": "refused",
     "command.off_target": "off_target",
     "command.fact_unsaid": "off_target",
     "command.fact_other": "off_target",
@@ -165,6 +166,7 @@ BY_KEY = {
     "robot.was_fenced": "fenced",
     "robot.fenced": "fenced",
     "zone.not_free": "busy",
+    "zone.kept_by_machine": "busy",
     "device.not_free": "busy",
     "device.still_held": "busy",
 }
@@ -173,7 +175,6 @@ BY_REASON = {
     Reason.LINK_LOST: "connection",
     Reason.REBOOTED: "boot",
     Reason.NOT_HOMED: "not_homed",
-    Reason.REJECTED: "refused",
     Reason.STOPPED_SHORT: "short",
     Reason.NOT_REACHED: "off_target",
     Reason.DEVICE_FAULT: "alarm",
@@ -225,6 +226,8 @@ def _operator(evidence: Evidence) -> Found | None:
 
 def _away(evidence: Evidence) -> Found | None:
     """Rule: the plant was away, so boards stopped by themselves, and their reports were lost."""
+    if evidence.reason is Reason.REJECTED and evidence.robot is None:
+        return None  # the recipe's own words
     since = evidence.last.at if evidence.last is not None else evidence.failed_at - AWAY_S
     away = [seconds for at, seconds in evidence.absences if since <= at <= evidence.failed_at]
     return ("plant_away", {"seconds": max(away)}) if away and evidence.reason in BEFALLEN else None

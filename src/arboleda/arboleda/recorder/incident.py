@@ -22,6 +22,8 @@ from arboleda.model.messages import (
 from arboleda.model.plant_model import Evidence as Level
 from arboleda.model.plant_model import Link, MotionState, PlantModel
 from arboleda.model.sentence import Sentence
+from arboleda.model.verbs import as_text
+from arboleda.recipes.decorators import first_cause
 from arboleda.views import tree_view, twin_view
 
 from .cause import BY_KEY, Cause, Evidence, TaskCommand, cause_of
@@ -62,7 +64,7 @@ class Incident:
     def evidence(self) -> Evidence:
         """The facts for the rules of causes; call it only for a task that has failed."""
         assert self.failure is not None and self.failed_at is not None
-        parts = list(self.failure.sentence.parts())
+        parts = list(first_cause(self.failure.sentence).parts())
         values = {slot: value for part in reversed(parts) for slot, value in part.values.items()}
         how = values.get("how")
         robot = next((str(values[slot]) for slot in WHOSE if slot in values), None)
@@ -136,7 +138,7 @@ class Reader:
             if self._took_from_another(event, epoch):
                 found.foreign.append((event.at, event.robot))
         elif isinstance(event, OperatorRequest):
-            found.acts.append((event.at, f"{event.verb.value} {event.scope}".strip()))
+            found.acts.append((event.at, _in_words(event)))
         elif isinstance(event, Interference):
             found.foreign.append((event.at, event.robot))
 
@@ -230,6 +232,11 @@ def supervised(model: PlantModel) -> frozenset[str]:
     return frozenset(
         each.name for each in robots if each.evidence is not Level.STATE and each.link not in silent
     )
+
+
+def _in_words(request: OperatorRequest) -> str:
+    """An operator's act as a person writes it."""
+    return f"{request.verb.value} {as_text(request.verb, request.scope, request.arguments)}".strip()
 
 
 NEWS = ("state", "accepted", "done", "rejected", "failed", "answered", "node", "homed", "effector", "piece")

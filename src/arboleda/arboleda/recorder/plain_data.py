@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
-from dataclasses import MISSING, fields, is_dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import MISSING, fields, is_dataclass, replace
 from enum import Enum
+from functools import partial
+from operator import attrgetter
 from typing import Any
 
 from arboleda.model.messages import (
@@ -15,7 +17,10 @@ from arboleda.model.messages import (
     Fact,
     Failure,
     Interference,
+    Journal,
     KeptTask,
+    LateDeparture,
+    OperatorAnswer,
     OperatorRequest,
     Reason,
     Receipt,
@@ -29,32 +34,56 @@ from arboleda.model.messages import (
 )
 from arboleda.model.plant_model import MotionState
 from arboleda.model.sentence import Phrase, Sentence, Value
+from arboleda.model.verbs import from_text
 
 from .errors import NoRecord
 
 Memory = dict[Fact, dict[str, str]]
 TYPE, NUMBER = "type", "number"
+ABOUT_VERBS = (OperatorAnswer.__name__, Journal.__name__)
 NOT_FINITE = ("nan", "inf", "-inf")
 SENTENCE = {"key", "english", "values"}
 EVENTS: dict[str, type[Any]] = {
     each.__name__: each
-    for each in (Report, TaskRequest, OperatorRequest, Undelivered, Interference, Shutdown)
+    for each in (Report, TaskRequest, OperatorRequest, Undelivered, LateDeparture, Interference, Shutdown)
 }
 
 
 def plain(value: Any) -> Any:
-    """The value as plain data; of a dataclass its type, and the fields that differ from their defaults."""
-    write = WRITERS.get(type(value))
-    return _other(value) if write is None else write(value)
+    """The value as plain data; of a dataclass its type, and the fields that differ from their defaults.
+
+    Here and below, values that are plain already are passed on without a call: most are, of each step.
+    """
+    kind = type(value)
+    if kind in SAME:
+        return value
+    write = WRITERS.get(kind)
+    return _writer(kind)(value) if write is None else write(value)
 
 
 def event_from(data: Any) -> Event:
     """The event in plain data; raises NoRecord if this version does not know it."""
     try:
         made: Event = _made(EVENTS[data[TYPE]], data)
+        if isinstance(made, OperatorRequest) and not made.arguments:
+            made = _told_apart(made)
     except (AttributeError, IndexError, KeyError, TypeError, ValueError) as error:
         raise NoRecord(f"it has an event that this version does not know ({_short(data)})") from error
     return made
+
+
+def _told_apart(request: OperatorRequest) -> OperatorRequest:
+    """The request of a record whose plant took the arguments of a verb as words of its scope."""
+    scope, arguments = from_text(request.verb, request.scope)
+    return replace(request, scope=scope, arguments=arguments) if arguments else request
+
+
+def message_from(data: Any) -> Any:
+    """The message as this version records it: arguments of a verb apart from its scope."""
+    if data.get(TYPE) not in ABOUT_VERBS or "arguments" in data:
+        return data
+    scope, arguments = from_text(Verb(data["verb"]), data["scope"])
+    return data | {"scope": scope, "arguments": plain(arguments)} if arguments else data
 
 
 def kept_from(data: Any) -> KeptTask:
@@ -92,26 +121,29 @@ def _short(data: Any) -> str:
     return repr(data)[:80]
 
 
-def _same(value: Any) -> Any:
-    return value
-
-
 def _number(value: float) -> Any:
     """The number as plain data; JSON itself has no word for one that is not finite."""
     return value if math.isfinite(value) else {NUMBER: repr(value)}
 
 
 def _sequence(value: Any) -> list[Any]:
-    return [plain(each) for each in value]
+    return [each if type(each) in SAME else plain(each) for each in value]
 
 
 def _mapping(value: Mapping[Any, Any]) -> dict[str, Any]:
-    return {str(plain(key)): plain(each) for key, each in value.items()}
+    return {
+        key if type(key) is str else str(plain(key)): each if type(each) in SAME else plain(each)
+        for key, each in value.items()
+    }
 
 
 def _sentence(value: Sentence) -> dict[str, Any]:
-    values = {slot: plain(each) for slot, each in value.values.items()}
-    return {"key": value.key, "english": value.phrase.english, "values": values, **_others(value.phrase)}
+    return {
+        "key": value.key,
+        "english": value.phrase.english,
+        "values": _mapping(value.values),
+        **_others(value.phrase),
+    }
 
 
 def _others(phrase: Phrase) -> dict[str, Any]:
@@ -122,11 +154,8 @@ def _error(value: BaseException) -> str:
     return f"{type(value).__name__}: {value}"
 
 
+SAME = frozenset({str, int, bool, type(None)})
 WRITERS: dict[type, Callable[[Any], Any]] = {
-    str: _same,
-    int: _same,
-    bool: _same,
-    type(None): _same,
     float: _number,
     tuple: _sequence,
     list: _sequence,
@@ -135,39 +164,41 @@ WRITERS: dict[type, Callable[[Any], Any]] = {
 }
 
 
-def _other(value: Any) -> Any:
-    """The value as plain data, by its nature, if its type has no entry of its own."""
-    if isinstance(value, Enum):
-        return value.value
-    if is_dataclass(value):
-        return _record(value)
-    for kind in (bool, int, float, str):
-        if isinstance(value, kind):
-            return WRITERS[kind](kind(value))
-    if isinstance(value, Mapping):
-        return _mapping(value)
-    if isinstance(value, tuple | list):
-        return _sequence(value)
-    if isinstance(value, set | frozenset):
-        return sorted(_sequence(value), key=repr)
-    return _error(value) if isinstance(value, BaseException) else type(value).__name__
+def _writer(kind: type) -> Callable[[Any], Any]:
+    """What makes plain data of the values of a class, by its nature; found once for each class."""
+    found = _found(kind)
+    WRITERS[kind] = found
+    return found
 
 
-def _record(value: Any) -> dict[str, Any]:
-    data = {TYPE: type(value).__name__}
-    for name, default in _defaults(type(value)):
-        if (each := getattr(value, name)) is not default:
-            data[name] = plain(each)
+def _found(kind: type) -> Callable[[Any], Any]:
+    if issubclass(kind, Enum):
+        return attrgetter("_value_")  # `value` takes two calls of Python
+    if is_dataclass(kind):
+        return partial(_record, kind.__name__, _defaults(kind))
+    for base in (bool, int, float, str):
+        if issubclass(kind, base):
+            return lambda value: plain(base(value))
+    if issubclass(kind, Mapping):
+        return _mapping
+    if issubclass(kind, tuple | list):
+        return _sequence
+    if issubclass(kind, set | frozenset):
+        return lambda value: sorted(_sequence(value), key=repr)
+    return _error if issubclass(kind, BaseException) else lambda _: kind.__name__
+
+
+def _record(name: str, defaults: Sequence[tuple[str, Any]], value: Any) -> dict[str, Any]:
+    data = {TYPE: name}
+    for field, default in defaults:
+        if (each := getattr(value, field)) is not default:
+            data[field] = each if type(each) in SAME else plain(each)
     return data
 
 
-_known: dict[type, tuple[tuple[str, Any], ...]] = {}  # of each dataclass, its fields with their defaults
-
-
-def _defaults(kind: type) -> tuple[tuple[str, Any], ...]:
-    if kind not in _known:
-        _known[kind] = tuple((each.name, each.default) for each in fields(kind))
-    return _known[kind]
+def _defaults(kind: Any) -> tuple[tuple[str, Any], ...]:
+    """The fields of a dataclass with their defaults."""
+    return tuple((each.name, each.default) for each in fields(kind))
 
 
 def _made(kind: type[Any], data: Mapping[str, Any]) -> Any:
@@ -239,6 +270,7 @@ READERS: dict[type, dict[str, Reader]] = {
     TaskRequest: {"kept": _kept},
     OperatorRequest: {"verb": Verb},
     Undelivered: {"sentence": sentence_from},
+    LateDeparture: {},
     Interference: {"sentence": sentence_from},
     Shutdown: {},
     KeptTask: {

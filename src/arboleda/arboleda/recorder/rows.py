@@ -48,7 +48,7 @@ def rows_of(snapshot: Row, drawn: Row) -> Iterator[tuple[str, Row]]:
     for robot in drawn["robots"]:
         yield f"drawn/{robot['name']}", {key: robot[key] for key in DRAWN}
     for name, part in drawn["parts"].items():
-        yield f"parts/{name}", {"part": part, "stored": drawn["stored"][name]}
+        yield f"parts/{name}", {"part": part, "books": drawn["books"][name]}
 
 
 def snapshot_of(rows: Rows, at: float) -> Row:
@@ -76,9 +76,16 @@ def positions_of(rows: Rows, at: float) -> Row:
         "now": at,
         "robots": [_drawn(rows, name, at) for name in order["robots"]],
         "parts": {name: row["part"] for name, row in cells.items()},
-        "stored": {name: row["stored"] for name, row in cells.items()},
+        "books": {name: _books(row) for name, row in cells.items()},
         "zones": [_row(rows, f"zones/{name}") for name in order["zones"]],
     }
+
+
+def _books(row: Row) -> Row:
+    """The books of a cell; a record of version 0.1 has the numbers of its full stations."""
+    stations = {f"station_{number}": 1 for number in row.get("stored", ())}
+    books = row.get("books", {"places": {}, "carriers": {}})
+    return {**books, "places": stations | books["places"]}
 
 
 def links_of(rows: Rows) -> Row:

@@ -11,7 +11,7 @@ from typing import Any
 from arboleda.model.messages import Event
 
 from .errors import NoRecord
-from .plain_data import event_from, plain
+from .plain_data import event_from, message_from, plain
 from .state import State, named
 
 TOPIC = "/arboleda/steps"
@@ -83,7 +83,9 @@ def from_json(unix_ns: int, data: bytes) -> RecordedStep:
     try:
         rows = json.loads(data)
         events = tuple(event_from(each) for each in rows["events"])
-        said = {"messages": rows["messages"], "state": rows["state"]}
-        return RecordedStep(unix_ns, float(rows["now"]), events, said, str(rows["hash"]))
-    except (KeyError, TypeError, ValueError, RecursionError) as error:
+        messages = [message_from(each) for each in rows["messages"]]
+        said = {"messages": messages, "state": rows["state"]}
+        hash = str(rows["hash"]) if messages == rows["messages"] else hash_of(said)
+        return RecordedStep(unix_ns, float(rows["now"]), events, said, hash)
+    except (AttributeError, KeyError, TypeError, ValueError, RecursionError) as error:
         raise NoRecord("it has a step that is not as a plant writes it") from error

@@ -29,7 +29,6 @@ from arboleda.web.names import other_address
 
 from .alarm_options import AlarmOptions
 from .demo import Demo
-from .leader import way_to
 from .log_queue import Output
 from .parts.alarms import alarms_part
 from .parts.bridge import BridgePart
@@ -39,8 +38,6 @@ from .parts.demo import DemoPart
 from .parts.devices import DevicesPart
 from .parts.drivers import DriversPart
 from .parts.groot2 import Groot2Options, Groot2Part
-from .parts.handover import CellResumption, hold_all
-from .parts.lease import LeasePart
 from .parts.linux_boards import LinuxBoards, on_linux
 from .parts.local_plant import LocalPlant
 from .parts.memory_pace import MemoryPace
@@ -51,6 +48,9 @@ from .parts.reports import NO_RECORD, NoReport, ReportsPart
 from .parts.router import PlantPort, Router
 from .parts.systemd import systemd_part
 from .rate import at_rate
+from .standby.handover import CellResumption, hold_all
+from .standby.leader import way_to
+from .standby.lease import LeasePart
 from .state import StateDir, default_state
 from .stores import history_of, memory_of
 from .waiting import until

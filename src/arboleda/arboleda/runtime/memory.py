@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
+from arboleda.core.envelope import unsettled
 from arboleda.core.intake import HISTORY
 from arboleda.dispatch.dispatcher import CLEARED, DISPLACED, LATCHED
 from arboleda.dispatch.effectors import EMPTIED
@@ -37,6 +40,18 @@ def remembered(store: PlantMemory) -> dict[Fact, dict[str, str]]:
                 what = f"{quoted(value)} as {fact.value} of {quoted(name)}, which means nothing"
                 raise StartError(f"The plant's memory {store.name} says {what}: {store.remedy}.")
     return facts
+
+
+def begun(
+    store: PlantMemory, memory: dict[Fact, dict[str, str]], kept: Sequence[KeptTask]
+) -> dict[Fact, dict[str, str]]:
+    """The memory with which a start begins: what a power cut may have undone counts as not settled."""
+    changes = [*unsettled(memory, kept)] if store.may_lack_writes else []
+    store.begin(*changes)
+    store.sync()  # also what a killed process had only written
+    for each in changes:
+        memory[each.fact][each.name] = each.value or ""
+    return memory
 
 
 def kept_tasks(store: PlantMemory, *, clock_s: float, unix_s: float) -> list[KeptTask]:

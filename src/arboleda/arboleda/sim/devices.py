@@ -13,6 +13,7 @@ from arboleda.kinds.joints import Jointed
 from arboleda.kinds.mobile import Mobile
 from arboleda.model.by_class import nearest
 from arboleda.model.plant_model import Cell, Link, PlantModel, Robot
+from arboleda.model.whole_cells import whole_cell
 from arboleda.wire.transport import Connection, Delivery, Publication
 
 from .arm import ArmBody, AxesBody
@@ -122,7 +123,7 @@ def _body(model: PlantModel, robot: Robot) -> Body:
     body = nearest(BODIES, type(robot))
     if body is None:
         raise TypeError(f"{robot.name} has no virtual board: nothing says how a {robot.kind_name} moves")
-    return body(robot, model.cell_of[robot.name])
+    return body(robot, whole_cell(model, robot.name))
 
 
 def _arm(arm: Arm, cell: Cell) -> Body:

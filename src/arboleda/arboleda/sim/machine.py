@@ -15,7 +15,7 @@ from . import body
 from .body import End
 
 WORK = frozenset({Effect.MOTION, Effect.PROCESS})
-SUPERSEDED = "relevado"  # the word for a switch that another one of the same fact has overtaken
+SUPERSEDED = "relevado"  # the word for a switch that another order for the same fact has overtaken
 UNSHOWN = "virtual"  # the word for what ends in an error of the function that its kind gives virtual devices
 
 
@@ -199,13 +199,14 @@ class MachineBody:
         """Does nothing: it has no reference."""
 
     def _supersede(self, command: VerbCall) -> None:
-        """Forget the query asked before, and give up the switches that set the same facts."""
+        """Forget the query asked before, and give up the switches of facts that this one sets, too."""
         effect, sets = command.told.effect, {name for name, _ in command.sets}
-        for deed in [deed for deed in self._deeds if deed.verb.effect is effect and not deed.is_said_again]:
-            if effect is Effect.SWITCH and sets & {name for name, _ in deed.command.sets}:
+        for deed in [deed for deed in self._deeds if not deed.is_said_again]:
+            is_switch = deed.verb.effect is Effect.SWITCH
+            if is_switch and sets & {name for name, _ in deed.command.sets}:
                 self._deeds.remove(deed)
                 self.ends.append(End(deed.goal, failure=SUPERSEDED))
-            elif effect is Effect.QUERY:
+            elif effect is Effect.QUERY and deed.verb.effect is Effect.QUERY:
                 self._deeds.remove(deed)
 
     def _end(self, deed: RunningOrder, now_us: int) -> None:

@@ -5,7 +5,9 @@ from __future__ import annotations
 from collections import deque
 from dataclasses import dataclass, field, replace
 
+from arboleda.core.envelope import unsettled
 from arboleda.core.intake import HISTORY
+from arboleda.core.leaving import MOST_UNSYNCED_S, SYNCED_WITHIN_S
 from arboleda.model.errors import ArboledaError
 from arboleda.model.messages import (
     ENDED,
@@ -17,7 +19,6 @@ from arboleda.model.messages import (
     Remember,
     TaskChanged,
     TaskState,
-    outlives_power,
 )
 
 Kept = Remember | Journal | TaskChanged
@@ -90,17 +91,20 @@ class Content:
 class Disk:
     """Disk: keeps the memory of a plant over its starts.
 
-    What was committed survives the death of the plant's process. A power cut undoes the last commits, back to
-    the last one that had to be synced: syncing one syncs all before it. Left out is what is for history
+    What was committed survives the death of the plant's process. A power cut undoes the last commits that
+    nothing has synced: a thread does that within SYNCED_WITHIN_S, and `let_command_leave` and `sync` where
+    somebody waits for it. Syncing one syncs all before it. Left out is what is for history
     alone: how often a step was tried again, and what was answered to a task that has ended. The recipe of a
     task is left out, too: a next start then expects of a task what that very task took.
-    While it is `full`, nothing more is committed; `slow` is how many seconds a synced commit takes.
+    While it is `full`, nothing more is committed; `slow` is how many seconds a sync takes.
     """
 
     def __init__(self) -> None:
         self._live = Content()
         self._synced = Content()
         self._unsynced: deque[tuple[Kept, float]] = deque()
+        # the time of each commit whose sync is not over, and whether it precedes commands
+        self._lagging: deque[tuple[float, bool]] = deque()
         self.cuts = 0  # how often the power was cut
         self.full = False
         self.slow: list[float] = []
@@ -115,29 +119,54 @@ class Disk:
         """All tasks by id, in the order of acceptance."""
         return self._live.tasks
 
-    @property
-    def unsynced(self) -> int:
+    def unsynced(self, now: float) -> int:
         """The number of commits that a power cut may undo."""
+        over = now - SYNCED_WITHIN_S - self._sync_s
+        while self._unsynced and self._unsynced[0][1] <= over:
+            self._sync(1)
         return len(self._unsynced)
 
-    def commit(self, message: Notice, now: float) -> float:
-        """Keep a message if a plant keeps such ones; return the seconds that it takes; raises DiskFull."""
+    def commit(self, message: Notice, now: float, *, precedes_commands: bool = True) -> float:
+        """Keep a message if a plant keeps such ones; return the seconds that it takes; raises DiskFull.
+
+        What `precedes_commands` is durable before one leaves.
+        """
         if not isinstance(message, Remember | Journal | TaskChanged):
             return 0.0
         if self.full:
             raise DiskFull("database or disk is full")
         self._live.take(message, now)
         self._unsynced.append((message, now))
-        if not outlives_power(message):
+        self._lagging.append((now, precedes_commands))
+        return 0.0
+
+    def let_command_leave(self, now: float) -> float:
+        """Sync what has to be durable before a command leaves, if anything; return the seconds it takes."""
+        while self._lagging and self._lagging[0][0] <= now - SYNCED_WITHIN_S - self._sync_s:
+            self._lagging.popleft()
+        waits = [at for at, precedes in self._lagging if precedes or at < now - MOST_UNSYNCED_S]
+        if not waits:
             return 0.0
+        self._lagging.clear()
+        self.sync()
+        return max(max(waits) + self._sync_s - now, 0.0)
+
+    def sync(self) -> None:
+        """Make all that was committed durable."""
         self._sync(len(self._unsynced))
+
+    @property
+    def _sync_s(self) -> float:
         return max(self.slow, default=0.0)
 
-    def cut_power(self, reached: int) -> None:
-        """Undo the unsynced commits, except the first `reached` ones."""
+    def cut_power(self, reached: int, now: float) -> None:
+        """Undo the unsynced commits, except the first `reached` ones, as the next start finds it."""
         self.cuts += 1
-        self._sync(min(reached, len(self._unsynced)))
+        self._sync(min(reached, self.unsynced(now)))
         self._unsynced.clear()
+        self._lagging.clear()
+        for change in [*unsettled(self._synced.facts, self._synced.tasks.values())]:
+            self._synced.take(change, now)
         self._live = self._synced.copy()
 
     def found(self) -> Content:

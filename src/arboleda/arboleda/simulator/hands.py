@@ -52,14 +52,36 @@ def _free(world: World, device: str) -> None:
             return
 
 
+def _take_out(world: World, place: str) -> None:
+    _tell(world, Verb.UNLOAD, place)
+
+
+def _put_in(world: World, place: str) -> None:
+    _tell(world, Verb.LOAD, place)
+
+
+def _tell(world: World, verb: Verb, place: str) -> None:
+    """Do it, which is so once it is told."""
+    cell, _, target = place.partition(" ")
+    world.request_verb(verb, cell, arguments=(("place", target),))
+
+
 BY_HAND: dict[Verb, Callable[[World, str], None]] = {
     Verb.HOME: World.home_by_hand,
     Verb.RELEASE: World.release_by_hand,
 }
+"""What a person does at the machine, who then declares it."""
+BEFOREHAND: dict[Verb, Callable[[World, str], object]] = {
+    Verb.HOME: World.put_at_reference,
+    Verb.RELEASE: World.take_out,
+}
+"""The same without what is declared."""
 HANDS: dict[Hand, Callable[[World, str], None]] = {
     Hand.BRING_BACK: _bring_back,
     Hand.REPAIR: _repair,
     Hand.REFERENCE: _reference,
     Hand.CHECK: _check,
     Hand.FREE: _free,
+    Hand.TAKE_OUT: _take_out,
+    Hand.PUT_IN: _put_in,
 }

@@ -15,6 +15,7 @@ from .invariants.memory import MEMORY
 from .invariants.memory_bounds import BOOKS
 from .invariants.motion import MOTION
 from .invariants.oee import OEE
+from .invariants.places import PLACES
 from .invariants.proofs import PROOFS
 from .invariants.screens import SCREENS
 from .invariants.starts import STARTS
@@ -24,7 +25,6 @@ from .invariants.verbs import VERBS
 from .invariants.wire import WIRE
 from .invariants.zones import ZONES
 from .storage.grip import GRIP, OVER_ALL_STARTS
-from .storage.rack_books import RACKS
 from .storage.recipe_order import WORK
 from .storage.texts import TEXTS
 
@@ -52,7 +52,7 @@ INVARIANTS: tuple[Invariant, ...] = (
     *STARTS,
     *OVER_ALL_STARTS,
     *DEVICES,
-    *RACKS,
+    *PLACES,
 )
 """What must hold of every plant."""
 

@@ -11,6 +11,7 @@ from arboleda.model.plant_model import PlantModel
 from arboleda.model.recipe import Builders
 
 from .faults import KINDS, Fault
+from .findings import Findings
 from .hosts.database import LeaderRow, SharedDisk
 from .hosts.hosts import Hosts
 from .invariants import Invariant
@@ -65,6 +66,7 @@ class JudgedWorld:
         truth, record = Truth(self.world), Record(self.world)
         leaders = None if hosts is None else Leaders(self.world, hosts, record.boards)
         self._look = Look(world=self.world, truth=truth, record=record, leaders=leaders)
+        self.findings = Findings(self.world, record)
         self._judges = Judges(self.invariants)
         self.world.watchers.append(self._check)
 
@@ -77,6 +79,11 @@ class JudgedWorld:
     def seconds(self) -> float:
         """The duration of the run so far, s."""
         return self.world.now - self.start
+
+    @property
+    def truth(self) -> Truth:
+        """The truth about the plant after the last step."""
+        return self._look.truth
 
     @property
     def checks(self) -> Counter[str]:
@@ -99,11 +106,15 @@ class JudgedWorld:
             self._ends[number] = end
             world.at(world.now + fault.seconds, self._end, number)
 
+    def end_faults(self) -> None:
+        """End all faults now."""
+        for number in list(self._ends):
+            self._end(number)
+
     def come_to_rest(self) -> None:
         """End all faults, let everything come to rest, and judge that it does so and stays at rest."""
         self._rests += 1
-        for number in list(self._ends):
-            self._end(number)
+        self.end_faults()
         tasks = self._look.record.tasks.open
         open_tasks, end = len(tasks), self.seconds + REST_S
         while self.seconds < end and not self._judges.is_at_rest(self._look):
@@ -134,6 +145,8 @@ class JudgedWorld:
         if look.leaders is not None:
             look.leaders.look()
         self.trace.look()
+        if self.world.last_fault_at == -math.inf:
+            self.findings.look()
         self._raise(self._judges.after_a_step(look))
 
     def _raise(self, breaches: Iterable[tuple[str, str]]) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from functools import partial
 from itertools import count
 
@@ -23,6 +24,7 @@ from .world import World
 WAITING = 2  # tasks that the customers of a cell keep in its queue
 REMEMBERED = 24  # of their tasks
 BY_THEMSELVES = (Hand.BRING_BACK, Hand.REPAIR)
+THINKS_S = 1.5  # somebody who is asked
 ROUND_S = (2.0, 6.0)  # how long the attendant takes to come by again
 
 
@@ -182,6 +184,41 @@ def _any_answer(body: MachineBody, dice: Dice, goal: OrderGoal) -> Value:
     return dice.pick(body.kind.verbs[goal.verb].answers)
 
 
+class FixedAnswers:
+    """FixedAnswers: devices and people who are asked give the word that stands by their name, else the first.
+
+    People think for a moment.
+    """
+
+    def __init__(self, world: World, words: Mapping[str, Value]) -> None:
+        self._world = world
+        self._words = words
+        robots = world.model.robots.values()
+        for robot in (each for each in robots if each.name in words and each.mqtt in world.boards):
+            body = world.boards[robot.mqtt].body
+            if isinstance(body, MachineBody):
+                body.answer = partial(_word_or_first, body, words[robot.name])
+        self._people = [robot.name for robot in robots if robot.link is Link.SCREEN]
+        if self._people:
+            self._come_by()
+
+    def _come_by(self) -> None:
+        self._world.at(self._world.now + THINKS_S, self._answer)
+
+    def _answer(self, _: None) -> None:
+        for name in self._people:
+            entry = self._world.plant.dispatcher.question(name)
+            if entry is not None and isinstance(entry.command, Question):
+                word = self._words.get(name)
+                answer = word if word in entry.command.answers else entry.command.answers[0]
+                self._world.request_verb(Verb.ANSWER, name, arguments=(("answer", str(answer)),))
+        self._come_by()
+
+
+def _word_or_first(body: MachineBody, word: Value, goal: OrderGoal) -> Value:
+    return word if word in body.kind.verbs[goal.verb].answers else body.first_answer(goal)
+
+
 class Attendant:
     """Attendant: comes by every few seconds and does the first thing that is advised, cell by cell.
 
@@ -211,7 +248,7 @@ class Attendant:
             entry = plant.dispatcher.question(name)
             if entry is not None and isinstance(entry.command, Question):
                 answer = self._dice.pick(entry.command.answers)
-                self._world.request_verb(Verb.ANSWER, f"{name} {answer}")
+                self._world.request_verb(Verb.ANSWER, name, arguments=(("answer", answer),))
 
     def _see_to(self, ways: tuple[Advice, ...]) -> None:
         """Follow the first advice; after a look into a zone, or work at a reference, also the next, as the

@@ -46,14 +46,14 @@ from .recorded.stops import EarlyStops
 from .recorded.tasks import Tasks
 from .recorded.time_line import TimeLine
 from .recorded.times import Times
+from .recorded.trails import Trails
 from .recorded.verbs import EarlierState
-from .storage.racks import Racks
 from .storage.tasks import stores
 from .storage.works import Works
 from .world import BRIDGE, World
 
 NO_VERBS: frozenset[Verb] = frozenset()
-GETS_GOING = frozenset({Verb.RESUME, Verb.RETRY, Verb.ABANDON, Verb.CANCEL, Verb.HOME})
+GETS_GOING = frozenset(verb for verb in Verb if verb.row.moves)
 SLOW_S = 10.0  # after the last sign of it, a bridge that stalled or a slow line may still have old reports
 
 
@@ -87,7 +87,6 @@ class Record:
         self.others = ForeignCommands()
         storage = {name: known for name, known in self.cells.items() if stores(known.cell)}
         self._storage = tuple(storage.values())
-        self.racks = Racks(model, self.scopes)
         self._people = [robot.name for robot in model.robots.values() if robot.link is Link.SCREEN]
         self.works = Works(storage, self.robots, model.timing.dwell_s)
         self.asked = EarlierState()
@@ -101,6 +100,7 @@ class Record:
         self._kept: dict[Fact, dict[str, str]] = {}
         self.tasks = Tasks(self.cells)
         self.starts = Starts(model)
+        self.trails = Trails(self.robots)
         self.times = Times(world.plant.now)
         self.time_line = TimeLine()
         self.lost_stops: list[str] = []
@@ -127,6 +127,7 @@ class Record:
         self.slow_until = world.now
         self._skipped_s = world.skipped_s
         self._next: dict[str, float] = {}
+        self._checked: dict[str, object] = {}
         self.away = False
         self.unattended: dict[str, bool] = {}
         self.unasked: list[Command] = []
@@ -162,6 +163,8 @@ class Record:
             self.others.look(moment.bridged, self.bridges.of_others)
         if moment.taken:
             self.stops.look(moment.taken, plant.epoch)
+        for message, late_s in moment.late:
+            self.commands.left_late(message, late_s)
         inbox, now = self.world.broker.clients[BRIDGE].inbox, self.world.now
         skipped = self.world.skipped_s != self._skipped_s
         if skipped or self.world.to_plant.troubles or (inbox and inbox[0].at < now):
@@ -195,6 +198,14 @@ class Record:
         self._next[what] = self.world.now + every_s
         return True
 
+    def is_new(self, what: str, value: object) -> bool:
+        """True if this is another value than when it was asked last; a check that depends on no more than the
+        value need not be made again."""
+        if what in self._checked and self._checked[what] == value:
+            return False
+        self._checked[what] = value
+        return True
+
     def _begin(self, plant: Plant) -> None:
         """Begin with a plant that starts: it knows nothing but what it had to keep."""
         self._plant, self._start = plant, self.world.starts
@@ -208,8 +219,6 @@ class Record:
         self.starts.restart(undone=cuts != self._cuts)
         self.time_line.begin()
         found = self.world.found.facts
-        running = [self.tasks.open[id] for id in self.tasks.running.values()]
-        self.racks.restart(found.get(Fact.STORED, {}), running)
         displaced, boots = found.get(Fact.DISPLACED, {}), found.get(Fact.BOOT, {})
         for name, robot in self.robots.items():
             robot.forget()
@@ -217,6 +226,7 @@ class Record:
             robot.boot = int(boots[name]) if name in boots else None
         for name, cell in self.cells.items():
             cell.begin(plant.cells[name])
+        self.trails.restart(found, self.tasks.running)
         beliefs, boards = plant.dispatcher.beliefs, self.boards.of_robot
         self.shown = {name: (self.robots[name], board, beliefs[name]) for name, board in boards.items()}
 
@@ -396,9 +406,6 @@ class Record:
             self._follow_refusals(plant)
         if self.commands.new or self.tasks.changes:
             self.works.follow(self.tasks, self.commands.new, plant.now)
-        if self.tasks.changes or self.answers:
-            stored = self.world.memory.get(Fact.STORED, {})
-            self.racks.look(self.tasks, self.answers, stored, plant.now)
         asked = bool(self.world.moment.asked)
         if asked:
             self.differences += differences(self)
@@ -407,6 +414,7 @@ class Record:
         if self.world.model.zones:
             self._look_at_zones(plant)
         changed = self._look_at_cells()
+        self._look_at_trails()
         if changed or self.born:
             self.times.look(self._cells, plant.now)
             idle = [cell for cell in self._cells if cell.queued and cell.state is CellState.IDLE]
@@ -443,9 +451,14 @@ class Record:
             if isinstance(event, OperatorRequest):
                 self._cancels_a_task |= event.verb is Verb.CANCEL and event.scope not in self.scopes
                 self.undisturbed = False
-                self.acts.take(event, [self.cells[name] for name in self.scopes.cells(event.scope)])
+                self.acts.take(event, self._acted_on(event))
                 for robot in self.scopes.robots(event.scope):
                     self._verbs.setdefault(robot, set()).add(event.verb)
+
+    def _acted_on(self, request: OperatorRequest) -> list[KnownCell]:
+        """The cells that a request is to lead on; an answer is for the one cell that asks."""
+        cells = [self.cells[name] for name in self.scopes.cells(request.scope)]
+        return [] if request.verb is Verb.ANSWER and len(cells) > 1 else cells
 
     def _look_at_zones(self, plant: Plant) -> None:
         """Look at the zones, before the cells are taken over: each still has its previous state."""
@@ -478,6 +491,12 @@ class Record:
                     self.transitions.append((cell, before, cell.state))
         return changed
 
+    def _look_at_trails(self) -> None:
+        retried = any(each.verb is Verb.RETRY for each in self.answers)
+        self.trails.look(self.cells, self.transitions, retried=retried)
+        if self.answers:
+            self.trails.keep(self.world.moment.sent, self.cells, self.commands)
+
     def _look_into_trees(self, now: float) -> None:
         """Look into the trees of the cells that sent something, and from time to time into all."""
         self.news = self._has_news = True
@@ -506,7 +525,7 @@ class Record:
 
     def _on_command(self, command: Command) -> None:
         known = self.robots[command.robot]
-        verbs = frozenset(self._verbs[command.robot]) if command.robot in self._verbs else NO_VERBS
+        verbs = self._verbs_done(command.robot) if command.robot in self._verbs else NO_VERBS
         if self.unattended and self._is_unasked(command):
             (self.stirring if self._since_start else self.unasked).append(command)
         obstacles = frozenset() if isinstance(command, Stop) else self._obstacles(known)
@@ -516,6 +535,13 @@ class Record:
         if isinstance(command, Stop) and command.mode is StopMode.CLEAR:
             known.barred = False
             known.stop = StopProgress.CLEARED if known.stop is StopProgress.LATCHED else known.stop
+
+    def _verbs_done(self, robot: str) -> frozenset[Verb]:
+        """The verbs that operators asked for on a robot in this step, without those that are refused."""
+        answers = [each for each in self.world.moment.sent if isinstance(each, OperatorAnswer)]
+        done = {answer.verb for answer in answers if answer.refusal is None}
+        refused = {answer.verb for answer in answers if answer.refusal is not None}
+        return frozenset(self._verbs[robot] - (refused - done))
 
     def _missed(self, command: Stop, known: KnownRobot, verbs: frozenset[Verb]) -> frozenset[Verb]:
         """Count a clear once more when a robot that was offline at that time is back."""

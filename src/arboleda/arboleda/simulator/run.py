@@ -12,6 +12,7 @@ from arboleda.model.plant_model import PlantModel
 from arboleda.model.recipe import Builders
 
 from .faults import Fault
+from .findings import Finding
 from .invariants import Invariant
 from .judged_world import BrokenInvariant, JudgedWorld
 from .people import Attendant, Customers, answer_anything
@@ -38,6 +39,8 @@ class Result:
     checks: Counter[str] = field(default_factory=Counter)
     minutes: int = 0
     broken: BrokenInvariant | None = None
+    findings: Counter[Finding] = field(default_factory=Counter)  # of a run without faults
+    as_written: Counter[Finding] = field(default_factory=Counter)  # failures that recipes ask for in it
     lines: list[str] = field(default_factory=list)
 
 
@@ -124,5 +127,7 @@ class Simulation:
         result = self.result
         result.digest, result.lines = self.trace.digest, self.trace.lines
         result.seconds, result.checks = self.watched.seconds, self.watched.checks
+        if not result.faults and self._script is None:
+            result.findings, result.as_written = self.watched.findings.found, self.watched.findings.as_written
         result.cycles, result.outcomes = self._people.cycles, self._people.outcomes
         return result

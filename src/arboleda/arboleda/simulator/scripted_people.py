@@ -4,14 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 from arboleda.core import text as task_text
 from arboleda.model.errors import TextError
 from arboleda.model.messages import ENDED, TaskChanged, TaskState, Verb
 from arboleda.model.plant_model import PlantModel
+from arboleda.model.verbs import Arguments, as_text, from_text
 
 from .checks import BadFaults, is_number, only, within
+from .hands import BEFOREHAND
 from .world import BY_HAND_S, World
 
 KEYS = ("at", "task", "do")
@@ -28,12 +31,15 @@ class Act:
     verb: Verb | None = None
     scope: str = ""
     by_hand: bool = False
+    arguments: Arguments = ()
 
     @property
     def words(self) -> str:
         """The verb as an operator types it."""
-        said = [self.verb.value if self.verb else "", self.scope, HAND if self.by_hand else ""]
-        return " ".join(word for word in said if word)
+        if self.verb is None:
+            return ""
+        of = as_text(self.verb, self.scope, self.arguments)
+        return " ".join(word for word in (self.verb.value, of, HAND if self.by_hand else "") if word)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -97,13 +103,11 @@ def _task(model: PlantModel, at: float, text: str) -> Act:
 
 
 def _verb(at: float, text: str) -> Act:
-    verb, *scope = text.split() or [""]
+    verb, *words = text.split() or [""]
     if verb not in [each.value for each in Verb]:
         raise BadFaults(f"{verb!r} is nothing that operators do; there are {', '.join(Verb)}")
-    by_hand = HAND in scope
-    return Act(
-        at=at, verb=Verb(verb), scope=" ".join(word for word in scope if word != HAND), by_hand=by_hand
-    )
+    scope, arguments = from_text(Verb(verb), " ".join(word for word in words if word != HAND))
+    return Act(at=at, verb=Verb(verb), scope=scope, by_hand=HAND in words, arguments=arguments)
 
 
 def scopes(model: PlantModel) -> tuple[str, ...]:
@@ -135,10 +139,9 @@ class ScriptedPeople:
         self._started: set[str] = set()
         world.watchers.append(self._look)
         for act in script.acts:
-            if act.by_hand and act.verb is Verb.HOME:
-                world.at(world.now + max(0.0, act.at - BY_HAND_S), world.put_at_reference, act.scope)
-            elif act.by_hand and act.verb is Verb.RELEASE:
-                world.at(world.now + max(0.0, act.at - BY_HAND_S), world.take_out, act.scope)
+            if act.by_hand and act.verb in BEFOREHAND:
+                by_hand = partial(BEFOREHAND[act.verb], world)
+                world.at(world.now + max(0.0, act.at - BY_HAND_S), by_hand, act.scope)
             world.at(world.now + act.at, self._do, act)
         world.at(world.now + script.ends, lambda _: self.go())
 
@@ -160,7 +163,7 @@ class ScriptedPeople:
         if act.task is not None:
             self._world.request_task(act.task)
         elif act.verb is not None:
-            self._world.request_verb(act.verb, act.scope, by_hand=act.by_hand)
+            self._world.request_verb(act.verb, act.scope, by_hand=act.by_hand, arguments=act.arguments)
 
     def _look(self) -> None:
         moment = self._world.moment

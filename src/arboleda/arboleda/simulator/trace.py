@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable
-from dataclasses import fields
+from dataclasses import fields, replace
 from functools import cache
 from hashlib import blake2b
 from typing import Any
 
 from arboleda.model.messages import Heartbeat, OperatorRequest, TaskChanged, TaskRequest
+from arboleda.model.verbs import as_text
 from arboleda.wire.hop import shown
 
 from .disk import is_step
@@ -51,11 +52,9 @@ class Trace:
             words += (_head(client, said.topic, said.retain), said.payload)
         if moment.last_words or moment.unkept:
             said = (*moment.last_words, *moment.unkept)
-            words += [repr(message).encode() for message in said if not is_step(message)]
+            words += [_hashed(message) for message in said if not is_step(message)]
         if moment.sent or moment.asked:
-            words += [
-                repr(message).encode() for message in (*moment.sent, *moment.asked) if not is_step(message)
-            ]
+            words += [_hashed(message) for message in (*moment.sent, *moment.asked) if not is_step(message)]
         self._hash.update(b"".join(words))
         if self._lines is not None or self._tell is not None:
             for line in self._news():
@@ -95,11 +94,19 @@ def _head(client: str, topic: str, retain: bool) -> bytes:
     return f"{client}>{topic}{retain}".encode()
 
 
+def _hashed(message: Any) -> bytes:
+    """The message as it is hashed: arguments of a verb as words of its scope."""
+    if getattr(message, "arguments", ()):
+        message = replace(message, scope=as_text(message.verb, message.scope, message.arguments))
+    return repr(message).encode()
+
+
 def _asked(event: Any) -> str:
     if isinstance(event, TaskRequest):
         return repr(event.text)
     if isinstance(event, OperatorRequest):
-        return f"{event.verb.value} {event.scope}{' by hand' if event.by_hand else ''}"
+        scope = as_text(event.verb, event.scope, event.arguments)
+        return f"{event.verb.value} {scope}{' by hand' if event.by_hand else ''}"
     return _fields(event)
 
 
@@ -118,5 +125,5 @@ def _sent(message: Any) -> str:
 
 def _fields(message: Any) -> str:
     said = ((each.name, getattr(message, each.name)) for each in fields(message))
-    shown = [f"{name}={getattr(value, 'value', value)}" for name, value in said if value is not None]
+    shown = [f"{name}={getattr(value, 'value', value)}" for name, value in said if value not in (None, ())]
     return " ".join([type(message).__name__, *shown])

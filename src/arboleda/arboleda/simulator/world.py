@@ -11,7 +11,7 @@ from heapq import heappop, heappush
 from itertools import count
 from typing import TYPE_CHECKING, Any
 
-from arboleda.core.leaving import SENT_TOO_LATE, is_too_late, leaves_unkept
+from arboleda.core.leaving import SENT_TOO_LATE, is_too_late, late_departure, leaves_unkept
 from arboleda.core.plant import Plant
 from arboleda.model.commands import Command
 from arboleda.model.facts import Facts
@@ -31,6 +31,7 @@ from arboleda.model.messages import (
 from arboleda.model.plant_model import PlantModel
 from arboleda.model.recipe import Builders
 from arboleda.model.sentence import as_sentence
+from arboleda.model.verbs import Arguments
 from arboleda.sim.arm import ArmBody
 from arboleda.sim.board import Board
 from arboleda.sim.devices import Devices
@@ -231,9 +232,11 @@ class World:
         kept = self.disk.ended(text.rpartition("#")[2]) if "#" in text else None
         self.tell(TaskRequest(at=self.now, text=text, request=text if token is None else token, kept=kept))
 
-    def request_verb(self, verb: Verb, scope: str = "", *, by_hand: bool = False) -> None:
+    def request_verb(
+        self, verb: Verb, scope: str = "", *, by_hand: bool = False, arguments: Arguments = ()
+    ) -> None:
         """Act as an operator; what a verb only declares as done by hand must have been done before."""
-        self.tell(OperatorRequest(at=self.now, verb=verb, scope=scope, by_hand=by_hand))
+        self.tell(OperatorRequest(at=self.now, verb=verb, scope=scope, by_hand=by_hand, arguments=arguments))
 
     def home_by_hand(self, scope: str) -> None:
         """Put the robots of a scope that stand still at their reference by hand, and declare that."""
@@ -366,7 +369,7 @@ class World:
     def cut_power(self, reached: int) -> None:
         """Cut the power of the plant's machine: of the unsynced commits only the first `reached` stay."""
         if PLANT not in self._off or self._ending is not None:
-            self.disk.cut_power(reached)
+            self.disk.cut_power(reached, self.now)
             self.stop_plant()
 
     def stall(self, process: str, seconds: float) -> None:
@@ -539,7 +542,7 @@ class World:
         if self._plant_inbox and self._plant_awake:
             return True
         full = [client.name for client in self.broker.clients.values() if client.inbox]
-        return bool(full) and any(self._awake(name) for name in full)
+        return any(map(self._awake, full))
 
     def _awake(self, process: str) -> bool:
         return process not in self._off and process not in self._stalled
@@ -640,16 +643,23 @@ class World:
         """Let a message of the plant out, with what has to be kept on the disk before anybody hears of it."""
         if is_kept(message):
             self._burn(Side.BEFORE)
-            self._writes_until += self.disk.commit(message, self.now)
+            precedes = self.plant.precedes_commands(message)
+            self._writes_until += self.disk.commit(message, self.now, precedes_commands=precedes)
             self._burn(Side.AFTER)
         leaves = isinstance(message, Command | TaskChanged | OperatorAnswer)
         if leaves:
             self._burn(Side.BEFORE)
+        if isinstance(message, TaskChanged | OperatorAnswer):
+            self.disk.sync()  # whoever is told waits for that, and the plant does not
+        elif not is_kept(message) and not leaves_unkept(message):
+            self._writes_until += self.disk.let_command_leave(self.now)
         if self.gate is not None and isinstance(message, Command | Heartbeat):
             self.gate(message)
         self.moment.sent.append(message)
         if isinstance(message, Command | Heartbeat) and self.writes:
             self.at(self._writes_until, self._say_late, (self.plant, message))
+            if late := late_departure(message, self.plant, self._writes_until):
+                self._post(late)
         elif isinstance(message, Command | Heartbeat):
             self._say(message)
         if leaves:

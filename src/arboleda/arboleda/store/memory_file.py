@@ -15,6 +15,7 @@ from . import row_sums
 VERSION = 11
 BUSY_S = 1.0  # a person may look into the file with another program; the plant's own lock keeps plants apart
 OWNER = ("plant", "name")  # the row of `fact` that says whose memory it is; no `Fact` has this name
+BOOT = ("host", "boot")  # the row that says on which boot of its host a start writes that has not ended yet
 LOST_WITH_IT = (
     "lost with it are stop latches, what the effectors hold, quarantined zones, the tasks and the operators'"
     " journal"
@@ -111,6 +112,12 @@ def refuse_damage(db: sqlite3.Connection) -> None:
 def owner(db: sqlite3.Connection) -> str | None:
     """The name of the plant whose memory it is; None for a file older than that entry."""
     found = db.execute("SELECT value FROM fact WHERE fact = ? AND name = ?", OWNER).fetchone()
+    return None if found is None else str(found[0])
+
+
+def boot(db: sqlite3.Connection) -> str | None:
+    """The boot of its host on which a plant wrote to it that did not end; None if that plant has ended."""
+    found = db.execute("SELECT value FROM fact WHERE fact = ? AND name = ?", BOOT).fetchone()
     return None if found is None else str(found[0])
 
 

@@ -71,16 +71,17 @@ class Standby:
 class PlantMemory(ABC):
     """The memory of a plant, between `open` and `close` or as `with` does it; one thread at a time.
 
-    What a method wrote survives a killed process once the method has returned; stop latches, the journal,
-    and that a task was accepted, has begun or has ended survive a power cut too. ArboledaError says in one
-    sentence what is wrong, and what to do.
+    What a method wrote survives a killed process once the method has returned. It survives a power cut after
+    `sync`, which any thread may call: all of it but what the rules of `outlives_power` let go.
+    ArboledaError says in one sentence what is wrong, and what to do.
     """
 
     name: str  # its name in sentences
     remedy: str  # advice for a damaged memory
     standbys: Sequence[Standby] = ()  # processes that wait to lead, as of the last renewal
     going: Sequence[str] = ()  # cells that the last leader held only for the change
-    timing: AbstractContextManager[None] = nullcontext()  # around each commit that waits for the disk
+    timing: AbstractContextManager[None] = nullcontext()  # around whatever waits for the disk
+    may_lack_writes = False  # whether a power cut may have undone the last writes of the start before
     renew_s: float | None = None  # period of calls of `renew` while the plant is led; None: never
 
     @abstractmethod
@@ -93,11 +94,11 @@ class PlantMemory(ABC):
 
     @abstractmethod
     def _write(self, *statements: Statement, durable: bool) -> None:
-        """Commit all of the statements, or none."""
+        """Commit all of the statements, or none; what is to be `durable` may wait for `sync`."""
 
-    def _commit(self, *statements: Statement, durable: bool) -> None:
-        with self.timing if durable else nullcontext():
-            self._write(*statements, durable=durable)
+    @abstractmethod
+    def sync(self) -> None:
+        """Make durable what was written; callable from any thread."""
 
     @abstractmethod
     def _read(self, statement: str, *values: object) -> list[tuple[Any, ...]]:
@@ -151,7 +152,12 @@ class PlantMemory(ABC):
         """Commit facts, and forget those whose value is None: all of them, or none."""
         last_words = {(fact.fact, fact.name): fact for fact in facts}.values()
         durable = any(outlives_power(fact) for fact in facts)
-        self._commit(*map(_kept, last_words), durable=durable)
+        self._write(*map(_kept, last_words), durable=durable)
+
+    def begin(self, *facts: Remember) -> None:
+        """Commit what a start changes of what the one before has left, once it knows how that ended."""
+        if facts:
+            self.keep(*facts)
 
     def facts(self, fact: Fact) -> dict[str, str]:
         """The stored facts: value by name."""
@@ -165,7 +171,7 @@ class PlantMemory(ABC):
         said = json.dumps(entry.sentence.data(), ensure_ascii=False)
         row = (unix_s, entry.verb.value, entry.scope, str(entry.sentence), entry.cell, said)
         insert = "INSERT INTO journal (unix_s, verb, scope, sentence, cell, said) VALUES (?, ?, ?, ?, ?, ?)"
-        self._commit((insert, row), durable=outlives_power(entry))
+        self._write((insert, row), durable=outlives_power(entry))
 
     def task(
         self,
@@ -186,12 +192,12 @@ class PlantMemory(ABC):
             columns = "id, text, cell, recipe, state, accepted_s, asked_by, choice"
             values = ", ".join("?" * len(row))
             insert = f"INSERT INTO task ({columns}) VALUES ({values}) ON CONFLICT (id) DO NOTHING"
-            self._commit((insert, row), durable=durable)
+            self._write((insert, row), durable=durable)
         elif state is TaskState.RUNNING:
             begin = (
                 "UPDATE task SET state = ?, started_s = ?, attempts = 1 WHERE id = ? AND started_s IS NULL"
             )
-            self._commit((begin, (state.value, unix_s, change.task)), durable=durable)
+            self._write((begin, (state.value, unix_s, change.task)), durable=durable)
         elif state is not TaskState.REFUSED:
             said = json.dumps(change.sentence.data(), ensure_ascii=False)
             reason = None if change.reason is None else change.reason.value
@@ -203,17 +209,17 @@ class PlantMemory(ABC):
             how, unchecked = course_written(change.course), unchecked_written(change.unchecked)
             outcome = (state.value, reason, str(change.sentence), said, unix_s)
             values = (*outcome, told, how, unchecked, change.task)
-            self._commit((end, values), durable=durable)
+            self._write((end, values), durable=durable)
 
     def attempted(self, task: str, attempts: int) -> None:
         """Commit the number of times that a task was begun."""
-        self._commit(("UPDATE task SET attempts = ? WHERE id = ?", (attempts, task)), durable=False)
+        self._write(("UPDATE task SET attempts = ? WHERE id = ?", (attempts, task)), durable=False)
 
     def forget_tasks(self, before_unix_s: float) -> None:
         """Forget the oldest tasks that ended before a time, at most PRUNED of them."""
         oldest = "SELECT number FROM task WHERE ended_s < ? ORDER BY ended_s LIMIT ?"
         delete = f"DELETE FROM task WHERE number IN ({oldest})"
-        self._commit((delete, (before_unix_s, PRUNED)), durable=False)
+        self._write((delete, (before_unix_s, PRUNED)), durable=False)
 
     def began(self, unix_s: float, before_unix_s: float) -> None:
         """Commit that the plant runs, and forget downtimes that ended long ago."""
@@ -224,21 +230,21 @@ class PlantMemory(ABC):
             ("DELETE FROM run WHERE seen_s < ?", (before_unix_s,)),
             ("INSERT INTO run (since_s, seen_s, ended) VALUES (?, ?, 0)", (unix_s, unix_s)),
         ):
-            self._commit(statement, durable=False)
+            self._write(statement, durable=False)
 
     def seen(self, unix_s: float, *, ended: bool = False) -> None:
         """Commit that the plant still runs, or that it was ended."""
         last = "number = (SELECT max(number) FROM run)"
         update = f"UPDATE run SET seen_s = ?, ended = ? WHERE {last}"
-        self._commit((update, (unix_s, int(ended))), durable=False)
+        self._write((update, (unix_s, int(ended))), durable=False)
 
     def stands(self, cell: str, state: str | None, unix_s: float) -> None:
         """Commit that a cell does no work from now on, in this state; None: it works again."""
         over = "UPDATE down SET until_s = ? WHERE cell = ? AND until_s IS NULL"
-        self._commit((over, (unix_s, cell)), durable=False)
+        self._write((over, (unix_s, cell)), durable=False)
         if state is not None:
             begun = "INSERT INTO down (cell, state, since_s) VALUES (?, ?, ?)"
-            self._commit((begun, (cell, state, unix_s)), durable=False)
+            self._write((begun, (cell, state, unix_s)), durable=False)
 
     def tasks(self, query: TaskQuery) -> list[TaskRow]:
         """The tasks that a query asks for, the last accepted first."""
@@ -264,8 +270,12 @@ class PlantMemory(ABC):
 
 
 def _kept(fact: Remember) -> Statement:
-    key = (fact.fact.value, fact.name)
-    if fact.value is None:
+    return row_of_fact((fact.fact.value, fact.name), fact.value)
+
+
+def row_of_fact(key: tuple[str, str], value: str | None) -> Statement:
+    """The statement that writes a row of `fact`, or deletes it."""
+    if value is None:
         return "DELETE FROM fact WHERE fact = ? AND name = ?", key
     insert = "INSERT INTO fact (fact, name, value) VALUES (?, ?, ?)"
-    return f"{insert} ON CONFLICT (fact, name) DO UPDATE SET value = excluded.value", (*key, fact.value)
+    return f"{insert} ON CONFLICT (fact, name) DO UPDATE SET value = excluded.value", (*key, value)

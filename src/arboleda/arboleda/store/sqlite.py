@@ -1,7 +1,13 @@
-"""A plant's memory in one SQLite file: facts, tasks, and the operators' journal."""
+"""A plant's memory in one SQLite file: facts, tasks, and the operators' journal.
+
+A commit appends to the log of the file (`-wal`) and waits for no disk: it survives a killed process. `sync`
+has the system write the log to the disk, by a descriptor of its own: from any thread, and while the plant
+commits more.
+"""
 
 from __future__ import annotations
 
+import os
 import sqlite3
 from collections.abc import Iterable, Iterator
 from contextlib import AbstractContextManager, suppress
@@ -9,15 +15,19 @@ from pathlib import Path
 from typing import Any
 
 from arboleda.model.errors import ArboledaError, StartError
+from arboleda.model.messages import Remember
 
 from . import row_sums
 from .held_files import HeldFiles
+from .host_boot import this_boot
 from .memory_file import (
+    BOOT,
     BUSY_S,
     LOST_WITH_IT,
     MOVE_AWAY,
     OWNER,
     VERSION,
+    boot,
     explained,
     owner,
     refuse_damage,
@@ -25,7 +35,7 @@ from .memory_file import (
     refuse_version,
     version,
 )
-from .plant_memory import PlantMemory, Statement
+from .plant_memory import PlantMemory, Statement, row_of_fact
 
 TASKS = (
     # `ended_s` is null as long as a task waits or runs; times are Unix times
@@ -78,6 +88,7 @@ SINCE = {
     10: UNCHECKED,
 }
 IN_MEMORY = Path(":memory:")
+SYNC = getattr(os, "fdatasync", os.fsync)  # not every system has the first
 PUT_BACK = f"put it, or a backup, in its place and start again; {LOST_WITH_IT}"
 IN_PLACE = "start again; as the plant ends now, all that it kept goes into the memory itself, if it is there"
 
@@ -92,7 +103,9 @@ class Store(PlantMemory):
         self.name = str(path)
         self._plant = plant
         self._opened: sqlite3.Connection | None = None
-        self._durable: bool | None = None  # durability of commits now; None: not set yet
+        self._log_file: int | None = None  # the descriptor by which the log is synced
+        self._boot = this_boot()
+        self._ends_well = False  # whether closing it ends a start that lacks nothing
         self._held = HeldFiles()
 
     def open(self) -> None:
@@ -105,12 +118,15 @@ class Store(PlantMemory):
             db = sqlite3.connect(self.path, timeout=BUSY_S, isolation_level=None, check_same_thread=False)
             try:
                 self._prepare(db)
+                db.execute("PRAGMA synchronous = NORMAL")
             except BaseException:  # whatever it is, Ctrl-C too, the file is not left open
                 db.close()
                 raise
-        self._opened, self._durable = db, None
+        self._opened = db
+        self.may_lack_writes = boot(db) not in (None, self._boot)
         if self.path != IN_MEMORY:
             self._held = HeldFiles([self.path, self._log])
+            self._log_file = os.open(self._log, os.O_RDONLY)
 
     def close(self) -> None:
         """Close the file; idempotent."""
@@ -119,8 +135,30 @@ class Store(PlantMemory):
                 with suppress(sqlite3.Error):  # SQLite itself does not read the log of a moved file
                     self._opened.execute("PRAGMA wal_checkpoint(TRUNCATE)")
             self._held = HeldFiles()
+            if self._ends_well:
+                with suppress(sqlite3.Error):  # then the next start is more careful than it need be
+                    self._opened.execute(*row_of_fact(BOOT, None))
+                self._ends_well = False
             self._opened.close()
             self._opened = None
+        if self._log_file is not None:
+            os.close(self._log_file)
+            self._log_file = None
+
+    def begin(self, *facts: Remember) -> None:
+        """Commit as well on which boot of its host this start writes: a later one may lack its end."""
+        rows = (row_of_fact((fact.fact.value, fact.name), fact.value) for fact in facts)
+        self._write(*rows, row_of_fact(BOOT, self._boot), durable=True)
+        self._ends_well, self.may_lack_writes = True, False
+
+    def sync(self) -> None:
+        try:
+            with self.timing, self._explained(ArboledaError):
+                self._wait_for_disk()
+        except ArboledaError:
+            self._ends_well = False
+            raise
+        self.confirm()
 
     def confirm(self) -> None:
         """Raises ArboledaError if the open file is no longer in its place: later writes would be lost.
@@ -131,6 +169,10 @@ class Store(PlantMemory):
         if loss is not None:
             advice = IN_PLACE if loss.path == self._log else PUT_BACK
             raise ArboledaError(f"The plant's memory {self.path} cannot be used any more ({loss}): {advice}.")
+
+    def _wait_for_disk(self) -> None:
+        if self._log_file is not None:
+            SYNC(self._log_file)
 
     @property
     def _log(self) -> Path:
@@ -144,7 +186,6 @@ class Store(PlantMemory):
 
     def _write(self, *statements: Statement, durable: bool) -> None:
         with self._explained(ArboledaError):
-            self._sync(durable=durable)
             if len(statements) == 1:
                 self._db.execute(*statements[0])
             else:
@@ -154,12 +195,6 @@ class Store(PlantMemory):
     def _read(self, statement: str, *values: object) -> list[tuple[Any, ...]]:
         with self._explained(ArboledaError):
             return self._db.execute(statement, values).fetchall()
-
-    def _sync(self, *, durable: bool) -> None:
-        """Set whether the next commits must survive a power cut."""
-        if durable is not self._durable:  # most commits are like the one before, and a command waits for each
-            self._db.execute(f"PRAGMA synchronous = {'FULL' if durable else 'NORMAL'}")
-            self._durable = durable
 
     def _prepare(self, db: sqlite3.Connection) -> None:
         """Refuse a file that cannot be used now, rather than at the first fact."""

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from arboleda.model.messages import OperatorAnswer, TaskChanged, TaskRequest, TaskState, Verb
+from arboleda.model.verbs import Arguments
+from arboleda.simulator.hands import BEFOREHAND
 from arboleda.simulator.world import BY_HAND_S, World
 
 NO_ANSWER = "the plant did not answer"
@@ -70,14 +72,13 @@ class Desk:
         self._world.settle()
         return handle
 
-    def operate(self, verb: Verb, scope: str, *, by_hand: bool) -> str | None:
+    def operate(self, verb: Verb, scope: str, *, by_hand: bool, arguments: Arguments) -> str | None:
         """Act as an operator; return the plant's reason for a refusal, or None if it did as asked."""
         if by_hand:
-            prepare = {Verb.HOME: self._world.put_at_reference, Verb.RELEASE: self._world.take_out}
-            prepare[verb](scope)
+            BEFOREHAND[verb](self._world, scope)
             self._world.advance(BY_HAND_S)
         self._answers.clear()
-        self._world.request_verb(verb, scope, by_hand=by_hand)
+        self._world.request_verb(verb, scope, by_hand=by_hand, arguments=arguments)
         self._world.settle()
         mine = [each for each in self._answers if (each.verb, each.scope) == (verb, scope)]
         refusal = mine[0].refusal if mine else NO_ANSWER

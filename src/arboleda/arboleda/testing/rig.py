@@ -36,9 +36,11 @@ class Rig(World):
         self.request_task(text)
         return next(change for change in self.changes[before:] if change.request == text)
 
-    def operate(self, verb: Verb, scope: str = "", *, by_hand: bool = False) -> str | None:
+    def operate(
+        self, verb: Verb, scope: str = "", *, by_hand: bool = False, **arguments: int | str
+    ) -> str | None:
         """Act as an operator; return the reason of a refusal, or None if it was done."""
-        self.request_verb(verb, scope, by_hand=by_hand)
+        self.request_verb(verb, scope, by_hand=by_hand, arguments=tuple(arguments.items()))
         refusal = self.answers[-1].refusal
         return None if refusal is None else str(refusal)
 

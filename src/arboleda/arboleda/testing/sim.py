@@ -8,20 +8,23 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any, TypeVar
 
+from arboleda.model.facts import Value
 from arboleda.model.messages import Verb
 from arboleda.model.plant_model import PlantModel
 from arboleda.model.recipe import Build
+from arboleda.model.verbs import from_text
 from arboleda.simulator.faults import Fault
 from arboleda.simulator.invariants import Invariant
 from arboleda.simulator.judged import judged_by
 from arboleda.simulator.judged_world import BrokenInvariant, JudgedWorld
 from arboleda.simulator.levels import LEVELS
-from arboleda.simulator.people import Attendant
+from arboleda.simulator.people import Attendant, FixedAnswers
 from arboleda.simulator.run import NO_EXCEPTION
 from arboleda.simulator.world import World
 from arboleda.views import view
 
 from . import arguments, looks, seeds, wording
+from .answers import prepare
 from .desk import Desk, Handle
 from .words import Misuse, known
 
@@ -70,10 +73,32 @@ class Sim:
         """Ask for a task; a refused one gets a handle, too."""
         return self._do(lambda: self._desk.submit(text))
 
-    def operate(self, verb: Verb | str, scope: str = "", *, by_hand: bool = False) -> str | None:
-        """Act as an operator; return the plant's reason for a refusal, or None if it did as asked."""
+    def operate(
+        self, verb: Verb | str, scope: str = "", *, by_hand: bool = False, **arguments: int | str
+    ) -> str | None:
+        """Act as an operator; return the plant's reason for a refusal, or None if it did as asked.
+
+        `arguments` are the verb's, as `operate("unload", "sis_a", station=7)`; without them `scope` may have
+        them as an operator types them: `operate("unload", "sis_a 7")`.
+        """
         word = Verb(known("a verb", verb, [each.value for each in Verb]))
-        return self._do(lambda: self._desk.operate(word, scope, by_hand=by_hand))
+        told = tuple(arguments.items())
+        of, told = (scope, told) if told else from_text(word, scope)
+        return self._do(lambda: self._desk.operate(word, of, by_hand=by_hand, arguments=told))
+
+    def answers(self, device: str, verb: str, *answers: Value) -> None:
+        """Have a device answer the next questions of this verb so, one after the other; then as before.
+
+        A person is answered for by `operate("answer", "ana yes")`.
+        """
+        name = arguments.robot(device, self.world.model)
+        prepare(self.world, name, verb, answers)
+
+    def answer_always(self, **words: Value) -> None:
+        """Have the devices and persons of these names answer that word where they can, and else the first."""
+        for name in words:
+            arguments.robot(name, self.world.model)
+        FixedAnswers(self.world, words)
 
     def fault(
         self,

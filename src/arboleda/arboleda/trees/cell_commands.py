@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from arboleda.dispatch.dispatcher import Dispatcher, Make
+from collections.abc import Sequence
+
+from arboleda.dispatch.dispatcher import Barrier, Dispatcher, Make
 from arboleda.dispatch.ledger import Entry
 from arboleda.model.commands import Command, Query
 from arboleda.model.messages import Failure
@@ -17,7 +19,13 @@ class CellCommands:
     """Sender of one cell. `sent` counts its commands; `used` are the robots that the task has commanded."""
 
     def __init__(
-        self, cell: str, dispatcher: Dispatcher, time: CellTime, zones: CellZones, devices: CellDevices
+        self,
+        cell: str,
+        dispatcher: Dispatcher,
+        time: CellTime,
+        zones: CellZones,
+        devices: CellDevices,
+        guards: Sequence[Barrier],
     ) -> None:
         self.sent = 0
         self.used: set[str] = set()
@@ -26,6 +34,7 @@ class CellCommands:
         self._time = time
         self._zones = zones
         self._devices = devices
+        self._guards = guards
 
     def send(self, make: Make, doing: Sentence) -> Entry:
         """Send the command that `make(id=...)` returns; an already failed entry where it may not leave."""
@@ -58,5 +67,11 @@ class CellCommands:
         """The first command that a robot has not ended, of whichever cell."""
         return next(iter(self._dispatcher.ledger.of_robot(robot)), None)
 
+    def may_come_to_rest(self, robot: str) -> bool:
+        """True where a robot takes a command soon: it may have ended its last move, or was told to halt."""
+        return self._dispatcher.may_come_to_rest(robot)
+
     def _objection(self, command: Command) -> Failure | None:
-        return self._devices.objection(command.robot) or self._zones.objection(command)
+        guarded = (guard(command) for guard in self._guards)
+        own = next(filter(None, guarded), None)
+        return self._devices.objection(command.robot) or own or self._zones.objection(command)

@@ -30,6 +30,21 @@ class CellDevices:
         """True for a device that is the cell's now: its own, or a shared one that it holds."""
         return robot in self._cell.own or (robot in self._cell.shared and self.holds(robot))
 
+    def answers_for(self, robot: str) -> bool:
+        """True for a robot that this cell looks after: its own, a shared one that it holds, or one that no
+        cell holds while this is the first of its cells.
+        """
+        if robot not in self._cell.shared:
+            return robot in self._cell.own
+        holder = self.holder(robot)
+        return holder == self._cell.name or (holder is None and self._is_first_of(robot))
+
+    def holder(self, device: str) -> str | None:
+        """The cell that holds a shared device; None also where that is not in the plant file any more."""
+        holder = self._zones.holder(device)
+        cells = [cell.name for cell in self._dispatcher.model.cells_of[device]]
+        return holder if holder in cells else None
+
     def holds(self, device: str) -> bool:
         """True while the cell holds a device that it shares."""
         return self._zones.holder(device) == self._cell.name
@@ -42,22 +57,39 @@ class CellDevices:
         name = self._cell.name
         held = self._zones.held_by(name)
         if devices <= held:
+            self._note_taken(devices)  # it may have got them while it waited
             return True
         if held and not self.leave(held):
             return False
+        if not all(self._zones.holder(device) or self.is_as_left(device) for device in devices):
+            return False
         if not self._zones.request(name, devices):
             return False
-        self._dispatcher.memory.occupy(self._zones.held_by(name), name)
+        self._note_taken(devices)
         return True
 
+    def claim(self, device: str) -> None:
+        """Take a shared device that no other cell holds, wherever it stands, with what goes with it."""
+        together = self._cell.together({device})
+        self._zones.claim(self._cell.name, together)
+        self._note_taken(together)
+
+    def _note_taken(self, devices: frozenset[str]) -> None:
+        """Keep whose they are for the next start; what they held before was another cell's."""
+        memory, name = self._dispatcher.memory, self._cell.name
+        for device in devices:
+            if memory.value(Fact.QUARANTINE, device) != name:
+                self._dispatcher.effectors.opened.pop(device, None)
+        memory.occupy(devices, name)
+
     def leave(self, devices: frozenset[str]) -> bool:
-        """Stop waiting for shared devices, and give back those that are heard and do nothing; True once the
-        cell holds none of them any more.
+        """Stop waiting for shared devices, and give back those that are heard, do nothing, hold nothing and
+        stand at home; True once the cell holds none of them any more.
         """
         name = self._cell.name
         granted = self._zones.withdraw(name)
         held = self._zones.held_by(name) & devices
-        quiet = frozenset(filter(self._does_nothing, held))
+        quiet = frozenset(filter(self._may_change_hands, held))
         if quiet:
             waiting = tuple(other for other, asked in self._zones.waiting if asked & quiet)
             granted += self._zones.give_back(quiet) + waiting  # who still waits names another holder now
@@ -110,6 +142,33 @@ class CellDevices:
         held = NOT_HELD if holder is None else partial(OF_OTHER, holder=holder)
         sentence = held(cell=name, device=device)
         return Failure(reason=Reason.ZONE_UNAVAILABLE, sentence=sentence)
+
+    def is_as_left(self, device: str) -> bool:
+        """True for a shared device as cells leave it to each other: it holds no part, and is at home."""
+        return not self._may_hold(device) and self.is_home(device)
+
+    def is_home(self, device: str) -> bool:
+        """True for a shared robot that is seen at its home, outside all zones, and for what goes nowhere."""
+        space = self._cell.reach.get(device)
+        if space is None:
+            return True
+        place = self._dispatcher.place(space)
+        return place is not None and place.q == space.home.q and not self._zones.held_by(device)
+
+    def part_left_in(self, devices: Iterable[str]) -> str | None:
+        """The first of the shared devices that the cell holds, and in which a part may be."""
+        return next((each for each in sorted(devices) if self.holds(each) and self._may_hold(each)), None)
+
+    def _may_hold(self, device: str) -> bool:
+        effectors, robot = self._dispatcher.effectors, self._dispatcher.model.robots[device]
+        return robot.held_fact is not None and effectors.grips.holding(device)
+
+    def _is_first_of(self, robot: str) -> bool:
+        return self._dispatcher.model.cell_of[robot].name == self._cell.name
+
+    def _may_change_hands(self, device: str) -> bool:
+        together = self._cell.together({device})
+        return all(self._does_nothing(each) and self.is_as_left(each) for each in together)
 
     def _does_nothing(self, device: str) -> bool:
         belief = self._dispatcher.beliefs[device]

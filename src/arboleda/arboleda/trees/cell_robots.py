@@ -43,17 +43,22 @@ class CellRobots:
         return self._dispatcher.beliefs[robot].known_position
 
     def standing(self, robot: str) -> Pose:
-        """The zone-free pose at which a robot's next way begins: where it is seen, else home."""
+        """The zone-free pose at which a robot's next way begins: where it is seen, else home; the home of a
+        shared one that the cell does not hold.
+        """
         space = self._cell.workspaces[robot]
+        if robot in self._cell.shared and not self._devices.holds(robot):
+            return space.home
         if self.as_planned is not None:
             name = self.as_planned.standing.get(robot)
             return next((pose for pose in space.poses if pose.name == name), space.home)
         return self._dispatcher.place(space) or space.home
 
     def planned(self) -> Planned:
-        """The places of the robots now, by which a recipe may plan."""
+        """The places of the robots now, by which a recipe may plan; a shared one may be another cell's."""
         standing = {robot: self.standing(robot).name for robot in self._cell.workspaces}
-        known = {robot: self.position(robot) for robot in self._cell.reach}
+        own = [robot for robot in self._cell.reach if robot not in self._cell.shared]
+        known = {robot: self.position(robot) for robot in own}
         return Planned(
             standing=standing, positions={name: at for name, at in known.items() if at is not None}
         )
@@ -67,14 +72,19 @@ class CellRobots:
     def obstacle(self, robot: str, *, was: bool = False) -> Failure | None:
         """The reason for which a robot takes no command now; `was`: in words that stay true.
 
-        That a shared device moves is none: another cell may be using it.
+        That a shared device moves is none: another cell may be using it. A robot that the cell holds has to
+        stand still.
         """
         shares = robot in self._cell.shared and robot not in self._dispatcher.latched
         if shares and (stop := self._devices.not_reset(robot)) is not None:
             return stop
-        if shares and self._dispatcher.beliefs[robot].moves:
+        if shares and self._dispatcher.beliefs[robot].moves and not self._has_to_rest(robot):
             return None
         return self._dispatcher.obstacle(robot, was=was)
+
+    def _has_to_rest(self, robot: str) -> bool:
+        """True for a shared robot that goes from place to place, while this cell holds it."""
+        return robot in self._cell.reach and self._devices.holds(robot)
 
     def obstacle_besides_stop(self, robot: str) -> Failure | None:
         """The reason that would remain, were the robot not stopped."""

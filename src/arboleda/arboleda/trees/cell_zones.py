@@ -12,6 +12,7 @@ from arboleda.model.plant_model import Cell, Pose
 from arboleda.model.sentence import Phrase
 
 from . import zone_plan
+from .cell_devices import CellDevices
 from .cell_robots import CellRobots
 from .interlocks import Interlocks
 from .parts import Parts
@@ -25,6 +26,14 @@ ASTRAY_BY_HAND = Phrase(
     "{arm} is not seen at a pose outside the shared zones; "
     "home {arm} --by-hand, once it stands at its reference, mends that",
 )
+ASTRAY_SHARED = Phrase(
+    "zone.astray_shared", "{arm}, which cells share, is not seen at its home; home {arm} mends that"
+)
+ASTRAY_SHARED_BY_HAND = Phrase(
+    "zone.astray_shared_by_hand",
+    "{arm}, which cells share, is not seen at its home; "
+    "home {arm} --by-hand, once it stands at its reference, mends that",
+)
 
 
 class CellZones:
@@ -35,6 +44,7 @@ class CellZones:
         cell: Cell,
         dispatcher: Dispatcher,
         zones: Zones,
+        devices: CellDevices,
         robots: CellRobots,
         parts: Parts,
         at_work: Callable[[str], bool],
@@ -43,6 +53,7 @@ class CellZones:
         self._cell = cell
         self._dispatcher = dispatcher
         self._zones = zones
+        self._devices = devices
         self._robots = robots
         self._parts = parts
         self._at_work = at_work
@@ -89,8 +100,11 @@ class CellZones:
 
     def objection(self, command: Command) -> Failure | None:
         """Objection to a command, whatever the tree says: it leads into a zone that is not held."""
-        missing = self._needed(command) - self._zones.held_by(command.robot)
+        needed = self._needed(command)
+        missing = needed - self._zones.held_by(command.robot)
         if not missing:
+            if needed and command.robot in self._cell.interlocked:  # it may be over before it is looked at
+                self._occupied[command.robot] = self._occupied.get(command.robot, frozenset()) | needed
             return None
         sentence = NOT_HELD(robot=command.robot, zones=tuple(sorted(missing)))
         return Failure(reason=Reason.ZONE_UNAVAILABLE, sentence=sentence)
@@ -108,8 +122,18 @@ class CellZones:
         return zone_plan.recovery_zones(space, place, back) | between
 
     def astray(self) -> tuple[str, Failure] | None:
-        """A robot that shares zones and is not seen outside them, so that no way of it may begin; and why."""
+        """A robot that shares zones and is not seen outside them, so that no way of it may begin; and why.
+
+        A shared robot that no other cell holds has to be at home, whether it shares zones or not.
+        """
+        for robot in self._cell.shared_movers:
+            if self._devices.holder(robot) in (None, self._cell.name) and not self._devices.is_home(robot):
+                homed = self._dispatcher.beliefs[robot].robot.says_homed
+                astray = ASTRAY_SHARED if homed else ASTRAY_SHARED_BY_HAND
+                return robot, Failure(reason=Reason.ZONE_UNAVAILABLE, sentence=astray(arm=robot))
         for robot in self._cell.zone_users:
+            if robot in self._cell.shared:
+                continue
             space, belief = self._cell.workspaces[robot], self._dispatcher.beliefs[robot]
             unknown = not belief.supervised and robot not in self._dispatcher.reached
             if unknown or self._dispatcher.place(space) is not None:
@@ -123,10 +147,18 @@ class CellZones:
         holders = {zone: self._zones.holder(zone) for zone in zones}
         return {zone: other for zone, other in holders.items() if other is not None and other != robot}
 
+    def kept_by_machine(self, robot: str, zones: Iterable[str]) -> tuple[str, tuple[str, ...]] | None:
+        """A machine at rest that keeps one of these zones, and the facts that it would have to report."""
+        zones = frozenset(zones)
+        for holder in self.awaited(robot, zones).values():
+            if holder in self._cell.interlocked and (facts := self.interlocks.in_the_way(holder, zones)):
+                return holder, facts
+        return None
+
     def awaited_by_recovery(self) -> dict[str, str]:
         """The zones that a recovery would wait for, and their holders; inside its zones it needs none."""
         awaited: dict[str, str] = {}
-        for robot in self._cell.zone_users:
+        for robot in filter(self._devices.has, self._cell.zone_users):
             if not self._zones.held_by(robot) or robot in self._zones.robbed:
                 awaited |= self.awaited(robot, self.for_recovery(robot))
         return awaited

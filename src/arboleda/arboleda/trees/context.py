@@ -18,9 +18,10 @@ from .cell_time import CellTime
 from .cell_zones import CellZones
 from .failures import Failures
 from .handling import Handling
+from .needs import CellNeeds
 from .parts import Parts
 from .piece_sensors import PieceSensors
-from .stations import Stations
+from .places import Places
 from .trail import Trail
 
 MOST_ANSWERS = 100  # that are kept of a task
@@ -46,10 +47,11 @@ class Context:
         self.devices = CellDevices(cell, dispatcher, zones)
         self.robots = CellRobots(cell, dispatcher, self.time, self.devices)
         self.sensors = PieceSensors(dispatcher.beliefs, self.timing, self.time)
-        self.parts = Parts(cell, dispatcher, self.robots, self.sensors)
-        self.stations = Stations(cell, dispatcher, self.robots)
-        self.zones = CellZones(cell, dispatcher, zones, self.robots, self.parts, at_work)
-        self.commands = CellCommands(cell.name, dispatcher, self.time, self.zones, self.devices)
+        self.parts = Parts(cell, dispatcher, self.devices, self.robots, self.sensors)
+        self.zones = CellZones(cell, dispatcher, zones, self.devices, self.robots, self.parts, at_work)
+        self.places = Places(cell, dispatcher, self.robots)
+        guards = (CellNeeds(cell, dispatcher).objection, self.places.objection)
+        self.commands = CellCommands(cell.name, dispatcher, self.time, self.zones, self.devices, guards)
         self.failures = Failures(self.parts)
         self.handling = Handling(dispatcher.beliefs)
         self.answers: list[TaskAnswer] = []

@@ -29,6 +29,10 @@ class Failures:
         """Forget a failure that the recipe has an answer to: the task goes on."""
         self.first = self.leaf = None
 
+    def bring_back(self, failure: Failure, leaf: Behaviour | None = None) -> None:
+        """Name again the cause of a failure that came before all others, and was put aside for a while."""
+        self.first, self.leaf = failure, leaf
+
     def clear(self) -> None:
         """Forget all failures of the last tree."""
         self.first = self.leaf = self.last = None

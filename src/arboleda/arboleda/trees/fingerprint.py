@@ -1,11 +1,13 @@
 """Hash of all that a thing is made of, equal over starts of the plant: it tells what was made alike.
 
-Functions count by their code and by what they have taken in, objects that are no data by their class alone.
+Functions count by their names and by what they have taken in, and those of a recipe by its source beside,
+which is the same in each Python; where that is unknown, they count by their code. Objects that are no data
+count by their class alone.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import fields, is_dataclass
 from enum import Enum
 from functools import cache, partial
@@ -18,8 +20,13 @@ from py_trees.behaviour import Behaviour
 from arboleda.model.plant_model import Cell
 from arboleda.model.sentence import Sentence
 
+from .tree_nodes import nodes_of
+
 Seen = dict[int, tuple[int, object]]
 """What was met, by its identity: its number, and itself, so that nothing else gets that identity."""
+Parts = Callable[[Any], Iterable[Any]]
+BY_SOURCE = "source:"  # before a hash of this version; one without it was made when all went by code
+OURS = "arboleda."  # packages whose functions change with the version of the plant alone
 PLAIN = (str, int, float, bool, bytes, type(None))
 PLAIN_TYPES = frozenset(PLAIN)
 # What py_trees keeps in a node, what only shows how far it came, and what says the same as its name.
@@ -62,77 +69,121 @@ def joined(*words: str) -> str:
     return blake2b("\n".join(words).encode(), digest_size=16).hexdigest()
 
 
-def of_cell(cell: Cell, recipe: str, seen: Seen) -> str:
-    """The hash of what the tasks of a recipe go by: its code, the devices of its cell, where they go."""
-    build = next((each.build for each in cell.recipes if each.name == recipe), None)
-    words: list[str] = []
-    _spell(cell, seen, words)
-    _spell(build, seen, words)
-    return joined(*words)
+def of_cell(cell: Cell, recipe: str, seen: Seen, *, by_code: bool = False) -> str:
+    """The hash of what the tasks of a recipe go by: its source, the devices of its cell, where they go.
+
+    `by_code` as it was made once, when the code of every function counted.
+    """
+    found = next((each for each in cell.recipes if each.name == recipe), None)
+    spelling = Spelling(seen, by_code=by_code, source="" if found is None else found.source)
+    spelling.add(cell)
+    spelling.add(None if found is None else found.build)
+    return spelling.hash
 
 
-def of_tree(root: Behaviour, seen: Seen) -> str:
+def of_tree(root: Behaviour, seen: Seen, *, by_code: bool = False, source: str = "") -> str:
     """The hash of a tree that nobody has ticked yet: its nodes, with what they were made of.
 
-    What was `seen` in its cell is only named.
+    What was `seen` in its cell is only named. `source` is that of its recipe.
     """
-    seen = dict(seen)
-    words: list[str] = []
-    for node in root.iterate():
-        words += (type(node).__qualname__, node.name, str(len(node.children)))
+    spelling = Spelling(dict(seen), by_code=by_code, source=source)
+    for node in nodes_of(root):
+        spelling.words += (type(node).__qualname__, node.name, str(len(node.children)))
         for key, value in vars(node).items():
             if key not in OF_NODES:
-                words.append(key)
-                _spell(value, seen, words)
-    return joined(*words)
+                spelling.words.append(key)
+                spelling.add(value)
+    return spelling.hash
 
 
-def _spell(value: Any, seen: Seen, words: list[str]) -> None:
-    """Append the words of a value: one call for each, where nested generators take many."""
-    if isinstance(value, Enum):
-        words.append(f"{type(value).__qualname__}.{value.name}")
-    elif isinstance(value, PLAIN) or (type(value) is tuple and PLAIN_TYPES.issuperset(map(type, value))):
-        words.append(repr(value))
-    elif id(value) in seen:
-        words.append(f"see {seen[id(value)][0]}")
-    else:
-        seen[id(value)] = len(seen), value
-        words.append(type(value).__qualname__)
-        for part in _parts(value):
-            _spell(part, seen, words)
+class Spelling:
+    """Words of values, one after the other; with `source` they say what names of functions mean."""
+
+    def __init__(self, seen: Seen, *, by_code: bool, source: str) -> None:
+        self.words = [source] if source and not by_code else []
+        self._seen = seen
+        self._by_code = by_code
+        self._has_source = bool(source)
+
+    @property
+    def hash(self) -> str:
+        """The hash of all words so far."""
+        return joined(*self.words)
+
+    def add(self, value: Any) -> None:
+        """Append the words of a value."""
+        kind = value.__class__
+        if kind in PLAIN_TYPES:
+            self.words.append(repr(value))
+        elif (parts := _parts_of(kind)) is None:
+            is_enum = isinstance(value, Enum)
+            self.words.append(f"{kind.__qualname__}.{value.name}" if is_enum else repr(value))
+        elif kind is tuple and PLAIN_TYPES.issuperset(map(type, value)):
+            self.words.append(repr(value))
+        elif id(value) in self._seen:
+            self.words.append(f"see {self._seen[id(value)][0]}")
+        else:
+            self._add_parts(value, kind, parts)
+
+    def _add_parts(self, value: Any, kind: type, parts: Parts) -> None:
+        """A call for each value that has parts, and none for each word: a tree has thousands."""
+        self._seen[id(value)] = len(self._seen), value
+        words = self.words
+        words.append(kind.__qualname__)
+        if kind is FunctionType and not self._counts_code(value):
+            parts = _named
+        for part in parts(value):
+            if type(part) in PLAIN_TYPES:
+                words.append(repr(part))
+            else:
+                self.add(part)
         words.append(".")
 
-
-def _parts(value: Any) -> Iterable[Any]:
-    """The parts that a thing is made of; none of what is no data."""
-    if isinstance(value, tuple | list):
-        return value
-    if isinstance(value, Mapping):
-        return [part for pair in value.items() for part in pair]
-    if isinstance(value, set | frozenset):
-        return sorted(value, key=repr)
-    if isinstance(value, Sentence):
-        return value.key, value.values
-    if (names := _fields(value.__class__)) is not None:
-        return [getattr(value, name) for name in names]
-    if isinstance(value, FunctionType):
-        return value.__code__, value.__defaults__, *map(_content, value.__closure__ or ())
-    if isinstance(value, MethodType):
-        return (value.__func__,)
-    if isinstance(value, partial):
-        return value.func, value.args, value.keywords
-    if isinstance(value, CodeType):
-        return value.co_code, value.co_names, value.co_consts
-    return ()
+    def _counts_code(self, function: FunctionType) -> bool:
+        is_known = self._has_source or (function.__module__ or "").startswith(OURS)
+        return self._by_code or not is_known
 
 
 @cache
-def _fields(kind: type) -> tuple[str, ...] | None:
-    """The names of the fields that matter of a dataclass; None for any other class."""
-    if not is_dataclass(kind):
+def _parts_of(kind: type) -> Parts | None:
+    """What makes the parts of the values of a class; None where a value is a word."""
+    if issubclass(kind, (Enum, *PLAIN)):
         return None
+    if issubclass(kind, Sentence):
+        return _of_sentence
+    if is_dataclass(kind) and not issubclass(kind, tuple | list | Mapping | set | frozenset):
+        return partial(_of_fields, _fields(kind))
+    return next((parts for base, parts in PARTS if issubclass(kind, base)), _nothing)
+
+
+def _of_fields(names: tuple[str, ...], value: Any) -> list[Any]:
+    return [getattr(value, name) for name in names]
+
+
+def _fields(kind: type) -> tuple[str, ...]:
+    """The names of the fields of a dataclass that matter."""
     passed_over = NO_MATTER if issubclass(kind, Cell) else frozenset[str]()
     return tuple(each.name for each in fields(kind) if each.name not in passed_over)
+
+
+def _of_sentence(value: Sentence) -> tuple[Any, ...]:
+    return value.key, value.values
+
+
+def _pairs(value: Mapping[Any, Any]) -> list[Any]:
+    return [part for pair in value.items() for part in pair]
+
+
+def _in_order(value: Iterable[Any]) -> list[Any]:
+    return sorted(value, key=repr)
+
+
+def _coded(value: FunctionType) -> tuple[Any, ...]:
+    return value.__code__, value.__defaults__, *map(_content, value.__closure__ or ())
+
+
+def _named(value: FunctionType) -> tuple[Any, ...]:
+    return value.__qualname__, value.__defaults__, *map(_content, value.__closure__ or ())
 
 
 def _content(cell: Any) -> Any:
@@ -140,3 +191,18 @@ def _content(cell: Any) -> Any:
         return cell.cell_contents
     except ValueError:  # nothing was put in yet
         return None
+
+
+def _nothing(value: object) -> tuple[Any, ...]:
+    return ()
+
+
+PARTS: tuple[tuple[Any, Parts], ...] = (
+    (tuple | list, iter),
+    (Mapping, _pairs),
+    (set | frozenset, _in_order),
+    (FunctionType, _coded),
+    (MethodType, lambda value: (value.__func__,)),
+    (partial, lambda value: (value.func, value.args, value.keywords)),
+    (CodeType, lambda value: (value.co_code, value.co_names, value.co_consts)),
+)

@@ -54,3 +54,13 @@ class Interlocks:
             if belief.fact(name) != value
         ]
         return tuple(dict.fromkeys(unsaid)) or None
+
+    def led_into(self, device: str, zones: Iterable[str]) -> frozenset[str]:
+        """The zones that a device is in the way of once it is out of these, as a lift between two of them."""
+        locks = self._cell.interlocks_of(device)
+        free = {name: value for each in locks if each.zone in zones for name, value in each.free_while}
+        return frozenset(
+            each.zone
+            for each in locks
+            if any(free.get(name, value) != value for name, value in each.free_while)
+        )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 from py_trees.behaviour import Behaviour
 
@@ -15,6 +15,7 @@ from . import fingerprint, trail
 from .context import Context
 from .leaves import Act, Await, Dwell
 from .trail import Begun, Planned, Trail
+from .tree_nodes import nodes_of
 from .tree_run import TreeRun
 from .walk_back import Finding, WalkBack
 
@@ -48,13 +49,18 @@ class Keeping:
         self._build = build
         self._begun = NOTHING_KEPT.begun
         # what the cell was made of, as far as a recipe's tasks go by it
-        self._cells: dict[str, tuple[str, fingerprint.Seen]] = {}
+        self._cells: dict[str, tuple[str, fingerprint.Seen, str]] = {}
         self._kept_of: tuple[object, ...] = ()  # what the trail was made of that was kept last
+
+    @property
+    def envelope(self) -> Sequence[str]:
+        """The effectors that the task may tell to switch before this is durable."""
+        return self._begun.envelope
 
     def make(self, order: Order) -> Behaviour:
         """The tree of a task that begins."""
         self.walk = None
-        return self._grown(order, self._context.robots.planned())
+        return self._grown(order, self._context.robots.planned(), self._context.parts.witnessed)
 
     def revive(self, order: Order, kept: str) -> Sentence | None:
         """Take over a task that was at work; why it cannot go on at its step."""
@@ -69,9 +75,9 @@ class Keeping:
             return WAS_RECOVERING()
         try:
             self._context.robots.as_planned = found.begun.planned
-            tree = self._grown(order, found.begun.planned)
-            nodes = list(tree.iterate())
-            begun = trail.put_back(nodes, found) if self._begun.made == found.begun.made else None
+            tree = self._grown(order, found.begun.planned, found.begun.envelope)
+            nodes = nodes_of(tree)
+            begun = trail.put_back(nodes, found) if self._is_alike(order, tree, found.begun.made) else None
         except Exception:  # noqa: BLE001 - a recipe may be user code, and another one than it was
             begun = None
         finally:
@@ -153,14 +159,33 @@ class Keeping:
             unchecked=context.handling.unchecked,
         )
 
-    def _grown(self, order: Order, planned: Planned) -> Behaviour:
+    def _grown(self, order: Order, planned: Planned, envelope: Sequence[str]) -> Behaviour:
         """The tree of an order; what it was made of is noted."""
-        cell = self._context.cell
-        if order.recipe not in self._cells:
-            seen: fingerprint.Seen = {}
-            self._cells[order.recipe] = fingerprint.of_cell(cell, order.recipe, seen), seen
-        of_cell, seen = self._cells[order.recipe]
+        of_cell, seen, source = self._of_cell(order.recipe)
         tree = self._build(order, self._context)
-        made = fingerprint.joined(of_cell, order.text, fingerprint.of_tree(tree, seen))
-        self._begun = Begun(made=made, planned=planned)
+        of_tree = fingerprint.of_tree(tree, seen, source=source)
+        made = fingerprint.BY_SOURCE + fingerprint.joined(of_cell, order.text, of_tree)
+        self._begun = Begun(made=made, planned=planned, envelope=envelope)
         return tree
+
+    def _of_cell(self, recipe: str) -> tuple[str, fingerprint.Seen, str]:
+        """The hash of the cell for a recipe, what was met in it, and the recipe's source; made once."""
+        if recipe not in self._cells:
+            cell = self._context.cell
+            seen: fingerprint.Seen = {}
+            sources = (each.source for each in cell.recipes if each.name == recipe)
+            made = fingerprint.of_cell(cell, recipe, seen)
+            self._cells[recipe] = made, seen, next(sources, "")
+        return self._cells[recipe]
+
+    def _is_alike(self, order: Order, tree: Behaviour, made: str) -> bool:
+        """True where a kept task was made of what the tree was made of.
+
+        A version before this one has hashed the code of functions: it is compared with that, once.
+        """
+        if made.startswith(fingerprint.BY_SOURCE):
+            return made == self._begun.made
+        seen: fingerprint.Seen = {}
+        of_cell = fingerprint.of_cell(self._context.cell, order.recipe, seen, by_code=True)
+        of_tree = fingerprint.of_tree(tree, seen, by_code=True)
+        return made == fingerprint.joined(of_cell, order.text, of_tree)

@@ -24,6 +24,11 @@ from .trail import Keeps, command_kept
 CANCELLED = Phrase("command.cancelled", "cancelled while {doing}")
 AGAIN = Phrase("command.again", "{why}; try {number} of {most} follows")
 NOT_FREE = Phrase("zone.not_free", "{arm}: zone {zones} was not free within {seconds:g} s")
+KEPT_BY_MACHINE = Phrase(
+    "zone.kept_by_machine",
+    "{arm}: zone {zones} was not free within {seconds:g} s: "
+    "{device} keeps it as long as it does not report {facts}",
+)
 WAITS_FOR_DEVICE = Phrase("device.waits", "waits for {device}, which {cell} holds")
 WAITS_FOR_TURN = Phrase("device.waits_for_turn", "waits for {device}, which {cell} asked for before")
 DEVICE_NOT_FREE = Phrase("device.not_free", "{cell}: {devices} was not free within {seconds:g} s")
@@ -52,12 +57,13 @@ def title_of(node: Behaviour) -> Sentence:
 class Leaf(Keeps, Behaviour):
     """A leaf of ours: `title` is its name as a sentence, `told` its feedback message, `last_failure` that of
     its last failure, kept when py_trees has forgotten the status. `began` is when one that takes its time
-    began last in this start of the plant, in s of the cell's time.
+    began last in this start of the plant, in s of the cell's time. `uses`: its robot, where cells share that.
     """
 
     title: Sentence
     told: Sentence = NOTHING
     last_failure: Sentence | None = None
+    uses: str | None = None
     began = -math.inf
 
     def __init__(self, name: Sentence | str) -> None:
@@ -105,14 +111,14 @@ class Act(Leaf):
 
     A failure that a retry can help is tried again as the cell's `retry` says, after its back-off. A robot
     that is still moving is waited for, at most `stop_timeout_s`: what it says may be older than the end of
-    its last move.
+    its last move, or it was told to halt, as by a timeout around the step before.
     `anew`, where given, makes the command once it has left before. `guard`, where given, is asked at every
     tick; what it returns fails the command at once. So does an effector that opened unbidden while it held
-    a part. `then`, where given, is called once the command is done. `uses`: its robot, where cells share it.
+    a part. `then`, where given, is called once the command is done.
     `last` is what an earlier start of the plant has kept of the command; `proven`: it is known to be done.
     """
 
-    uses: str | None = None
+    ends_unkept = True
 
     def __init__(
         self,
@@ -153,6 +159,11 @@ class Act(Leaf):
             return None
         last = self.last if self.entry is None else command_kept(self.entry)
         return {"tries": self.tries, "left": self.left_before, "last": last}
+
+    @property
+    def waits(self) -> bool:
+        """True while only its robot, or the time, can bring more from another tick."""
+        return self.entry is not None and self.entry.open and self.again_at is None and not self.proven
 
     def restore(self, state: Mapping[str, Any]) -> None:
         self.tries, self.left, self.last = state["tries"], state["left"], state["last"]
@@ -218,7 +229,7 @@ class Act(Leaf):
         """True while the robot still moves and there is time; once it rests, it gets its command."""
         if not entry.too_early or self.time.now >= self.patient_until:
             return False
-        if not self.context.robots.belief(entry.command.robot).moves:
+        if not self.context.commands.may_come_to_rest(entry.command.robot):
             self._give()
         return self.entry is not None and self.entry.too_early
 
@@ -435,6 +446,11 @@ class TakeZones(Await):
     def _not_free(self) -> Failure:
         zones = tuple(sorted(self.zones))
         sentence = NOT_FREE(arm=self.robot, zones=zones, seconds=self.seconds)
+        if (kept := self.access.kept_by_machine(self.robot, self.zones)) is not None:
+            machine, facts = kept
+            sentence = KEPT_BY_MACHINE(
+                arm=self.robot, zones=zones, seconds=self.seconds, device=machine, facts=facts
+            )
         return Failure(reason=Reason.ZONE_UNAVAILABLE, sentence=sentence)
 
     def terminate(self, new_status: Status) -> None:

@@ -11,6 +11,7 @@ from arboleda.model.messages import Failure, Reason
 from arboleda.model.plant_model import Cell, Pose
 from arboleda.model.sentence import Phrase, Sentence
 
+from .cell_devices import CellDevices
 from .cell_robots import CellRobots
 from .piece_sensors import PieceSensors
 from .trail import Trail
@@ -26,13 +27,21 @@ class Parts:
     where they last went empty. While `delivers`, work runs; a recovery does the rest without the part, too.
     """
 
-    def __init__(self, cell: Cell, dispatcher: Dispatcher, robots: CellRobots, sensors: PieceSensors) -> None:
+    def __init__(
+        self,
+        cell: Cell,
+        dispatcher: Dispatcher,
+        devices: CellDevices,
+        robots: CellRobots,
+        sensors: PieceSensors,
+    ) -> None:
         self.carrier: str | None = None
         self.delivers = True
         self.back: dict[str, Pose] = {}
         self.origins: set[str] = set()
         self._cell = cell
         self._dispatcher = dispatcher
+        self._devices = devices
         self._effectors = dispatcher.effectors
         self._robots = robots
         self._sensors = sensors
@@ -40,7 +49,7 @@ class Parts:
     def begin(self) -> None:
         """Open the books for another tree."""
         self.carrier, self.delivers = None, True
-        for robot in self._cell.holders:
+        for robot in filter(self._devices.answers_for, self._cell.holders):
             self._effectors.opened.pop(robot, None)
 
     def recover(self) -> None:
@@ -83,8 +92,19 @@ class Parts:
 
     @property
     def holding(self) -> list[str]:
-        """The robots of the cell in whose effector a part may hang."""
-        return [robot for robot in self._cell.holders if self._effectors.grips.holding(robot)]
+        """The robots of the cell in whose effector a part may hang; what a shared one holds is a matter of
+        the cell that holds it.
+        """
+        found = [robot for robot in self._cell.holders if self._effectors.grips.holding(robot)]
+        return [*filter(self._devices.answers_for, found)] if found and self._cell.shared else found
+
+    @property
+    def witnessed(self) -> tuple[str, ...]:
+        """The cell's own robots that report what they hold; no tools, which may still open late."""
+        tools = {space.tool.name for space in self._cell.spaces if space.tool is not None}
+        beliefs = {robot: self._robots.belief(robot) for robot in self._cell.holders}
+        reporting = (robot for robot, belief in beliefs.items() if belief.held_in(belief) is not None)
+        return tuple(robot for robot in reporting if robot in self._cell.own and robot not in tools)
 
     @property
     def unopened(self) -> list[str]:
@@ -109,7 +129,10 @@ class Parts:
     @property
     def opened_by(self) -> str | None:
         """The robot whose effector opened with a part in it without a command of this plant."""
-        return next((robot for robot in self._cell.holders if robot in self._effectors.opened), None)
+        if not self._effectors.opened:
+            return None
+        found = (robot for robot in self._cell.holders if robot in self._effectors.opened)
+        return next(filter(self._devices.answers_for, found), None)
 
     def opening(self, robot: str) -> Sentence:
         """The sentence about that."""
@@ -127,5 +150,7 @@ class Parts:
 
     def settle(self) -> None:
         """Believe the reports about what was being switched when an earlier start ended."""
-        for robot in self._effectors.cut_off.intersection(self._cell.holders):
+        for robot in filter(
+            self._devices.answers_for, self._effectors.cut_off.intersection(self._cell.holders)
+        ):
             self._effectors.settle_cut_off(self._robots.belief(robot))

@@ -6,7 +6,7 @@ to its end. Recovered is not delivered: the task has failed all the same.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 
 from py_trees import common, composites
@@ -29,6 +29,7 @@ from .leaves import (
     LeaveZones,
     Note,
     Piece,
+    Require,
     TakeDevices,
     TakeZones,
     Unless,
@@ -54,6 +55,14 @@ TAKE_ZONES = Phrase("step.take_zones", "take zones")
 LEAVE_ZONES = Phrase("step.leave_zones", "leave zones")
 TAKE_DEVICES = Phrase("step.take_devices", "take {devices}")
 LEAVE_DEVICES = Phrase("step.leave_devices", "give back {devices}")
+AT_HOME = Phrase("step.at_home", "at home")
+GO_HOME = Phrase("step.go_home", "go home")
+EMPTY = Phrase("step.empty", "holds no part")
+PART_LEFT = Phrase(
+    "device.part_left",
+    "{device} may still hold a part after its last step, and no other cell would know whose that is",
+)
+NOT_OURS = Phrase("step.not_ours", "another cell may have {robot}")
 MOVE = Phrase("step.move", "move to {pose}")
 MOVING = Phrase("doing.move", "moving to {pose}")
 MOVE_ABOVE = Phrase("step.move_above", "move to above {pose}")
@@ -108,7 +117,7 @@ def recovery(context: Context, *, notes_origins: bool = False) -> Behaviour:
     """
     robots = tuple(context.cell.workspaces)
     settle = _settle(context, robots)
-    ways = [_way_home(context, robot, notes_origins=notes_origins) for robot in robots]
+    ways = [_way_home_if_ours(context, robot, notes_origins=notes_origins) for robot in robots]
     if len(ways) < 2:
         return sequence(TITLES[RECOVERY](), settle, *(step for way in ways for step in way))
     policy = common.ParallelPolicy.SuccessOnAll(synchronise=True)
@@ -203,9 +212,33 @@ def with_devices(context: Context, devices: frozenset[str], parts: Sequence[Beha
     They are taken before any zone: a cell that waits for one has no robot in a zone that waits for the cell,
     and who holds zones asks for no device. So nobody waits in a ring.
     """
-    named = tuple(sorted(devices))
-    take = TakeDevices(TAKE_DEVICES(devices=named), context, devices)
-    return [take, *parts, LeaveDevices(LEAVE_DEVICES(devices=named), context, devices)]
+    return [take_devices(context, devices), *parts, *leave_devices(context, devices)]
+
+
+def take_devices(context: Context, devices: frozenset[str]) -> Behaviour:
+    """Wait until the cell has these shared devices, all at once."""
+    return TakeDevices(TAKE_DEVICES(devices=tuple(sorted(devices))), context, devices)
+
+
+def leave_devices(context: Context, devices: frozenset[str]) -> list[Behaviour]:
+    """Give these shared devices back, those that the cell has: empty, and robots at home."""
+    named, access = tuple(sorted(devices)), context.devices
+
+    def kept() -> Failure | None:
+        device = access.part_left_in(devices)
+        if device is None:
+            return None
+        return Failure(reason=Reason.PRECONDITION, sentence=PART_LEFT(device=device))
+
+    def home(robot: str) -> Behaviour:
+        there = Unless(AT_HOME(), lambda: not access.holds(robot) or access.is_home(robot))
+        way = visit_from_anywhere(context, robot, context.cell.reach[robot].home, [])
+        return selector(HOME_AGAIN(arm=robot), there, sequence(GO_HOME(), *way))
+
+    homes = [home(robot) for robot in named if robot in context.cell.reach]
+    holders = [robot.name for robot in context.cell.robots if robot.held_fact is not None]
+    empty = [] if devices.isdisjoint(holders) else [Require(EMPTY(), context.failures, kept)]
+    return [*empty, *homes, LeaveDevices(LEAVE_DEVICES(devices=named), context, devices)]
 
 
 def grip(context: Context, robot: str, pose: Pose, *, check: PieceCheck) -> list[Behaviour]:
@@ -231,15 +264,24 @@ def unchecked_grip(context: Context, robot: str) -> Behaviour:
     return effector(context, robot, on=True, then=missed)
 
 
-def let_go(context: Context, robot: str, pose: Pose, *, check: PieceCheck) -> list[Behaviour]:
-    """Effector off; what it held stays at the pose. `check`: the piece sensor has to see it until then."""
-    off = effector(context, robot, on=False, then=partial(context.stations.store, pose))
+def let_go(context: Context, robot: str, *, check: PieceCheck) -> list[Behaviour]:
+    """Effector off; what it held stays where it is. `check`: the piece sensor has to see it until then."""
+    off = effector(context, robot, on=False)
     if not check:
         return [off]
     lost = Failure(reason=Reason.PART_LOST, sentence=parts.LOST(arm=robot))
     wait_s, needed = context.timing.piece_wait_s, check is True
     brought = Piece(PIECE_BROUGHT(), context, robot, wait_s, lost, needed=needed)
     return [brought, Carry(ARRIVED(), context.parts, None), off]
+
+
+def _way_home_if_ours(context: Context, robot: str, *, notes_origins: bool) -> list[Behaviour]:
+    """Its way home; of a robot that cells share only while the cell holds it."""
+    way = _way_home(context, robot, notes_origins=notes_origins)
+    if robot not in context.cell.shared:
+        return way
+    of_others = Unless(NOT_OURS(robot=robot), lambda: not context.devices.holds(robot))
+    return [selector(HOME_AGAIN(arm=robot), of_others, sequence(HOME_AGAIN(arm=robot), *way))]
 
 
 def _way_home(context: Context, robot: str, *, notes_origins: bool) -> list[Behaviour]:
@@ -319,12 +361,15 @@ def _rise(context: Context, robot: str) -> list[Behaviour]:
 
 
 def _settle(context: Context, robots: Sequence[str]) -> Behaviour:
+    def ours() -> Iterator[str]:
+        return filter(context.devices.has, robots)
+
     def settled() -> bool:
         ending = not all(entry.finishes for entry in context.commands.open())
-        return not ending and not any(context.robots.obstacle(robot) for robot in robots)
+        return not ending and not any(context.robots.obstacle(robot) for robot in ours())
 
     def unsettled() -> Failure:
-        found = (context.robots.obstacle(robot, was=True) for robot in robots)
+        found = (context.robots.obstacle(robot, was=True) for robot in ours())
         unended = UNENDED(arm=tuple(robots) or context.cell.name)
         ended = Failure(reason=Reason.STOP_UNCONFIRMED, sentence=unended)
         return next((failure for failure in found if failure), ended)

@@ -28,7 +28,13 @@ REMEMBERS = composites.Sequence | composites.Selector | composites.Parallel
 
 
 class Keeps:
-    """A node of ours: what is kept of it for the next start, and how it goes on then."""
+    """A node of ours: what is kept of it for the next start, and how it goes on then.
+
+    `ends_unkept`: nothing but its status is kept of it unless it is RUNNING.
+    """
+
+    ends_unkept = False
+    status: Status
 
     def kept(self) -> Mapping[str, Any] | None:
         """The state that has to be kept of it beside its status."""
@@ -79,25 +85,37 @@ class Planned:
 
 @dataclass(frozen=True, kw_only=True)
 class Begun:
-    """Start of a task, which stays the same while it runs; `made` is the hash of its tree."""
+    """Start of a task, which stays the same while it runs; `made` is the hash of its tree.
+
+    `envelope` are the effectors that it may have told to switch without this being durable: after a power cut
+    nobody knows what they hold before they report it.
+    """
 
     made: str
     planned: Planned
+    envelope: Sequence[str] = ()
 
     @cached_property
     def text(self) -> str:
         """It as it is kept, written once and not at every step."""
-        return ENCODE([VERSION, self.made, self.planned.standing, self.planned.positions])
+        planned = self.planned
+        return ENCODE([VERSION, self.made, planned.standing, planned.positions, self.envelope])
 
     @classmethod
     def read(
-        cls, version: int, made: str, standing: Mapping[str, str], positions: Mapping[str, Any]
+        cls,
+        version: int,
+        made: str,
+        standing: Mapping[str, str],
+        positions: Mapping[str, Any],
+        envelope: Sequence[str] = (),
     ) -> Begun:
         """It as it was kept."""
         if version != VERSION:
             raise ValueError("it is of another version")
         stood = {name: _position(each) for name, each in positions.items()}
-        return cls(made=made, planned=Planned(standing=standing, positions=stood))
+        planned = Planned(standing=standing, positions=stood)
+        return cls(made=made, planned=planned, envelope=tuple(map(str, envelope)))
 
 
 class Trail(NamedTuple):
@@ -140,7 +158,7 @@ class Trail(NamedTuple):
             said |= {
                 "nodes": {int(number): each for number, each in said["nodes"].items()},
                 "known": {name: _known(*each) for name, each in said["known"].items()},
-                "failure": None if failure is None else _read_failure(*failure),
+                "failure": None if failure is None else read_failure(*failure),
                 "stranded": None if stranded is None else retold(*stranded),
                 "answers": [TaskAnswer(**each) for each in said["answers"]],
                 "unchecked": [Check(each) for each in said["unchecked"]],
@@ -157,7 +175,8 @@ def statuses(nodes: Iterable[Behaviour]) -> str:
 
 def kept_of(nodes: Iterable[tuple[int, Keeps]]) -> dict[int, Mapping[str, Any]]:
     """The state that is kept of nodes beside their status, by number."""
-    return {number: state for number, node in nodes if (state := node.kept())}
+    asked = [each for each in nodes if each[1].status is Status.RUNNING or not each[1].ends_unkept]
+    return {number: state for number, node in asked if (state := node.kept())}
 
 
 def put_back(nodes: Sequence[Behaviour], trail: Trail) -> list[Keeps]:
@@ -200,19 +219,25 @@ def command_kept(entry: Entry | None) -> dict[str, Any] | None:
     }
 
 
+def failure_kept(failure: Failure) -> Any:
+    """A failure as it is kept."""
+    return [failure.reason.value, str(failure.sentence), failure.sentence.data()]
+
+
+def read_failure(reason: str, english: str, data: Any) -> Failure:
+    """A failure as it was kept."""
+    return Failure(reason=Reason(reason), sentence=retold(english, data))
+
+
 def _plain(said: Failure | Sentence | TaskAnswer) -> Any:
     if isinstance(said, TaskAnswer):
         return vars(said)
     if isinstance(said, Failure):
-        return [said.reason.value, *_plain(said.sentence)]
+        return failure_kept(said)
     return [str(said), said.data()]
 
 
 ENCODE = json.JSONEncoder(separators=(",", ":"), default=_plain).encode
-
-
-def _read_failure(reason: str, english: str, data: Any) -> Failure:
-    return Failure(reason=Reason(reason), sentence=retold(english, data))
 
 
 def _known(boot: int | None, receipt: Sequence[int] | None, more: int, bridge: int | None = None) -> Known:

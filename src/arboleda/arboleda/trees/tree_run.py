@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
+from typing import Any
 
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
+from py_trees.composites import Selector, Sequence
 
 from arboleda.dispatch.ledger import State
 from arboleda.model.errors import ArboledaError
@@ -18,6 +20,7 @@ from . import steps
 from .context import Context
 from .leaves import Act, Leaf, title_of
 from .trail import Keeps
+from .tree_nodes import nodes_of
 
 BROKE_IN_TREE = Phrase("cell.broke_in_tree", "{cell}: {kind} in the tree: {error}")
 IN_RECOVERY = Phrase("step.in_recovery", "recovery: {step}")
@@ -53,7 +56,7 @@ class TreeRun:
 
     def grow(self, tree: Behaviour) -> None:
         """Take a tree, as it is."""
-        self.tree, self.nodes = tree, list(tree.iterate())
+        self.tree, self.nodes = tree, nodes_of(tree)
         keepers = [(number, node) for number, node in enumerate(self.nodes) if isinstance(node, Keeps)]
         self.keepers = [(number, node) for number, node in keepers if type(node).kept is not Keeps.kept]
         self._acts = [node for node in self.nodes if isinstance(node, Act)]
@@ -93,7 +96,7 @@ class TreeRun:
         return Course(seconds=round(now - self._began, 3), begun=begun)
 
     @property
-    def steps(self) -> Sequence[tuple[str, float]]:
+    def steps(self) -> list[tuple[str, float]]:
         """Those that have begun in this start of the plant, as a course names them, and how many s ago, the
         last first; none in a recovery.
         """
@@ -118,7 +121,7 @@ class TreeRun:
                 yield f"{node.name} #{number[node.name]}", node.began
 
     def _running(self) -> list[Behaviour]:
-        nodes = self.tree.iterate() if self.tree else ()
+        nodes = self.nodes if self.tree else ()
         return [node for node in nodes if node.status is Status.RUNNING]
 
     def _tick_to_rest(self) -> Status:
@@ -130,10 +133,24 @@ class TreeRun:
             if tree.status is not Status.RUNNING:
                 return tree.status
             before, last = self._signature(), before
-            if before == last:
+            if before == last or self._waits():
                 self.rested = before
                 return tree.status
         raise ArboledaError(f"the tree did not come to rest in {TICK_BOUND} ticks")
+
+    def _waits(self) -> bool:
+        """True where one command is under way, and all above it would only pass another tick on to it."""
+        node: Any
+        for node in self.nodes:
+            if node.status is not Status.RUNNING:
+                continue
+            kind = type(node)
+            if kind is Sequence or (kind is Selector and node.current_child is node.children[0]):
+                if not node.memory:  # it would ask those before once more
+                    return False
+            elif kind is not Act or not node.waits:
+                return False
+        return True
 
     def _signature(self) -> tuple[object, ...]:
         return (self._context.commands.sent, [node.status for node in self.nodes])
@@ -160,7 +177,7 @@ def path_of(node: Behaviour) -> str:
 
 def step_of(tree: Behaviour | None) -> Sentence | None:
     """The name of the step that runs, not of its parts nor of what frames it; a recovery's steps say so."""
-    running = [node for node in tree.iterate() if node.status is Status.RUNNING] if tree else []
+    running = [node for node in nodes_of(tree) if node.status is Status.RUNNING] if tree else []
     if not running:
         return None
     step = running[0]

@@ -11,7 +11,8 @@ Row = dict[str, Any]
 
 
 def places(model: PlantModel) -> Row:
-    """Robots with their floor places and speeds, cells with grid and poses, zones with what lies in them.
+    """Robots with their floor places and speeds, cells with grid and poses, the places of parts, zones with
+    what lies in them.
 
     Robots and cells that offer no drawing are left out.
     """
@@ -24,6 +25,7 @@ def places(model: PlantModel) -> Row:
             if drawn is not None
         ],
         "cells": [{"name": name, **drawing} for name, drawing in cells if drawing is not None],
+        "parts": [spot for cell in model.cells for spot in _of_parts(cell)],
         "zones": [{"zone": zone, "spots": _spots(model, zone)} for zone in model.zones],
     }
 
@@ -44,6 +46,24 @@ def handover(cell: Cell) -> Row | None:
         "pickups": [list(pose.joints) for pose in taker.at(cell.handover.targets)],
         "stations": [list(station.joints) for station in cell.stations],
     }
+
+
+def _of_parts(cell: Cell) -> list[Row]:
+    """The places of a cell that one of its drawn robots reaches: {cell, place, robot, q} of the first."""
+    drawn = [space for space in cell.spaces if _is_drawn(space)]
+    reached = [
+        (place.target, next((space for space in drawn if place.target in space.targets), None))
+        for place in cell.counted
+    ]
+    return [
+        {"cell": cell.name, "place": target, "robot": space.robot.name, "q": _joints(space, target)}
+        for target, space in reached
+        if space is not None
+    ]
+
+
+def _joints(space: Workspace, target: str) -> list[float]:
+    return _numbers(space.targets[target].q, (space.robot.drawn() or {}).get("nodes"))
 
 
 def _spots(model: PlantModel, zone: str) -> list[Row]:

@@ -15,6 +15,7 @@ from arboleda.model.commands import Motion, Position, Switch
 from arboleda.model.grips import Grip
 from arboleda.model.plant_model import Cell
 from arboleda.trees.leaves import Act
+from arboleda.trees.tree_nodes import nodes_of
 
 Row = dict[str, Any]
 UNDER_WAY = frozenset({State.SENT, State.RUNNING})
@@ -32,14 +33,14 @@ def positions(plant: Plant) -> Row:
 
 def in_parts(plant: Plant) -> Generator[None, None, Row]:
     """The `positions`, one part after the other: the plant may be stepped between two of them."""
-    robots, parts, stored = [], {}, {}
+    robots, parts, books = [], {}, {}
     for belief in plant.dispatcher.beliefs.values():
         robots.append(_robot(plant, belief))
         yield
     for name, cell in plant.cells.items():
-        parts[name], stored[name] = part(cell), sorted(cell.context.stations.stored)
+        parts[name], books[name] = part(cell), at_places(cell)
         yield
-    return {"robots": robots, "parts": parts, "stored": stored, "zones": plant.zones.snapshot()}
+    return {"robots": robots, "parts": parts, "books": books, "zones": plant.zones.snapshot()}
 
 
 def goal(entry: Entry | None) -> Row | None:
@@ -56,10 +57,11 @@ def part(run: CellRun) -> Row | None:
     "q"}.
 
     Only what an effector holds is known by itself; where a part waits, and where it was put, follows from
-    what the tree has done so far. None where nobody draws the work of such a cell.
+    what the tree has done so far. None where nobody draws the work of such a cell, or where the books say who
+    carries a part.
     """
     cell = run.cell
-    if cell.handover is None:
+    if cell.handover is None or cell.places:
         return None
     for holder in cell.holders:
         grip = run.context.parts.grip(holder)
@@ -78,8 +80,17 @@ def part(run: CellRun) -> Row | None:
     return {"at": "pose", "q": list(pose.joints)}
 
 
+def at_places(run: CellRun) -> Row:
+    """The parts of a cell by its books: how many at each place, and the robots that carry one, which may be
+    sure.
+    """
+    places = run.context.places
+    follows = run.cell.handover is not None and not run.cell.places  # as `part` does
+    return {"places": places.counts, "carriers": {} if follows else places.carriers}
+
+
 def _put_down(sent: list[Entry], let_go: Entry, cell: Cell) -> Row | None:
-    """The pose at which the arm let go of the part; None if it lies in a station, which shows as `stored`."""
+    """The pose at which the arm let go of the part; None if it lies in a station: the books have it."""
     before = [_way(entry)[-1] for entry in sent[: sent.index(let_go)] if _way(entry)]
     places = [place for place in before if isinstance(place, tuple)]
     if not places or any(places[-1] == station.q for station in cell.stations):
@@ -97,7 +108,7 @@ def _grips(entry: Entry) -> bool | None:
 
 def _sent(tree: Behaviour) -> list[Entry]:
     """The commands that a tree has given, in order."""
-    entries = [node.entry for node in tree.iterate() if isinstance(node, Act) and node.entry is not None]
+    entries = [node.entry for node in nodes_of(tree) if isinstance(node, Act) and node.entry is not None]
     return sorted(entries, key=lambda entry: entry.sent_at)
 
 

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Generator, Iterable, Iterator
-from dataclasses import replace
+from collections.abc import Callable, Generator, Iterable, Iterator
+from dataclasses import dataclass, replace
 from typing import Any
 
 from arboleda.core import reasons
@@ -20,27 +20,42 @@ from arboleda.model.messages import Check, OperatorRequest, TaskChanged, Verb
 from arboleda.model.plant_model import Cell, PlantModel, Robot
 from arboleda.model.sentence import BOTH, Sentence
 from arboleda.model.task import Task
+from arboleda.model.verbs import Scope, refusable
 from arboleda.trees.tree_run import step_of
 
 from . import forms, geometry, tree_view, twin_view
 
-OF_ROBOTS = (Verb.CLEAR, Verb.RELEASE, Verb.HOME)
-OF_CELLS = (
-    *OF_ROBOTS,
-    Verb.RESET,
-    Verb.HOLD,
-    Verb.RESUME,
-    Verb.CANCEL,
-    Verb.RETRY,
-    Verb.ABANDON,
-    Verb.UNLOAD,
-)
+OF_ROBOTS = refusable(Scope.ROBOT)
+OF_CELLS = refusable(Scope.CELL)
 RECENT = 20  # ended tasks that a snapshot shows
 
 
-def snapshot(plant: Plant) -> dict[str, Any]:
+@dataclass(frozen=True, kw_only=True)
+class CellPart:
+    """The part of a view that is about one cell: its row, those of its robots, those of its open tasks."""
+
+    cell: dict[str, Any]
+    robots: list[dict[str, Any]]
+    tasks: dict[str, dict[str, Any]]
+
+
+PartOf = Callable[[Plant, CellRun], CellPart]
+
+
+def cell_part(plant: Plant, cell: CellRun) -> CellPart:
+    """The part of a cell, made anew."""
+    mine = [robot.name for robot in cell.cell.robots if plant.model.cell_of[robot.name] is cell.cell]
+    waiting = [cell.task, *cell.queue] if cell.task else cell.queue
+    return CellPart(
+        cell=_cell(plant, cell),
+        robots=[_robot(plant, plant.dispatcher.beliefs[name]) for name in mine],
+        tasks={task.id: _task(task, plant.now) for task in waiting},
+    )
+
+
+def snapshot(plant: Plant, part_of: PartOf = cell_part) -> dict[str, Any]:
     """Everything a screen shows, as of the plant's last step; positions in rad and m."""
-    parts = in_parts(plant)
+    parts = in_parts(plant, part_of)
     while True:
         try:
             next(parts)
@@ -48,7 +63,7 @@ def snapshot(plant: Plant) -> dict[str, Any]:
             return dict(end.value)
 
 
-def in_parts(plant: Plant) -> Generator[None, None, dict[str, Any]]:
+def in_parts(plant: Plant, part_of: PartOf = cell_part) -> Generator[None, None, dict[str, Any]]:
     """The `snapshot`, one part after the other: the plant may be stepped between two of them.
 
     A cell, its robots and its open tasks are of one moment. No row is older than `at`; zones, acts and tasks
@@ -57,11 +72,10 @@ def in_parts(plant: Plant) -> Generator[None, None, dict[str, Any]]:
     at, cells, robots = plant.now, [], []
     open_tasks: dict[str, dict[str, Any]] = {}
     for cell in plant.cells.values():
-        cells.append(_cell(plant, cell))
-        mine = [robot.name for robot in cell.cell.robots if plant.model.cell_of[robot.name] is cell.cell]
-        robots += [_robot(plant, plant.dispatcher.beliefs[name]) for name in mine]
-        waiting = [cell.task, *cell.queue] if cell.task else cell.queue
-        open_tasks |= {task.id: _task(task, plant.now) for task in waiting}
+        part = part_of(plant, cell)
+        cells.append(part.cell)
+        robots += part.robots
+        open_tasks |= part.tasks
         yield
     return {
         "plant": plant.model.name,
@@ -95,6 +109,7 @@ def _cell_layout(cell: Cell) -> dict[str, Any]:
         **_handover(cell),
         "devices": _devices(cell),
         "stations": len(cell.stations),
+        "places": [place.target for place in cell.places],
         **_paths(cell),
         "recipes": forms.recipes(cell),
     }
@@ -223,7 +238,24 @@ def _cell(plant: Plant, cell: CellRun) -> dict[str, Any]:
         "advice": [_advice(each) for each in ways],
         "refused": _refused(plant, cell.cell.name, OF_CELLS),
         "tree": tree_view.rows(cell.tree, now) if cell.tree else [],
+        "places": _places(cell) if cell.cell.counted else [],
     }
+
+
+def _places(run: CellRun) -> list[dict[str, Any]]:
+    """The places of a cell: the parts that each has, how many it holds, its device or number in the rack."""
+    counts, stations = run.context.places.counts, run.cell.station_targets
+    return [
+        {
+            "name": place.target,
+            "parts": counts[place.target],
+            "holds": place.holds,
+            "device": place.device,
+            "by_people": place.by_people,
+            "station": stations.index(place.target) if place.target in stations else None,
+        }
+        for place in run.cell.counted
+    ]
 
 
 def _not_ready(cell: CellRun, ways: tuple[Advice, ...]) -> Sentence | None:

@@ -25,6 +25,7 @@ from arboleda.core.leaving import StopLeft
 from arboleda.model.errors import ArboledaError, PayloadError, QueueFull, TextError
 from arboleda.model.messages import Outcome, Verb
 from arboleda.model.outside import plain, quoted
+from arboleda.model.verbs import Arguments, from_text
 from arboleda.store.task_rows import COMMAND, HTTP, TaskRow, answers_of, choice_of, table, unchecked_of
 
 from . import limits, login, metrics, openapi, stream
@@ -32,16 +33,13 @@ from .auth import SUBMIT, Forbidden, require
 from .limits import LATER_S
 from .plain_json import PlainJson, explained
 from .plant_api import COMMAND_LINE, PlantApi
+from .queries import WRONG, Answers, asked, described
 from .request import is_api
+from .routes import routers as looks
 from .schema import (
     Act,
-    CellOee,
     Done,
     KeptTask,
-    OeeFilter,
-    Offer,
-    Promise,
-    PromiseFilter,
     Sentence,
     Snapshot,
     Task,
@@ -79,8 +77,12 @@ class NotFound(BaseRoute):
 
 log = logging.getLogger(__name__)
 Answer = TypeVar("Answer")
-Query = TypeVar("Query", bound=BaseModel)
 
+EXAMPLE = (
+    "sis_a 0B 7",
+    '{"cell": "sis_a", "values": {"path": "0B", "station": 7}}',
+    '["sis_a", "sis_b"]',
+)
 ANSWER_S = 5.0
 ABOUT = """Look at a running plant, give it tasks, and operate it. What is refused says why in one sentence.
 Where the plant is open to a network every request carries a token (Authorization: Bearer ...). A process
@@ -88,7 +90,6 @@ that stands by for the plant answers 307 with the address of the one that leads 
 its token itself, or 503 with Retry-After. Who names a plant in a header Arboleda-Plant is refused with 421
 where another one answers. The stop is a stop in software and no safety function."""
 STATUS = {TextError: 422, PayloadError: 422, Forbidden: 403}
-Answers = dict[int | str, dict[str, Any]]
 OTHERS: Answers = {
     "default": {"model": Sentence, "description": "401 without a token, 413 too long, 429 too often, ..."}
 }
@@ -97,7 +98,6 @@ REFUSED: Answers = {
     422: {"model": Sentence, "description": "The request is wrong."},
     503: {"model": Sentence, "description": "Not now; with Retry-After where a queue is full."},
 }
-WRONG: Answers = {422: {"model": Sentence, "description": "The request is wrong."}}
 ACCEPTED: Answers = {
     202: {
         "model": Done,
@@ -129,7 +129,7 @@ def make_app(
     app.add_exception_handler(ArboledaError, refuse)
     app.add_exception_handler(HTTPException, refuse)
     app.add_exception_handler(Exception, own_up)
-    routers = [routes(side), stream.routes(side, streams), login.routes(), openapi.routes(app)]
+    routers = [routes(side), *looks(side), stream.routes(side, streams), login.routes(), openapi.routes(app)]
     routers += [metrics.routes(counts)] if counts is not None else []
     for router in routers:
         app.include_router(router, responses=OTHERS)
@@ -159,7 +159,7 @@ def _look(api: APIRouter, side: PlantApi) -> None:
         seen = await run_in_threadpool(side.latest)
         return PlainJson([explained(task) for task in seen["tasks"]])
 
-    wanted: dict[str, Any] = {"responses": WRONG, "openapi_extra": _query(TaskFilter)}
+    wanted: dict[str, Any] = {"responses": WRONG, "openapi_extra": described(TaskFilter)}
 
     @api.get("/history", response_model=list[KeptTask], **wanted)
     async def history(request: Request) -> JSONResponse:
@@ -172,24 +172,6 @@ def _look(api: APIRouter, side: PlantApi) -> None:
         """Tasks of all starts as a table for other programs, with a line of names."""
         rows = await run_in_threadpool(side.history, asked(request, TaskFilter).query())
         return PlainTextResponse(table(rows), media_type="text/csv; charset=utf-8")
-
-    about: dict[str, Any] = {"responses": WRONG, "openapi_extra": _query(OeeFilter)}
-
-    @api.get("/oee", response_model=list[CellOee], **about)
-    async def oee(request: Request) -> JSONResponse:
-        """The OEE of the cells, of the last 24 hours where no time is asked for; docs/how-to/oee.md."""
-        rows = await run_in_threadpool(side.oee, asked(request, OeeFilter).query())
-        return PlainJson([row.data() for row in rows])
-
-    @api.get("/recipes", response_model=list[Offer])
-    async def recipes() -> JSONResponse:
-        """The recipes of each cell, their parameters, and the values that these can have."""
-        return PlainJson(side.offers())
-
-    @api.get("/promises", response_model=list[Promise], responses=WRONG, openapi_extra=_query(PromiseFilter))
-    async def promises(request: Request) -> JSONResponse:
-        """The time at which each cell named by a task text would have done it; queues no task."""
-        return PlainJson(side.promises(asked(request, PromiseFilter).text))
 
     @api.get("/tasks/{task_id}", response_model=Task, responses=UNKNOWN)
     async def task(task_id: str) -> JSONResponse:
@@ -221,7 +203,7 @@ def _submit(api: APIRouter, side: PlantApi) -> None:
     async def add_task(request: Request) -> JSONResponse:
         """Queue a task, written or as a form; 422 where it is refused, 503 where the queue is full."""
         require(request.scope["arboleda.role"], SUBMIT)
-        asked = task_asked(await request.body())
+        asked = task_asked(await request.body(), side.offers())
         text = asked.text if isinstance(asked, TaskText) else side.spelled(**asked.named())
         is_ours = request.headers.get("user-agent", "").startswith(COMMAND_LINE)
         why = asked.why if isinstance(asked, TaskText) else ""
@@ -251,7 +233,8 @@ def _operate(api: APIRouter, side: PlantApi) -> None:
     async def operated(word: str, scope: str, request: Request) -> JSONResponse:
         verb, arguments = verb_of(word), verb_arguments(await request.body())
         require(request.scope["arboleda.role"], verb.value)
-        answer = await in_time(side.operate(verb, arguments.scoped(verb, scope), by_hand=arguments.by_hand))
+        of, told = named(verb, scope, arguments.of(verb))
+        answer = await in_time(side.operate(verb, of, by_hand=arguments.by_hand, arguments=told))
         if answer.refusal is not None:
             return PlainJson(explained({"sentence": answer.refusal}), status_code=409)
         known = {"act": answer.act, "outcome": answer.outcome, "why": answer.why}
@@ -280,6 +263,11 @@ def verb_of(word: str) -> Verb:
         raise PayloadError(f"{quoted(word, 80)} is not an operator's verb; there are {names}.") from None
 
 
+def named(verb: Verb, scope: str, arguments: Arguments) -> tuple[str, Arguments]:
+    """Scope and arguments; an address that has the arguments in its scope, as `ana yes`, is deprecated."""
+    return (scope, arguments) if arguments else from_text(verb, scope)
+
+
 def verb_arguments(body: bytes) -> VerbArguments:
     """The arguments in a body, none where it is empty; raises PayloadError for anything else."""
     try:
@@ -287,34 +275,34 @@ def verb_arguments(body: bytes) -> VerbArguments:
     except ValidationError:
         raise PayloadError(
             'The body may be empty or JSON like {"by_hand": true}, for answer {"answer": "yes"}, '
-            "and nothing else."
+            'for unload {"station": 7}, and nothing else.'
         ) from None
 
 
-def task_asked(body: bytes) -> TaskText | TaskForm:
-    """The task in a body, `{"text": "..."}` or cell, recipe and values; PayloadError for anything else."""
+def task_asked(body: bytes, offers: Sequence[dict[str, Any]] = ()) -> TaskText | TaskForm:
+    """The task in a body, `{"text": "..."}` or cell, recipe and values; PayloadError for anything else.
+
+    Its example is the first of `offers`.
+    """
     for form in (TaskText, TaskForm):
         with suppress(ValidationError):
             return form.model_validate_json(body)
+    text, named, cells = next(map(_example, (each for each in offers if each["recipes"])), EXAMPLE)
     raise PayloadError(
-        'The body must be JSON like {"text": "sis_a 0B 7"} or '
-        '{"cell": "sis_a", "values": {"path": "0B", "station": 7}}, for several cells '
-        '{"any_of": ["sis_a", "sis_b"], "values": {...}}, and nothing else.'
+        f'The body must be JSON like {{"text": "{text}"}} or {named}, for several cells '
+        f'{{"any_of": {cells}, "values": {{...}}}}, and nothing else.'
     )
 
 
-def asked(request: Request, model: type[Query]) -> Query:
-    """The query parameters as `model`; raises PayloadError, which names the first wrong one."""
-    try:
-        return model.model_validate(dict(request.query_params))
-    except ValidationError as error:
-        found = error.errors(include_url=False, include_context=False)[0]
-        name = quoted(str(found["loc"][0]), 80)
-        if found["type"] == "extra_forbidden":
-            raise PayloadError(
-                f"{name} is nothing to ask for; there are {', '.join(model.model_fields)}."
-            ) from None
-        raise PayloadError(f"{name} is {quoted(str(found['input']), 80)}: {found['msg'].lower()}.") from None
+def _example(offer: dict[str, Any]) -> tuple[str, str, str]:
+    """A task of the first recipe of a cell as a text and by names, and how several cells are named."""
+    recipe = offer["recipes"][0]
+    values = {
+        each["name"]: each["choices"][0] if each["choices"] else each["lower"]
+        for each in recipe["parameters"]
+    }
+    named = {"cell": offer["cell"], "recipe": recipe["name"], "values": values}
+    return recipe["example"], json.dumps(named, ensure_ascii=False), f'["{offer["cell"]}", ...]'
 
 
 async def refuse(_request: Request, error: Exception) -> JSONResponse:
@@ -337,14 +325,6 @@ def _body(*models: type[BaseModel], required: bool = True) -> dict[str, Any]:
     schemas = [model.model_json_schema() for model in models]
     schema = schemas[0] if len(schemas) == 1 else {"anyOf": schemas}
     return {"requestBody": {"content": {"application/json": {"schema": schema}}, "required": required}}
-
-
-def _query(model: type[BaseModel]) -> dict[str, Any]:
-    """The OpenAPI description of the query parameters of `model`."""
-    properties = model.model_json_schema()["properties"]
-    return {
-        "parameters": [{"name": name, "in": "query", "schema": each} for name, each in properties.items()]
-    }
 
 
 def _kept(row: TaskRow) -> dict[str, Any]:

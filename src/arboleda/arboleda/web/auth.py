@@ -9,10 +9,10 @@ import time
 from collections import OrderedDict
 from collections.abc import Callable
 from dataclasses import dataclass
-from enum import Enum
 
 from arboleda.model.errors import ArboledaError
-from arboleda.model.messages import Verb
+from arboleda.model.verbs import Role as Role  # of logins, whoever asks for them
+from arboleda.model.verbs import Verb
 
 log = logging.getLogger(__name__)
 
@@ -20,15 +20,8 @@ SESSION_S = 7 * 24 * 3600.0
 SESSIONS = 256  # only holders of a token make one; the oldest makes room
 
 
-class Role(str, Enum):
-    """Role of a client: a viewer looks and stops, an operator may do everything."""
-
-    VIEWER = "viewer"
-    OPERATOR = "operator"
-
-
 SUBMIT = "submit"
-EVERYBODY_MAY = {Verb.STOP.value}
+EVERYBODY_MAY = {verb.value for verb in Verb if verb.row.role is Role.VIEWER}
 Tokens = Callable[[], "dict[Role, str]"]
 
 

@@ -11,6 +11,7 @@ from fastapi import APIRouter, Request
 from fastapi.responses import HTMLResponse, RedirectResponse, Response
 
 from .auth import SESSION_S
+from .languages import spoken, texts
 from .request import LOGIN, LOGOUT, RequestHead, cookie_name
 
 STYLE = """
@@ -33,24 +34,6 @@ def page(title: str, body: str, *, language: str = "en", status: int = 200) -> H
     head = f"<title>{escape(title)}</title><style>{STYLE}</style>"
     text = f'<!doctype html><html lang="{language}"><head>{META}{head}</head><body>{body}</body></html>'
     return HTMLResponse(text, status_code=status, headers={"content-security-policy": POLICY})
-
-
-WORDS = {
-    "en": {
-        "title": "Log in to the plant",
-        "token": "Token",
-        "hint": "On the plant's machine, arboleda token shows it.",
-        "enter": "Log in",
-        "wrong": "This token is not valid.",
-    },
-    "es": {
-        "title": "Entrar en la planta",
-        "token": "Clave",
-        "hint": "En la máquina de la planta la muestra arboleda token.",
-        "enter": "Entrar",
-        "wrong": "Esta clave no es válida.",
-    },
-}
 
 
 def routes() -> APIRouter:
@@ -101,13 +84,13 @@ def _token(body: bytes) -> bytes:
 
 
 def _form(request: Request, *, wrong: bool = False) -> HTMLResponse:
-    asked = request.query_params.get("lang") or request.headers.get("accept-language", "")
-    language = "es" if asked.lower().startswith("es") else "en"
-    words = {key: escape(value) for key, value in WORDS[language].items()}
+    browser = request.headers.get("accept-language", "").split(",")
+    language = spoken([request.query_params.get("lang"), *browser])
+    words = {key: escape(value) for key, value in texts(language, "login").items()}
     trouble = f'<p role="alert">{words["wrong"]}</p>' if wrong else ""
     to = escape(RequestHead(request.scope).at(LOGIN))
     body = f"""<h1>{words["title"]}</h1>{trouble}<form method="post" action="{to}">
 <p><label>{words["token"]}
 <input name="token" type="password" autocomplete="current-password" required autofocus></label></p>
 <p>{words["hint"]}</p><p><button>{words["enter"]}</button></p></form>"""
-    return page(WORDS[language]["title"], body, language=language, status=401 if wrong else 200)
+    return page(texts(language, "login")["title"], body, language=language, status=401 if wrong else 200)

@@ -11,7 +11,7 @@ from fastapi import APIRouter, FastAPI
 from fastapi.responses import HTMLResponse, JSONResponse
 
 from arboleda.model.messages import Verb
-from arboleda.views.verb_words import ABOUT
+from arboleda.views.verb_words import ABOUT, argument_names, scope_words
 
 from .login import page
 
@@ -52,10 +52,18 @@ def render(api: Schema) -> str:
 
 
 def _verbs() -> str:
-    """The table of operators' verbs as HTML: scope, effect, and the cases in which each is refused."""
-    head = "<tr><th>verb</th><th>scope</th><th>what it does</th><th>refused</th></tr>"
+    """The table of operators' verbs as HTML: scope, arguments, role, effect, and when each is refused."""
+    names = ("verb", "scope", "arguments", "who may", "what it does", "refused")
+    head = f"<tr>{''.join(f'<th>{name}</th>' for name in names)}</tr>"
     rows = (
-        (verb.value, ", ".join(words.scopes), _marked(words.does), _marked(words.refused))
+        (
+            verb.value,
+            ", ".join(scope_words(verb)),
+            ", ".join(argument_names(verb)),
+            verb.row.role.value,
+            _marked(words.does),
+            _marked(words.refused),
+        )
         for verb, words in ABOUT.items()
     )
     return f"<table>{head}{''.join(map(_verb_row, rows))}</table>"

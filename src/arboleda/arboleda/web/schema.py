@@ -4,14 +4,17 @@ from __future__ import annotations
 
 from typing import Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, FiniteFloat, model_validator
+from pydantic import BaseModel, ConfigDict, Field, create_model, model_validator
 
 from arboleda.core.cell_states import CellState
 from arboleda.core.text import BETWEEN_CELLS
 from arboleda.model.errors import PayloadError
 from arboleda.model.messages import Outcome, Verb
-from arboleda.store.oee_rows import OeeQuery
+from arboleda.model.verbs import Arguments
 from arboleda.store.task_rows import TaskQuery
+from arboleda.views.verb_words import ABOUT
+
+ANYTHING = ".+"  # the form of an argument that has none of its own
 
 
 class _RequestModel(BaseModel):
@@ -20,7 +23,7 @@ class _RequestModel(BaseModel):
     model_config = ConfigDict(extra="forbid", strict=True)
 
 
-class _ResponseModel(BaseModel):
+class ResponseModel(BaseModel):
     """Answer of the API; more keys may be added to it."""
 
     model_config = ConfigDict(extra="allow")
@@ -52,28 +55,6 @@ class TaskFilter(BaseModel):
             before=self.before,
             limit=self.limit,
         )
-
-
-class OeeFilter(BaseModel):
-    """Filter for OEE: a cell and a span; by default the last 24 hours of all cells."""
-
-    model_config = ConfigDict(extra="forbid")
-
-    cell: str = ""
-    since: FiniteFloat | None = Field(default=None, description="Unix time in seconds.")
-    until: FiniteFloat | None = Field(default=None, description="Not later than now.")
-
-    def query(self) -> OeeQuery:
-        """This request as a query to the plant's memory."""
-        return OeeQuery(cell=self.cell, since_s=self.since, until_s=self.until)
-
-
-class PromiseFilter(BaseModel):
-    """Task for which promises are asked."""
-
-    model_config = ConfigDict(extra="forbid")
-
-    text: str = Field(max_length=200, examples=["sis_a,sis_b 0B 7"])
 
 
 class TaskText(_RequestModel):
@@ -110,7 +91,7 @@ class TaskForm(_RequestModel):
         return named | {"cell": self.cell or BETWEEN_CELLS.join(self.any_of)}
 
 
-class VerbArguments(_RequestModel):
+class _ByHand(_RequestModel):
     """Arguments of an operator's verb."""
 
     by_hand: bool = Field(
@@ -118,25 +99,34 @@ class VerbArguments(_RequestModel):
         description="Nothing moves, you declare what was done by hand: for home, that the robot is at its "
         "reference; for release, that the part was taken out.",
     )
-    answer: str | None = Field(
-        default=None, min_length=1, description="For `answer`, whose scope is a person: one of the answers."
-    )
-    question: str | None = Field(
-        default=None,
-        pattern=r"^[0-9]+-[0-9]+$",
-        description="For `answer`: the `id` of the question, where only that one is meant.",
-    )
 
-    def scoped(self, verb: Verb, scope: str) -> str:
-        """The scope as the plant takes it, with the answer; raises PayloadError where none belongs."""
-        if self.answer is None and self.question is None:
-            return scope
-        if verb is not Verb.ANSWER or self.answer is None:
-            raise PayloadError("Only the verb answer has an answer, and a question only beside an answer.")
-        return " ".join([scope, *([f"#{self.question}"] if self.question else []), self.answer])
+    def of(self, verb: Verb) -> Arguments:
+        """The arguments of this verb; raises PayloadError for one that it does not take."""
+        told = self.model_dump(exclude={"by_hand"}, exclude_none=True)
+        takes = {each.name: each for each in verb.arguments}
+        for name in told:
+            if name not in takes:
+                raise PayloadError(f"{verb.value} takes no {name}.")
+            if (beside := takes[name].beside) and beside not in told:
+                raise PayloadError(f"A {name} is only allowed beside {beside}.")
+        return tuple(told.items())
 
 
-class Sentence(_ResponseModel):
+def _fields() -> dict[str, Any]:
+    """A field for each argument of each verb."""
+    found: dict[str, Any] = {}
+    for verb in Verb:
+        for each in verb.arguments:
+            limits = {"ge": 0} if each.type is int else {"pattern": f"^(?:{each.pattern or ANYTHING})$"}
+            said = f"For `{verb.value}`: {ABOUT[verb].arguments[each.name]}"
+            found[each.name] = (each.type | None, Field(default=None, description=said, **limits))
+    return found
+
+
+VerbArguments: type[_ByHand] = create_model("VerbArguments", __base__=_ByHand, **_fields())
+
+
+class Sentence(ResponseModel):
     """Reason of a refusal or failure, as a sentence for a person and as data."""
 
     sentence: str = Field(examples=["'sis_z' is not a cell of this plant; there are sis_a, sis_b, sis_c"])
@@ -146,7 +136,7 @@ class Sentence(_ResponseModel):
     values: dict[str, Any] | None = Field(default=None, description="What stands in it, by name.")
 
 
-class TaskAnswer(_ResponseModel):
+class TaskAnswer(ResponseModel):
     """Answer that a device or a person gave while a task ran."""
 
     by: str
@@ -162,7 +152,7 @@ CHOICE = "Why it is done in this cell, where several were allowed."
 UNCHECKED = "Of one that is done what no device confirmed: grip, release; its sentence says it for people."
 
 
-class Task(_ResponseModel):
+class Task(ResponseModel):
     id: str
     text: str
     cell: str | None
@@ -176,17 +166,7 @@ class Task(_ResponseModel):
     unchecked: list[str] = Field(default=[], description=UNCHECKED)
 
 
-class Promise(_ResponseModel):
-    """Promise of a cell for a task that it has not been given."""
-
-    cell: str
-    text: str = Field(description="The task for this cell.")
-    seconds: float = Field(description="Until it would have done it, as far as past tasks tell.")
-    hindrance: str | None = Field(description="Why it could not begin it now.")
-    full: bool = Field(description="Whether its queue has no room.")
-
-
-class KeptTask(_ResponseModel):
+class KeptTask(ResponseModel):
     """A task of this start or of an earlier one; times are Unix times, in seconds."""
 
     number: int = Field(description="Grows by one with each task that the plant accepts.")
@@ -211,50 +191,7 @@ class KeptTask(_ResponseModel):
     unchecked: list[str] = Field(default=[], description=UNCHECKED)
 
 
-class CellOee(_ResponseModel):
-    """OEE of one cell; shares from 0 to 1, null where `missing` says why nobody can say."""
-
-    cell: str
-    since_s: float = Field(description="Unix time; later than asked where nothing was kept before.")
-    until_s: float
-    planned_s: float = Field(description="A task waited or was at work.")
-    worked_s: float = Field(description="Of that, the cell was at work.")
-    done: int
-    failed: int
-    timed: int = Field(description="Of these, tasks whose shortest time is known.")
-    availability: float | None
-    performance: float | None
-    quality: float | None
-    oee: float | None = Field(description="The three of them multiplied.")
-    missing: str | None
-
-
-class Parameter(_ResponseModel):
-    """Parameter of a recipe; more types may be added."""
-
-    name: str
-    called: str = Field(description="Its name for people.")
-    type: str = Field(description="`choice`: one of its `choices`; `integer`, `number`: within its limits.")
-    choices: list[str]
-    lower: float | None = None
-    upper: float | None = None
-
-
-class Recipe(_ResponseModel):
-    name: str
-    about: str = Field(description="What it does, in a line.")
-    default: bool = Field(description="A task that names no recipe means this one.")
-    form: str = Field(examples=["<cell> <path> <station>"], description="How its task text is written.")
-    example: str = Field(examples=["sis_a 0A 8"])
-    parameters: list[Parameter]
-
-
-class Offer(_ResponseModel):
-    cell: str
-    recipes: list[Recipe]
-
-
-class Done(_ResponseModel):
+class Done(ResponseModel):
     """Outcome of a verb that is not refused; while `under_way`, `GET /api/acts/<act>` tells its end."""
 
     verb: Verb
@@ -264,7 +201,7 @@ class Done(_ResponseModel):
     why: str | None = Field(default=None, description="Why it failed, cannot be checked, or is not kept.")
 
 
-class Act(_ResponseModel):
+class Act(ResponseModel):
     """Act of an operator, with its present outcome."""
 
     number: int = Field(description="Grows by one with each act; of this start of the plant.")
@@ -279,7 +216,7 @@ class Act(_ResponseModel):
     ended: str | None = Field(description="Its end in words, then.")
 
 
-class Advice(_ResponseModel):
+class Advice(ResponseModel):
     """Step that leads a cell out of its state."""
 
     do: str = Field(description="A verb; or, where `hand`: bring_back, repair, reference, check or free.")
@@ -296,7 +233,7 @@ class Advice(_ResponseModel):
     refusal: str | None = Field(description="Why it would be refused now.")
 
 
-class Device(_ResponseModel):
+class Device(ResponseModel):
     role: str
     name: str
     kind: str = Field(description="arm, mobile, or a kind of your own.")
@@ -305,7 +242,18 @@ class Device(_ResponseModel):
     asked: bool = Field(description="Whether it is a person, who answers on the plant's own screens.")
 
 
-class Cell(_ResponseModel):
+class Place(ResponseModel):
+    """A target at which parts lie."""
+
+    name: str
+    parts: int = Field(description="How many are known to be there.")
+    holds: int = Field(description="How many it holds at most.")
+    device: str | None = Field(description="The device in or under which it is.")
+    by_people: bool = Field(description="Whether people fill or empty it before each task.")
+    station: int | None = Field(description="Its number in the rack of a cell that stores.")
+
+
+class Cell(ResponseModel):
     """Cells of storage also have the names of their `arm` and `mobile` under these keys."""
 
     name: str
@@ -322,9 +270,10 @@ class Cell(_ResponseModel):
     advice: list[Advice] = Field(description="What leads it out of its state, in the order to do it.")
     refused: dict[str, str] = Field(description="The verbs that would be refused for it now, and why.")
     tree: list[dict[str, Any]] = Field(description="The behavior tree, depth first.")
+    places: list[Place] = Field(description="Where parts lie in it.")
 
 
-class Asking(_ResponseModel):
+class Asking(ResponseModel):
     """Open question to a person; `POST /api/cells/<person>/answer` with `{"answer": "yes"}` answers it."""
 
     id: str
@@ -333,7 +282,7 @@ class Asking(_ResponseModel):
     left_s: float = Field(description="Until the question ends unanswered.")
 
 
-class Robot(_ResponseModel):
+class Robot(ResponseModel):
     """A device of any kind."""
 
     name: str
@@ -357,7 +306,7 @@ class Robot(_ResponseModel):
     refused: dict[str, str] = Field(description="The verbs that would be refused for it now, and why.")
 
 
-class Snapshot(_ResponseModel):
+class Snapshot(ResponseModel):
     """The plant as of its last step."""
 
     plant: str

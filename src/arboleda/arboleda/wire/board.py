@@ -12,7 +12,7 @@ from arboleda.model.messages import Receipt, Report
 from arboleda.model.plant_model import Evidence, MotionState, Robot
 from arboleda.model.sentence import NOTHING, Phrase, Sentence
 
-from . import goals, rejections
+from . import rejections
 from .copies import Copies
 from .forms import form_of
 from .hop import is_stop, shown
@@ -107,13 +107,11 @@ class Board:
 
     def _passed_over(self, at: float, command: Command) -> list[Message]:
         """The notice of a command that a board without ids silently ignores; once for each reason."""
-        way, last = self._form.way(type(command)), self._last
-        if (
-            way is None
-            or last is None
-            or self.robot.evidence is Evidence.IDS
-            or not isinstance(command, Work)
-        ):
+        last = self._last
+        if last is None or self.robot.evidence is Evidence.IDS or not isinstance(command, Work):
+            return []
+        way = self._form.way(type(command))
+        if way is None:
             return []
         rests = self._motion is None and last.state is MotionState.STOPPED
         why = way.passed_over(self.robot, command, last) if rests else None
@@ -305,14 +303,14 @@ class Board:
             return "no_link"
         if self.rivals.yielded and not is_stop(command):
             return OTHER_BRIDGE
-        return goals.refusal(self.robot, command) or (
+        return self._form.refusal(self.robot, command) or (
             "paro" if self._latched and needs_clear(command) else None
         )
 
     def _send(self, at: float, command: Command, sender: str = "") -> list[Message]:
         seq = self.labels.issue(command, sender)
         self._words = None
-        channel, goal = goals.goal(self.robot, command, **self._stamp(command, seq))
+        channel, goal = self._form.goal(self.robot, command, **self._stamp(command, seq))
         try:
             publication = self._publication(channel, goal)
         except PayloadError:

@@ -66,6 +66,21 @@ class Form:
         """The form of commands of this class, or of its nearest base that has one; None if there is none."""
         return nearest(self.ways, kind)
 
+    def refusal(self, robot: Robot, command: Command) -> str | None:
+        """The word that refuses a command which the robot can never carry out; None if it can."""
+        kind = type(command)
+        way = self.way(kind)
+        return self.missing.get(kind, "formato") if way is None else way.refusal(robot, command)
+
+    def goal(self, robot: Robot, command: Command, **stamp: int | None) -> tuple[Channel, Goal]:
+        """The channel and payload of a command that `refusal` accepted; `stamp` has its `seq` and `epoch`.
+
+        For all commands but a stop, `stamp` also has `heard`.
+        """
+        way = self.way(type(command))
+        assert way is not None
+        return way.channel, way.goal(**way.body(robot, command), **stamp)  # type: ignore[arg-type]
+
     def told(self, facts: Facts | None) -> Facts | None:
         """The facts of telemetry in the types of the kind; raises PayloadError for an invalid one."""
         return None if facts is None else tuple(self._fact(name, value) for name, value in facts)

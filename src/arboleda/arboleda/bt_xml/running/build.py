@@ -33,6 +33,7 @@ class Builder:
     leaf: Leaf
     time: Clock
     kinds: Mapping[str, Kind] = field(default_factory=dict)  # of the leaves
+    controls: Mapping[str, Make] = field(default_factory=dict)  # instead of those of the table
     written: list[tuple[Scope, str]] = field(default_factory=list)  # every variable that may get a value
 
     def tree(self, name: str, scope: Scope) -> Node:
@@ -41,8 +42,9 @@ class Builder:
 
     def _node(self, node: Written, scope: Scope) -> Node:
         made = self._subtree(node, scope) if node.is_subtree else self._made(node, scope)
-        self.written.extend(scope.place(name) for name in self._writes(node))
-        made.scope = scope
+        made.scope, made.place = scope, node.place
+        made.writes = tuple(scope.place(name) for name in sorted(self._writes(node)))
+        self.written.extend(made.writes)
         made.time = self.time
         scripts = {name: Script.of(node.own[name].value) for name in names.SCRIPTS if name in node.own}
         made.before = {name: script for name, script in scripts.items() if name in names.PRE}
@@ -51,7 +53,7 @@ class Builder:
 
     def _made(self, node: Written, scope: Scope) -> Node:
         below = [self._node(child, scope) for child in node.children]
-        make = MAKERS.get(node.kind)
+        make = self.controls.get(node.kind) or MAKERS.get(node.kind)
         if make is not None:
             said = {name: attribute.value for name, attribute in node.ports.items()}
             return make(node.name or node.kind, below, NodePorts(node.kind, said))
@@ -102,7 +104,7 @@ def _typed(value: Value) -> Value:
     return values.number(text) if values.objection("double", text) is None else value
 
 
-def _control(kind: Callable[[str, list[Node]], Node]) -> Make:
+def control(kind: Callable[[str, list[Node]], Node]) -> Make:
     return lambda name, below, given: kind(name, below)
 
 
@@ -131,23 +133,23 @@ def _alone(kind: Callable[[str, NodePorts], Node]) -> Make:
 
 
 MAKERS: Mapping[str, Make] = {
-    "Sequence": _control(controls.InSequence),
-    "AsyncSequence": _control(controls.AsyncSequence),
-    "SequenceWithMemory": _control(controls.SequenceWithMemory),
-    "ReactiveSequence": _control(controls.ReactiveSequence),
-    "Fallback": _control(controls.InFallback),
-    "AsyncFallback": _control(controls.AsyncFallback),
-    "ReactiveFallback": _control(controls.ReactiveFallback),
-    "TryCatch": _control(controls.TryCatch),
+    "Sequence": control(controls.InSequence),
+    "AsyncSequence": control(controls.AsyncSequence),
+    "SequenceWithMemory": control(controls.SequenceWithMemory),
+    "ReactiveSequence": control(controls.ReactiveSequence),
+    "Fallback": control(controls.InFallback),
+    "AsyncFallback": control(controls.AsyncFallback),
+    "ReactiveFallback": control(controls.ReactiveFallback),
+    "TryCatch": control(controls.TryCatch),
     "Parallel": _given(controls.Parallel),
     "ParallelAll": _given(controls.ParallelAll),
-    "IfThenElse": _control(controls.IfThenElse),
-    "WhileDoElse": _control(controls.WhileDoElse),
+    "IfThenElse": control(controls.IfThenElse),
+    "WhileDoElse": control(controls.WhileDoElse),
     **{f"Switch{number}": _given(controls.Switch) for number in range(2, 7)},
     "RecoveryNode": _given(nav2.RecoveryNode),
-    "PipelineSequence": _control(nav2.PipelineSequence),
+    "PipelineSequence": control(nav2.PipelineSequence),
     "RoundRobin": _given(nav2.RoundRobin),
-    "NonblockingSequence": _control(nav2.NonblockingSequence),
+    "NonblockingSequence": control(nav2.NonblockingSequence),
     "PersistentSequence": _given(nav2.PersistentSequence),
     "SingleTrigger": _around(watching.SingleTrigger),
     "GoalUpdatedController": _around(watching.GoalUpdatedController),
@@ -155,7 +157,7 @@ MAKERS: Mapping[str, Make] = {
     "Inverter": lambda name, below, given: ResultDecorator(name, below[0], INVERTED),
     "ForceSuccess": lambda name, below, given: ResultDecorator(name, below[0], ALL_DONE),
     "ForceFailure": lambda name, below, given: ResultDecorator(name, below[0], ALL_FAILED),
-    "KeepRunningUntilFailure": _control(decorators.KeepRunningUntilFailure),
+    "KeepRunningUntilFailure": control(decorators.KeepRunningUntilFailure),
     "Repeat": lambda name, below, given: decorators.Loop(
         name, below[0], given, port="num_cycles", goes_on=SUCCESS
     ),

@@ -7,6 +7,7 @@ from typing import ClassVar
 
 from py_trees.common import Status
 
+from .memory import Scope
 from .node import ENDED, FAILURE, PAUSE_S, RUNNING, SKIPPED, SUCCESS, Node, Result
 from .ports import THRESHOLD, NodePorts
 from .scripts import ScriptError
@@ -120,15 +121,24 @@ class TryCatch(Node):
             if result is FAILURE:
                 self.reset_children()
                 self.at, self.catches = 0, True
+                self.caught()
             else:
                 self.at += 1
                 self.skipped += result is SKIPPED
         if self.catches and caught.execute() is RUNNING:
             return RUNNING
+        if self.catches:
+            self.rescued()
         all_skipped, failed = self.skipped == len(tried), self.catches
         self.reset_children()
         self.reset_counts()
         return FAILURE if failed else SKIPPED if all_skipped else SUCCESS
+
+    def caught(self) -> None:
+        """Called when a child has failed, before the last one begins."""
+
+    def rescued(self) -> None:
+        """Called when the last child has ended."""
 
 
 class Reactive(Node):
@@ -197,8 +207,16 @@ class Parallel(Node):
         self.ended = []
         self.done = self.failed = 0
 
+    def needs_all(self, scope: Scope) -> bool:
+        """True if it succeeds only where all children do."""
+        many = len(self.below)
+        return _threshold(self.given, "success_count", self._success(scope), many) == many
+
+    def _success(self, scope: Scope) -> float:
+        return self.given.number("success_count", scope, self._old("success_threshold", "-1"))
+
     def work(self) -> Result:
-        success = self.given.number("success_count", self.scope, self._old("success_threshold", "-1"))
+        success = self._success(self.scope)
         failure = self.given.number("failure_count", self.scope, self._old("failure_threshold", "1"))
         many = len(self.below)
         enough = _threshold(self.given, "success_count", success, many)
@@ -250,6 +268,11 @@ class ParallelAll(Node):
     def reset_counts(self) -> None:
         self.ended = []
         self.failed = 0
+
+    def needs_all(self, scope: Scope) -> bool:
+        """True if it succeeds only where all children do."""
+        most = self.given.number("max_failures", scope, "1")
+        return _threshold(self.given, "max_failures", most, len(self.below)) <= 1
 
     def work(self) -> Result:
         many = len(self.below)
@@ -343,7 +366,7 @@ class Switch(Node):
         self.ran = None
 
     def work(self) -> Result:
-        chosen = self._chosen()
+        chosen = self.chosen(self.scope)
         if self.ran is not None and self.ran != chosen:
             self.below[self.ran].reset()
         result = self.below[chosen].execute()
@@ -356,10 +379,11 @@ class Switch(Node):
             self.ran = None
         return result
 
-    def _chosen(self) -> int:
-        variable = self.given.found("variable", self.scope)
+    def chosen(self, scope: Scope) -> int:
+        """The number of the child that the present value of the variable means."""
+        variable = self.given.found("variable", scope)
         for number in range(len(self.below) - 1):
-            case = self.given.text(f"case_{number + 1}", self.scope)
+            case = self.given.text(f"case_{number + 1}", scope)
             if str(case) == str(variable) or same_number(case, variable):
                 return number
         return len(self.below) - 1

@@ -10,7 +10,7 @@ from py_trees.common import Status
 from arboleda.model.outside import quoted
 from arboleda.model.sentence import Phrase
 
-from .memory import Value
+from .memory import Scope, Value
 from .node import ENDED, FAILURE, PAUSE_S, RUNNING, SKIPPED, SUCCESS, TICK_S, Decorator, Node, Result
 from .ports import NodePorts
 from .scripts import Script, ScriptError
@@ -68,6 +68,10 @@ class Loop(Decorator):
 
     def reset_counts(self) -> None:
         self.rounds = 0
+
+    def most(self, scope: Scope) -> int:
+        """The number of rounds that the variables of a scope mean."""
+        return int(self.given.number(self.port, scope))
 
     def work(self) -> Result:
         most = self.given.number(self.port, self.scope)

@@ -15,9 +15,9 @@ from arboleda.model.facts import Value, shown
 from arboleda.model.messages import Failure
 from arboleda.model.outside import quoted
 from arboleda.model.sentence import Phrase
-from arboleda.recipes.handles import Ask
+from arboleda.recipes.handles import Ask, FactCheck, FactWait
 from arboleda.trees.failures import Failures
-from arboleda.trees.leaves import Act, Await, Require
+from arboleda.trees.leaves import Act
 
 from . import memory
 from .memory import Scope
@@ -36,8 +36,8 @@ EXAMPLES: Mapping[str, str] = {"int": "0", "double": "0", "bool": "true"}
 MADE_OF: Mapping[type[Behaviour], tuple[str, ...]] = {
     Ask: ("answers", "asked", "make", "anew", "doing", "name", "title"),
     Act: ("make", "anew", "doing", "name", "title"),
-    Require: ("obstacle",),
-    Await: ("arrived", "seconds", "otherwise"),
+    FactCheck: ("obstacle", "facts"),
+    FactWait: ("arrived", "seconds", "otherwise", "facts"),
 }
 """The attributes of each class of step that depend on the values it was made with."""
 
@@ -163,15 +163,16 @@ class QuestionStep(DeviceStep):
     def __init__(
         self,
         name: str,
-        step: Ask,
+        step: Behaviour,
         failures: Failures,
         causes: list[Failure],
         order: Order,
         built: Mapping[str, Value],
+        asked: Ask,
         out: str,
     ) -> None:
         super().__init__(name, step, failures, causes, order, built)
-        self.ask = step
+        self.ask = asked
         self.out = out
 
     def work(self) -> Result:
@@ -190,14 +191,16 @@ class FactStep(Forgiving):
         step: Behaviour,
         failures: Failures,
         causes: list[Failure],
-        said: Mapping[str, Callable[[], Value | None]],
+        told: Callable[[str, str], Value | None],
+        facts: Mapping[str, tuple[str, str]],
     ) -> None:
         super().__init__(name, step, failures, causes)
-        self.said = said  # by variable
+        self.told = told
+        self.facts = facts  # by variable: the device and its fact
 
     def work(self) -> Result:
         result = super().work()
-        for variable, told in self.said.items() if result is SUCCESS else ():
-            if (found := told()) is not None:
+        for variable, fact in self.facts.items() if result is SUCCESS else ():
+            if (found := self.told(*fact)) is not None:
                 self.scope.set(variable, as_variable(found))
         return result

@@ -11,12 +11,14 @@ from typing import Any
 from arboleda.bt_xml import forest, leaves, values
 from arboleda.bt_xml.nodes import Kind, PortDirection
 from arboleda.bt_xml.values import Variable
+from arboleda.kinds.declared import Device
 from arboleda.model.facts import Value
 from arboleda.model.messages import Failure, Reason
 from arboleda.model.outside import quoted
+from arboleda.model.plant_model import Robot
 from arboleda.model.sentence import Phrase
 from arboleda.recipes.errors import RecipeError
-from arboleda.recipes.handles import Ask, Step, handle
+from arboleda.recipes.handles import Handle, PersonHandle, RobotHandle, Step, asked_in, handle
 from arboleda.recipes.nodes import WrittenNode
 from arboleda.trees.context import Context
 from arboleda.trees.leaves import Act, Require, titled
@@ -54,13 +56,7 @@ class Devices:
     def __post_init__(self) -> None:
         cell = self.context.cell
         self.kinds = leaves.of_cell(cell, self.own.values())
-        self.roles = {
-            name: next(
-                role for role in sorted(cell.roles, key=len, reverse=True) if name.startswith(f"{role}_")
-            )
-            for name in self.kinds
-            if name not in self.own
-        }
+        self.roles = leaves.roles(cell)
 
     def make(self, node: forest.Node, below: list[Node], scope: Scope) -> Node | None:
         """The leaf for a node; None if no device makes it. TreeError if its device has no such command."""
@@ -75,23 +71,25 @@ class Devices:
     def _made(self, node: forest.Node, kind: Kind, below: list[Node], scope: Scope) -> Node:
         role = self.roles[node.kind]
         verb = node.kind.removeprefix(f"{role}_")
-        robot = self.context.cell.roles[role].name
+        robot = self.context.cell.roles[role]
         name = node.name or node.kind
-        if verb == leaves.TELLS:
-            return self._telling(name, node, robot)
-        device = handle(self.context.cell.roles[role], self.context)
+        if verb == leaves.TELLS and not _has_verb(robot, verb):
+            return self._telling(name, node, robot.name)
+        device = handle(robot, self.context)
         order = self._order(node, kind, scope, partial(_step, device, verb, below=below))
         built = self._now(order, scope)
         step = order.make(dict(built))
         unknown = [each for each in order.variables.values() if scope.get(each) is None]
         if unknown and type(step) is Act:
-            titled(step, " ".join([robot, verb, *order.words(built, unknown)]))
+            titled(step, " ".join([robot.name, verb, *order.words(built, unknown)]))
         if not can_be_renewed(step):
             self._fix(order, node, scope)
             order = replace(order, variables={})
         failures = self.context.failures
-        if isinstance(step, Ask) and ANSWER in node.ports:
-            return QuestionStep(name, step, failures, self.causes, order, built, _variable(node, ANSWER))
+        asked = asked_in(step)
+        if asked is not None and ANSWER in node.ports:
+            out = _variable(node, ANSWER)
+            return QuestionStep(name, step, failures, self.causes, order, built, asked, out)
         return DeviceStep(name, step, failures, self.causes, order, built)
 
     def _written(
@@ -155,8 +153,12 @@ class Devices:
             return Failure(reason=Reason.PRECONDITION, sentence=UNSAID(robot=robot, fact=missing))
 
         step = Require(leaves.TELLS, self.context.failures, unsaid)
-        by_variable = {_variable(node, fact): told for fact, told in said.items()}
-        return FactStep(name, step, self.context.failures, self.causes, by_variable)
+        facts = {_variable(node, fact): (robot, fact) for fact in node.ports}
+        return FactStep(name, step, self.context.failures, self.causes, self.context.robots.fact, facts)
+
+
+def _has_verb(robot: Robot, verb: str) -> bool:
+    return isinstance(robot, Device) and verb in robot.kind.verbs
 
 
 @contextmanager
@@ -174,8 +176,9 @@ def _variable(node: forest.Node, port: str) -> str:
 
 
 def _step(device: Any, verb: str, given: dict[str, Value], *, below: list[Node]) -> Step:
-    if verb in SPECIAL:
-        return SPECIAL[verb](device, given, below)
+    special = SPECIAL.get((type(device), verb))
+    if special is not None:
+        return special(device, given, below)
     step: Step = getattr(device, verb)(**given)
     return step
 
@@ -191,4 +194,7 @@ def _ask(device: Any, given: dict[str, Value], below: list[Node]) -> Step:
     return step
 
 
-SPECIAL: Mapping[str, Callable[[Any, dict[str, Value], list[Node]], Step]] = {"visit": _visit, "ask": _ask}
+SPECIAL: Mapping[tuple[type[Handle], str], Callable[[Any, dict[str, Value], list[Node]], Step]] = {
+    (RobotHandle, "visit"): _visit,
+    (PersonHandle, "ask"): _ask,
+}

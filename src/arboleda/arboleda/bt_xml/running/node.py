@@ -6,13 +6,14 @@ to SKIPPED, which no status shows: the parent is told, and the node stays as it 
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from enum import Enum
 from typing import Any, ClassVar, Protocol, cast
 
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
+from arboleda.bt_xml.findings import Place
 from arboleda.trees.trail import Keeps
 
 from .memory import Scope
@@ -54,7 +55,11 @@ class NoClock:
 
 
 class Node(Keeps, Behaviour):
-    """Base of nodes; `counts` are the attributes that hold its progress, which is kept for the next start."""
+    """Base of nodes; `counts` are the attributes that hold its progress, which is kept for the next start.
+
+    `forget_failures`: called once it has succeeded, where steps in it have failed, for that is answered then.
+    `place`: where it stands in a file. `writes`: the variables that it may give a value, or take it from.
+    """
 
     counts: ClassVar[tuple[str, ...]] = ()
     sign: ClassVar[str] = "step"  # the word of drawings and of the page for it
@@ -66,6 +71,9 @@ class Node(Keeps, Behaviour):
         self.time: Clock = NoClock()
         self.before: Mapping[str, Script] = {}
         self.after: Mapping[str, Script] = {}
+        self.forget_failures: Callable[[], None] | None = None
+        self.place: Place | None = None
+        self.writes: tuple[tuple[Scope, str], ...] = ()
         for child in children:
             self.children.append(child)
             child.parent = self
@@ -87,6 +95,10 @@ class Node(Keeps, Behaviour):
         result = self._by_condition()
         if result is None:
             result = self.work()
+        if self.forget_failures is not None and result is not RUNNING:
+            if result is SUCCESS:
+                self.forget_failures()
+            self.forget_failures = None
         if result in ENDED:
             self._run({SUCCESS: "_onSuccess", FAILURE: "_onFailure"}[result])
             self._run("_post")

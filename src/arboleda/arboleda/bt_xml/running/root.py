@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
+from functools import partial
 from typing import Any
 
 from py_trees.behaviour import Behaviour
@@ -12,8 +13,13 @@ from py_trees.common import Status
 from arboleda.model.messages import Failure, Reason
 from arboleda.model.sentence import Phrase
 from arboleda.recipes.authoring import FINAL
+from arboleda.recipes.decorators import NO_RESCUE, with_second
+from arboleda.recipes.holding import Take, used
 from arboleda.trees.failures import Failures
+from arboleda.trees.trail import failure_kept, read_failure
 
+from .controls import InSequence, TryCatch
+from .decorators import SubTree
 from .leaves import Step
 from .node import FAILURE, Node, Result
 from .scripts import ScriptError
@@ -39,9 +45,81 @@ class Forgiving(Step):
         result = super().work()
         cause = self.failures.first
         if result is FAILURE and cause is not None and cause.reason not in FINAL:
-            self.causes[:] = [cause]
+            self._note(cause)
             self.failures.forgive()
         return result
+
+    def _note(self, cause: Failure) -> None:
+        """Keep the cause, until a node around this one has succeeded all the same."""
+        before = self.causes[:]
+        self.causes[:] = [cause]
+        node = self.parent
+        while node is not None:
+            if isinstance(node, Node) and node.forget_failures is None:
+                node.forget_failures = partial(_bring_back, self.causes, before)
+            node = node.parent
+
+
+def _bring_back(causes: list[Failure], before: list[Failure]) -> None:
+    causes[:] = before
+
+
+class Rescue(TryCatch):
+    """TryCatch of a plant: the cause for which a child failed stays, whatever becomes of the last one."""
+
+    def __init__(
+        self, name: str, children: Sequence[Node], failures: Failures, causes: list[Failure]
+    ) -> None:
+        super().__init__(name, children)
+        self.failures = failures
+        self.causes = causes
+        self.cause: Failure | None = None
+        self.ends_tree = False  # with its cause
+
+    def caught(self) -> None:
+        """Put the cause aside, unless nothing of the task may go on."""
+        first = self.failures.first
+        if first is not None and first.reason in NO_RESCUE:
+            return
+        generic = Failure(reason=Reason.REJECTED, sentence=FAILED(tree=self.name))
+        self.cause = first or (self.causes[0] if self.causes else generic)
+        self.ends_tree = first is not None
+        self._forget()
+
+    def rescued(self) -> None:
+        """Bring the cause back, with that for which the last child failed, too."""
+        if self.cause is None:
+            return
+        failed = self.below[-1].status is Status.FAILURE
+        second = self.failures.first or (self.causes[0] if failed and self.causes else None)
+        self._bring_back(with_second(self.cause, second))
+
+    def halt(self) -> None:
+        """Bring the cause back of what is left: it came first."""
+        super().halt()
+        if self.cause is not None:
+            self._bring_back(self.cause)
+
+    def _forget(self) -> None:
+        self.causes.clear()
+        self.failures.forgive()
+
+    def _bring_back(self, cause: Failure) -> None:
+        self.causes[:] = [cause]
+        if self.ends_tree or self.failures.first is not None:
+            self.failures.bring_back(cause)
+        self.cause, self.ends_tree = None, False
+
+    def kept(self) -> Mapping[str, Any] | None:
+        if self.cause is None:
+            return super().kept()
+        return {**(super().kept() or {}), "cause": failure_kept(self.cause), "ends_tree": self.ends_tree}
+
+    def restore(self, state: Mapping[str, Any]) -> None:
+        counts = dict(state)
+        if cause := counts.pop("cause", None):
+            self.cause = read_failure(*cause)
+        super().restore(counts)
 
 
 class Main(Node):
@@ -63,8 +141,10 @@ class Main(Node):
         try:
             result = self.below[0].execute()
         except ScriptError as error:
+            broken = Failure(reason=Reason.REJECTED, sentence=error.sentence)
+            first = self._put_aside()
             self._halt_all()
-            self.causes[:] = [Failure(reason=Reason.REJECTED, sentence=error.sentence)]
+            self.causes[:] = [with_second(first, broken) if first is not None else broken]
             result = FAILURE
         if self.failures.first is not None:
             self._halt_all()
@@ -73,6 +153,38 @@ class Main(Node):
             generic = Failure(reason=Reason.REJECTED, sentence=FAILED(tree=self.name))
             self.failures.add(self.causes[0] if self.causes else generic, self)
         return result
+
+    def _put_aside(self) -> Failure | None:
+        """The cause of the outermost rescue that is under way."""
+        rescues = [node for node in self.below[0].iterate() if isinstance(node, Rescue)]
+        return next((node.cause for node in reversed(rescues) if node.cause is not None), None)
+
+    def uses_first(self) -> bool:
+        return self._first_use() is None
+
+    def take_late(self, take: Take) -> None:
+        """Have shared devices taken before the first use of one, in the sequence where that is."""
+        found = self._first_use()
+        assert found is not None
+        sequence, index = found
+        step = take()
+        taking = Forgiving(step.name, step, self.failures, self.causes)
+        taking.time = sequence.time
+        taking.parent = sequence
+        sequence.children.insert(index, taking)
+
+    def _first_use(self) -> tuple[Node, int] | None:
+        """The innermost sequence that has all that comes before the first use, and the place of that in it;
+        None where nothing comes before.
+        """
+        found: tuple[Node, int] | None = None
+        node: Node = self.below[0]
+        while isinstance(node, InSequence | SubTree):
+            index = next((n for n, child in enumerate(node.below) if any(used(child))), 0)
+            if isinstance(node, InSequence) and index:
+                found = (node, index)
+            node = node.below[index]
+        return found
 
     def _halt_all(self) -> None:
         """Halt whatever runs, also below nodes that have ended: an error comes in the middle of a tick.

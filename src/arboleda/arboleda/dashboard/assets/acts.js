@@ -45,18 +45,18 @@ function stopByHeldKey() {
 }
 
 async function press(button) {
-  const { act, byHand } = button.dataset;
+  const { act, byHand, arguments: told } = button.dataset;
   const of = button.dataset.of === "$scope" ? scope : button.dataset.of;
   if (act === "stop") return stop(of);
-  const asks = act === "override" ? [words.override_seen, words.override_sure] : JSON.parse(button.dataset.asks ?? "[]");
-  for (const asked of asks) if (!(await question.confirmed(asked.replaceAll("{of}", of)))) return;
-  send(act, of, byHand === "true");
+  for (const asked of JSON.parse(button.dataset.asks ?? "[]")) if (!(await question.confirmed(asked.replaceAll("{of}", of)))) return;
+  send(act, of, told ? JSON.parse(told) : byHand === "true");
 }
 
 // A request that could not leave now is not kept for later: the plant may have changed by then.
-export function send(act, of, byHand = false) {
+// `more`: whether a person has done it by hand, or the arguments of the verb.
+export function send(act, of, more = false) {
   if (!connected()) return answer(words.not_sent, false);
-  window.emitEvent("arboleda", act, of, byHand);
+  window.emitEvent("arboleda", act, of, more);
   return true;
 }
 

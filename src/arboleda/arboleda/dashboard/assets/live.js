@@ -118,7 +118,7 @@ function outside(text, href) {
   return Object.assign(document.createElement("a"), { href, textContent: text, target: "_blank", rel: "noopener noreferrer" });
 }
 
-function offerButton({ act, of, label, does, asks, by_hand: byHand, refused }) {
+function offerButton({ act, of, label, does, asks, by_hand: byHand, arguments: told, refused }) {
   const button = document.createElement("button");
   button.type = "button";
   button.className = "act";
@@ -127,6 +127,7 @@ function offerButton({ act, of, label, does, asks, by_hand: byHand, refused }) {
   Object.assign(button.dataset, { act, of });
   if (asks) button.dataset.asks = JSON.stringify(asks);
   if (byHand) button.dataset.byHand = "true";
+  if (told) button.dataset.arguments = JSON.stringify(told);
   button.disabled = refused === true;
   return button;
 }

@@ -20,8 +20,9 @@ window.arboledaTwin = {
     listRobots(patch);
     if (frames++ % ACK_EVERY === 0) tell("drawn", number);
   },
-  // What is drawn solid, for whoever wants to compare it: robot -> link -> 16 numbers, row by row.
+  // What is drawn solid, for whoever wants to compare it: robot -> link -> 16 numbers, row by row; and the middles of parts.
   links: () => plant?.links(),
+  parts: () => plant?.middles(),
   solid: (robot) => plant.robots.get(robot).real.root.visible && plant.robots.get(robot).painted === "solid",
   drawn: () => Object.fromEntries(plant?.drawn ?? []),
   view: () => view?.name,

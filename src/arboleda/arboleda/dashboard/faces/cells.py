@@ -181,7 +181,7 @@ def _note(words: Words, advice: Row, before: list[Row]) -> str:
 def _offer(words: Words, advice: Row) -> Row:
     said, asks = _said(words, advice), []
     if advice["by_hand"]:
-        asks = [words(f"asks.{advice['do']}_by_hand")]
+        asks = words.asks(f"{advice['do']}_by_hand")
     elif advice["drops"]:
         asks = [words("ways.asks_drops", said=said, robots=", ".join(advice["drops"]))]
     elif advice["moves"]:

@@ -6,6 +6,7 @@ import json
 from collections.abc import Collection
 from typing import Any
 
+from arboleda.model.verbs import Verb
 from arboleda.views.view import standing
 
 from . import Face
@@ -82,7 +83,13 @@ def _zones(moment: Moment) -> Face:
     found: Face = {"rows/zones": [zone["zone"] for zone in moment.snapshot["zones"]]}
     for zone in moment.snapshot["zones"]:
         does = words("zones.override_does", zone=zone["zone"])
-        override = {"act": "override", "of": zone["zone"], "label": words("verb.override"), "does": does}
+        override = {
+            "act": Verb.OVERRIDE.value,
+            "of": zone["zone"],
+            "label": words("verb.override"),
+            "does": does,
+            "asks": words.asks(Verb.OVERRIDE.value),
+        }
         found[f"row/zones/{zone['zone']}"] = {
             "state": zone["state"],
             "texts": [

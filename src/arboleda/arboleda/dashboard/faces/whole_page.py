@@ -7,10 +7,19 @@ from typing import Any
 
 from arboleda.views.view import standing, waited_for
 
-from . import Face, cells, links, panel, questions, stop, tasks, timeline
+from . import Face, cells, links, panel, places, questions, stop, tasks, timeline
 from .moment import Moment
 
-PARTS = (stop.face, cells.face, questions.face, tasks.face, panel.face, links.face, timeline.face)
+PARTS = (
+    stop.face,
+    cells.face,
+    places.face,
+    questions.face,
+    tasks.face,
+    panel.face,
+    links.face,
+    timeline.face,
+)
 WORST = (
     "aborted",
     "aborting",

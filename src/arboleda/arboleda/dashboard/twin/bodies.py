@@ -109,8 +109,18 @@ class _Reader:
         if len(plain) == len(visuals):
             return shapes
         hits = [self._shape(each) for each in link.findall("collision") if not _is_mesh(each)]
-        tubes = stand_in.shapes(_origin(joint)["xyz"] for joint in joints)
+        rails = [found for joint in joints if (found := self._rail(joint)) is not None]
+        tubes = stand_in.shapes((_origin(joint)["xyz"] for joint in joints), rails)
         return shapes + (hits or [{**tube, "color": GREY} for tube in tubes])
+
+    def _rail(self, joint: Element) -> tuple[list[float], list[float]] | None:
+        """The rail of a sliding joint that has ends."""
+        limit, axis = joint.find("limit"), joint.find("axis")
+        if joint.get("type") != "prismatic" or limit is None or axis is None:
+            return None
+        lower, upper = float(limit.get("lower", "0")), float(limit.get("upper", "0"))
+        origin = _origin(joint)
+        return stand_in.rail(origin["xyz"], origin["rpy"], _unit(_numbers(axis.get("xyz", ""))), lower, upper)
 
     def _shape(self, visual: Element) -> dict[str, Any]:
         found = _geometry(visual)

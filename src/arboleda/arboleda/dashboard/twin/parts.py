@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from typing import Any
 
 from . import kinematics
@@ -23,29 +24,30 @@ class Part:
     effector holds for sure is `sure`.
     """
 
-    def __init__(self, arm: Row, body: Body, stations: list[list[float]]) -> None:
+    def __init__(self, arm: Row, body: Body, places: dict[str, list[float]]) -> None:
         self._base = kinematics.floor(arm["at"])
         self._body = body
-        self._stations = stations
+        self._places = places
         self._shown: Row | None = None
 
-    def see(self, part: Row | None, arm: Row, stored: list[int]) -> Row | None:
-        """Follow the part; it is as in `views.twin_view.part`, `arm` as in its Track, `stored` the full
-        stations.
+    def see(self, part: Row | None, arm: Row, counts: Mapping[str, int]) -> Row | None:
+        """Follow the part; it is as in `views.twin_view.part`, `arm` as in its Track, `counts` the number of
+        parts at each place.
         """
         if part is not None:
             self._shown = self._placed(part["q"]) if part["at"] == "pose" else {"sure": False, **part}
-        elif self._shown is not None and self._shown["at"] == "arm" and self._at_one_of(stored, arm):
+        elif self._shown is not None and self._shown["at"] == "arm" and self._at_one_of(counts, arm):
             self._shown = None
         elif self._shown is not None and self._shown["at"] != "place":
             here = arm["q"] or arm["estimate"]
             self._shown = self._placed(here) if self._shown["at"] == "arm" and here else None
         return self._shown
 
-    def _at_one_of(self, stored: list[int], arm: Row) -> bool:
-        """True if the arm stands at a station with a part: that part is the one it has let go of."""
+    def _at_one_of(self, counts: Mapping[str, int], arm: Row) -> bool:
+        """True if the arm stands at a place with a part: that part is the one it has let go of."""
         here = arm["q"] or arm["estimate"]
-        return here is not None and any(math.dist(here, self._stations[n]) < NEAR for n in stored)
+        full = (q for place, q in self._places.items() if counts.get(place))
+        return here is not None and any(math.dist(here, q) < NEAR for q in full)
 
     def _placed(self, q: list[float]) -> Row:
         frame = kinematics.flat(kinematics.tool(self._body, q, self._base))

@@ -22,13 +22,15 @@ def scene(places: Row, drawings: Mapping[str, Body]) -> Row:
     """The scene of a plant: its `places` as `views.places` has them, and a body for each robot."""
     robots = {robot["name"]: robot for robot in places["robots"]}
     cells = [_cell(cell, robots, drawings) for cell in places["cells"]]
+    spots = [_place(spot, robots, drawings) for spot in places["parts"]]
     zones = [_zone(zone, robots, drawings) for zone in places["zones"] if zone["spots"]]
     return {
         "part": [PART_RADIUS_M, PART_HEIGHT_M],
         "robots": [_robot(robot, drawings[robot["name"]]) for robot in places["robots"]],
         "cells": cells,
+        "places": spots,
         "zones": zones,
-        "bounds": _bounds(places, cells, drawings),
+        "bounds": _bounds(places, cells, spots, drawings),
     }
 
 
@@ -46,7 +48,7 @@ def deck(body: Body) -> float:
 
 def _robot(robot: Row, body: Body) -> Row:
     kept = {key: robot[key] for key in ("name", "cell", "kind", "at", "reference")}
-    return {**kept, "body": body, "tip": bodies.tip(body)}
+    return {**kept, "body": body, "tip": bodies.tip(body), "deck": deck(body) if "nodes" in robot else 0.0}
 
 
 def _cell(cell: Row, robots: Mapping[str, Row], drawings: Mapping[str, Body]) -> Row:
@@ -56,7 +58,6 @@ def _cell(cell: Row, robots: Mapping[str, Row], drawings: Mapping[str, Body]) ->
         "name": cell["name"],
         "arm": cell["arm"],
         "mobile": cell["mobile"],
-        "deck": deck(drawings[cell["mobile"]]),
         "grid": {
             "at": mobile["at"],
             "nodes": mobile["nodes"],
@@ -67,6 +68,12 @@ def _cell(cell: Row, robots: Mapping[str, Row], drawings: Mapping[str, Body]) ->
         "stations": stations,
         "shelves": _shelves(stations),
     }
+
+
+def _place(spot: Row, robots: Mapping[str, Row], drawings: Mapping[str, Body]) -> Row:
+    """A place where parts lie, with the frame of the tool that reaches it."""
+    frame = _frame(robots[spot["robot"]], drawings, spot["q"])
+    return {"cell": spot["cell"], "place": spot["place"], "frame": frame}
 
 
 def _shelves(stations: Sequence[Sequence[float]]) -> list[Row]:
@@ -112,7 +119,9 @@ def _between(path: list[list[float]]) -> list[list[float]]:
     return [[a + (b - a) * share for a, b in zip(start, end, strict=True)] for share in shares]
 
 
-def _bounds(places: Row, cells: list[Row], drawings: Mapping[str, Body]) -> list[list[float]]:
+def _bounds(
+    places: Row, cells: list[Row], spots: list[Row], drawings: Mapping[str, Body]
+) -> list[list[float]]:
     """The lowest and highest x, y, z of the scene; a robot without goals counts by its tool at reference."""
     points = [kinematics.at(kinematics.floor(robot["at"])) for robot in places["robots"]]
     for robot in places["robots"]:
@@ -122,8 +131,8 @@ def _bounds(places: Row, cells: list[Row], drawings: Mapping[str, Body]) -> list
     for robot in (robot for robot in places["robots"] if robot["cell"] not in told):
         frame, body = kinematics.floor(robot["at"]), drawings[robot["name"]]
         points.append(kinematics.at(kinematics.tool(body, robot["reference"], frame)))
-    points += [
-        (frame[3], frame[7], frame[11]) for cell in cells for frame in [*cell["pickups"], *cell["stations"]]
-    ]
+    frames = [frame for cell in cells for frame in [*cell["pickups"], *cell["stations"]]]
+    frames += [spot["frame"] for spot in spots]
+    points += [(frame[3], frame[7], frame[11]) for frame in frames]
     low = [min(point[axis] for point in points) - WIDE for axis in range(3)]
     return [low, [max(point[axis] for point in points) + WIDE for axis in range(3)]]

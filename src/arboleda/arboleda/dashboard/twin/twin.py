@@ -23,7 +23,7 @@ class Twin:
         self._followed = TwinTracker(places, drawings)
 
     def frame(self, positions: Row, now: float) -> Row:
-        """The drawing at `now` of the plant, by robot/<name>, part/<cell>, stored/<cell>, zone/<name>."""
+        """The drawing at `now` of the plant, by robot/<name>, part/<cell>, books/<cell>, zone/<name>."""
         return self._followed.frame(positions, now)
 
     def still(self, positions: Row) -> Row:
@@ -37,10 +37,13 @@ class TwinTracker:
     def __init__(self, places: Row, drawings: Mapping[str, Body]) -> None:
         robots = {robot["name"]: robot for robot in places["robots"]}
         self._arms = {cell["name"]: cell["arm"] for cell in places["cells"]}
-        stations = {cell["name"]: cell["stations"] for cell in places["cells"]}
+        spots: dict[str, Row] = {cell: {} for cell in self._arms}
+        for spot in places["parts"]:
+            if spot["robot"] == self._arms.get(spot["cell"]):
+                spots[spot["cell"]][spot["place"]] = spot["q"]
         self._tracks = {name: Track(robot) for name, robot in robots.items()}
         self._parts = {
-            cell: Part(robots[arm], drawings[arm], stations[cell]) for cell, arm in self._arms.items()
+            cell: Part(robots[arm], drawings[arm], spots[cell]) for cell, arm in self._arms.items()
         }
 
     def frame(self, positions: Row, now: float) -> Row:
@@ -48,9 +51,9 @@ class TwinTracker:
         robots = {name: track.see(rows[name], now) for name, track in self._tracks.items()}
         found: Row = {f"robot/{name}": drawn for name, drawn in robots.items()}
         for cell, part in self._parts.items():
-            numbers, arm = positions["stored"][cell], robots[self._arms[cell]]
-            found[f"part/{cell}"] = part.see(positions["parts"][cell], arm, numbers)
-            found[f"stored/{cell}"] = numbers
+            counts, arm = positions["books"][cell]["places"], robots[self._arms[cell]]
+            found[f"part/{cell}"] = part.see(positions["parts"][cell], arm, counts)
+        found |= {f"books/{cell}": books for cell, books in positions["books"].items()}
         for zone in positions["zones"]:
             found[f"zone/{zone['zone']}"] = {key: zone[key] for key in ("state", "robot", "waiting")}
         return found

@@ -10,6 +10,7 @@ from arboleda.model.movement import Movement
 from .joint import Joint
 
 ROUNDING = 1e-9  # rad or m, far below a motor step
+KEPT = 64  # goals of a robot, as its motors can hold them
 
 
 class JointMotion(Movement):
@@ -18,6 +19,7 @@ class JointMotion(Movement):
     def __init__(self, joints: tuple[Joint, ...], tolerances: tuple[float, ...]) -> None:
         self.joints = joints
         self.tolerances = tolerances
+        self._held: dict[Position, tuple[float, ...]] = {}  # by goal: every report on the way asks for it
 
     def quantised(self, q: tuple[float, ...]) -> tuple[float, ...]:
         """The joints as their motors can hold them."""
@@ -25,8 +27,10 @@ class JointMotion(Movement):
 
     def reached(self, q: tuple[float, ...], target: tuple[float, ...]) -> bool:
         """True if reported joints `q` lie within tolerance of a quantised target."""
-        rows = zip(q, target, self.tolerances, strict=True)
-        return all(abs(value - goal) <= tolerance for value, goal, tolerance in rows)
+        for value, goal, tolerance in zip(q, target, self.tolerances, strict=True):
+            if not abs(value - goal) <= tolerance:
+                return False
+        return True
 
     def held_at(self, position: Position) -> Position:
         assert isinstance(position, tuple)
@@ -40,7 +44,12 @@ class JointMotion(Movement):
 
     def stands_at(self, position: Position, goal: Position) -> bool:
         assert isinstance(position, tuple) and isinstance(goal, tuple)
-        return self.reached(position, self.quantised(goal))
+        held = self._held.get(goal)
+        if held is None:
+            if len(self._held) >= KEPT:
+                self._held.clear()
+            held = self._held[goal] = self.quantised(goal)
+        return self.reached(position, held)
 
     def confuses(self, position: Position, other: Position) -> bool:
         """True if the robot, stopped within tolerance of one position, may count as standing at the other."""

@@ -11,6 +11,7 @@ from arboleda.model.errors import ConfigError
 from arboleda.model.messages import ENDED, Event, OperatorRequest, TaskChanged, TaskState, Verb
 from arboleda.model.outside import plain
 from arboleda.model.plant_model import PlantModel
+from arboleda.model.verbs import lasting
 from arboleda.recorder.incident import AWAY_S, Reader, supervised
 from arboleda.recorder.reader import Record
 from arboleda.recorder.replay import plant_of
@@ -66,10 +67,11 @@ class _Collected:
 
     def act(self, event: OperatorRequest) -> None:
         """Note an operator's act; one whose scope is unknown to this plant was refused, and is left out."""
-        scope = _scope(event)
+        scope, by_hand = _scope(event), event.by_hand
         first = scope.partition(" ")[0]
         if not first or first in scopes(self.model) or first in {_own(id) for id in self.ids}:
-            self.acts.append(Act(at=event.at, verb=event.verb, scope=scope, by_hand=event.by_hand))
+            told = lasting(event.verb, event.arguments)
+            self.acts.append(Act(at=event.at, verb=event.verb, scope=scope, by_hand=by_hand, arguments=told))
 
 
 def case_of(record: Record, task: str | None) -> Case:
@@ -185,9 +187,5 @@ def _own(id: str) -> str:
 
 
 def _scope(request: OperatorRequest) -> str:
-    """The scope of an act in another run, which gives its tasks and questions other ids."""
-    if request.verb is Verb.CANCEL:
-        return _own(request.scope)
-    if request.verb is Verb.ANSWER:
-        return " ".join(word for word in request.scope.split() if not word.startswith("#"))
-    return request.scope
+    """The scope of an act in another run, which gives its tasks other ids."""
+    return _own(request.scope) if request.verb is Verb.CANCEL else request.scope

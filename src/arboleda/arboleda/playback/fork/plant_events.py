@@ -9,6 +9,7 @@ from itertools import zip_longest
 from typing import Any
 
 from arboleda.model.commands import LABELS
+from arboleda.model.verbs import Verb, as_text
 from arboleda.recorder.plain_data import TYPE
 
 Words = Callable[[Any], str]
@@ -69,9 +70,11 @@ def happenings(at: float, messages: Iterable[Mapping[str, Any]], words: Words) -
             yield PlantEvent(at=at, stream=f"{TASK}{row['task']}", what=what, said=said, cell=row["cell"])
         elif row[TYPE] == "OperatorAnswer":
             why = words(row.get("refusal"))
-            said = f"{row['verb']} {row['scope']}" + (f" is refused: {why}" if why else " is done")
+            arguments = tuple((name, value) for name, value in row.get("arguments", ()))
+            asked = f"{row['verb']} {as_text(Verb(row['verb']), row['scope'], arguments)}"
+            said = asked + (f" is refused: {why}" if why else " is done")
             what = f"refused {(row.get('refusal') or {}).get('key')}"
-            yield PlantEvent(at=at, stream=f"{row['verb']} {row['scope']}", what=what, said=said)
+            yield PlantEvent(at=at, stream=asked, what=what, said=said)
         elif "robot" in row and "id" in row:
             yield _command(at, row)
 

@@ -1,10 +1,10 @@
-"""The report as one HTML file that needs no network: both languages in it, one of them shown."""
+"""The report as one HTML file that needs no network: every language in it, one of them shown."""
 
 from __future__ import annotations
 
 import json
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 from datetime import datetime
 from html import escape
@@ -17,13 +17,10 @@ from arboleda.model.plant_model import PlantModel
 from arboleda.model.sentence import Sentence
 from arboleda.recorder.cause import Cause
 from arboleda.recorder.incident import Incident
+from arboleda.web.languages import FIRST, LANGUAGES, texts
 
 from .scene import scene
 from .tries import ForkTrial
-from .words import WORDS
-
-LANGUAGES = ("en", "es")
-Both = Callable[..., str]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -44,36 +41,41 @@ def page(report: Report) -> str:
     drawn = scene(report.incident, report.model)
     body = "\n".join(_parts(report, has_twin=drawn is not None))
     data = json.dumps({"scene": drawn}).replace("<", "\\u003c")
-    title = escape(WORDS["title"][0].format(task=report.incident.task))
-    return template.replace("__TITLE__", title).replace("__BODY__", body).replace("__DATA__", data)
+    title = escape(texts(FIRST, "report")["title"].format(task=report.incident.task))
+    hidden = ",".join(f"html[lang={each}] body [lang]:not([lang={each}])" for each in LANGUAGES)
+    names = " / ".join(escape(texts(each, "page")["name"]) for each in LANGUAGES)
+    put = {"TITLE": title, "HIDDEN": hidden, "NAMES": names, "LANGUAGES": json.dumps(LANGUAGES)}
+    for name, text in (put | {"BODY": body, "DATA": data}).items():
+        template = template.replace(f"__{name}__", text)
+    return template
 
 
 def _parts(report: Report, *, has_twin: bool) -> Iterator[str]:
     found, cause = report.incident, report.cause
     when = datetime.fromtimestamp(found.unix_ns / 1e9).isoformat(" ", "seconds")
-    yield f"<h1>{_both('title', task=found.task)}</h1>"
+    yield f"<h1>{_each('title', task=found.task)}</h1>"
     yield f"<p class=quiet>{escape(found.text)} · {escape(found.cell)} · {when}</p>"
-    yield f"<section class=cause><h2>{_both('cause')}</h2><p class=big>{_said(cause.sentence)}</p>"
+    yield f"<section class=cause><h2>{_each('cause')}</h2><p class=big>{_said(cause.sentence)}</p>"
     own = report.incident.failure.sentence if report.incident.failure else ""
-    yield f"<p class=quiet>{_both('cause_note')} {_said(own)}</p></section>"
-    yield f"<section><h2>{_both('evidence')}</h2><ul>{''.join(_evidence(found))}</ul></section>"
+    yield f"<p class=quiet>{_each('cause_note')} {_said(own)}</p></section>"
+    yield f"<section><h2>{_each('evidence')}</h2><ul>{''.join(_evidence(found))}</ul></section>"
     if has_twin:
-        yield f"<section><h2>{_both('twin')}</h2><svg id=twin></svg>"
+        yield f"<section><h2>{_each('twin')}</h2><svg id=twin></svg>"
         yield "<p><input id=time type=range min=0 value=0> <output id=at></output> "
-        yield f"{_both('before')}</p></section>"
+        yield f"{_each('before')}</p></section>"
     if found.tree:
-        yield f"<section><h2>{_both('tree')}</h2>{_tree(found)}</section>"
-    yield f"<section><h2>{_both('messages')}</h2><p class=quiet>{_both('messages_note')}</p>"
+        yield f"<section><h2>{_each('tree')}</h2>{_tree(found)}</section>"
+    yield f"<section><h2>{_each('messages')}</h2><p class=quiet>{_each('messages_note')}</p>"
     yield from (_messages(found, name) for name in _mine(report))
     acts = "".join(f"<li>{at - _zero(found):+.2f} s {escape(word)}</li>" for at, word in found.acts)
-    acts = acts or f"<li>{_both('none')}</li>"
-    yield f"</section><section><h2>{_both('acts')}</h2><ul>{acts}</ul></section>"
-    yield f"<section><h2>{_both('changed')}</h2><p class=quiet>{_both(_note(report))}</p>"
+    acts = acts or f"<li>{_each('none')}</li>"
+    yield f"</section><section><h2>{_each('acts')}</h2><ul>{acts}</ul></section>"
+    yield f"<section><h2>{_each('changed')}</h2><p class=quiet>{_each(_note(report))}</p>"
     yield f"<table>{''.join(_try(each, report) for each in report.tries)}</table></section>"
-    yield f"<section><h2>{_both('again')}</h2><pre>{escape(report.command)}</pre></section>"
-    yield f"<section><h2>{_both('test')}</h2><p class=quiet>{_both('test_note')}</p>"
+    yield f"<section><h2>{_each('again')}</h2><pre>{escape(report.command)}</pre></section>"
+    yield f"<section><h2>{_each('test')}</h2><p class=quiet>{_each('test_note')}</p>"
     yield f"<pre id=test>{escape(report.case)}</pre>"
-    yield f"<button id=copy>{_both('copy')}</button> <button id=save>{_both('save')}</button></section>"
+    yield f"<button id=copy>{_each('copy')}</button> <button id=save>{_each('save')}</button></section>"
 
 
 def _note(report: Report) -> str:
@@ -85,14 +87,14 @@ def _zero(found: Incident) -> float:
     return found.failed_at or found.ended_at or 0.0
 
 
-def _both(key: str, **values: Any) -> str:
-    """Words of the report in both languages."""
-    rows = zip(LANGUAGES, WORDS[key], strict=True)
+def _each(key: str, **values: Any) -> str:
+    """Words of the report in every language."""
+    rows = ((each, texts(each, "report")[key]) for each in LANGUAGES)
     return "".join(_span(language, text.format(**values) if values else text) for language, text in rows)
 
 
 def _said(sentence: Sentence | str) -> str:
-    """A sentence of the plant in both languages."""
+    """A sentence of the plant in every language."""
     return "".join(_span(language, words(language).say(sentence)) for language in LANGUAGES)
 
 
@@ -113,18 +115,18 @@ def _evidence(found: Incident) -> Iterator[str]:
     for trouble in found.troubles:
         if trouble.ends >= found.asked_at:
             seconds = "…" if trouble.seconds == math.inf else f"{trouble.seconds:.1f}"
-            cut = f" ({_both('cut')})" if trouble.cut else ""
-            what = _both(f"trouble_{trouble.kind}", seconds=seconds)
+            cut = f" ({_each('cut')})" if trouble.cut else ""
+            what = _each(f"trouble_{trouble.kind}", seconds=seconds)
             yield f"<li>{trouble.at - zero:+.2f} s {escape(trouble.robot)}: {what}{cut}</li>"
     last = found.evidence.last if found.failure else None
     if last is not None:
         late = None if last.accepted_at is None else last.accepted_at - last.at
-        how = _both("not_accepted") if late is None else _both("accepted", seconds=late)
-        whose = f"{escape(last.robot)}: {_both('sent')} {escape(last.id)}"
+        how = _each("not_accepted") if late is None else _each("accepted", seconds=late)
+        whose = f"{escape(last.robot)}: {_each('sent')} {escape(last.id)}"
         yield f"<li>{last.at - zero:+.2f} s {whose}, {how}</li>"
     for at, seconds in found.absences:
         yield f"<li>{at - zero:+.2f} s: {seconds:.1f} s</li>"
-    yield f"<li>{(found.ended_at or zero) - zero:+.2f} s {_both('task_end')}</li>"
+    yield f"<li>{(found.ended_at or zero) - zero:+.2f} s {_each('task_end')}</li>"
 
 
 def _tree(found: Incident) -> str:
@@ -143,6 +145,6 @@ def _messages(found: Incident, name: str) -> str:
 
 
 def _try(each: ForkTrial, report: Report) -> str:
-    what = _both(each.what, value=each.value)
+    what = _each(each.what, value=each.value)
     command = f"{report.command} {each.options}".strip() if each.options else ""
     return f"<tr><td>{what}<td>{escape(each.end)}<td><code>{escape(command)}</code>"

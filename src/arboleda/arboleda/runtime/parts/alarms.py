@@ -35,7 +35,7 @@ class AlarmsPart:
         self._outboxes = [Outbox(each) for each in receivers]
         self._page = page
         self._number = 0
-        self._failed: list[TaskChanged] = []
+        self._failed: deque[TaskChanged] = deque()  # from another thread
         self._paces: deque[Pace] = deque()  # from slow to fast and back, from another thread
         self._slow: str | None = None  # the alarm that stands of the memory
         self._seen = -1
@@ -55,7 +55,10 @@ class AlarmsPart:
             outbox.stop()
 
     def changed(self, task: TaskChanged) -> None:
-        """Note a task that failed; a repeated request gets the failure once more, which is no news."""
+        """Note a task that failed; from any thread, raised with the next step.
+
+        A repeated request gets the failure once more, which is no news.
+        """
         if task.state is TaskState.FAILED and task.request is None:
             self._failed.append(task)
 
@@ -73,9 +76,8 @@ class AlarmsPart:
             alarm = alarms.of_memory(plant, pace.sentence, is_slow=pace.is_slow)
             id = self._tell(plant, alarm, None if pace.is_slow else self._slow)
             self._slow = id if pace.is_slow else None
-        failed, self._failed = self._failed, []
-        for task in failed:
-            self._tell(plant, alarms.of_task(plant, task), None)
+        while self._failed:
+            self._tell(plant, alarms.of_task(plant, self._failed.popleft()), None)
         if plant.intake.closed or (plant.version == self._seen and not self._blocked):
             return  # a person who ends a plant knows that it stands
         self._seen = plant.version

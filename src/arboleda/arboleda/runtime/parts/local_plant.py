@@ -6,23 +6,25 @@ import logging
 import threading
 from collections.abc import Callable
 from concurrent.futures import Future
-from functools import partial
 from typing import Any
 
+from arboleda.core.plant import Plant
 from arboleda.model.errors import QueueFull
-from arboleda.model.messages import TaskChanged
+from arboleda.model.messages import OperatorAnswer, TaskChanged, Verb
+from arboleda.model.plant_model import PlantModel
+from arboleda.model.verbs import Arguments
 from arboleda.store.oee_rows import OeeQuery
-from arboleda.store.task_rows import History
+from arboleda.store.task_rows import History, TaskQuery, TaskRow
 from arboleda.views import view
 from arboleda.views.oee import Oee
-from arboleda.web.plant_api import Snapshot
+from arboleda.web.plant_api import Found, PlantApi, Snapshot
 
 from .orchestrator import GLANCE_S, Orchestrator
 
 LOG = logging.getLogger(__name__)
 
 
-class LocalPlant:
+class LocalPlant(PlantApi):
     """PlantApi of the plant in this process: its orchestrator, and the history of its tasks."""
 
     def __init__(self, plant: Orchestrator, history: History) -> None:
@@ -30,23 +32,38 @@ class LocalPlant:
         self._history = history
         self._watchers: tuple[Callable[[Snapshot], None], ...] = ()
         self._changing = threading.Lock()
-        self.snapshot = partial(plant.snapshot, GLANCE_S)
-        self.latest = plant.snapshot
-        self.offers = plant.offers
-        self.find = plant.find
-        self.history = history.select
-        self.spelled = plant.spelled
-        self.promises = plant.promises
-        self.operate = plant.operate
-        self.act = plant.act
+
+    @property
+    def model(self) -> PlantModel:
+        return self._plant.plant.model
+
+    def read(self, look: Callable[[Plant], Found]) -> Found:
+        return self._plant.loop.read(look)
+
+    def snapshot(self) -> Snapshot:
+        return self._plant.snapshot(GLANCE_S)
+
+    def latest(self) -> Snapshot:
+        return self._plant.snapshot()
+
+    def find(self, task: str) -> dict[str, Any] | None:
+        return self._plant.find(task)
+
+    def history(self, query: TaskQuery) -> list[TaskRow]:
+        return self._history.select(query)
 
     def oee(self, query: OeeQuery) -> list[Oee]:
-        return self._history.oee(query, [cell.name for cell in self._plant.plant.model.cells])
+        return self._history.oee(query, [cell.name for cell in self.model.cells])
 
     def submit(self, text: str, asked_by: str, choice: str = "") -> Future[dict[str, Any]]:
         plain: Future[dict[str, Any]] = Future()
         self._plant.submit(text, asked_by, choice).add_done_callback(lambda answer: _pass_on(answer, plain))
         return plain
+
+    def operate(
+        self, verb: Verb, scope: str, *, by_hand: bool = False, arguments: Arguments = ()
+    ) -> Future[OperatorAnswer]:
+        return self._plant.operate(verb, scope, by_hand=by_hand, arguments=arguments)
 
     def watch(self, callback: Callable[[Snapshot], None]) -> Callable[[], None]:
         with self._changing:

@@ -6,7 +6,7 @@ import logging
 import threading
 import time
 from collections import deque
-from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
 from concurrent.futures import Future
 from dataclasses import replace
 from itertools import groupby
@@ -16,13 +16,19 @@ from uuid import uuid4
 from arboleda.adapters import clock
 from arboleda.core import reasons
 from arboleda.core.leading import Standing, may_leave
-from arboleda.core.leaving import SENT_TOO_LATE, StopLeft, departure, is_too_late, leaves_unkept, stop_left
+from arboleda.core.leaving import (
+    SENT_TOO_LATE,
+    StopLeft,
+    departure,
+    is_too_late,
+    late_departure,
+    leaves_unkept,
+    stop_left,
+)
 from arboleda.core.plant import Plant
-from arboleda.core.text import spelled
 from arboleda.dispatch.fact_memory import Memory
 from arboleda.model.commands import Command, Stop
 from arboleda.model.errors import ArboledaError
-from arboleda.model.facts import Value
 from arboleda.model.messages import (
     ENDED,
     Absence,
@@ -45,12 +51,15 @@ from arboleda.model.messages import (
 )
 from arboleda.model.plant_model import PlantModel
 from arboleda.model.sentence import Phrase, as_sentence
+from arboleda.model.verbs import Arguments
 from arboleda.store.plant_memory import PlantMemory, Superseded
 from arboleda.store.task_rows import COMMAND, ROS, History, TaskQuery
-from arboleda.views import diagnostics, forms, twin_view, view
+from arboleda.views import diagnostics, twin_view, view
+from arboleda.views.remembered import RestingCells
 
 from ..loop import Loop, StepInFlight
-from ..memory import kept_task, kept_tasks, remembered
+from ..memory import begun, kept_task, kept_tasks, remembered
+from .durability import Durability
 from .part import Crash
 from .router import PlantPort
 from .slices import PAUSE_S, Slices
@@ -122,8 +131,9 @@ class CommandTooLate(ArboledaError):
 class Orchestrator:
     """The plant in its loop; `connect` its port before `start`.
 
-    Facts that the plant wants remembered are in the `store` before any later message leaves, and before
-    anybody is told of it; only stops leave earlier. If the store fails, the plant ends: from then on it sends
+    Facts that the plant wants remembered are in the `store` before any later message leaves; only stops leave
+    earlier. Nobody is told anything before all that led to it is durable, which the loop does not wait for.
+    If the store fails, the plant ends: from then on it sends
     only stops, and screens show the last kept snapshot. Tasks that wait at the end are left for the next
     start, unless it `drops_waiting`. If its thread is busy when somebody asks for a stop, the stop leaves
     beside it, by `stops`.
@@ -141,6 +151,8 @@ class Orchestrator:
     ) -> None:
         now, memory = clock.seconds(), remembered(store) if store is not None else {}
         kept = kept_tasks(store, clock_s=now, unix_s=time.time()) if store is not None else []
+        if store is not None:
+            memory = begun(store, memory, kept)
         self.plant = Plant(model, epoch=epoch, now=now, memory=memory, kept=kept)
         self.began = StartState(now, memory, kept)
         self.loop: Loop[Any, Any] = Loop(
@@ -153,6 +165,7 @@ class Orchestrator:
             on_step=self._stepped,
         )
         self.stops = Stops(model, epoch, self._send_beside)
+        self.durability = Durability(store, self._tell, self._forget)
         self.listeners: list[Callable[[TaskChanged], None]] = []
         self.watchers: list[Callable[[dict[str, Any]], None]] = []
         self.observers: list[Callable[[Plant], None]] = []  # told after each step; they must not wait
@@ -171,10 +184,12 @@ class Orchestrator:
         self._ros: RosPort | None = None
         self._shown = (-1, 0.0)
         self._show_after = 0.0
+        self._resting = RestingCells()
         self._kept: dict[str, Any] = {}  # the last snapshot of what was kept, as screens got it
         self._blind = ""  # the defect for which screens saw nothing last
         self._show_at: float | None = None  # while there is a change that nobody was shown
         self._showing: Slices[None] | None = None  # a snapshot that is being made and shown
+        self._shown_from = 0  # the number of the write that has to be durable before it is shown
         self._urgency = Urgency(self.plant)
         self._waiting: dict[str, Future[Any]] = {}
         self._asked_by: dict[str, str] = {}  # by token, the way by which a task came
@@ -219,6 +234,7 @@ class Orchestrator:
             if run.queue.left_over:
                 TASKS.warning("%s", run.queue.why_paused)
         self._kept = self._first_view()
+        self.durability.start()
         self.stops.loop.start()
         self.loop.start()
 
@@ -240,16 +256,26 @@ class Orchestrator:
         self.hear(TaskRequest(at=clock.seconds(), text=text, request=token, choice=choice))
         return answer
 
-    def operate(self, verb: Verb, scope: str = "", *, by_hand: bool = False) -> Future[OperatorAnswer]:
+    def operate(
+        self, verb: Verb, scope: str = "", *, by_hand: bool = False, arguments: Arguments = ()
+    ) -> Future[OperatorAnswer]:
         """Ask for an operator's act; the future holds the answer, with a refusal where nothing was done."""
         answer, token = self._expect()
-        now = clock.seconds()
-        self._take(OperatorRequest(at=now, verb=verb, scope=scope, by_hand=by_hand, request=token))
+        self._take(
+            OperatorRequest(
+                at=clock.seconds(),
+                verb=verb,
+                scope=scope,
+                by_hand=by_hand,
+                arguments=arguments,
+                request=token,
+            )
+        )
         return answer
 
     def _take(self, request: OperatorRequest) -> None:
         """Give the plant an operator's request; a stop does not wait until the plant's thread is free."""
-        if request.verb is not Verb.STOP:
+        if not request.verb.row.stops:
             self.loop.post(request)
             return
         request = self.stops.open(request)
@@ -264,31 +290,16 @@ class Orchestrator:
             return self._standing is not Standing.SUPERSEDED
         return self._store.leads_for_certain
 
-    def act(self, number: int) -> dict[str, Any] | None:
-        """One of the last acts of operators, None if the plant no longer knows it."""
-        return self.loop.read(lambda plant: view.act_by_number(plant, number))
-
-    def promises(self, text: str) -> list[dict[str, Any]]:
-        """The promise of each cell that a task text names; TextError, QueueFull."""
-        return self.loop.read(lambda plant: view.promises(plant, text))
-
-    def offers(self) -> list[dict[str, Any]]:
-        """The recipes that each cell offers."""
-        return forms.offers(self.plant.model)
-
-    def spelled(self, *, cell: str, recipe: str, values: Mapping[str, Value], id: str) -> str:
-        """The task text for named values; TextError if they are no task of this plant."""
-        return spelled(self.plant.model, cell=cell, recipe=recipe, values=values, id=id)
-
     def snapshot(self, within_s: float = READ_S) -> dict[str, Any]:
         """A snapshot of what is kept, made in slices between which the plant is stepped; not in its thread.
 
         While the plant waits longer for its disk, it is the last snapshot that screens got.
         """
-        slices = Slices(view.in_parts(self.plant))
+        slices = Slices(view.in_parts(self.plant, self._resting.part))
         try:
             while not self._read(lambda _plant: slices.cut(clock.seconds()), within_s):
                 time.sleep(PAUSE_S)
+            self._require_durable(within_s)
         except StepInFlight:
             return self._last_kept
         return slices.result
@@ -302,6 +313,11 @@ class Orchestrator:
             return fn(plant)
 
         return self.loop.read_handed_on(look, within_s)
+
+    def _require_durable(self, within_s: float) -> None:
+        """Wait until all that was read is durable; raises StepInFlight if it is not in time."""
+        if not self.durability.reach(self.durability.hurry(), within_s):
+            raise StepInFlight
 
     @property
     def _last_kept(self) -> dict[str, Any]:
@@ -323,6 +339,7 @@ class Orchestrator:
         """A task as it is kept; KeptStateUnknown if that is unknown now."""
         try:
             found: dict[str, Any] | None = self._read(lambda plant: view.task_by_id(plant, task), READ_S)
+            self._require_durable(READ_S)
         except StepInFlight:
             found = next((row for row in self._last_kept["tasks"] if row["id"] == task), None)
             if found is None:
@@ -339,6 +356,7 @@ class Orchestrator:
         if self.loop.running:
             self._at_rest.wait(PATIENCE_S)
         self.loop.stop()
+        self.durability.stop()
         self.stops.loop.stop()
 
     def _send(self, message: Command | Notice | StopsAway) -> None:
@@ -363,18 +381,31 @@ class Orchestrator:
         if isinstance(message, TaskChanged):
             self._keep_task(message)
         if isinstance(message, TaskChanged | OperatorAnswer):
-            _log(message)
-            self._answer(message)
-        if isinstance(message, TaskChanged):
-            for listener in self.listeners:
-                listener(message)
-        if self._port is not None and self._may_leave(message):
+            self.durability.tell(message)
+        elif self._port is not None and self._may_leave(message):
+            if not leaves_unkept(message):
+                self.durability.let_commands_leave()
             self._refuse_late(message)
             if self.stops.ahead:
                 self.stops.refuse_overtaken(message)
             self._port.send(message)
+            if late := late_departure(message, self.plant, clock.seconds()):
+                self.loop.post(late)
             if self.stops.ahead:  # one may have left meanwhile
                 self.stops.stop_again(message)
+
+    def _tell(self, message: TaskChanged | OperatorAnswer, failure: Exception | None) -> None:
+        """Tell whoever waits for it of a change that is durable, or that it is not; in the thread of that."""
+        if failure is not None:
+            self._refuse_unkept(message, failure)
+            return
+        _log(message)
+        self._answer(message)
+        if isinstance(message, TaskChanged):
+            for listener in self.listeners:
+                listener(message)
+        if self._port is not None and may_leave(message, self._standing):
+            self._port.send(message)
 
     def _send_beside(self, message: Stop | StopLeft) -> None:
         """Send a message of the lane, in its thread."""
@@ -414,7 +445,7 @@ class Orchestrator:
         if isinstance(message, Command):
             raise amnesia
         if isinstance(message, TaskChanged | OperatorAnswer):
-            self._answer(message)
+            self._answer(message, amnesia)
         if isinstance(message, OperatorAnswer):
             said = self._unkept(message, amnesia)
             _log(said)
@@ -423,7 +454,7 @@ class Orchestrator:
 
     def _unkept(self, answer: OperatorAnswer, why: Exception) -> OperatorAnswer:
         """The answer to an act that is not kept: only a stop has left all the same."""
-        is_left = answer.verb is Verb.STOP and answer.refusal is None
+        is_left = answer.verb.row.stops and answer.refusal is None
         if is_left and self._standing is not Standing.SUPERSEDED:
             return stop_left(answer, as_sentence(why))
         return replace(answer, refusal=answer.refusal or as_sentence(why))
@@ -455,8 +486,10 @@ class Orchestrator:
         if isinstance(message, Remember):
             if facts := self._writes.popleft():
                 self._store.keep(*facts)
+                self._wrote(*facts)
             return
         self._store.journal(message, time.time())
+        self._wrote(message)
         if message.verb is Verb.RETRY and message.outcome is None:
             for name in [message.cell] if message.cell else self.plant.cells:
                 task = self.plant.cells[name].task
@@ -473,6 +506,10 @@ class Orchestrator:
         self._store.task(change, recipe, unix_s, asked_by, answers)
         if change.state in ENDED:
             self._store.forget_tasks(unix_s - self.plant.model.history_days * DAY_S)
+        self._wrote(change)
+
+    def _wrote(self, *changes: Remember | Journal | TaskChanged) -> None:
+        self.durability.wrote(precedes_commands=any(map(self.plant.precedes_commands, changes)))
 
     def _expect(self) -> tuple[Future[Any], str]:
         """A future, and the token of the request whose answer it will hold."""
@@ -480,27 +517,27 @@ class Orchestrator:
         self._waiting[token] = answer
         return answer, token
 
-    def _answer(self, answer: TaskChanged | OperatorAnswer) -> None:
+    def _answer(self, answer: TaskChanged | OperatorAnswer, unkept: Exception | None = None) -> None:
         self._asked_by.pop(answer.request or "", None)
         if isinstance(answer, OperatorAnswer):
             self.stops.closed(answer)
         waiting = self._waiting.pop(answer.request or "", None)
         if waiting is None:
             return
-        if self._amnesia is None:
+        if unkept is None:
             waiting.set_result(answer)
             return
-        said = self._unkept(answer, self._amnesia) if isinstance(answer, OperatorAnswer) else answer
+        said = self._unkept(answer, unkept) if isinstance(answer, OperatorAnswer) else answer
         if isinstance(said, StopLeft):
             waiting.set_result(said)
         else:
-            waiting.set_exception(self._amnesia)
+            waiting.set_exception(unkept)
 
     def _not_sent(self, message: Any, error: Exception) -> None:
         if isinstance(message, Remember | Journal | TaskChanged):
             self._forget(error)
             if isinstance(message, TaskChanged):
-                self._answer(message)
+                self._answer(message, error)
         elif isinstance(message, Command):
             event = Undelivered(
                 at=clock.seconds(), id=message.id, robot=message.robot, sentence=as_sentence(error)
@@ -513,6 +550,7 @@ class Orchestrator:
         if events and any(isinstance(message, Command) for message in messages):
             # What is no news may have waited for the last event, which is why this step was made.
             self.reacted(clock.seconds() - max(event.at for event in events))
+        self.durability.wake()
         if self.recorder is not None:
             self.recorder.stepped(self.plant, now, events, messages)
         for observer in self.observers if self._amnesia is None else ():
@@ -541,6 +579,11 @@ class Orchestrator:
         """True if somebody wants to see the age of the displayed data."""
         return bool(self.watchers) or (self._ros is not None and self._ros.watched)
 
+    @property
+    def _waits_to_show(self) -> bool:
+        """True while a snapshot is made of what is not durable yet."""
+        return self.durability.durable < self._shown_from and self._amnesia is None
+
     def _show(self, now: float) -> None:
         self._shown, self._show_at = (self.plant.version, now), None
         self._showing = Slices(self._publication())
@@ -549,8 +592,9 @@ class Orchestrator:
     def _show_on(self, now: float) -> None:
         """Show the next slice of the snapshot, or all that is left of it once the plant ends."""
         assert self._showing is not None
-        if now < self._showing.due and not self.plant.intake.closed:
-            self.loop.wake_by(self._showing.due)
+        waits = self._waits_to_show
+        if (waits or now < self._showing.due) and not self.plant.intake.closed:
+            self.loop.wake_by(now + SETTLE_S if waits else self._showing.due)
             return
         try:
             while not self._showing.cut(now) and self.plant.intake.closed:
@@ -568,8 +612,11 @@ class Orchestrator:
 
     def _publication(self) -> Generator[None, None, None]:
         """Make a snapshot and show it to all who watch, in parts between which the plant may be stepped."""
-        snapshot = yield from view.in_parts(self.plant)
-        if self._amnesia is not None:  # what happens now is not kept
+        snapshot = yield from view.in_parts(self.plant, self._resting.part)
+        self._shown_from = self.durability.hurry()
+        while self._waits_to_show and not self.plant.intake.closed:
+            yield  # this slice ends soon, and the next one waits
+        if self._amnesia is not None or not self.durability.reach(self._shown_from, READ_S):
             if not self._kept:
                 return
             snapshot = self._last_kept

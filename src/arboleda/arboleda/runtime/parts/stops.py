@@ -12,7 +12,7 @@ from arboleda.core.leaving import OVERTAKEN, StopLeft, ends_motion
 from arboleda.core.stop_lane import Blocked, Closed, Departed, Opened, Overrun, StopLane
 from arboleda.model.commands import Command, Stop
 from arboleda.model.errors import ArboledaError
-from arboleda.model.messages import Notice, OperatorAnswer, OperatorRequest, Verb
+from arboleda.model.messages import Notice, OperatorAnswer, OperatorRequest
 from arboleda.model.plant_model import PlantModel
 
 from ..loop import Loop
@@ -72,7 +72,7 @@ class Stops:
 
     def closed(self, answer: OperatorAnswer) -> None:
         """Note that a request has its answer."""
-        if answer.verb is Verb.STOP:
+        if answer.verb.row.stops:
             self.loop.post(Closed(token=answer.request or ""))
 
     def refuse_overtaken(self, message: Command | Notice) -> None:

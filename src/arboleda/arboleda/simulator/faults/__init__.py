@@ -19,11 +19,13 @@ from . import (
 from .kind import Fault, Kind
 
 __all__ = [
+    "COUNTED",
     "KINDS",
     "NOT_WITH_STANDBY",
     "OF_CRASHES",
     "OF_DEVICES",
     "OF_HOSTS",
+    "OF_PLACES",
     "ON_ONE_HOST",
     "Fault",
     "Kind",
@@ -48,8 +50,14 @@ KINDS: dict[str, Kind] = {kind.name: kind for family in FAMILIES for kind in fam
 OF_DEVICES = tuple(kind.name for kind in devices.KINDS)
 """The kinds that befall devices of declared kinds alone: nobody in the packaged plants and in drawn ones."""
 
+OF_PLACES = ("operator_load",)
+"""The kinds that befall cells with places alone, which the packaged plants have not."""
+
 OF_CRASHES = ("plant_crash", *(kind.name for kind in crashes.KINDS))
 """The kinds in which the plant dies; they are drawn at a level of their own."""
+
+COUNTED = crashes.COUNTED
+"""Those of them that come at a commit or a message, by its number."""
 
 OF_HOSTS = tuple(kind.name for kind in hosts.KINDS)
 """The kinds that befall two hosts: only where a standby is simulated."""

@@ -26,7 +26,7 @@ def power_cut(world: World, fault: Fault) -> End:
     """So does the whole machine of plant and bridge, and what it had not synced is gone, but for a part."""
 
     def cut() -> None:
-        world.cut_power(Dice(fault.seed, "reached").below(world.disk.unsynced + 1))
+        world.cut_power(Dice(fault.seed, "reached").below(world.disk.unsynced(world.now) + 1))
 
     return _dies(world, fault, cut, with_bridge=True)
 
@@ -64,7 +64,7 @@ def full_disk(world: World, fault: Fault) -> End:
 
 @kind(targets=targets.plant, seconds=(0.5, 20.0), amount=(0.1, 10.0), weight=0.0)
 def slow_disk(world: World, fault: Fault) -> End:
-    """Each synced commit takes `amount` s: the plant does nothing meanwhile, what hangs on it leaves late."""
+    """Each sync takes `amount` s: a plant whose command needs one does nothing meanwhile; it leaves late."""
     world.disk.slow.append(fault.amount)
     return lambda: world.disk.slow.remove(fault.amount)
 
@@ -101,3 +101,4 @@ def _start_bridge(world: World) -> None:
 
 
 KINDS = (crash_in_step, power_cut, full_disk, slow_disk)
+COUNTED = (crash_in_step.name, power_cut.name)  # their amount is a number of commits and messages

@@ -99,12 +99,14 @@ def lying_fact(world: World, fault: Fault) -> End:
 
 
 def _another(type: FactType, now: Value, dice: Dice) -> Value:
-    """Another value that a fact can have."""
+    """Another value that a fact can have; of one within limits now and then one beyond them."""
     if type.words:
         others = [word for word in type.words if word != now]
         return dice.pick(others or list(type.words))
     if isinstance(now, bool):
         return not now
+    if type.is_limited and dice.chance(0.5):
+        return type.type(type.upper + 1)
     return f"{now}?" if isinstance(now, str) else now + 1
 
 

@@ -14,7 +14,7 @@ from dataclasses import replace
 
 from arboleda.model.commands import StopMode
 from arboleda.model.plant_model import PlantModel, Robot
-from arboleda.wire.goals import goal as goal_of
+from arboleda.wire.forms import form_of
 from arboleda.wire.payloads import Goal, StopGoal, encode
 from arboleda.wire.topics import Channel, topic
 from arboleda.wire.transport import Delivery, Publication
@@ -171,7 +171,7 @@ def _old(world: World, fault: Fault) -> Publication | None:
         return None
     robot: Robot = targets.robot_of(world.model, fault.target)
     order = ORDERS[fault.word](world.model, robot.name, "", Dice(fault.seed, "order"))
-    channel, goal = goal_of(robot, order, epoch=numbers[0], seq=numbers[1])
+    channel, goal = form_of(robot).goal(robot, order, epoch=numbers[0], seq=numbers[1])
     return _published(fault, channel, goal)
 
 

@@ -5,10 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from arboleda.core.intake import HISTORY
+from arboleda.model.facts import shown
 from arboleda.model.messages import TaskState, Verb
 from arboleda.model.plant_model import Cell, PlantModel
+from arboleda.model.recipe import Recipe
 from arboleda.model.task import Task
+from arboleda.model.verbs import PARTS, STATION, Devices, Scope
 
+from .. import hands
 from ..chance import Dice
 from ..people import any_text
 from ..storage.tasks import only_stores, stores
@@ -24,7 +28,7 @@ OF_THE_CELL = {
     "an ended task": (TaskState.DONE, TaskState.FAILED, TaskState.CANCELLED),
 }
 SPARE = 50  # tasks beyond those that are remembered
-SAID = tuple(verb for verb in Verb if verb is not Verb.ANSWER)  # these plants have nobody to be asked
+SAID = tuple(verb for verb in Verb if Scope.PERSON not in verb.row.scopes)  # nobody is asked here
 WEIGHTS = {Verb.STOP: 0.3, Verb.HOLD: 0.6, Verb.CANCEL: 0.8}
 
 
@@ -52,13 +56,25 @@ def _unloadings(model: PlantModel, target: str) -> tuple[str, ...]:
     return ("", *map(str, range(stations + 1))) if stations else ("",)
 
 
+def _cells_with_places(model: PlantModel) -> tuple[str, ...]:
+    """The cells with places that people do not keep anyway."""
+    return tuple(cell.name for cell in model.cells if any(not place.by_people for place in cell.places))
+
+
+def _places(model: PlantModel, target: str) -> tuple[str, ...]:
+    """The places of a cell, and one that it does not have."""
+    return (*(place.target for place in model.cell(target).places), NOWHERE)
+
+
 def _operate(verb: Verb) -> Callable[[World, Fault], None]:
     def begin(world: World, fault: Fault) -> None:
         scope = _task(world, fault) if fault.word in OF_THE_CELL else fault.target
         if fault.word == BY_HAND:
-            world.home_by_hand(scope)
-        elif verb is Verb.UNLOAD:
-            world.request_verb(verb, f"{scope} {fault.word}".strip())
+            hands.BY_HAND[verb](world, scope)
+        elif fault.word and fault.word not in OF_THE_CELL and not fault.word.isdigit():
+            world.request_verb(verb, scope, arguments=(("place", fault.word),))
+        elif STATION in verb.arguments and fault.word:
+            world.request_verb(verb, scope, arguments=(("station", int(fault.word)),))
         else:
             world.request_verb(verb, scope)
 
@@ -75,11 +91,22 @@ def _tasks_of(world: World, cell: str) -> list[Task]:
     return [task for task in world.plant.intake.tasks.values() if task.order.cell == cell]
 
 
-WORDS: dict[Verb, Words] = {
-    Verb.HOME: _homings,
-    Verb.CANCEL: _cancellings,
-    Verb.UNLOAD: _unloadings,
-}
+def _words(verb: Verb) -> Words:
+    """The forms in which somebody may say a verb."""
+    if Scope.TASK in verb.row.scopes:
+        return _cancellings
+    if STATION in verb.arguments:
+        return _unloadings
+    if PARTS in verb.arguments:
+        return _places
+    return _homings if verb.row.by_hand and verb.row.devices is Devices.MOVERS else no_words
+
+
+def _targets(verb: Verb) -> Callable[[PlantModel], tuple[str, ...]]:
+    """The scopes on which somebody may say a verb."""
+    if PARTS in verb.arguments:
+        return _cells_with_places
+    return _zones if Scope.ZONE in verb.row.scopes else _scopes
 
 
 def _verb(verb: Verb) -> Kind:
@@ -87,8 +114,8 @@ def _verb(verb: Verb) -> Kind:
         name=f"operator_{verb.value}",
         sentence=f"An operator says {verb.value}, whether it fits or not.",
         begin=_operate(verb),
-        targets=_zones if verb is Verb.OVERRIDE else _scopes,
-        words=WORDS.get(verb, no_words),
+        targets=_targets(verb),
+        words=_words(verb),
         weight=WEIGHTS.get(verb, 1.0),
     )
 
@@ -153,15 +180,48 @@ BAD_TEXTS: dict[str, Callable[[Cell], str]] = {
 }
 
 
+BAD_NUMBERS = ("a number too high", "a number too low")
+
+
 def _storing(model: PlantModel) -> tuple[str, ...]:
     """The cells whose tasks have the words of storage."""
     return tuple(cell.name for cell in model.cells if stores(cell))
 
 
-@kind(targets=_storing, words=words(*BAD_TEXTS))
+def _misread(model: PlantModel) -> tuple[str, ...]:
+    """Those, and the cells with a recipe that takes a number."""
+    counts = (cell.name for cell in model.cells if not stores(cell) and _counting(cell))
+    return (*_storing(model), *counts)
+
+
+def _counting(cell: Cell) -> list[Recipe]:
+    """The recipes of a cell that take a number within limits."""
+    return [each for each in cell.recipes if any(one.limits(cell) for one in each.parameters)]
+
+
+def _bad_words(model: PlantModel, target: str) -> tuple[str, ...]:
+    return tuple(BAD_TEXTS) if stores(model.cell(target)) else BAD_NUMBERS
+
+
+@kind(targets=_misread, words=_bad_words)
 def bad_task(world: World, fault: Fault) -> None:
-    """Somebody asks for a task in words that mean none."""
-    world.request_task(BAD_TEXTS[fault.word](world.model.cell(fault.target)))
+    """Somebody asks for a task in words that mean none, or with a number beyond its limits."""
+    cell = world.model.cell(fault.target)
+    if fault.word in BAD_TEXTS:
+        world.request_task(BAD_TEXTS[fault.word](cell))
+    else:
+        world.request_task(_beyond(cell, Dice(fault.seed, "beyond"), is_high=fault.word == BAD_NUMBERS[0]))
+
+
+def _beyond(cell: Cell, dice: Dice, *, is_high: bool) -> str:
+    """The text of a task with a number that lies beyond its limits."""
+    recipe = dice.pick(_counting(cell))
+    said: list[str] = []
+    for each in recipe.parameters:
+        limits = each.limits(cell)
+        end = None if limits is None else limits.upper + 1 if is_high else limits.lower - 1
+        said.append(dice.pick(list(each.words(cell))) if end is None else shown(end))
+    return " ".join([cell.name, recipe.name, *said])
 
 
 @kind(targets=_storing, weight=0.0)

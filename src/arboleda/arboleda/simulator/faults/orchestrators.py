@@ -5,9 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from arboleda.kinds.arm import SetEffector
+from arboleda.kinds.declared import FactType
 from arboleda.kinds.joints import MoveJoints
 from arboleda.kinds.mobile import FollowPath
 from arboleda.model.commands import Command, Home, Stop, StopMode
+from arboleda.model.facts import Value
 from arboleda.model.messages import Heartbeat
 from arboleda.model.plant_model import PlantModel
 from arboleda.wire.bridge import PLANT_GONE_S
@@ -22,7 +24,7 @@ from .kind import Fault, kind, words
 
 LATEST = 5  # how many epochs it may be behind
 OF_ALL = ("home", "home", "clear", "clear", "beat", "beat")
-ANY_VALUE: dict[type, tuple[object, ...]] = {bool: (False, True), int: (0, 1), float: (0.0, 1.5), str: ("a",)}
+ANY_VALUE: dict[type, tuple[Value, ...]] = {bool: (False, True), int: (0, 1), float: (0.0, 1.5), str: ("a",)}
 RARE = ("halt", "stop")  # these count, whoever says them
 
 
@@ -99,8 +101,12 @@ def _verb(model: PlantModel, robot: str, id: str, dice: Dice) -> Command:
     """Any verb of a device, with any of the values that it takes."""
     kind = model.robots[robot].kind
     verb = kind.verbs[dice.pick(list(kind.verbs))]
-    values = {name: dice.pick(type.words or ANY_VALUE[type.type]) for name, type in verb.parameters}
+    values = {name: dice.pick(_values(type)) for name, type in verb.parameters}
     return kind.command(id=id, robot=robot, verb=verb.name, values=values)
+
+
+def _values(type: FactType) -> tuple[Value, ...]:
+    return type.samples if type.words or type.is_limited else ANY_VALUE[type.type]
 
 
 def _switch(on: bool) -> Order:

@@ -104,9 +104,9 @@ class SharedDisk(Disk):
         self.forgets = 0
         self.writes: list[Write] = []
 
-    def commit(self, message: Notice, now: float) -> float:
+    def commit(self, message: Notice, now: float, *, precedes_commands: bool = True) -> float:
         if self.writer is None:
-            return super().commit(message, now)
+            return super().commit(message, now, precedes_commands=precedes_commands)
         return self.take(self.writer, message, now)
 
     def take(self, writer: Process, message: Notice, now: float) -> float:
@@ -125,4 +125,6 @@ class SharedDisk(Disk):
         if not self.row.is_fenced(epoch):
             raise StoreRefused("another process leads the plant now: this one steps down")
         self.writes.append(Write(epoch=epoch, leads=self.row.epoch, message=message))
-        return super().commit(message, now)
+        took = super().commit(message, now)
+        self.sync()  # the server is asked for that with the statement
+        return took

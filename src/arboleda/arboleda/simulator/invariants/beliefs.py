@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
+from operator import attrgetter
 
+from arboleda.kinds.declared import Device
+from arboleda.model.facts import Value
 from arboleda.model.plant_model import Evidence
 
 from ..recorded.scopes import UNSENT
@@ -12,6 +15,8 @@ from .invariant import Look, Trigger, invariant
 NOTHING: tuple[str, ...] = ()
 EVERY_S = 2.0
 FIELDS = ("state", "homed", "effector", "piece", "boot_id", "epoch", "plant", "q", "node")
+_believed = attrgetter(*FIELDS)
+_said = attrgetter(*("boot" if field == "boot_id" else field for field in FIELDS))
 
 
 @invariant(Trigger.STEPPED)
@@ -28,12 +33,14 @@ def _unlike(look: Look, robots: set[str]) -> Iterator[str]:
         known, belief = look.record.robots[name], look.world.plant.dispatcher.beliefs[name]
         if known.robot.link in UNSENT:
             continue
-        for field in FIELDS:
-            said = getattr(known, "boot" if field == "boot_id" else field)
-            if getattr(belief, field) != said:
-                yield f"{name}: its {field} is taken for {getattr(belief, field)}, its word was {said}"
+        if (believed := _believed(belief)) != (said := _said(known)):
+            for field, taken, word in zip(FIELDS, believed, said, strict=True):
+                if taken != word:
+                    yield f"{name}: its {field} is taken for {taken}, its word was {word}"
         if belief.facts != known.facts:
             yield f"{name}: its facts are taken for {belief.facts}, its word was {known.facts}"
+        if beyond := BEYOND.get(type(known.robot)):
+            yield from beyond(known.robot, belief.facts)
         offline = known.offline(look.world.plant.now)
         if belief.online is offline:
             yield f"{name} is {'' if belief.online else 'not '}online by what the plant believes"
@@ -41,4 +48,14 @@ def _unlike(look: Look, robots: set[str]) -> Iterator[str]:
             yield f"{name} is {'not ' if belief.unhomed else ''}homed by what the plant believes"
 
 
+def _beyond(device: Device, facts: Mapping[str, Value]) -> Iterator[str]:
+    """Sentences on facts that are none of the values of their kind."""
+    for fact, value in facts.items():
+        type = device.kind.facts[fact]
+        is_number = isinstance(value, int | float)
+        if (type.words and value not in type.words) or (is_number and not type.lower <= value <= type.upper):
+            yield f"{device.name}: {fact} is taken for {value}, which a {device.kind.name} cannot say"
+
+
+BEYOND = {Device: _beyond}  # of the robots whose facts have types
 BELIEFS = (believed_as_said,)

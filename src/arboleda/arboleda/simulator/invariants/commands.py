@@ -2,16 +2,22 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Iterator
 
+from py_trees.behaviour import Behaviour
+
+from arboleda.bt_xml.running.decorators import Loop
 from arboleda.dispatch.ledger import TABLE, State
 from arboleda.model.commands import Home, Motion, Query, Stop, StopMode, Switch
 from arboleda.model.messages import Reason, Verb
 from arboleda.model.plant_model import MotionState, Robot, Timing
 from arboleda.trees.leaves import Act
 
+from ..recorded.cells import KnownCell
 from ..recorded.commands import Commands, SentCommand
 from ..recorded.robots import Obstacle
+from ..recorded.starts import most_turns
 from .invariant import Look, Trigger, invariant
 
 NOTHING: tuple[str, ...] = ()
@@ -173,6 +179,27 @@ def retries_bounded(look: Look) -> Iterable[str]:
         for (leaf, _), count in cell.sends.items() if cell.looked else ():
             if count > most:
                 yield f"{cell.name}: {leaf.name} gave its command {count} times, allowed are {most}"
+        for leaf in cell.leaves if cell.looked else ():
+            yield from _too_many_turns(cell, leaf)
+
+
+def _too_many_turns(cell: KnownCell, leaf: Behaviour) -> Iterator[str]:
+    """Sentences on a step that what repeats it has done more often than it says."""
+    count = sum(count for (each, _), count in cell.sends.items() if each is leaf)
+    most = most_turns(leaf) * (cell.cell.retry.times + 1) + cell.again
+    if count > most:
+        yield f"{cell.name}: {leaf.name} gave its command {count} times in all, allowed are {most:g}"
+    node = leaf.parent
+    while node is not None:
+        if isinstance(node, Loop) and node.rounds >= _rounds(node):
+            yield f"{cell.name}: {node.name} has done its step {node.rounds} times, and does it again"
+        node = node.parent
+
+
+def _rounds(loop: Loop) -> float:
+    """The number that a loop of a file says of its rounds; without end where that is a variable, or -1."""
+    said = loop.given.said[loop.port]
+    return int(said) if said.isdecimal() else math.inf
 
 
 @invariant(Trigger.NEWS)

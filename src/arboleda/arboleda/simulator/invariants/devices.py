@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from arboleda.dispatch.ledger import State
-from arboleda.model.commands import Motion, Query
+from arboleda.model.commands import Command, Home, Motion, Query, Question
+from arboleda.model.messages import Fact, OperatorRequest, Remember, TaskState, Verb
 from arboleda.model.plant_model import Evidence, MotionState, Robot
 
 from ..truth.ended_commands import EndedCommand
@@ -52,6 +53,11 @@ def _unprovable(truth: Truth, booked: EndedCommand, robot: RobotTruth) -> bool:
     return booked.late or lies(robot.PLACE) or lies("effector") or lies("state")
 
 
+def _may_have_failed_unseen(truth: Truth, booked: EndedCommand, robot: Robot) -> bool:
+    """True if a fault may have kept a device from what it was told, and it reports nothing of that."""
+    return robot.evidence is Evidence.STATE and not truth.books.calm_since(booked.sent_at)
+
+
 def _tells_switches(robot: Robot) -> bool:
     """False for an arm whose effector counts as switched after a time, as nobody reports anything of it."""
     return robot.evidence is Evidence.IDS or not robot.has_effector
@@ -59,18 +65,19 @@ def _tells_switches(robot: Robot) -> bool:
 
 @invariant(Trigger.DONE_TASKS)
 def what_a_task_left_is_so(look: Look) -> Iterator[str]:
-    """A task that is called done leaves each of its devices as the last command to that has set it, unless
+    """A task that is called done leaves each of its devices as its last command to that has set it, unless
     power, somebody's hand, a lie or another cell that shares it has changed that; an effector of which nobody
-    reports anything counts as switched after a time.
+    reports anything counts as switched after a time, and so does a device at `state`, which is judged while
+    nothing goes wrong.
     """
     truth, last_sent = look.truth, look.world.plant.dispatcher.last_sent
     for cell, task, began in truth.done_tasks:
         of_task = look.world.model.cell(cell)
         for robot in of_task.robots:
             booked = truth.last_done(robot.name)
-            if booked is None or booked.sent_at < began:
+            if booked is None or booked.sent_at < began or booked.entry.cell != cell:
                 continue
-            if not _tells_switches(robot):
+            if not _tells_switches(robot) or _may_have_failed_unseen(truth, booked, robot):
                 continue
             last = last_sent.get(robot.name)
             if robot.name in of_task.shared and last is not None and last.sent_at > booked.sent_at:
@@ -107,6 +114,24 @@ def no_command_against_a_need(look: Look) -> Iterator[str]:
         for name, value in work.command.needs:
             if sets.get(name, value) != value:
                 yield f"{sent} leaves, and {sent.robot} said that it is at {work}, which needs {name} {value}"
+
+
+@invariant(Trigger.COMMANDED)
+def no_command_against_a_need_of_others(look: Look) -> Iterator[str]:
+    """No command leaves, but an operator's release or home, while another device of its cell has said last
+    that what the command needs of it is not so, or is not heard.
+    """
+    for sent in look.record.commands.new:
+        cell = look.world.model.cell(sent.entry.cell) if sent.entry is not None else None
+        by_operator = isinstance(sent.command, Home) or look.truth.released(sent.robot)
+        if cell is None or not cell.needs or by_operator:
+            continue
+        for need in cell.needs:
+            known = look.record.robots[need.other]
+            if (need.device, need.word) == (sent.robot, sent.command.word) and (
+                known.fact(need.fact) != need.value or known.offline(look.record.stepped_at)
+            ):
+                yield f"{sent} leaves, needs {need.fact} of {need.other} {need.value}, which said otherwise"
 
 
 @invariant(Trigger.CHANGED)
@@ -155,6 +180,25 @@ def an_answer_is_to_its_question(look: Look) -> Iterator[str]:
             yield f"{booked.command.robot} has not answered {told!r} to {booked.command.id}"
 
 
+@invariant(Trigger.ASKED)
+def offered_answers_are_accepted(look: Look) -> Iterator[str]:
+    """An answer that a question offers is accepted from whoever gives it while that question is open."""
+    refused = {each.scope for each in look.record.answers if each.verb is Verb.ANSWER and each.refusal}
+    for request in look.moment.asked if refused else ():
+        if not isinstance(request, OperatorRequest) or request.verb is not Verb.ANSWER:
+            continue
+        entry = look.world.plant.dispatcher.question(request.scope)
+        if entry is None or entry.sent_at >= request.at or request.scope not in refused:
+            continue
+        if _is_offered(entry.command, request):
+            yield f"{request.scope} may not answer {request.argument('answer')!r}, which is offered"
+
+
+def _is_offered(command: Command, request: OperatorRequest) -> bool:
+    is_meant = request.argument("question") in (None, command.id)
+    return is_meant and isinstance(command, Question) and request.argument("answer") in command.answers
+
+
 @invariant(Trigger.BRIDGED)
 def commands_of_others_are_told(look: Look) -> Iterator[str]:
     """Of each command of another node that reaches a bridge that hears its plant, people are told."""
@@ -177,14 +221,66 @@ def a_shared_device_serves_one_cell(look: Look) -> Iterator[str]:
             yield f"{device} works for {', '.join(sorted(others))} at the same time"
 
 
+@invariant(Trigger.SENT)
+def a_shared_device_is_handed_on_empty_at_home(look: Look) -> Iterator[str]:
+    """A robot that cells share is handed on at its home, and what holds parts is handed on empty,
+    unless its board lies or a person has said that it is empty.
+    """
+    model, truth = look.world.model, look.truth
+    given_back = [each for each in look.moment.sent if isinstance(each, Remember) and _gives_back(each)]
+    for name in (each.name for each in given_back if each.name in model.shared):
+        body = truth.robot(name)
+        if body is None or truth.mistaken(body):
+            continue
+        space = model.cell_of[name].reach.get(name)
+        if space is not None and space.home.name not in body.here | body.stood:
+            yield f"{name} is given back, and stands at {', '.join(sorted(body.here)) or 'no target'}"
+        if _truly_holds(look, body):
+            yield f"{name} is given back, and holds a part"
+
+
+def _truly_holds(look: Look, body: RobotTruth) -> bool:
+    """True for what holds a part while nothing says else, neither a lie of its board nor a person."""
+    fact = body.robot.held_fact
+    if fact is None or body.body.true_facts.get(fact) is not True:
+        return False
+    what = "effector" if body.robot.goes else body.PLACE
+    lies = look.truth.deceived_since(body.robot.mqtt, what, look.world.now)
+    return not lies and look.world.plant.dispatcher.memory.value(Fact.EMPTIED, body.robot.name) is None
+
+
+def _gives_back(said: Remember) -> bool:
+    return said.fact is Fact.QUARANTINE and said.value is None
+
+
+@invariant(Trigger.TOLD)
+def numbers_lie_within_their_limits(look: Look) -> Iterator[str]:
+    """A task is accepted only with numbers within the limits of its recipe."""
+    for change in look.record.tasks.changes:
+        known = look.world.plant.intake.tasks.get(change.said.task)
+        if change.said.state is not TaskState.QUEUED or change.answer or known is None:
+            continue
+        cell = look.world.model.cell(known.order.cell)
+        found = [each for each in cell.recipes if each.name == known.order.recipe]
+        for parameter in (each for recipe in found for each in recipe.parameters):
+            limits, value = parameter.limits(cell), known.order.values.get(parameter.name)
+            if limits and isinstance(value, int | float) and not limits.lower <= value <= limits.upper:
+                said = f"task {known.id} was accepted with {parameter.name} {value:g}"
+                yield f"{said}, allowed is {limits.lower:g} to {limits.upper:g}"
+
+
 DEVICES = (
     what_is_done_was_so,
     what_a_task_left_is_so,
     needs_hold,
     no_command_against_a_need,
+    no_command_against_a_need_of_others,
     finishing_work_is_finished,
     nothing_is_dropped,
     an_answer_is_to_its_question,
+    offered_answers_are_accepted,
     commands_of_others_are_told,
     a_shared_device_serves_one_cell,
+    a_shared_device_is_handed_on_empty_at_home,
+    numbers_lie_within_their_limits,
 )

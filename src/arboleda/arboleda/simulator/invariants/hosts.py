@@ -16,6 +16,13 @@ def one_leader_at_a_time(look: Look) -> Iterator[str]:
             yield f"who led under number {said.epoch}, and does no more, sends {said.message}"
 
 
+@invariant(Trigger.SURE_TOO_LONG)
+def a_lead_is_over_before_the_next_begins(look: Look) -> Iterable[str]:
+    """When a process begins to lead, each one that led before knows that it may be superseded."""
+    assert look.leaders is not None
+    return look.leaders.sure
+
+
 @invariant(Trigger.LED_TWICE)
 def each_number_is_led_once(look: Look) -> Iterable[str]:
     """A number under which the plant is led belongs to one process, and is higher than any before."""
@@ -36,6 +43,7 @@ def history_is_one(look: Look) -> Iterable[str]:
 
 HOSTS: tuple[Invariant, ...] = (
     one_leader_at_a_time,
+    a_lead_is_over_before_the_next_begins,
     each_number_is_led_once,
     old_numbers_have_no_effect,
     history_is_one,

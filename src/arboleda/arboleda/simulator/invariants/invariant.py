@@ -50,8 +50,10 @@ class Trigger(Enum):
     BORN = "record.born"
     TOLD_OTHERWISE = "record.starts.wrong"
     DONE_TWICE = "record.starts.twice"
+    KEPT_WRONGLY = "record.trails.wrong"
     WAITING = "record.waiting"
     CHANGED = "truth.changed"
+    MISPLACED = "truth.places.wrong"
     PASSED = "truth.storage.parts.passages"
     ENDED = "truth.storage.ended"
     DONE_TASKS = "truth.done_tasks"
@@ -63,6 +65,7 @@ class Trigger(Enum):
     LED_TWICE = "leaders.twice"
     OLD_NUMBER = "leaders.old"
     WRONG_HISTORY = "leaders.wrong"
+    SURE_TOO_LONG = "leaders.sure"
     END = "end"  # once, when everything should be at rest
 
 

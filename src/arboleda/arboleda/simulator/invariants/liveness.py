@@ -69,6 +69,8 @@ def ready(look: Look, cell: KnownCell) -> bool:
         return False
     for robot in cell.cell.robots:
         if robot.link is Link.SCREEN:
+            if _is_stopped_with_another_cell(look, robot.name):
+                return False
             continue
         known = robots[robot.name]
         if known.stop is not None and robot.name in cell.cell.shared:
@@ -79,6 +81,11 @@ def ready(look: Look, cell: KnownCell) -> bool:
         if not robot.says_homed and plant.dispatcher.beliefs[robot.name].displaced:
             return False
     return not _is_busy(look, cell) and _outside(look, cell)
+
+
+def _is_stopped_with_another_cell(look: Look, person: str) -> bool:
+    """True for a person whom cells share while one of them is stopped: nothing is sent that would tell."""
+    return any(look.record.cells[cell.name].stopped for cell in look.world.model.cells_of[person])
 
 
 def _is_busy(look: Look, cell: KnownCell) -> bool:

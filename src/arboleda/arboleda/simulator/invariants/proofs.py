@@ -70,9 +70,9 @@ def _settled(look: Look, sent: SentCommand) -> bool:
     So do an effector that reports nothing and, at `state`, a move to where the robot is already.
     """
     evidence, timing = look.world.model.robots[sent.robot].evidence, look.world.model.timing
-    passed_s = look.record.stepped_at - sent.at + ROUNDING_S
+    passed_s = look.record.stepped_at - sent.at - sent.late_s + ROUNDING_S
     if isinstance(sent.command, Switch):
-        return evidence is not Evidence.IDS and passed_s >= timing.effector_settle_s
+        return evidence is not Evidence.IDS and passed_s >= timing.effector_settle_s + sent.command.takes_s
     return evidence is Evidence.STATE and passed_s >= min(timing.stop_timeout_s, sent.deadline - sent.at)
 
 

@@ -15,12 +15,12 @@ from arboleda.dispatch.belief import FAULTY, FENCED, MOVING, OFFLINE, STOPPED, U
 from arboleda.dispatch.ledger import OPEN, State
 from arboleda.kinds.joints import MoveJoints
 from arboleda.kinds.mobile import FollowPath
-from arboleda.model.messages import ENDED, Reason, TaskChanged, Verb
+from arboleda.model.messages import ENDED, Reason, TaskChanged
 from arboleda.model.plant_model import MotionState, Robot
 from arboleda.model.sentence import Phrase, Sentence
 from arboleda.recipes.storage_layout import StorageLayout
+from arboleda.trees.tree_nodes import nodes_of
 from arboleda.trees.tree_run import IN_RECOVERY
-from arboleda.views.verb_words import ABOUT
 
 from ..recorded.cells import KnownCell
 from ..recorded.commands import SentCommand
@@ -104,7 +104,7 @@ def _progress(cell: KnownCell, row: Row) -> Iterator[str]:
         yield f"{cell.name}: {shown} of the work is shown as done, it has {len(done)} steps"
     elif done and ((shown > 0) is not any(done) or (shown == 1) is not all(done) or not 0 <= shown <= 1):
         yield f"{cell.name}: {shown} of the work is shown as done, of its {len(done)} steps {sum(done)} are"
-    runs = [node.name for node in tree.iterate() if node.status is Status.RUNNING]
+    runs = [node.name for node in nodes_of(tree) if node.status is Status.RUNNING]
     said = row["step"]
     step = str(said.values["step"] if said is not None and said.phrase is IN_RECOVERY else said or "")
     if bool(runs) is not bool(step) or (step and step not in runs):
@@ -173,12 +173,6 @@ def ways(advised: tuple[Advice, ...], row: Row) -> Iterator[str]:
             yield f"{row['name']} is shown with {shown}, it is {way}"
         if str(shown["said"]) not in whole:
             yield f"{row['name']}: {shown['said']} is not in {whole!r}"
-
-
-def sayable(kind: str) -> list[Verb]:
-    """The verbs that may be refused where they are said of a cell, or of a robot."""
-    allowed = {"cell": {"cell"}, "robot": {"robot", "arm"}}[kind]
-    return [verb for verb in Verb if verb is not Verb.STOP and allowed & {*ABOUT[verb].scopes}]
 
 
 def stands(row: Row) -> str:
@@ -258,7 +252,7 @@ def waits_at(cell: KnownCell, text: str, part: Row | None) -> Iterator[str]:
 
 
 def _acts(cell: KnownCell) -> Iterator[Any]:
-    nodes = cell.run.tree.iterate() if cell.run.tree is not None else ()
+    nodes = nodes_of(cell.run.tree) if cell.run.tree is not None else ()
     return (each for each in nodes if type(each).__name__ == "Act")
 
 

@@ -18,7 +18,9 @@ from arboleda.model.errors import PayloadError
 from arboleda.model.messages import OperatorRequest
 from arboleda.model.plant_model import Evidence
 from arboleda.model.sentence import OWN
+from arboleda.model.verbs import Scope, refusable
 from arboleda.recipes.storage_layout import StorageLayout
+from arboleda.trees.tree_nodes import nodes_of
 from arboleda.views import diagnostics, geometry, twin_view, view
 from arboleda.wire import status
 
@@ -97,10 +99,13 @@ def _shown(look: Look) -> Iterator[str]:
     yield from _time_line(look, shown)
 
 
+REFUSABLE = {kind: refusable(Scope(kind)) for kind in ("cell", "robot")}
+
+
 def _refused(look: Look, row: Row, kind: str) -> Iterator[str]:
     """Differences between the verbs shown as refused for a cell or a robot and those refused now."""
     plant, found = look.world.plant, []
-    for verb in rows.sayable(kind):
+    for verb in REFUSABLE[kind]:
         if plant.refusal(OperatorRequest(at=plant.now, verb=verb, scope=row["name"])) is not None:
             found.append(verb.value)
     shown = [name for name in row["refused"] if not name.endswith("_by_hand")]
@@ -227,7 +232,7 @@ def _tree(cell: KnownCell, rows_: list[Row], now: float, *, own: bool) -> Iterat
     tree = cell.run.tree
     if tree is None:
         return
-    if len(rows_) != sum(1 for _ in tree.iterate()):
+    if len(rows_) != len(nodes_of(tree)):
         yield f"{cell.name}: {len(rows_)} nodes are shown of a tree with more or less"
     for row in rows_:
         node = _node(tree, row["path"])
@@ -323,6 +328,9 @@ def _drawn(look: Look, drawn: Row) -> Iterator[str]:
         yield from _ends(look, known, row)
     for name, part in drawn["parts"].items():
         kept = look.record.effector_of(look.record.cells[name].layout.arm.name)
+        if look.world.model.cell(name).places:
+            yield from _in_hands(name, part, drawn["books"][name]["carriers"], kept)
+            continue
         if (part is not None and part["at"] == "arm") is not (kept != "off"):
             yield f"the part of {name} is drawn at {part}, its effector is {kept}"
         if kept != "off" and part is not None and part.get("sure") is not (kept == "on"):
@@ -331,6 +339,13 @@ def _drawn(look: Look, drawn: Row) -> Iterator[str]:
         own = _is_own(look, look.record.cells[name])
         if not own and kept == "off" and running is not None and look.record.cells[name].run.tree is not None:
             yield from rows.waits_at(look.record.cells[name], running.said.text, part)
+
+
+def _in_hands(name: str, part: Row | None, carriers: dict[str, bool], kept: str) -> Iterator[str]:
+    """Differences between the parts that are drawn in hands by the books of a cell, and its effector."""
+    expected = [] if kept == "off" else [kept == "on"]
+    if part is not None or list(carriers.values()) != expected:
+        yield f"the parts of {name} are drawn at {part} and in {carriers}, its effector is {kept}"
 
 
 def _ends(look: Look, known: KnownRobot, row: Row) -> Iterator[str]:
@@ -372,7 +387,7 @@ def status_says_the_report(look: Look) -> Iterable[str]:
 def _carried(look: Look) -> Iterator[str]:
     for report in look.record.anew:
         robot = look.world.model.robots.get(report.robot)
-        if robot is None:
+        if robot is None or not look.record.is_new(f"status of {robot.name}", report.words):
             continue
         try:
             sent = status.to_status(robot, report)

@@ -73,6 +73,14 @@ def no_step_is_done_twice(look: Look) -> Iterable[str]:
     return look.record.starts.twice
 
 
+@invariant(Trigger.KEPT_WRONGLY)
+def tasks_go_on_from_what_was_kept(look: Look) -> Iterable[str]:
+    """What is kept of a task at work says which of its commands are done; and it goes on for a later start
+    only where no device has booted since, which is said of that device and nothing else.
+    """
+    return look.record.trails.wrong
+
+
 @invariant(Trigger.COMMANDED)
 def nothing_moves_after_a_restart(look: Look) -> Iterator[str]:
     """After a start no robot is told to move before an operator gets its cell going, or somebody brings a
@@ -87,6 +95,7 @@ STARTS = (
     asked_again_is_the_same_task,
     ends_once_over_all_starts,
     no_step_is_done_twice,
+    tasks_go_on_from_what_was_kept,
     nothing_unkept_leaves,
     nothing_moves_after_a_restart,
 )

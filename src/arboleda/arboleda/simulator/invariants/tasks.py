@@ -13,12 +13,13 @@ from arboleda.model.messages import (
     OperatorAnswer,
     OperatorRequest,
     Reason,
+    Remember,
     TaskChanged,
     TaskRequest,
     TaskState,
     Verb,
 )
-from arboleda.model.plant_model import Evidence
+from arboleda.model.plant_model import Cell, Evidence
 from arboleda.model.sentence import Sentence
 from arboleda.recipes.storage_layout import StorageLayout
 
@@ -76,6 +77,20 @@ def each_task_ends_once(look: Look) -> Iterable[str]:
 
 
 @invariant(Trigger.TOLD)
+def nothing_of_an_ended_task_moves(look: Look) -> Iterable[str]:
+    """When a task has ended, all work for it has ended or was told to halt, but for what has to finish."""
+    commands = look.record.commands
+    for change in look.record.tasks.changes:
+        if change.answer or change.before is not TaskState.RUNNING or change.said.state not in ENDED:
+            continue
+        for sent in commands.open.values():
+            entry = sent.entry
+            is_of_task = entry is not None and entry.cell == change.said.cell and sent not in commands.new
+            if is_of_task and sent.can_be_halted and not sent.verbs and entry.cancelled_at is None:
+                yield f"{change.said.task} has ended, and {sent} is under way"
+
+
+@invariant(Trigger.TOLD)
 def ended_tasks_stay_ended(look: Look) -> Iterable[str]:
     """A task that has ended never changes, and to cancel it is refused."""
     for change in look.record.tasks.changes:
@@ -113,8 +128,10 @@ def first_come_first_served(look: Look) -> Iterable[str]:
 
 @invariant(Trigger.TOLD)
 def tasks_start_where_all_is_ready(look: Look) -> Iterable[str]:
-    """A task starts only where each robot of its cell takes commands and no effector may hold a part."""
-    record = look.record
+    """A task starts only where each robot of its cell takes commands and no effector may hold a part, but for
+    what another cell has that shares it.
+    """
+    record, zones = look.record, look.world.plant.zones
     for change in record.tasks.changes:
         if change.said.state is not TaskState.RUNNING or change.answer or change.said.cell is None:
             continue
@@ -123,10 +140,18 @@ def tasks_start_where_all_is_ready(look: Look) -> Iterable[str]:
             known = record.robots[robot.name]
             if robot.link not in UNSENT and known.is_unfit(record.stepped_at, look.world.plant.epoch):
                 yield f"task {change.said.task} starts, and {robot.name} takes no command"
-        for name in cell.holders:
+        keepers = {name: zones.holder(name) or look.world.model.cell_of[name].name for name in cell.shared}
+        with_others = {name for name, keeper in keepers.items() if keeper != cell.name}
+        for name in (each for each in cell.holders if each not in with_others):
             kept = record.kept.get(Fact.EFFECTOR, {}).get(name, "off")
-            if "off" not in (kept, record.effector_of(name)):
+            if "off" not in (kept, record.effector_of(name)) and not _let_go(look, name):
                 yield f"task {change.said.task} starts, and the effector of {name} is {kept}"
+
+
+def _let_go(look: Look, name: str) -> bool:
+    """True if an effector was off within this step: one task ended with that, the next has begun to grip."""
+    kept = (each for each in look.moment.sent if isinstance(each, Remember))
+    return any((each.fact, each.name, each.value) == (Fact.EFFECTOR, name, "off") for each in kept)
 
 
 @invariant(Trigger.TOLD)
@@ -210,11 +235,19 @@ def _reachable(before: CellState, causes: frozenset[Cause]) -> set[CellState]:
     return reached
 
 
+def _stopped_alone(look: Look, cell: Cell) -> Iterator[str]:
+    """The devices that a cell shares and no stop of another one has stopped."""
+    cells_of, robots = look.world.model.cells_of, look.record.robots
+    for name in cell.shared:
+        if not any(robots[own].stop for other in cells_of[name] for own in other.own):
+            yield name
+
+
 def _at_birth(look: Look) -> Iterator[str]:
     """Sentences on cells that start in a wrong state: a stop lasts until clear and reset."""
     robots = look.record.robots
     for cell in look.record.cells.values():
-        stops = {robots[robot.name].stop for robot in cell.cell.robots}
+        stops = {robots[name].stop for name in (*cell.cell.own, *_stopped_alone(look, cell.cell))}
         uncleared, unreset = StopProgress.LATCHED in stops, cell.stopped or any(stops)
         state = CellState.ABORTED if uncleared else CellState.STOPPED if unreset else None
         if state is not None and cell.run.state is not state:
@@ -336,6 +369,7 @@ def _technical(sentence: Sentence | None) -> Iterator[str]:
 TASKS = (
     tasks_start_where_all_is_ready,
     each_task_ends_once,
+    nothing_of_an_ended_task_moves,
     ended_tasks_stay_ended,
     only_legal_task_states,
     first_come_first_served,

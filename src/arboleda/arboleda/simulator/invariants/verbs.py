@@ -93,11 +93,11 @@ def _held_after_absence(cell: CellSnapshot) -> CellSnapshot:
 def _refused(look: Look, request: OperatorRequest) -> bool | None:
     """The refusal that the verb must get; None if the record does not have enough to say."""
     record, verb, scope = look.record, request.verb, request.scope
-    if verb is Verb.ANSWER:
+    if verb not in (*CAN, *CANNOT, Verb.UNLOAD, Verb.OVERRIDE):
         return None
     if verb is Verb.UNLOAD:
-        named = record.racks.named(scope)
-        return not any(cell.stored & named.get(cell.name, set()) for cell in record.asked.cells)
+        named = record.scopes.parts(request)
+        return not any(cell.parts[place] for cell in record.asked.cells for place in named.get(cell.name, ()))
     if verb is Verb.OVERRIDE:
         quarantined = record.asked.quarantined.get(scope.strip().lower())
         return True if quarantined is None else None
@@ -109,12 +109,19 @@ def _refused(look: Look, request: OperatorRequest) -> bool | None:
     names = record.scopes.cells(scope)
     cells = [cell for cell in _found(look) if cell.name in names]
     if verb is Verb.HOME:
-        return True if any(map(CANNOT[verb], cells)) or _not_so(look, request) else None
+        cannot = any(CANNOT[verb](cell) for cell in cells if _homes_its_own(look, cell.name))
+        return True if cannot or _not_so(look, request) else None
     if verb is Verb.CLEAR and any(cell.state is S.ABORTING for cell in cells):
         return True
     if verb in CANNOT:
         return True if all(map(CANNOT[verb], cells)) else None
     return not any(map(CAN[verb], cells))
+
+
+def _homes_its_own(look: Look, cell: str) -> bool:
+    """False for a cell of which only shared robots are homed: one that another cell has is none of its."""
+    of_cell = look.world.model.cell(cell)
+    return not of_cell.shared_movers or any(look.world.model.robots[name].homes for name in of_cell.own)
 
 
 def _not_so(look: Look, request: OperatorRequest) -> bool:
@@ -269,13 +276,13 @@ def _homed(look: Look, request: OperatorRequest) -> Iterator[str]:
         yield f"{[each.robot for each in sent]} move by themselves"
 
 
-def _unloaded(look: Look, request: OperatorRequest) -> Iterator[str]:
-    named = look.record.racks.named(request.scope)
+def _booked(look: Look, request: OperatorRequest) -> Iterator[str]:
+    named = look.record.scopes.parts(request)
     for before in look.record.asked.cells:
-        left = before.stored - named.get(before.name, set())
-        stored = look.record.cells[before.name].context.stations.stored
-        if stored != left:
-            yield f"{before.name} has parts in {sorted(stored)}, left were those in {sorted(left)}"
+        wanted = before.parts | named.get(before.name, {})
+        booked = look.record.cells[before.name].context.places.counts
+        if booked != wanted:
+            yield f"{before.name} has the parts {booked}, and had to have {wanted}"
 
 
 def _outside(look: Look, request: OperatorRequest, sent: Iterable[Command]) -> Iterator[str]:
@@ -295,7 +302,8 @@ EFFECTS: dict[Verb, Effect] = {
     Verb.ABANDON: _given_up,
     Verb.RELEASE: _released,
     Verb.HOME: _homed,
-    Verb.UNLOAD: _unloaded,
+    Verb.UNLOAD: _booked,
+    Verb.LOAD: _booked,
 }
 
 

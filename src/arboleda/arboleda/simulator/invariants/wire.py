@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from itertools import pairwise
 from typing import Any
 
@@ -80,7 +80,7 @@ def wire_targets_legal(look: Look) -> Iterable[str]:
             yield from _path(look, name, body) if channel == "camino" else _joints(look, name, body)
 
 
-def _joints(look: Look, name: str, body: dict[str, Any]) -> Iterator[str]:
+def _joints(look: Look, name: str, body: Mapping[str, Any]) -> Iterator[str]:
     board = look.record.boards.by_name[name]
     arm = board.robot
     assert arm.joints
@@ -113,7 +113,7 @@ def _is_goal(arm: Arm, q: tuple[float, ...], goal: list[Any]) -> bool:
     return all(abs(on_wire(j, q) - said) <= on_wire(j, j.step) / 2 + ROUNDING_DEG for j, q, said in rows)
 
 
-def _path(look: Look, name: str, body: dict[str, Any]) -> Iterator[str]:
+def _path(look: Look, name: str, body: Mapping[str, Any]) -> Iterator[str]:
     board = look.record.boards.by_name[name]
     mobile = board.robot
     assert mobile.floor_grid
@@ -137,7 +137,7 @@ def _off_grid(name: str, grid: Grid, nodes: list[int]) -> Iterator[str]:
         yield f"{name}/camino leaves the grid's edges: {nodes}"
 
 
-def _numbered(evidence: Evidence, body: dict[str, Any]) -> bool:
+def _numbered(evidence: Evidence, body: Mapping[str, Any]) -> bool:
     stamps = [body.get("seq"), body.get("epoca")]
     if evidence is not Evidence.IDS:
         return stamps == [None, None]
@@ -203,11 +203,12 @@ def bridge_obeys_only_its_plant(look: Look) -> Iterable[str]:
     """Each motion, effector and clear that the bridge publishes is one command with an id that it took in, or
     one of others where it had heard no plant for so long that it obeys anybody.
     """
+    published = [said for client, said in look.moment.published if client == BRIDGE]
+    if not published:
+        return
     taken = [each.message for each in look.moment.taken if not isinstance(each.message, Heartbeat)]
     given = [command for command in taken if command.id] + look.record.bridges.of_others
-    for client, publication in look.moment.published:
-        if client != BRIDGE:
-            continue
+    for publication in published:
         name, _, channel = publication.topic.partition("/")
         obeyed = _commanded(channel, fields(publication.payload))
         robot = look.record.boards.by_name[name].robot.name
@@ -220,7 +221,7 @@ def bridge_obeys_only_its_plant(look: Look) -> Iterable[str]:
             given.remove(match)
 
 
-def _commanded(channel: str, body: dict[str, Any]) -> Callable[[Command], bool] | None:
+def _commanded(channel: str, body: Mapping[str, Any]) -> Callable[[Command], bool] | None:
     """The test for the command that a message of the bridge carries; None for a message that needs none."""
     if channel == "juntas":
         return lambda command: isinstance(command, MoveJoints)

@@ -25,6 +25,7 @@ NOT_DRAWN = (
     ("cells", "on_restart"),  # a plant that crashes here starts without the tasks that it had
     ("cells", "on_absence"),  # people of the simulator get a held cell going
     ("zones", "free_while"),
+    ("zones", "held_while"),
     ("arm", "driver"),  # virtual boards play their devices
     ("mobile", "driver"),
 )

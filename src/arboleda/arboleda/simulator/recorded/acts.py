@@ -6,8 +6,9 @@ import math
 from collections.abc import Iterable
 
 from arboleda.core.cell_states import CellState
-from arboleda.model.messages import OperatorRequest
+from arboleda.model.messages import OperatorRequest, Verb
 from arboleda.model.task import Task
+from arboleda.model.verbs import as_text
 
 from .cells import KnownCell
 
@@ -29,11 +30,17 @@ class Acts:
             del self.of[name]
 
     def take(self, request: OperatorRequest, cells: Iterable[KnownCell]) -> None:
-        """Note that somebody asks for something on these cells."""
+        """Note that somebody asks for something on these cells.
+
+        An answer is none of them: it ends its question, and a recipe may ask any number of them.
+        """
+        if request.verb is Verb.ANSWER:
+            return
         for cell in cells:
             if cell.name not in self.of:
                 self._had[cell.name] = cell.run.task
-            said = f"{request.verb.value} {request.scope}{' --by-hand' if request.by_hand else ''}"
+            of = as_text(request.verb, request.scope, request.arguments)
+            said = f"{request.verb.value} {of}{' --by-hand' if request.by_hand else ''}"
             self.of.setdefault(cell.name, []).append(said)
 
     def _works(self, cell: KnownCell) -> bool:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import math
 from collections import deque
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from functools import lru_cache
 from typing import Any, NamedTuple
 
@@ -83,7 +83,8 @@ class KnownBoard:
 
     def tell(self, at: float, payload: bytes) -> None:
         """Take in telemetry that the board publishes."""
-        self._notice_boot()
+        if self.boot != self.board.boot_id:
+            self._notice_boot()
         _, number, _ = parts(payload)
         if number:
             self.told.append((int(number), at))
@@ -210,6 +211,7 @@ def on_wire(joint: Joint, value: float) -> float:
     return math.degrees(value / joint.pinion_radius_m if joint.pinion_radius_m else value)
 
 
+@lru_cache(maxsize=RECENT)  # each telemetry is looked at several times in its step
 def parts(payload: bytes) -> tuple[bytes, bytes, bytes]:
     """The parts of a message: before its number, the number, after it."""
     before, _, rest = payload.partition(b'"seq":')
@@ -221,8 +223,9 @@ def is_number(value: object) -> bool:
     return type(value) in (int, float) and math.isfinite(value)  # type: ignore[arg-type]
 
 
-def fields(raw: bytes) -> dict[str, Any]:
-    """The JSON object of a payload; empty where there is none."""
+@lru_cache(maxsize=RECENT)  # beats are the same all the time, and several invariants look at each message
+def fields(raw: bytes) -> Mapping[str, Any]:
+    """The JSON object of a payload; empty where there is none. Nobody changes it."""
     try:
         body = json.loads(raw)
     except ValueError:

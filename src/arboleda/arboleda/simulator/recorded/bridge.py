@@ -10,6 +10,7 @@ import math
 from collections import OrderedDict, defaultdict
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
+from functools import cache
 from typing import Any
 
 from arboleda.dispatch.belief import Belief
@@ -111,9 +112,13 @@ class _Bridge:
             elif isinstance(message, Rejection | ForeignCommand):
                 self._told(message, self._boards.get(message.robot))
         self.of_others.clear()
+        late = False
         for event in passed.events:
-            self._event(event, passed.now)
-        late = any(event.at < passed.now for event in passed.events)
+            late = late or event.at < passed.now
+            if isinstance(event, Delivery):
+                self._deliver(event, passed.now, reports)
+            else:
+                self._event(event, passed.now)
         for name, board in self._boards.items():
             mqtt = board.robot.mqtt
             if board.touched or name in reports or mqtt in published or board.stale_at <= passed.now:
@@ -125,12 +130,18 @@ class _Bridge:
         elif board is not None:
             board.obey_foreign(taken=message.sentence.key == rejections.TAKEN.key)
 
+    def _deliver(self, delivery: Delivery, now: float, reports: dict[str, list[Report]]) -> None:
+        board, channel = self._by_topic.get(delivery.topic, (None, ""))
+        if board is None:
+            return
+        name = board.robot.name
+        if board.repeats and board.hear_again(delivery, now, reports[name]):
+            del reports[name]
+        else:
+            board.deliver(delivery, channel)
+
     def _event(self, event: Any, now: float) -> None:
-        if isinstance(event, Delivery):
-            board, channel = self._by_topic.get(event.topic, (None, ""))
-            if board is not None:
-                board.deliver(event, channel)
-        elif isinstance(event, Connection):
+        if isinstance(event, Connection):
             for board in self._boards.values():
                 board.connect(event.up)
         elif isinstance(event, FromPlant) and isinstance(event.message, Heartbeat):
@@ -189,8 +200,10 @@ class _Board:
         self._over = 0  # orders that came before the link was lost: their motions have ended
         self._fell = self._rose = False
         self.touched = True  # in this step
+        self.repeats = False  # it stands still, and all that it says and that is reported of it is as it was
         self._late = False
-        self._parsed: tuple[bytes, bytes, dict[str, Any]] | None = None  # the last telemetry as it was read
+        # the last telemetry as it was read: its bytes before its number, if it has one, after it, its fields
+        self._parsed: tuple[bytes, bool, bytes, dict[str, Any]] | None = None
         self._was_down = True  # the link after the step before, or as a new bridge reports it
         self._rejections: list[Rejection] = []  # the bridge's rejections for it in this step
         self._foreign = (0, 0)  # commands of others that were refused, and obeyed, as people were told
@@ -242,6 +255,25 @@ class _Board:
         self._heard_beat = True
         self.touched |= self._motion is not None
 
+    def hear_again(self, delivery: Delivery, now: float, reports: list[Report]) -> bool:
+        """Take in the one message of a step, if it only says the last one again, and so does the one report.
+
+        False for anything else, which is to be compared as a whole.
+        """
+        if self.touched or self._is_new_plant or delivery.retain or len(reports) != 1:
+            return False
+        (report,), (before, number, after) = reports, parts(delivery.payload)
+        words = (before, after) == self._words[:2] and report.words == self._words[2].words
+        if not words or report.at != delivery.at or delivery.at + self._patience_s <= now:
+            return False
+        if number:
+            if self._number is None or int(number) <= self._number:
+                return False
+            self._number = int(number)
+        self._heard_at, self._heard_beat = delivery.at, False
+        self._words = (before, after, report)
+        return True
+
     def deliver(self, delivery: Delivery, channel: str) -> None:
         self.touched = True
         if channel == "conexion":
@@ -279,12 +311,13 @@ class _Board:
         """The fields of telemetry; if only its number differs from the last one, it is not decoded again."""
         before, number, after = parts(payload)
         last = self._parsed
-        if last is not None and number and last[0] == before and last[1] == after:
-            last[2]["seq"] = int(number)
-            return last[2]
+        if last is not None and last[:3] == (before, number != b"", after):
+            if number:
+                last[3]["seq"] = int(number)
+            return last[3]
         said = _read(payload, self.robot)
-        if said is not None and payload.count(b'"seq"') == 1:
-            self._parsed = (before, after, said)
+        if said is not None and payload.count(b'"seq"') <= 1:
+            self._parsed = (before, number != b"", after, said)
         return said
 
     def _take(self, delivery: Delivery, said: dict[str, Any]) -> None:
@@ -376,7 +409,8 @@ class _Board:
             self._compare_orders(reports, published)
         if reports or self._telling or self._fell:
             self._compare_reports(reports)
-        if self._telling and reports and not (self._is_new_plant or self._is_foreign_new):
+        counted = bool(self._telling and reports) and not (self._is_new_plant or self._is_foreign_new)
+        if counted:
             self._compare_foreign(reports[-1])
         if self._heard_at + self._patience_s <= now:
             self._up = False  # what counted only in hindsight may be too old by now
@@ -386,8 +420,10 @@ class _Board:
         if self._rejections or self._is_foreign_new:
             self._rejections, self._is_foreign_new = [], False
         self._was_down = not self._up
-        self._early = [each for each in self._early if each[0] + EARLY_S > now]
+        if self._early:
+            self._early = [each for each in self._early if each[0] + EARLY_S > now]
         self.touched = bool(self._early)
+        self.repeats = counted and self._up and self._motion is None and self._had_ended
         self._fell = self._rose = self._heard_beat = self._is_new_plant = False
         self._plant_before, self._least_before = self._plant, self._least
 
@@ -512,9 +548,12 @@ class _Board:
             self._ids.popitem(last=False)
 
     def _compare_reports(self, reports: list[Report]) -> None:
-        name = self.robot.name
-        told = [each for each in reports if each.state is not None and each.state is not MotionState.NO_LINK]
-        lost = [each for each in reports if each.state is MotionState.NO_LINK]
+        name, told, lost = self.robot.name, [], []
+        for each in reports:
+            if each.state is MotionState.NO_LINK:
+                lost.append(each)
+            elif each.state is not None:
+                told.append(each)
         if self._fell and not lost:
             self._say(REPORTS, f"the link to {name} was lost, and nobody was told")
         if lost and self._up and not (self._fell or self._was_down):
@@ -522,11 +561,13 @@ class _Board:
         before = [self._words[2] if self._words else None, *told]
         rest = list(zip(before, told, strict=False))
         for delivery, place in self._telling:
-            pair = next((each for each in rest if self._says(each[1], delivery, place)), None)
-            if pair is None:
+            for pair in rest:
+                if self._says(pair[1], delivery, place):
+                    rest.remove(pair)
+                    break
+            else:
                 self._say(REPORTS, f"{delivery.payload!r} of {name} is not reported as it is: {told}")
                 return
-            rest.remove(pair)
         for last, report in rest:
             if not self._is_known(report, last):
                 self._say(REPORTS, f"{name} is reported with what it has not said: {report}")
@@ -561,11 +602,11 @@ class _Board:
         """True if a report names the commands of the board's numbers, and none without a number."""
         if not self._by_ids:
             return report.accepted is None and report.done is None
-        epoch = said.get("epoca_ack")
-        accepted, done, rejected = (
-            self._ids.get(number) if self._given.get(number, -1) < place else None
-            for number in ((epoch, said.get(key)) for key in ("ack", "hecho", "rechazo_seq"))
-        )
+        epoch, named = said.get("epoca_ack"), []
+        for key in ("ack", "hecho", "rechazo_seq"):
+            number = (epoch, said.get(key))
+            named.append(self._ids.get(number) if self._given.get(number, -1) < place else None)
+        accepted, done, rejected = named
         if report.accepted != (accepted or None) or report.done != (done or None):
             return False
         if report.rejected is None:
@@ -594,30 +635,36 @@ def _read(payload: bytes, robot: Robot) -> dict[str, Any] | None:
         said = json.loads(payload)
     except ValueError:
         return None
-    place = [f"q{number + 1}_mov" for number in range(len(robot.joints))] if robot.joints else ["nodo"]
-    if not isinstance(said, dict) or len(payload) > 512 or not all(key in said for key in place):
+    place = _place_keys(len(robot.joints))
+    if not isinstance(said, dict) or len(payload) > 512 or not said.keys() >= place:
         return None
-    if any(key in said for key in (FOREIGN_TO_ARMS if robot.joints else FOREIGN_TO_MOBILES)):
+    if not said.keys().isdisjoint(FOREIGN_TO_ARMS if robot.joints else FOREIGN_TO_MOBILES):
         return None
     if robot.floor_grid and not 0 <= said["nodo"] < robot.grid.size:
         return None
-    if not all(type(said[key]) in (int, float) and math.isfinite(said[key]) for key in place):
-        return None
+    for key in place:
+        if type(said[key]) not in (int, float) or not math.isfinite(said[key]):
+            return None
     return said if type(said.get("estado")) is int and 0 <= said["estado"] <= 4 else None
 
 
+@cache
+def _place_keys(joints: int) -> frozenset[str]:
+    return frozenset(f"q{number}_mov" for number in range(1, joints + 1)) if joints else frozenset({"nodo"})
+
+
 def _agree(report: Report, said: dict[str, Any], robot: Robot) -> bool:
-    flags = ((report.homed, "ref"), (report.effector, "efector"), (report.piece, "pieza"))
-    if any(flag != (None if key not in said else said[key] == 1) for flag, key in flags):
-        return False
+    for flag, key in ((report.homed, "ref"), (report.effector, "efector"), (report.piece, "pieza")):
+        if flag != (None if key not in said else said[key] == 1):
+            return False
     if report.state is None or report.state.value != said["estado"]:
         return False
     if not robot.joints:
         return report.node == said["nodo"] and report.q is None
     if report.q is None or report.node is not None:
         return False
-    rows = zip(robot.joints, report.q, strict=True)
-    return all(
-        abs(value - math.radians(said[f"q{number}_mov"]) * (joint.pinion_radius_m or 1.0)) < EXACT
-        for number, (joint, value) in enumerate(rows, start=1)
-    )
+    for number, (joint, value) in enumerate(zip(robot.joints, report.q, strict=True), start=1):
+        told = math.radians(said[f"q{number}_mov"]) * (joint.pinion_radius_m or 1.0)
+        if not abs(value - told) < EXACT:
+            return False
+    return True

@@ -17,6 +17,7 @@ from arboleda.model.task import Order, Task
 from ..world import World
 from .courses import Courses
 from .robots import KnownRobot
+from .scopes import UNSENT
 
 WORKS = (CellState.IDLE, CellState.EXECUTE)
 STANDS = (CellState.HOLDING, CellState.HELD)
@@ -100,6 +101,7 @@ class Choices:
         return any(
             robot.name in displaced or self._robots[robot.name].is_unfit(now, epoch)
             for robot in run.cell.reached
+            if robot.link not in UNSENT  # who is asked on a screen reports nothing
         )
 
 

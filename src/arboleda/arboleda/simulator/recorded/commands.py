@@ -7,7 +7,7 @@ from collections import deque
 
 from arboleda.dispatch.ledger import OPEN, Entry, Ledger, State
 from arboleda.model.commands import Command, Motion, OnStop, Stop, StopMode, Switch, Work
-from arboleda.model.messages import Report, Verb
+from arboleda.model.messages import Heartbeat, Report, Verb
 
 from .robots import KnownRobot, Obstacle
 
@@ -26,6 +26,7 @@ class SentCommand:
     ) -> None:
         self.command = command
         self.at = at
+        self.late_s = 0.0  # between the plant's step and when it left
         self.obstacles = obstacles
         self.verbs = verbs
         self.halts = halts
@@ -91,6 +92,12 @@ class Commands:
             known.halts += command.mode is not StopMode.CLEAR
         elif not isinstance(command, Switch):
             self.goals.setdefault(command.robot, deque(maxlen=RECENT)).append(command)
+
+    def left_late(self, message: Command | Heartbeat, late_s: float) -> None:
+        """Take in that a message left so long after the step that gave it."""
+        sent = None if isinstance(message, Heartbeat) else self.open.get(message.id)
+        if sent is not None:
+            sent.late_s = late_s
 
     def hear(self, report: Report, known: KnownRobot) -> None:
         """Take in a report, which names the last rejected command."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from functools import cached_property
 
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
@@ -16,6 +17,7 @@ from arboleda.trees.steps import RECOVERY
 from .starts import turns_of
 
 TAKES_TIME = (Act, Await, Dwell)
+OVER = (Status.SUCCESS, Status.FAILURE)
 ROUNDING_S = 2e-3  # times are kept in ms
 
 
@@ -34,31 +36,35 @@ class TaskInProgress:
         self._steps = [node for node in nodes if isinstance(node, TAKES_TIME)]
         self._was = {} if whole else {step: step.status for step in self._steps if not _waits(step)}
         self._turns = {step: turns for step in self._steps if (turns := turns_of(step))}
-        self._rested: object = None
+        self.rested: object = None  # as what its tree came to rest last
         self._repeats = False  # whether a step began more than once
         self._rests: list[float] = []  # when it came to rest
         self._over: dict[Behaviour, float] = {}  # since when steps have rested as done or failed
 
     def look(self, rested: object, now: float) -> None:
-        """Take in the steps that have begun; none has if the tree came to rest as before."""
-        if rested is self._rested:
-            return
-        self._rested = rested
+        """Take in the steps that have begun; called if the tree came to rest otherwise than before."""
+        self.rested = rested
         self._rests.append(now)
         for step in self._steps:
-            if step.status in (Status.SUCCESS, Status.FAILURE):
+            was = self._was.get(step, Status.INVALID)
+            is_noted = step in self._over or step.status not in OVER
+            if step.status is was and is_noted and step not in self._turns:
+                continue
+            if step.status in OVER:
                 self._over.setdefault(step, now)
             else:
                 self._over.pop(step, None)
-            was, self._was[step] = self._was.get(step, Status.INVALID), step.status
+            self._was[step] = step.status
             begins = was is not step.status and (was is Status.INVALID or step.status is Status.RUNNING)
-            if self._is_in_another_turn(step) or begins:
+            if begins and step in self._turns and step.status is not Status.RUNNING:
+                self._turns[step] = turns_of(step)
+            if (step in self._turns and self._is_in_another_turn(step)) or begins:
                 self._repeats = self._repeats or step in self.begun
                 self.begun[step] = now
 
     def _is_in_another_turn(self, step: Behaviour) -> bool:
         """True if a step that runs now and ran before is in another turn of what repeats it."""
-        if step not in self._turns or step.status is not Status.RUNNING:
+        if step.status is not Status.RUNNING:
             return False
         before, self._turns[step] = self._turns[step], turns_of(step)
         return step in self.begun and self._turns[step] != before
@@ -79,18 +85,30 @@ class TaskInProgress:
         if told is None or not self.whole:
             return (told is None) is self.whole
         named, took = self._named(), self.ended_at - self.began
-        if abs(told.seconds - took) > ROUNDING_S or not told.begun.keys() <= named.keys():
+        unseen = [after_s for name, after_s in told.begun.items() if name not in named]
+        known = told.begun.keys() <= self._names.keys()
+        if abs(told.seconds - took) > ROUNDING_S or not known or not all(map(self._may_be_left, unseen)):
             return True
         return not all(self._began(step, told.begun.get(name, took)) for name, step in named.items())
 
     def _named(self) -> dict[str, Behaviour]:
         """The steps that began, by their names as courses have them."""
+        return {name: node for name, node in self._names.items() if node in self.begun}
+
+    @cached_property
+    def _names(self) -> Mapping[str, Behaviour]:
         names = [node.name for node in self.nodes]
         return {
             f"{node.name} #{names[: number + 1].count(node.name)}": node
             for number, node in enumerate(self.nodes)
-            if node in self.begun
         }
+
+    def _may_be_left(self, after_s: float) -> bool:
+        """True if a step may have begun so many s after the task and been left in the same pass, as one whose
+        time is over at once: it shows no beginning.
+        """
+        at = self.began + after_s
+        return any(abs(each - at) <= ROUNDING_S for each in (*self._rests, self.ended_at))
 
     def _began(self, step: Behaviour, after_s: float) -> bool:
         """True if a step may have begun last so many s after the task. A repeated step that ends within a
@@ -99,8 +117,15 @@ class TaskInProgress:
         at = self.began + after_s
         if abs(min(self.begun[step], self.ended_at) - at) <= ROUNDING_S:
             return True
-        over = self._over.get(step, math.inf) if self._repeats else math.inf
-        return at > over and any(abs(each - at) <= ROUNDING_S for each in (*self._rests, self.ended_at))
+        if not self._repeats and not self._is_in_a_later_turn(step):
+            return False
+        over = self._over.get(step, math.inf)
+        since = over - ROUNDING_S if self._is_in_a_later_turn(step) else over
+        return at > since and any(abs(each - at) <= ROUNDING_S for each in (*self._rests, self.ended_at))
+
+    def _is_in_a_later_turn(self, step: Behaviour) -> bool:
+        """True if what repeats a step has gone on since it was seen to begin, maybe in that very instant."""
+        return step in self._turns and turns_of(step) != self._turns[step]
 
 
 class Courses:
@@ -129,7 +154,7 @@ class Courses:
             if seen is None and run.task is not None and run.run.nodes:
                 seen = TaskInProgress(run.task.id, run.run.nodes, run.context.time.now, whole=not born)
                 self._at_work[name] = seen
-            if seen is not None:
+            if seen is not None and seen.rested is not run.run.rested:
                 seen.look(run.run.rested, run.context.time.now)
 
 

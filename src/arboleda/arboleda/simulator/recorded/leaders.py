@@ -23,7 +23,8 @@ NO_ORDERS = (Channel.STOP, Channel.BEAT)
 class Leaders:
     """Breaches of the rules for leaders: `twice` are numbers that were led more than once, or that went back;
     `old` are goals that a board carries out in this step under a number lower than one of which it had read a
-    beat, or carried out something, since it booted; `wrong` are tasks lost or doubled in the history, and
+    beat, or carried out something, since it booted; `sure` are processes that led and still were sure of that
+    when the next one began; `wrong` are tasks lost or doubled in the history, and
     writes by a process that leads no more.
     """
 
@@ -37,12 +38,13 @@ class Leaders:
         self._last: Write | None = None
         self._starts = world.starts
         self.twice: list[str] = []
+        self.sure: list[str] = []
         self.old: list[str] = []
         self.wrong: list[str] = []
 
     def look(self) -> None:
         """Take in what happened in this step."""
-        self.twice, self.old, self.wrong = [], [], []
+        self.twice, self.old, self.wrong, self.sure = [], [], [], []
         moment = self._world.moment
         if len(self._hosts.numbers) > self._known:
             self._look_at_numbers()
@@ -62,6 +64,11 @@ class Leaders:
             if number <= before:
                 self.twice.append(f"{host} leads under number {number}, after number {before}")
         self._known = len(numbers)
+        for former in (each for each in self._hosts.formers if not each.over):
+            process, now = former.process, self._world.now
+            if process.standing is Standing.LEADS and process.lease.lasts(process.host.clock(now)):
+                who = f"{process.host.name}, which led under number {process.epoch},"
+                self.sure.append(f"{numbers[-1][1]} leads, and {who} is sure that it does")
 
     def _carried_out(self, board: str, goal: Goal) -> None:
         """Take in goals that boards carried out; a board that booted knows no numbers any more."""

@@ -81,9 +81,12 @@ class Proofs:
 
     def hear(self, report: Report, known: KnownRobot) -> None:
         """Take in a report; `known` is what its robot had said before."""
+        open_commands = self._by_robot.get(report.robot)
+        if open_commands is None:
+            return
         q = known.q if report.q is None else report.q
         node = known.node if report.node is None else report.node
-        for sent in self._by_robot.get(report.robot, ()):
+        for sent in open_commands:
             proof = self.of.setdefault(sent.command.id, Proof())
             _broken(proof, sent, report, known)
             if report.at >= sent.at:

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
-from arboleda.model.plant_model import Link, PlantModel
+from collections.abc import Mapping
+
+from arboleda.model.messages import OperatorAnswer, OperatorRequest, Verb
+from arboleda.model.plant_model import Cell, Link, Place, PlantModel
 
 UNSENT = (Link.NONE, Link.SCREEN)  # nothing leaves the plant for these
 NOBODY: tuple[str, ...] = ()
@@ -12,6 +15,7 @@ class Scopes:
     """Robots and cells of a scope as an operator writes it; none for any other word."""
 
     def __init__(self, model: PlantModel) -> None:
+        self._model = model
         cells = {cell.name: tuple(robot.name for robot in cell.robots) for cell in model.cells}
         everybody = tuple(model.robots)
         self._robots = {name: (name,) for name in everybody} | cells | {"": everybody, "plant": everybody}
@@ -32,5 +36,30 @@ class Scopes:
         names = [name] if name in self._cells else self.robots(scope)
         return tuple(dict.fromkeys(cell for each in names for cell in self._cells[each]))
 
+    def parts(self, said: OperatorRequest | OperatorAnswer) -> dict[str, dict[str, int]]:
+        """The parts that are at places, by cell, as somebody says with `load` or `unload`; for any scope."""
+        told, found = dict(said.arguments), dict[str, dict[str, int]]()
+        robots = set(self.robots(said.scope))
+        for cell in map(self._model.cell, self.cells(said.scope)):
+            places = _named(cell, told)
+            if not places or (said.verb is Verb.UNLOAD and robots.isdisjoint(cell.holders)):
+                continue
+            full, parts = said.verb is Verb.LOAD, told.get("parts")
+            numbers = {each.target: each.holds if parts is None else int(parts) for each in places}
+            found[cell.name] = numbers if full else dict.fromkeys(numbers, 0)
+            if "place" in told:
+                break
+        return found
+
     def __contains__(self, word: str) -> bool:
         return word.strip().lower() in self._robots
+
+
+def _named(cell: Cell, told: Mapping[str, int | str]) -> list[Place]:
+    """The places of a cell that the arguments of a verb name: one, a station, or all."""
+    if "place" in told:
+        return [each for each in cell.counted if each.target == str(told["place"]).lower()]
+    if "station" not in told:
+        return [*cell.counted]
+    stations = dict(enumerate(cell.station_targets))
+    return [each for each in cell.counted if each.target == stations.get(told["station"])]

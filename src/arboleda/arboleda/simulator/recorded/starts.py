@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections import deque
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -148,6 +149,18 @@ def turns_of(leaf: Behaviour) -> list[int]:
             turns.append(node.done if isinstance(node, Times) else node.tries)
         node = node.parent
     return turns[::-1]
+
+
+def most_turns(leaf: Behaviour) -> float:
+    """The most often that the steps around a step have it done, for one turn of what is around those."""
+    most, node = 1.0, leaf.parent
+    while node is not None:
+        if isinstance(node, StepOfFile):
+            return math.inf  # nodes of files may halt and begin one another
+        if isinstance(node, Times | Again):
+            most *= node.times + isinstance(node, Again)
+        node = node.parent
+    return most
 
 
 def _may_be_repeated(done: list[Step], before: Step, again: Step) -> bool:

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from arboleda.core.intake import HISTORY
 from arboleda.model.messages import KeptTask, TaskChanged, TaskState
 from arboleda.model.sentence import NOTHING
+from arboleda.model.task import UNCHECKED
 
 SURE = 500  # accepted tasks back to which the plant remembers every one
 KEPT = HISTORY  # ended tasks that are remembered: the plant may remember as many
@@ -150,11 +151,12 @@ class Tasks:
 
 def _said(row: KeptTask) -> TaskChanged:
     """The last word on a task that would have been told, from its row on the disk."""
+    remark = UNCHECKED[row.unchecked]() if row.unchecked else NOTHING
     return TaskChanged(
         task=row.id,
         text=row.text,
         cell=row.cell,
         state=row.state,
         reason=row.failure.reason if row.failure else None,
-        sentence=row.failure.sentence if row.failure else NOTHING,
+        sentence=row.failure.sentence if row.failure else remark,
     )

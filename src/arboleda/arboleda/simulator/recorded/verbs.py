@@ -16,7 +16,7 @@ from .tasks import Tasks
 @dataclass(slots=True)
 class CellSnapshot:
     """A cell after the last step, with what speaks for or against a verb; `waits`: nobody can tell yet what
-    became of the step at which an earlier start ended; `stored`: its stations with a part.
+    became of the step at which an earlier start ended; `parts`: how many each of its places has.
     """
 
     name: str
@@ -28,7 +28,7 @@ class CellSnapshot:
     stranded: bool
     waits: bool
     holding: bool
-    stored: frozenset[int]
+    parts: dict[str, int]
 
 
 class EarlierState:
@@ -60,7 +60,7 @@ class EarlierState:
                 run.stranded is not None,
                 run.awaits is not None,
                 bool(cell.context.parts.holding),
-                cell.context.stations.stored,
+                cell.context.places.counts,
             )
             for cell in cells
             for run in (cell.run,)

@@ -89,6 +89,7 @@ class CellTruth:
         self.robbed = False  # somebody else opened the effector on the way
         self.puts_down = False
         self.let_go = False  # the effector was opened where the part belongs
+        self._nothing_since: float | None = None  # for how long its board has said that no part is there
         self.blind = False  # nobody could know for some time what its arm does
         self.empty_handed = False  # its effector is on without a part, and its board has said so
         self._lets_go = False  # the effector was told to let go since it was told to grip
@@ -139,10 +140,15 @@ class CellTruth:
         if grips:
             self.empty_handed = False
 
-    def feel(self) -> None:
-        """Take in that the plant hears from the board of its arm that no part is there."""
+    def feel(self, now: float, *, is_there: bool, debounce_s: float) -> None:
+        """Take in what the plant hears of a part from the board of its arm; that none is there counts once it
+        has been said for `debounce_s`.
+        """
         arm = self.arm
-        if arm is not None and arm.on and not arm.holding and not self._lets_go:
+        since = now if self._nothing_since is None else self._nothing_since
+        self._nothing_since = None if is_there else since
+        settled = not is_there and now - since >= debounce_s
+        if settled and arm is not None and arm.on and not arm.holding and not self._lets_go:
             self.empty_handed = True
 
     def end(self, text: str = "", *, done: bool = False, unchecked: tuple[Check, ...] = ()) -> EndedTask:

@@ -91,8 +91,9 @@ class StorageTruth:
     def hear(self, reports: Iterable[Report]) -> None:
         """Take in what the plant hears of pieces."""
         for report in reports:
-            if report.piece is False and report.robot in self._of_arm:
-                self._of_arm[report.robot].feel()
+            if report.piece is not None and report.robot in self._of_arm:
+                debounce_s = self._world.model.timing.piece_debounce_s
+                self._of_arm[report.robot].feel(report.at, is_there=report.piece, debounce_s=debounce_s)
 
     def command(self, command: Switch) -> None:
         """Take in that the plant tells an effector to grip, or to let go."""

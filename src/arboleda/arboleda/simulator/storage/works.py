@@ -11,7 +11,7 @@ from arboleda.kinds.arm import SetEffector
 from arboleda.kinds.joints import MoveJoints
 from arboleda.kinds.mobile import FollowPath
 from arboleda.model.commands import Command
-from arboleda.model.messages import TaskState, Verb
+from arboleda.model.messages import ENDED, TaskState, Verb
 from arboleda.model.plant_model import Pose
 from arboleda.recipes.storage_layout import StorageLayout
 
@@ -83,7 +83,7 @@ class Works:
                 self._take(sent.entry.cell, sent)
         for change in tasks.changes:
             said = change.said
-            if said.cell is not None and not change.answer and said.state is not TaskState.RUNNING:
+            if said.cell is not None and not change.answer and said.state in ENDED:
                 work = self._works.get(said.cell)
                 if work is not None and work.task == said.task:
                     del self._works[said.cell]
@@ -103,11 +103,14 @@ class Works:
         work.walked_back = False
         work.undone = False
         again = last is not None and (walked_back or last.state is not State.DONE)
-        if again and _is_again(step, work.steps[work.at - 1]):
+        follows = work.at < len(work.steps) and step == work.steps[work.at]  # a path may end where it begins
+        if again and not follows and _is_again(step, work.steps[work.at - 1]):
             work.last = sent
             return
         if again and not walked_back:
             self.wrong.append(f"{name}: {sent} leaves, and {last} before it was not done")
+        if self._stands_at_start(name, work, step, sent.at):
+            work.at += 1
         while work.at < len(work.steps) and not _fits(step, work.steps[work.at]):
             if work.steps[work.at][0] != OPTIONAL:
                 expected = work.steps[work.at]
@@ -120,6 +123,14 @@ class Works:
         self._in_time(name, work, sent)
         work.at += 1
         work.last = sent
+
+    def _stands_at_start(self, name: str, work: Work, step: Step | None, now: float) -> bool:
+        """True if the path comes without the way to its start, as its robot has said that it stands there."""
+        expected, after = [*work.steps[work.at : work.at + 2], ("", None), ("", None)][:2]
+        if expected[0] != TO_START or step != after:
+            return False
+        mobile = self._robots[self._cells[name].layout.mobile.name]
+        return _stands_on(mobile, now) in (None, expected[1])
 
     def _is_anywhere(self, name: str, work: Work) -> bool:
         """True if the task may stand at a step too early, by a power cut, and a person had it tried again."""

@@ -52,9 +52,11 @@ class MachineTruth(RobotTruth):
         return held and not self.held and not self.lost_power and not self.by_hand
 
     @property
-    def falls_open(self) -> bool:
-        """True if power, and with it its grip and switches, is lost, which may put it in the way."""
-        return self.lost_power
+    def unbidden(self) -> bool:
+        """True if its power, and with it its grip and switches, is lost, or a person was at it: either may
+        put it in the way.
+        """
+        return self.lost_power or self.by_hand
 
     @property
     def at_reference(self) -> bool:
@@ -68,9 +70,9 @@ class MachineTruth(RobotTruth):
         super().forget()
         self.were, self.unmet, self.cut_short, self.by_hand = self.facts, [], False, False
 
-    def look(self, now_us: int) -> bool:
+    def look(self, now_us: int) -> None:
         self._now_us = now_us
-        return super().look(now_us)
+        super().look(now_us)
 
     @property
     def _came_home(self) -> bool:
@@ -97,9 +99,9 @@ class MachineTruth(RobotTruth):
         self.jumped = self.facts != before and not self.lost_power and not self._ended_in_time
         self.by_hand = self._put_right
         self.swerved = False  # of several things that it does, one may end
-        self.zones = self._in_the_way()
         given = [(act, self._command(act.goal)) for act in self.acts]
         self._follow_work(was_moving, given)
+        self.zones = self._in_the_way()
         self.unmet = [
             (command, why)
             for command in self._at_work(given)
@@ -134,10 +136,12 @@ class MachineTruth(RobotTruth):
         return next((f"{name} is {self.facts.get(name)}, not {value}" for name, value in rows), None)
 
     def _in_the_way(self) -> frozenset[str]:
+        word = "" if self.work is None else self.work.word
         return frozenset(
             lock.zone
             for lock in self._locks
-            if any(self.facts.get(name) != value for name, value in lock.free_while)
+            if word in lock.held_while
+            or any(self.facts.get(name) != value for name, value in lock.free_while)
         )
 
     def _ends_soon(self, now_us: int) -> bool:

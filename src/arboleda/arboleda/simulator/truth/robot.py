@@ -42,8 +42,9 @@ class Act:
 
 
 class RobotTruth:
-    """One robot, followed step by step; `look` returns True if there was more to see than a body on its way.
+    """One robot, followed step by step.
 
+    `again`: it is to be looked at, even if what `signs` gets of its body is as `seen` last, and so is `boot`.
     `stopping`: from a stop or halt that its board heard until it stands still or gets a new goal. Of one
     step, until `forget`: `acts` and `lost_power`; `started`, `swerved`, `jumped`: it began to move, changed
     its way or is elsewhere, and nothing that it heard explains it; `sped_up`, `runs_on`: it was told to stop
@@ -57,7 +58,7 @@ class RobotTruth:
     stood = NOWHERE  # the same, in this step, if it has moved on
     unmet: Sequence[tuple[Command, str]] = ()  # commands that it carries out without their needs
     cut_short = False  # it ended work that goes on through a stop, and nothing explains that
-    falls_open = False  # in this step it got into the way because its power was lost
+    unbidden = False  # what moved it in this step was none of its goals
     let_go = False  # in this step it let go of what it held, by itself and with its power on
     worked_from: float | None = None  # for a machine that reports only ends: when it began to move, s
 
@@ -73,18 +74,18 @@ class RobotTruth:
         self.acts: list[Act] = []
         self.again = True  # look even if nothing seems to have changed
         self.booted_us = -1  # when it last lost its power
-        self._signs = attrgetter(*self.SIGNS)
+        self.signs = attrgetter(*self.SIGNS)
         self._client = client
         self._executed: list[Goal] = []  # what the board says that it carried out in this step
         self._ahead: list[Delivery] = []  # what reached it and was not yet heard
-        self._boot = board.boot_id
+        self.boot = board.boot_id
         self._left = 0  # how many of `_ahead` were there before this step
         self._ours: deque[tuple[str, bytes]] = deque(maxlen=UNDER_WAY)
         self._homing = self._put_right = False
         self.taken_away = False  # somebody has moved it by hand since it was last told to move
         self.put_right_at = -math.inf  # when somebody put it at its reference last, s
         self._arrived = not self.moving  # it stood still at some time in this step
-        self._seen: tuple[Any, ...] = ()
+        self.seen: object = ()
         self._due: int | None = None  # when its motion was to end
         self._was_due: int | None = None  # the same, before this step
         self.forget()
@@ -121,20 +122,16 @@ class RobotTruth:
         self._executed.append(goal)
         self.again = True
 
-    def look(self, now_us: int) -> bool:
-        """Take in the present state; True if there was more to see than a body on its way."""
-        seen = self._signs(self.body)
-        if seen == self._seen and self.board.boot_id == self._boot and not self.again:
-            return False
-        self._take_in(seen, now_us)
+    def look(self, now_us: int) -> None:
+        """Take in the present state; called if there is more to see than a body on its way."""
+        self._take_in(now_us)
         self.again = bool(self._ahead) or self._slows_down
-        return True
 
-    def _take_in(self, seen: tuple[Any, ...], now_us: int) -> None:
-        due, self._due, self._seen = self._due, self.body.next_change_us, seen
+    def _take_in(self, now_us: int) -> None:
+        due, self._due, self.seen = self._due, self.body.next_change_us, self.signs(self.body)
         self._was_due = due
         turned = due != self._due
-        if self.board.boot_id != self._boot:
+        if self.board.boot_id != self.boot:
             self._boot_up(now_us)
         told = self.stopping
         if self._homing and due is not None and due <= now_us:
@@ -190,7 +187,7 @@ class RobotTruth:
         raise NotImplementedError
 
     def _boot_up(self, now_us: int) -> None:
-        self._boot, self.booted_us = self.board.boot_id, now_us
+        self.boot, self.booted_us = self.board.boot_id, now_us
         self.lost_power = True
         self.homed = self.latched = self._homing = self.stopping = False
         del self._ahead[: self._left]

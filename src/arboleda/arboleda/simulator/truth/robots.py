@@ -12,6 +12,7 @@ from arboleda.model.by_class import nearest
 from arboleda.model.commands import Command
 from arboleda.model.messages import Fact, OperatorAnswer, Remember, Verb
 from arboleda.model.plant_model import Evidence, Robot
+from arboleda.model.whole_cells import whole_cell
 
 from ..world import BRIDGE, World
 from .arm import ArmTruth
@@ -136,7 +137,9 @@ class RobotsTruth:
                 robot.again = True
         now_us = round(self.world.now * 1e6)
         for robot in self._robots:
-            if robot.look(now_us):
+            news = robot.again or robot.board.boot_id != robot.boot
+            if news or robot.signs(robot.body) != robot.seen:
+                robot.look(now_us)
                 self.changed.append(robot)
         if self.changed:
             self._follow_changes()
@@ -165,7 +168,7 @@ class RobotsTruth:
         if board is not None and client is not None:
             follow = nearest(KINDS, type(robot))
             assert follow is not None, f"nothing follows a {robot.kind_name}"
-            truth = follow(robot, world.model.cell_of[robot.name], board, client)
+            truth = follow(robot, whole_cell(world.model, robot.name), board, client)
             locks = (each.interlocks_of(robot.name) for each in world.model.cells_of[robot.name])
             truth.be_locked(tuple(lock for of_cell in locks for lock in of_cell))
             self._boards[robot.mqtt] = self.robots[robot.name] = truth

@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from arboleda.model.commands import Command, needs_clear
 from arboleda.model.messages import Fact, OperatorAnswer, Remember, Verb
 from arboleda.model.plant_model import PlantModel, Robot
-from arboleda.wire import goals
+from arboleda.wire.forms import form_of
 from arboleda.wire.payloads import Goal, JointsGoal, StopGoal
 
 from .robot import Act
@@ -94,7 +94,7 @@ def is_order_of(goal: Goal, robot: Robot, command: Command) -> bool:
     """True if a goal on the wire is this command."""
     stamp = {"seq": goal.seq, "epoch": goal.epoch}
     stamp |= {} if isinstance(goal, StopGoal) else {"heard": goal.heard}
-    _, expected = goals.goal(robot, command, **stamp)
+    _, expected = form_of(robot).goal(robot, command, **stamp)
     if isinstance(goal, JointsGoal) and isinstance(expected, JointsGoal):
         return all(abs(a - b) < ROUNDING_DEG for a, b in zip(goal.q, expected.q, strict=True))
     return goal == expected

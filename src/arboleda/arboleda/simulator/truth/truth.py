@@ -7,6 +7,7 @@ import json
 from arboleda.model.commands import Command, Motion, Query, Switch
 from arboleda.model.facts import Value
 from arboleda.model.messages import OperatorAnswer, TaskChanged, TaskState, Verb
+from arboleda.model.whole_cells import whole_cell
 from arboleda.wire.hop import FromPlant
 from arboleda.wire.payloads import OrderGoal
 from arboleda.wire.topics import Channel, topic
@@ -16,6 +17,7 @@ from ..commands import goal as goal_of
 from ..storage.truth import StorageTruth
 from ..world import World
 from .ended_commands import EndedCommand
+from .places import PlacesTruth
 from .robots import RobotsTruth
 from .stops import is_order_of, robots_of
 
@@ -31,6 +33,7 @@ class Truth(RobotsTruth):
     def __init__(self, world: World) -> None:
         super().__init__(world)
         self.storage = StorageTruth(world, self.robots, self.unseen)
+        self.places = PlacesTruth(world, self.robots, mistaken=self.mistaken, released=self.released)
         self.done_tasks: list[tuple[str, str, float]] = []
         self._facts = {name: dict(robot.body.true_facts) for name, robot in self.robots.items()}
         self._left: dict[tuple[str, object], float] = {}  # when a fact ceased to be so, a target was left
@@ -49,7 +52,7 @@ class Truth(RobotsTruth):
 
     def stood_at(self, robot: str, command: Motion, since: float) -> bool:
         """True if a robot truly stood at a command's goal since `since`, or if that is no target."""
-        space = self.world.model.cell_of[robot].workspaces.get(robot)
+        space = whole_cell(self.world.model, robot).workspaces.get(robot)
         names = [pose.name for pose in space.poses if pose.q == command.way[-1]] if space else []
         here = self.robots[robot].here
         return not names or any(name in here or self._left_since(robot, name, since) for name in names)
@@ -72,10 +75,13 @@ class Truth(RobotsTruth):
     def _forget(self) -> None:
         super()._forget()
         self.storage.forget()
+        self.places.forget()
 
     def _follow_changes(self) -> None:
         super()._follow_changes()
         self.storage.follow(self.changed)
+        if self.places.cells:
+            self.places.follow(self.changed)
 
     def _look_at_plant(self) -> None:
         if self.world.moment.heard and self.storage.cells:
@@ -147,6 +153,7 @@ class Truth(RobotsTruth):
         if isinstance(message, TaskChanged):
             self._task(message)
             self.storage.task(message)
+            self.places.task(message)
         else:
             super()._take_in(message)
 
@@ -164,7 +171,9 @@ class Truth(RobotsTruth):
 
     def _answered(self, answer: OperatorAnswer) -> None:
         super()._answered(answer)
-        if answer.verb is Verb.RELEASE:
+        if self.places.cells and answer.verb in (Verb.LOAD, Verb.UNLOAD):
+            self.places.told(answer)
+        if answer.verb.row.drops:
             robots = robots_of(self.world.model, answer.scope)
             self._released.update(dict.fromkeys(robots, self.world.now))
             self.storage.release(robots)

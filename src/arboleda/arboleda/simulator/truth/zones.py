@@ -94,9 +94,11 @@ class ZonesTruth:
             self._inside[zone] = inside
             holder = self._holders[zone]  # before this step: the boards step before the plant
             new = [name for name in inside if name not in before]
-            fallen = [name for name in new if self._robots[name].falls_open]
-            self._answered_for.update((zone, name) for name in fallen)
-            self.entries += [Entry(zone=zone, arm=name, holder=holder) for name in new if name not in fallen]
+            put_there = [name for name in new if self._robots[name].unbidden]
+            self._answered_for.update((zone, name) for name in put_there)
+            self.entries += [
+                Entry(zone=zone, arm=name, holder=holder) for name in new if name not in put_there
+            ]
             self._answered_for = {
                 (where, name) for where, name in self._answered_for if where != zone or name in inside
             }

@@ -7,7 +7,7 @@ import os
 import socket
 import time
 from collections.abc import Callable, Sequence
-from contextlib import suppress
+from contextlib import nullcontext, suppress
 from typing import Any, NoReturn, TypeVar
 
 import psycopg
@@ -151,7 +151,11 @@ class PostgresMemory(PlantMemory):
         values = [value for _, each in statements for value in each]
         statement = translated(f"{begin}SELECT fenced(?, ?)")
         given = plain_values((*values, self._epoch, durable))
-        self._patiently(lambda db: db.execute(statement, given))
+        with self.timing if durable else nullcontext():
+            self._patiently(lambda db: db.execute(statement, given))
+
+    def sync(self) -> None:
+        """Nothing is left to do: the server was asked for each commit whether to wait for its disk."""
 
     def _read(self, statement: str, *values: object) -> list[tuple[Any, ...]]:
         return self._patiently(lambda db: db.execute(translated(statement), plain_values(values)).fetchall())

@@ -1,0 +1,99 @@
+"""Ends of trees: what is so once a task of a tree is done, as the metadata of its model say it."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from difflib import get_close_matches
+
+from arboleda.kinds.declared import UseError
+from arboleda.model.facts import Value
+from arboleda.model.outside import quoted
+from arboleda.model.plant_model import Cell
+from arboleda.recipes.authoring import check_end
+from arboleda.recipes.errors import RecipeError
+
+from . import target_groups
+from .findings import Findings, Place
+from .forest import Forest, Metadata
+from .values import number, objection
+
+KEY = "ends_with"
+KEYS = (KEY, target_groups.KEY)  # of all metadata that mean something here
+HOW = "a place or a fact with its value, `nest: 1; reader.lid: open`"
+PAIR = re.compile(r"\s*([^\s:][^:]*?)\s*:\s*('[^']*'|[^\s':][^':]*?)\s*")
+BOOLS = {"true": True, "false": False}
+
+
+@dataclass(frozen=True, kw_only=True)
+class End:
+    """Value that a fact or the number of parts at a place has at the end; `place`: where that is written."""
+
+    what: str
+    value: Value
+    place: Place
+
+
+def of_tree(forest: Forest, tree: str) -> tuple[End, ...]:
+    """The end that a tree says it has; what cannot be read is left out, `check` finds it."""
+    return tuple(end for each in _told(forest, tree) for end in _read(each) if isinstance(end, End))
+
+
+def check(forest: Forest, findings: Findings) -> None:
+    """Keep a finding for each part of an end that cannot be read, or is there twice."""
+    for tree, metadata in forest.metadata.items():
+        for each in metadata:
+            near = get_close_matches(each.key, KEYS, n=1, cutoff=0.8)
+            if each.key not in KEYS and near:
+                told = f"nobody here knows {quoted(each.key)} of {tree}; did you mean {near[0]}?"
+                findings.warning(each.place, told)
+        known: set[str] = set()
+        for end in (end for each in _told(forest, tree) for end in _read(each)):
+            if isinstance(end, _Unread):
+                findings.mistake(end.place, f"{KEY} of {tree}: {quoted(end.text)} is not read; write {HOW}")
+            elif end.what in known:
+                findings.mistake(end.place, f"{KEY} of {tree} has {quoted(end.what)} twice")
+            else:
+                known.add(end.what)
+
+
+def check_in_cell(
+    name: str, ends: tuple[End, ...], values: Mapping[str, object], cell: Cell, findings: Findings
+) -> None:
+    """Keep a finding for each end of a recipe of which a cell never says whether it is so."""
+    for end in ends:
+        try:
+            check_end(name, {str(values.get(end.what, end.what)): end.value}, cell)
+        except (RecipeError, UseError) as error:
+            findings.mistake(end.place, str(error))
+
+
+@dataclass(frozen=True)
+class _Unread:
+    text: str
+    place: Place
+
+
+def _told(forest: Forest, tree: str) -> Iterator[Metadata]:
+    return (each for each in forest.metadata.get(tree, ()) if each.key == KEY)
+
+
+def _read(metadata: Metadata) -> Iterator[End | _Unread]:
+    for text in metadata.text.split(";"):
+        pair = PAIR.fullmatch(text)
+        if pair is not None:
+            yield End(what=pair[1], value=_value(pair[2]), place=metadata.place)
+        elif text.strip():
+            yield _Unread(text.strip(), metadata.place)
+
+
+def _value(text: str) -> Value:
+    """The value that a text means: true and false, a number, or a word, which may stand in quotes."""
+    if text.startswith("'"):
+        return text[1:-1]
+    if text in BOOLS:
+        return BOOLS[text]
+    if objection("int", text) is None:
+        return int(number(text))
+    return number(text) if objection("double", text) is None else text

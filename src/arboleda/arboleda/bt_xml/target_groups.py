@@ -1,0 +1,53 @@
+"""Groups of targets of which a parameter of a tree is one, as the metadata of its model say it."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+
+from arboleda.model.outside import among, quoted
+from arboleda.model.plant_model import Cell
+
+from .findings import Findings
+from .forest import Forest, Metadata
+from .nodes import PortDirection
+
+KEY = "targets"
+HOW = "a parameter with a group of targets, `blank: pallet`"
+PAIR = re.compile(r"\s*([^\s:]+)\s*:\s*([^\s:]+)\s*")
+
+
+def of_tree(forest: Forest, tree: str) -> dict[str, str]:
+    """The groups by parameter; what cannot be read is left out, `check` finds it."""
+    pairs = (PAIR.fullmatch(text) for each in _told(forest, tree) for text in _parts(each))
+    return {pair[1]: pair[2] for pair in pairs if pair is not None}
+
+
+def words(cell: Cell, group: str) -> list[str]:
+    """The targets of a group of a cell, in their order; that of this name where there is no such group."""
+    return list(cell.groups.get(group) or [each for each in cell.targets if each == group])
+
+
+def check(forest: Forest, findings: Findings) -> None:
+    """Keep a finding for each part that cannot be read, or names what is no parameter of its tree."""
+    for tree in forest.metadata:
+        model = forest.models.get(tree)
+        ports = (model.ports or {}).values() if model is not None else ()
+        names = [each.name for each in ports if each.way is PortDirection.IN]
+        for metadata in _told(forest, tree):
+            for text in _parts(metadata):
+                pair = PAIR.fullmatch(text)
+                if pair is None:
+                    told = f"{KEY} of {tree}: {quoted(text.strip())} is not read; write {HOW}"
+                    findings.mistake(metadata.place, told)
+                elif pair[1] not in names:
+                    known = among(pair[1], names) if names else "it has no parameter"
+                    findings.mistake(metadata.place, f"{KEY} of {tree} names {quoted(pair[1])}; {known}")
+
+
+def _told(forest: Forest, tree: str) -> Iterator[Metadata]:
+    return (each for each in forest.metadata.get(tree, ()) if each.key == KEY)
+
+
+def _parts(metadata: Metadata) -> Iterator[str]:
+    return (text for text in metadata.text.split(";") if text.strip())

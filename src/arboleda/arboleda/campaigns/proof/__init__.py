@@ -1,0 +1,1 @@
+"""`arboleda prove`: each single fault at each instant of each recipe, one run each."""

@@ -1,0 +1,133 @@
+"""Calm runs: a scenario where nothing goes wrong, from which its instants and its end are read."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Hashable, Iterable, Iterator
+from dataclasses import dataclass
+
+from arboleda.dispatch.ledger import Entry
+from arboleda.kinds.declared import QueryCall
+from arboleda.model.commands import Command, Question
+from arboleda.model.facts import Value
+from arboleda.model.messages import OperatorAnswer, TaskChanged
+from arboleda.model.plant_model import PlantModel
+from arboleda.simulator.world import Fuse, Side
+
+from .end_state import EndState
+from .instants import Instant, Mark, instants
+from .outcome import End, Run
+from .scenario import Scenario
+from .stage import ASKED_AT_S, Stage
+
+FAR = 10**9  # commits: as many as no run has
+MOST_SCENARIOS = 64  # of one recipe, with all answers
+
+
+@dataclass(frozen=True, kw_only=True)
+class Calm:
+    """Calm run of a scenario: what came of it, its instants, its commands, what was so when it was done.
+
+    `asked` are those who were asked something, with the answers that they did not give.
+    """
+
+    scenario: Scenario
+    run: Run
+    why: str
+    instants: tuple[Instant, ...]
+    commands: tuple[str, ...]
+    state: EndState
+    lasts_s: float
+    asked: tuple[tuple[str, tuple[Value, ...]], ...]
+
+    @property
+    def is_sound(self) -> bool:
+        """True if its task ends, by an answer even badly, and nothing is broken."""
+        end = self.run.outcome.end
+        as_written = end is End.FAILED and bool(self.scenario.answers)
+        return self.run.outcome.broken is None and (end is End.DONE or as_written)
+
+
+class _Marks:
+    """Takes down what happens on a stage, until its task has ended."""
+
+    def __init__(self, stage: Stage) -> None:
+        self.rows: list[Mark] = []
+        self.asked: dict[str, tuple[Value, ...]] = {}
+        self._stage, self._what = stage, "the request"
+        self._fuse = Fuse(FAR, Side.AFTER, lambda: None)
+        self._counted = FAR
+        self._ended = False
+        stage.world.fuses.append(self._fuse)
+        stage.world.watchers.append(self._look)
+
+    def _look(self) -> None:
+        if self._ended:
+            return
+        moment, truth = self._stage.world.moment, self._stage.watched.truth
+        commits, self._counted = self._counted - self._fuse.count, self._fuse.count
+        begins = False
+        for message in moment.sent:
+            begins |= self._begins(message)
+        ended = [each for each in truth.books.ended if each.entry.cell == self._stage.cell.name]
+        told = any(isinstance(each, TaskChanged | OperatorAnswer) for each in moment.sent)
+        if begins or ended or told or moment.asked or moment.executed or commits:
+            what = f"the end of {_name(ended[0].entry)}" if ended and not begins else self._what
+            at = self._stage.watched.seconds
+            self.rows.append(Mark(at=at, what=what, begins=begins, commits=commits))
+        self._ended = self._stage.ended
+
+    def _begins(self, message: object) -> bool:
+        entry = self._stage.world.plant.dispatcher.ledger.entries.get(getattr(message, "id", ""))
+        if not isinstance(message, Command) or entry is None:
+            return False
+        self._what = _name(entry)
+        if isinstance(message, Question):
+            self.asked[message.robot] = tuple(message.answers)
+        elif isinstance(message, QueryCall):
+            self.asked[message.robot] = message.told.answers
+        return True
+
+
+def calm_run(model: PlantModel, scenario: Scenario) -> Calm:
+    """Run a scenario where nothing goes wrong."""
+    stage = Stage(model, scenario)
+    marks = _Marks(stage)
+    run = stage.play(ASKED_AT_S, lambda: None, expected={}, commands=None, lasts_s=0.0)
+    rows = [Mark(at=ASKED_AT_S, what="the request", begins=True, commits=0), *marks.rows]
+    given = dict(scenario.answers)
+    asked = {
+        who: tuple(each for each in words if each != given.get(who, words[0]))
+        for who, words in marks.asked.items()
+    }
+    return Calm(
+        scenario=scenario,
+        run=run,
+        why="" if stage.told is None else str(stage.told.sentence),
+        instants=tuple(instants(rows)),
+        commands=tuple(stage.commands),
+        state=stage.state,
+        lasts_s=rows[-1].at - ASKED_AT_S,
+        asked=tuple(asked.items()),
+    )
+
+
+def calm_runs(model: PlantModel, scenarios: Iterable[Scenario]) -> Iterator[Calm]:
+    """The calm runs of scenarios, and of each answer in them after which something else is done."""
+    for first in scenarios:
+        known: set[Hashable] = set()
+        waiting, tried = deque([first]), {first.answers}
+        while waiting and len(known) < MOST_SCENARIOS:
+            calm = calm_run(model, waiting.popleft())
+            if calm.commands in known:
+                continue
+            known.add(calm.commands)
+            yield calm
+            for who, words in calm.asked:
+                others = [calm.scenario.with_answer(who, word) for word in words]
+                waiting += [each for each in others if each.answers not in tried]
+                tried |= {each.answers for each in others}
+
+
+def _name(entry: Entry) -> str:
+    return f"{entry.command.robot}: {entry.doing}"

@@ -1,0 +1,142 @@
+"""A proof as one HTML file that needs no network: every language in it, one of them shown."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from html import escape
+from pathlib import Path
+from typing import Any
+
+from arboleda.web.languages import FIRST, LANGUAGES, texts
+
+from ..words import told
+from .calm import Calm
+from .outcome import End
+from .proof_tally import Case, ProofTally, RecipeKey, Row
+from .pytest_file import Breach, as_tests
+
+PART = "proof"
+SHOWN = (End.DONE, End.RECOVERED, End.HELD, End.FAILED)
+HEADS = ("fault", "runs", *(end.value for end in SHOWN), "other", "not_noticed", "broken", "ready", "causes")
+STYLE = """
+body{font:15px/1.45 system-ui,sans-serif;max-width:75rem;margin:1rem auto;padding:0 1rem}
+body{color:#1b1f24;background:#fff}h1{font-size:1.4rem}h2{font-size:1.1rem;margin-top:1.6rem}
+pre{font:12px/1.4 ui-monospace,monospace;overflow:auto;background:#f6f8fa;padding:.5rem}
+table{border-collapse:collapse;font-size:13px}
+td,th{padding:.1rem .6rem;text-align:right;border-bottom:1px solid #d0d7de}
+td:first-child,th:first-child,td:last-child,th:last-child{text-align:left}
+.bad{color:#b42318;font-weight:bold}.quiet{color:#57606a}"""
+SCRIPT = """const root = document.documentElement, languages = %s
+const spoken = (navigator.language || '').slice(0, 2)
+if (languages.includes(spoken)) root.lang = spoken
+document.getElementById('language').onclick = () => {
+  root.lang = languages[(languages.indexOf(root.lang) + 1) %% languages.length]
+}"""
+POLICY = "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'"
+
+
+@dataclass(frozen=True, kw_only=True)
+class ProofPage:
+    """The contents of the page; `total`: so many runs there are in all."""
+
+    name: str
+    plant: Path | None
+    calm: Sequence[Calm]
+    tally: ProofTally
+    breaches: Sequence[Breach]
+    total: int
+
+
+def page(proof: ProofPage) -> str:
+    """The content of the file."""
+    hidden = ",".join(f"html[lang={each}] body [lang]:not([lang={each}])" for each in LANGUAGES)
+    names = " / ".join(escape(texts(each, "page")["name"]) for each in LANGUAGES)
+    title = escape(texts(FIRST, PART)["title"].format(plant=proof.name))
+    return "\n".join(
+        [
+            f'<!doctype html><html lang="{FIRST}"><head><meta charset="utf-8"><title>{title}</title>',
+            f'<meta name="viewport" content="width=device-width"><meta http-equiv="Content-Security-Policy" '
+            f'content="{POLICY}"><style>{STYLE}\n{hidden}{{display:none}}</style></head><body>',
+            f'<button id="language">{names}</button>',
+            *_parts(proof),
+            f"<script>{SCRIPT % list(LANGUAGES)}</script></body></html>",
+            "",
+        ]
+    )
+
+
+def _parts(proof: ProofPage) -> Iterator[str]:
+    yield f"<h1>{_each('title', plant=proof.name)}</h1>"
+    yield from _amount(proof)
+    yield f"<h2>{_each('unnoticed')}</h2><p class=quiet>{_each('unnoticed_note')}</p>"
+    found = "".join(_unnoticed(*each) for each in proof.tally.unnoticed())
+    nothing = f"<li>{_each('nothing')}</li>"
+    yield f"<ul>{found or nothing}</ul>"
+    yield f"<h2>{_each('breaches')}</h2>"
+    yield from (_breach(each, proof.plant) for each in proof.breaches)
+    yield "" if proof.breaches else f"<p>{_each('nothing')}</p>"
+    yield f"<h2>{_each('calm')}</h2><ul>{''.join(map(_calm, proof.calm))}</ul>"
+    yield from (_table(key, rows) for key, rows in proof.tally.table().items())
+    yield f"<p class=quiet>{_each('table_note')}</p>"
+
+
+def _amount(proof: ProofPage) -> Iterator[str]:
+    done, share = proof.tally.runs, f"{proof.tally.runs / max(proof.total, 1):.0%}"
+    is_whole = done == proof.total and done > 0
+    said = _each("all" if is_whole else "some", done=f"{done:,}", total=f"{proof.total:,}", share=share)
+    kinds = proof.tally.proof.kinds
+    only = f" {_each('kinds', kinds=', '.join(kinds))}" if kinds else ""
+    alone = _each("alone", share=f"{proof.tally.alone:.1%}") if done else ""
+    yield f"<p>{said}{only} {alone}</p>"
+
+
+def _calm(calm: Calm) -> str:
+    name, outcome = escape(calm.scenario.name), calm.run.outcome
+    if outcome.broken is not None:
+        return f"<li class=bad>{name}: {escape(': '.join(outcome.broken))}</li>"
+    if outcome.end is End.DONE:
+        return f"<li>{name}: {_each('calm_good')}</li>"
+    if outcome.end is End.UNFINISHED:
+        return f"<li>{name}: {_each('calm_waits')}</li>"
+    style = "quiet" if calm.is_sound else "bad"
+    return f"<li class={style}>{name}: {escape(f'{outcome.words}: {calm.why}')}</li>"
+
+
+def _unnoticed(case: Case, count: int) -> str:
+    what = escape("; ".join(case.outcome.untrue))
+    befell = escape(f"{case.scenario.name}: {told(case.fault)}, {case.instant.name}")
+    return f"<li>{what}<br><span class=quiet>{befell} ({_each('runs_like_it', count=count)})</span></li>"
+
+
+def _breach(breach: Breach, plant: Path | None) -> str:
+    name, sentence = breach.run.outcome.broken or ("", "")
+    lines = "\n".join(map(escape, breach.result.lines[-40:]))
+    return (
+        f"<h3 class=bad>{escape(f'{breach.scenario.name}: {name}')}</h3><p>{escape(sentence)}<br>"
+        f"{escape(f'{told(breach.fault)}, {breach.instant.name}')} "
+        f"({_each('runs_like_it', count=breach.count)})</p><pre>{lines}</pre>"
+        f"<p>{_each('test')}</p><pre>{escape(as_tests([breach], plant))}</pre>"
+    )
+
+
+def _table(key: RecipeKey, rows: dict[str, Row]) -> str:
+    heads = "".join(f"<th>{_each(head)}</th>" for head in HEADS)
+    body = "".join(f"<tr>{''.join(_cells(kind, row))}</tr>" for kind, row in rows.items())
+    return f"<h2>{escape(': '.join(key))}</h2><table><tr>{heads}</tr>{body}</table>"
+
+
+def _cells(kind: str, row: Row) -> Iterator[str]:
+    shown = [row.ends[end.value] for end in SHOWN]
+    yield f"<td>{escape(kind)}</td>"
+    for number in (row.runs, *shown, row.runs - sum(shown), row.unnoticed):
+        yield f"<td>{f'{number:,}' if number else ''}</td>"
+    yield f"<td class=bad>{row.broken or ''}</td><td>{row.alone / row.runs:.0%}</td>"
+    causes = ", ".join(cause for cause, _ in row.causes.most_common())
+    yield f"<td>{escape(causes)}{' *' if row.changes else ''}</td>"
+
+
+def _each(key: str, **values: Any) -> str:
+    """Words of the page in every language."""
+    rows = ((each, texts(each, PART)[key]) for each in LANGUAGES)
+    return "".join(f"<span lang={each}>{escape(text.format(**values))}</span>" for each, text in rows)

@@ -1,0 +1,113 @@
+"""Proof: all single faults at all instants of all scenarios of a plant, as numbered parts of the work."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from hashlib import blake2b
+
+from arboleda.model.plant_model import PlantModel
+from arboleda.simulator.faults import Fault
+
+from .calm import Calm
+from .forks import run_all
+from .instants import Instant
+from .outcome import Outcome, Run
+from .single_faults import single_faults
+
+Tick = Callable[[], None]
+MOST = 32  # faults of a portion
+
+
+@dataclass(frozen=True, kw_only=True)
+class Portion:
+    """Portion of the work: faults of one part at one instant of one scenario, by their numbers."""
+
+    scenario: int
+    instant: int
+    part: int
+    first: int
+
+
+@dataclass(frozen=True, kw_only=True)
+class Proved:
+    """Proved portion: its different outcomes, which of them each fault has, and all traces as one hash."""
+
+    number: int
+    outcomes: tuple[Outcome, ...]
+    rows: tuple[int, ...]
+    digest: str
+
+    @property
+    def broken(self) -> bool:
+        """True if a fault broke an invariant."""
+        return any(each.broken for each in self.outcomes)
+
+    @property
+    def each(self) -> list[Outcome]:
+        """The outcome of each fault."""
+        return [self.outcomes[row] for row in self.rows]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Proof:
+    """Proof of a plant: calm runs that are sound, and `portions` in the order in which they are worth it.
+
+    `kinds`: only faults of these; none: of all.
+    """
+
+    model: PlantModel
+    calm: Sequence[Calm] = field(default_factory=tuple)
+    kinds: tuple[str, ...] = ()
+
+    @cached_property
+    def portions(self) -> list[Portion]:
+        """All portions: one form of each fault before the others, of each the beginnings of steps first."""
+        return [portion for *_, portion in sorted(self._ranked(), key=lambda each: each[:2])]
+
+    def instant(self, portion: Portion) -> Instant:
+        """The instant at which the faults of a portion begin."""
+        return self.calm[portion.scenario].instants[portion.instant]
+
+    def faults(self, portion: Portion) -> list[Fault]:
+        """The faults of a portion."""
+        parts = self._parts[portion.scenario, portion.instant]
+        return parts[portion.part][portion.first : portion.first + MOST]
+
+    @cached_property
+    def _parts(self) -> dict[tuple[int, int], list[list[Fault]]]:
+        """The faults of each instant of each scenario, in their parts."""
+        return {
+            (row, number): single_faults(
+                self.model, self.model.cell(calm.scenario.cell), instant, number=number, only=self.kinds
+            )
+            for row, calm in enumerate(self.calm)
+            for number, instant in enumerate(calm.instants)
+        }
+
+    def _ranked(self) -> Iterator[tuple[int, int, Portion]]:
+        for (row, number), parts in self._parts.items():
+            level = self.calm[row].instants[number].level
+            for part, faults in enumerate(parts):
+                for first in range(0, len(faults), MOST):
+                    yield part, level, Portion(scenario=row, instant=number, part=part, first=first)
+
+    def run(self, seed: int, *, tick: Tick | None = None) -> Proved:
+        """Run all faults of the portion of this number."""
+        portion = self.portions[seed]
+        calm = self.calm[portion.scenario]
+        runs = run_all(self.model, calm, self.faults(portion), tick or (lambda: None))
+        return _proved(seed, runs)
+
+
+def _proved(number: int, runs: Sequence[Run]) -> Proved:
+    outcomes = {run.outcome: None for run in runs}
+    numbers = {outcome: index for index, outcome in enumerate(outcomes)}
+    digest = blake2b("".join(run.digest for run in runs).encode(), digest_size=16).hexdigest()
+    return Proved(
+        number=number,
+        outcomes=tuple(outcomes),
+        rows=tuple(numbers[run.outcome] for run in runs),
+        digest=digest,
+    )

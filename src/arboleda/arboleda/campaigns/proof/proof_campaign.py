@@ -1,0 +1,182 @@
+"""Proof in a terminal: calm runs, then every portion within the budget, then the answer."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Collection, Iterator
+from itertools import takewhile
+
+from rich.console import Console
+from rich.text import Text
+
+from arboleda.model.counting import counted
+from arboleda.simulator.judged_world import BrokenInvariant
+from arboleda.simulator.run import Result
+
+from ..campaign import Campaign
+from ..plants import notes
+from ..screen import Show, progress
+from ..seed_campaign import BROKEN, HELD, INTERRUPTED
+from ..workers import Workers
+from . import proof_report, proof_summary
+from .calm import Calm, calm_runs
+from .forks import run_one
+from .junit import as_junit
+from .kept import Kept
+from .outcome import End
+from .page import ProofPage, page
+from .proof import Proof, Proved
+from .proof_request import ProofRequest
+from .proof_tally import Case, ProofTally
+from .pytest_file import Breach, as_tests
+from .scenario import scenarios
+
+
+class ProofCampaign:
+    """ProofCampaign: proves a plant in a terminal, and writes what is asked for."""
+
+    def __init__(self, request: ProofRequest, console: Console) -> None:
+        self._request = request
+        self._console = console
+        self._plant = request.simulated
+        self._calm: list[Calm] = []
+        self._tally = ProofTally(proof=Proof(model=self._plant.model))
+        self._known = 0  # runs that were kept from before
+        self._total = 0
+        self._began = time.monotonic()
+
+    def run(self, jobs: int) -> int:
+        """Prove, and return the exit status. Ctrl-C ends it with what was done so far."""
+        for note in notes([self._plant]):
+            self._say(note, "dim")
+        status = INTERRUPTED
+        try:
+            self._run_calmly()
+            self._prove(jobs)
+            status = BROKEN if self._bad_calm or self._tally.breaches() else HELD
+        except KeyboardInterrupt:
+            self._say("interrupted; so far:", "yellow")
+        self._report(complete=status != INTERRUPTED)
+        return status
+
+    @property
+    def _bad_calm(self) -> int:
+        """The tasks that break or fail where nothing goes wrong; those that wait for others do neither."""
+        bad = (each.run.outcome for each in self._calm if not each.is_sound)
+        return sum(outcome.broken is not None or outcome.end is not End.UNFINISHED for outcome in bad)
+
+    def _run_calmly(self) -> None:
+        found = scenarios(self._plant.model, self._request.recipes)
+        with progress(self._console, "running without faults", None) as show:
+            for calm in calm_runs(self._plant.model, found):
+                self._calm.append(calm)
+                show(counted(len(self._calm), "task"), len(self._calm))
+
+    def _prove(self, jobs: int) -> None:
+        sound = tuple(each for each in self._calm if each.is_sound)
+        proof = Proof(model=self._plant.model, calm=sound, kinds=self._request.kinds)
+        kept = Kept(self._request.folder, self._request.files, proof)
+        kept.forget(all=self._request.anew)
+        self._tally = ProofTally(proof=proof, proved=kept.known())
+        self._known = self._tally.runs
+        self._total = sum(len(proof.faults(each)) for each in proof.portions)
+        waiting = [number for number in range(len(proof.portions)) if number not in self._tally.proved]
+        with (
+            progress(self._console, "proving", self._total) as show,
+            self._campaign(proof, self._within_budget(waiting), jobs, show) as campaign,
+        ):
+            for proved in campaign.results():
+                self._tally.proved[proved.number] = proved
+                kept.keep(proved)
+        if kept.trouble is not None:
+            self._say(f"not all is kept for the next time: {kept.trouble}", "yellow")
+
+    def _campaign(self, proof: Proof, numbers: Iterator[int], jobs: int, show: Show) -> Campaign[Proved]:
+        def tick() -> None:
+            show(self._so_far(campaign.minutes), self._known + campaign.minutes)
+
+        campaign: Campaign[Proved]
+        if jobs == 1:
+            campaign = Campaign(proof, numbers, tick=tick)
+        else:
+            campaign = Workers(proof, numbers, tick=tick, jobs=jobs)
+        return campaign
+
+    def _within_budget(self, numbers: Collection[int]) -> Iterator[int]:
+        began = time.monotonic()
+        return takewhile(lambda _: time.monotonic() - began < self._request.budget_s, iter(numbers))
+
+    def _so_far(self, runs: int) -> str:
+        seconds = max(time.monotonic() - self._began, 1e-3)
+        done, rate = self._known + runs, runs / seconds
+        left = (self._total - done) / rate if rate else math.inf
+        ends = f", {left / 60:,.0f} min left for all" if math.isfinite(left) else ""
+        return f"{done:,} of {counted(self._total, 'run')}, {rate:,.0f}/s{ends}"
+
+    def _report(self, *, complete: bool) -> None:
+        tally, breaches = self._tally, self._breaches()
+        for line in proof_report.calm_lines(self._calm):
+            self._console.print(line, soft_wrap=True)
+        for line in proof_report.unnoticed_lines(tally.unnoticed()):
+            self._console.print(line, soft_wrap=True)
+        for table in proof_report.tables(tally):
+            self._console.print(table)
+        for breach in breaches:
+            proof_report.story(self._console, breach)
+        self._say(self._amount())
+        self._console.print(proof_report.verdict(tally, self._total, bad_calm=self._bad_calm), soft_wrap=True)
+        self._write(breaches, complete=complete)
+
+    def _amount(self) -> str:
+        runs, seconds = self._tally.runs, time.monotonic() - self._began
+        kept = f", {self._known:,} of them kept from before" if self._known else ""
+        alone = f"; after {self._tally.alone:.1%} the cell got ready again without a person" if runs else ""
+        return f"{counted(runs, 'run')}{kept} in {seconds:,.0f} s{alone}"
+
+    def _breaches(self) -> list[Breach]:
+        return [self._again(case, count) for case, count in self._tally.breaches()]
+
+    def _again(self, case: Case, count: int) -> Breach:
+        """The run of a case once more, with its timeline."""
+        calm = self._tally.proof.calm[case.row]
+        run, stage = run_one(self._plant.model, calm, case.fault, keep=True)
+        result = Result(seed=0, faults=[case.fault], lines=stage.watched.trace.lines, seconds=run.seconds)
+        result.broken = BrokenInvariant(*run.outcome.broken) if run.outcome.broken else None
+        return Breach(
+            scenario=case.scenario,
+            instant=case.instant,
+            fault=case.fault,
+            run=run,
+            count=count,
+            result=result,
+            stated=stage.stated,
+        )
+
+    def _write(self, breaches: list[Breach], *, complete: bool) -> None:
+        request = self._request
+        if request.json is not None:
+            proof_summary.write(
+                request.json,
+                proof_summary.as_json(
+                    request.plant, self._calm, self._tally, breaches, self._total, complete=complete
+                ),
+            )
+        if request.html is not None:
+            shown = ProofPage(
+                name=self._plant.name,
+                plant=request.plant,
+                calm=self._calm,
+                tally=self._tally,
+                breaches=breaches,
+                total=self._total,
+            )
+            proof_summary.write(request.html, page(shown))
+        if request.junit is not None:
+            proof_summary.write(request.junit, as_junit(self._calm, self._tally, breaches))
+        if request.tests is not None and breaches:
+            proof_summary.write(request.tests, as_tests(breaches, request.plant))
+            self._say(f"{request.tests} has {counted(len(breaches), 'test')}")
+
+    def _say(self, line: str, style: str = "") -> None:
+        self._console.print(Text(line, style=style), soft_wrap=True)

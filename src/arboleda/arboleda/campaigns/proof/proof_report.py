@@ -1,0 +1,106 @@
+"""Report of a proof for a person: what nobody notices, what broke, and a table for each recipe."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from rich.console import Console
+from rich.table import Table
+from rich.text import Text
+
+from arboleda.model.counting import counted
+
+from .. import breach_text
+from ..setting import rules
+from ..words import told
+from .calm import Calm
+from .outcome import End
+from .proof_tally import Case, ProofTally, Row
+from .pytest_file import Breach
+
+SHOWN = (End.DONE, End.RECOVERED, End.HELD, End.FAILED)
+MOST_UNNOTICED = 40  # lines
+MOVED = "*"  # the end of the same fault is another one at another moment
+
+
+def calm_lines(calm: Sequence[Calm]) -> Iterator[Text]:
+    """Findings of the calm runs, in which nothing goes wrong."""
+    for each in (each for each in calm if not each.is_sound):
+        outcome, name = each.run.outcome, each.scenario.name
+        if outcome.broken:
+            yield Text(f"{name}: breaks {outcome.broken[0]} without any fault: {outcome.broken[1]}", "red")
+        elif outcome.end is End.UNFINISHED:
+            sentence = f"{name}: alone it never ends, it waits for what others do: nothing is proved of it"
+            yield Text(f"{sentence}{each.why and f' ({each.why})'}", "yellow")
+        else:
+            yield Text(f"{name}: {outcome.words} without any fault: {each.why}", "red")
+
+
+def unnoticed_lines(found: Sequence[tuple[Case, int]]) -> Iterator[Text]:
+    """Faults that nobody notices: the task is done, and not all is as it is without them."""
+    if found:
+        yield Text("What nobody notices: the task is done, and this is not so:", "bold yellow")
+    for case, count in found[:MOST_UNNOTICED]:
+        what = "; ".join(case.outcome.untrue)
+        times = f"{counted(count, 'run')}, e.g. {case.instant.name}"
+        befell = f"{case.fault.kind} {case.fault.target}"
+        yield Text(f"  {case.scenario.task}: {befell}: {what} ({times})", "yellow")
+    if len(found) > MOST_UNNOTICED:
+        yield Text(f"  and {len(found) - MOST_UNNOTICED} more; --json has all", "yellow")
+
+
+def story(console: Console, breach: Breach) -> None:
+    """Print a breach: its rule, what was seen, the fault, the last seconds before it."""
+    name, sentence = breach.run.outcome.broken or ("", "")
+    more = f", and {counted(breach.count - 1, 'run')} like it" if breach.count > 1 else ""
+    for line, style in (
+        (f"{breach.scenario.name} breaks {name}{more}", "bold red"),
+        (f"  must hold  {rules().get(name, '')}", ""),
+        (f"  was seen   {sentence}", ""),
+        (f"  the fault  {told(breach.fault)}", "yellow"),
+        (f"  begins     {breach.instant.name}", "yellow"),
+    ):
+        console.print(Text(line, style=style), soft_wrap=True)
+    breach_text.timeline(console, breach.result)
+
+
+def tables(tally: ProofTally) -> Iterator[Table]:
+    """A table for each recipe."""
+    for (cell, recipe), rows in tally.table().items():
+        table = Table(title=f"{cell}: {recipe}", title_justify="left")
+        table.add_column("fault", no_wrap=True)
+        for head in ("runs", *(end.value for end in SHOWN), "other", "unnoticed", "broken", "alone"):
+            table.add_column(head, justify="right")
+        table.add_column("causes")
+        for kind, row in rows.items():
+            table.add_row(kind, *_cells(row))
+        yield table
+
+
+def _cells(row: Row) -> Iterator[str]:
+    shown = [row.ends[end.value] for end in SHOWN]
+    yield f"{row.runs:,}"
+    for number in (*shown, row.runs - sum(shown), row.unnoticed, row.broken):
+        yield f"{number:,}" if number else ""
+    yield f"{row.alone / row.runs:.0%}"
+    causes = ", ".join(cause for cause, _ in row.causes.most_common())
+    yield f"{causes}{f' {MOVED}' if row.changes else ''}".strip()
+
+
+def verdict(tally: ProofTally, total: int, *, bad_calm: int) -> Text:
+    """The last line: what held, of how much."""
+    runs, breaches = tally.runs, len(tally.breaches())
+    of = f"{runs:,} of {counted(total, 'run')}"
+    if breaches or bad_calm:
+        what = [f"{breaches:,} {'breach' if breaches == 1 else 'breaches'}"] if breaches else []
+        what += [f"{counted(bad_calm, 'task')} without any fault"] if bad_calm else []
+        return Text(f"BROKEN: {' and '.join(what)}; {of}", "bold red")
+    if not runs:
+        return Text("nothing was run", "bold yellow")
+    if runs < total:
+        share = f"{runs / total:.0%}"
+        said = f"HELD in {of} ({share}): a sample, beginnings of steps first; nothing is proven"
+        return Text(said, "bold yellow")
+    kinds = f" of {counted(len(tally.proof.kinds), 'kind')}" if tally.proof.kinds else ""
+    held = f"HELD: all {counted(total, 'run')}, every single fault{kinds} at every instant"
+    return Text(held, "bold green")

@@ -1,0 +1,57 @@
+"""Request of a person to `arboleda prove`, checked as a whole before anything runs."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+from arboleda.model.errors import ConfigError
+from arboleda.plant_file import loader
+from arboleda.recorder.preamble import PlantFiles
+
+from ..plants import Plant
+from .single_faults import possible_kinds
+
+
+@dataclass(frozen=True, kw_only=True)
+class ProofRequest:
+    """Request: the options. `budget_s`: how long runs begin, infinite for all; `anew`: nothing kept in
+    `folder` counts.
+    """
+
+    plant: Path | None
+    recipes: tuple[str, ...]
+    kinds: tuple[str, ...]
+    budget_s: float
+    folder: Path
+    anew: bool = False
+    json: Path | None = None
+    html: Path | None = None
+    junit: Path | None = None
+    tests: Path | None = None
+
+    @cached_property
+    def _loaded(self) -> tuple[Plant, PlantFiles]:
+        model, read = loader.load_with_files(self.plant)
+        return Plant(declared=model, files=read), read
+
+    @property
+    def simulated(self) -> Plant:
+        """The plant; ConfigError if it cannot be read, has no such recipe, or there is no such fault."""
+        there = dict.fromkeys(each.name for cell in self._loaded[0].model.cells for each in cell.recipes)
+        for name in self.recipes:
+            if name not in there:
+                known = ", ".join(there)
+                raise ConfigError((f"--recipe: {name!r} is no recipe of this plant; there are {known}",))
+        possible = [kind.name for kind in possible_kinds()]
+        for name in self.kinds:
+            if name not in possible:
+                sentence = f"--fault: {name!r} is no kind of fault; there are {', '.join(possible)}"
+                raise ConfigError((sentence,))
+        return self._loaded[0]
+
+    @property
+    def files(self) -> PlantFiles:
+        """The files that the plant was read from."""
+        return self._loaded[1]

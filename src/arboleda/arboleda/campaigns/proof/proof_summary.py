@@ -1,0 +1,104 @@
+"""A proof as plain data, for `--json`."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+from arboleda import __version__
+from arboleda.model.errors import ArboledaError
+
+from .calm import Calm
+from .outcome import plain
+from .proof_tally import Case, ProofTally
+from .pytest_file import Breach, as_tests, lasting
+
+
+def write(path: Path, content: str) -> None:
+    """Write a file; ArboledaError where that cannot be."""
+    try:
+        path.write_text(content, encoding="utf-8")
+    except OSError as error:
+        raise ArboledaError(f"{path}: cannot be written: {error.strerror}") from None
+
+
+def as_json(
+    plant: Path | None,
+    calm: Sequence[Calm],
+    tally: ProofTally,
+    breaches: Sequence[Breach],
+    total: int,
+    *,
+    complete: bool,
+) -> str:
+    """The content of the file."""
+    data = {
+        "arboleda": __version__,
+        "plant": str(plant) if plant else None,
+        "complete": complete,
+        "runs": {"done": tally.runs, "of": total},
+        "alone": round(tally.alone, 4),
+        "scenarios": [_scenario(each) for each in calm],
+        "table": [_row(*each) for each in tally.table().items()],
+        "unnoticed": [{**_case(case), "runs": count} for case, count in tally.unnoticed()],
+        "breaches": [_breach(each, plant) for each in breaches],
+        "digests": [proved.digest for _, proved in sorted(tally.proved.items())],
+    }
+    return json.dumps(data, indent=1, ensure_ascii=False) + "\n"
+
+
+def _scenario(calm: Calm) -> dict[str, Any]:
+    scenario = calm.scenario
+    return {
+        "cell": scenario.cell,
+        "recipe": scenario.recipe,
+        "task": scenario.task,
+        "answers": dict(scenario.answers),
+        "stands_for": scenario.alike,
+        "without_faults": plain(calm.run.outcome),
+        "ends_with": dict(calm.state),
+        "instants": len(calm.instants),
+    }
+
+
+def _row(key: tuple[str, str], rows: dict[str, Any]) -> dict[str, Any]:
+    faults = {
+        kind: {
+            "runs": row.runs,
+            "ends": dict(sorted(row.ends.items())),
+            "causes": dict(sorted(row.causes.items())),
+            "alone": row.alone,
+            "unnoticed": row.unnoticed,
+            "broken": row.broken,
+            "changes_with_the_moment": row.changes,
+        }
+        for kind, row in rows.items()
+    }
+    return {"cell": key[0], "recipe": key[1], "faults": faults}
+
+
+def _case(case: Case) -> dict[str, Any]:
+    return {
+        "task": case.scenario.task,
+        "answers": dict(case.scenario.answers),
+        "instant": case.instant.name,
+        "fault": asdict(case.fault),
+        "outcome": plain(case.outcome),
+    }
+
+
+def _breach(breach: Breach, plant: Path | None) -> dict[str, Any]:
+    name, sentence = breach.run.outcome.broken or ("", "")
+    return {
+        "invariant": name,
+        "seen": sentence,
+        "task": breach.scenario.task,
+        "answers": dict(breach.scenario.answers),
+        "instant": breach.instant.name,
+        "fault": asdict(lasting(breach.fault, breach.run)),
+        "runs": breach.count,
+        "test": as_tests([breach], plant),
+    }

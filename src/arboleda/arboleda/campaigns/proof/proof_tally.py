@@ -1,0 +1,122 @@
+"""Tally of a proof: what came of each kind of fault in each recipe, what broke, and what nobody notices."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+
+from arboleda.simulator.faults import Fault
+
+from .instants import Instant
+from .outcome import Outcome
+from .proof import Proof, Proved
+from .scenario import Scenario
+
+RecipeKey = tuple[str, str]  # cell, recipe
+
+
+@dataclass(frozen=True, kw_only=True)
+class Case:
+    """Case: one fault at one instant of one scenario, and its outcome."""
+
+    scenario: Scenario
+    row: int  # of the calm run
+    instant: Instant
+    fault: Fault
+    outcome: Outcome
+
+
+@dataclass(kw_only=True)
+class Row:
+    """Row of the table: a kind of fault in a recipe."""
+
+    runs: int = 0
+    alone: int = 0
+    ends: Counter[str] = field(default_factory=Counter)
+    causes: Counter[str] = field(default_factory=Counter)
+    unnoticed: int = 0
+    broken: int = 0
+    by_form: dict[tuple[str, str, float], set[str]] = field(default_factory=dict)
+
+    @property
+    def changes(self) -> bool:
+        """True if the end of one and the same fault changes with the moment."""
+        return any(len(ends) > 1 for ends in self.by_form.values())
+
+
+@dataclass(kw_only=True)
+class ProofTally:
+    """ProofTally: `cases` in a fixed order, of all portions that are `proved`, by number."""
+
+    proof: Proof
+    proved: dict[int, Proved] = field(default_factory=dict)
+
+    def cases(self) -> Iterator[Case]:
+        """All cases, in the order of the portions."""
+        for number, proved in sorted(self.proved.items()):
+            portion = self.proof.portions[number]
+            scenario = self.proof.calm[portion.scenario].scenario
+            rows = zip(self.proof.faults(portion), proved.each, strict=True)
+            for fault, outcome in rows:
+                yield Case(
+                    scenario=scenario,
+                    row=portion.scenario,
+                    instant=self.proof.instant(portion),
+                    fault=fault,
+                    outcome=outcome,
+                )
+
+    def table(self) -> dict[RecipeKey, dict[str, Row]]:
+        """A row for each kind of fault, by recipe."""
+        found: dict[RecipeKey, dict[str, Row]] = {}
+        for case in self.cases():
+            rows = found.setdefault((case.scenario.cell, case.scenario.recipe), {})
+            _add(rows.setdefault(case.fault.kind, Row()), case)
+        return found
+
+    def breaches(self) -> list[tuple[Case, int]]:
+        """For each invariant that a recipe broke its earliest case, and how many there are."""
+        found: dict[tuple[str, ...], list[Case]] = {}
+        for case in self.cases():
+            if case.outcome.broken is not None:
+                key = (case.outcome.broken[0], case.scenario.cell, case.scenario.recipe)
+                found.setdefault(key, []).append(case)
+        return [(min(cases, key=_shortness), len(cases)) for cases in found.values()]
+
+    def unnoticed(self) -> list[tuple[Case, int]]:
+        """For each kind of fault on each target that a task is done in spite of: a case, and how many."""
+        found: dict[tuple[str, ...], list[Case]] = {}
+        for case in self.cases():
+            if case.outcome.goes_unnoticed and case.outcome.broken is None:
+                key = (case.scenario.cell, case.scenario.recipe, case.fault.kind, case.fault.target)
+                found.setdefault(key, []).append(case)
+        return [(cases[0], len(cases)) for cases in found.values()]
+
+    @property
+    def runs(self) -> int:
+        """The number of runs so far."""
+        return sum(len(each.rows) for each in self.proved.values())
+
+    @property
+    def alone(self) -> float:
+        """The share of runs after which the cell got ready again without a person."""
+        alone = sum(each.alone for proved in self.proved.values() for each in proved.each)
+        return alone / max(self.runs, 1)
+
+
+def _shortness(case: Case) -> tuple[int, float, float]:
+    """The order of stories: plain answers, an early moment, a short fault."""
+    return len(case.scenario.answers), case.fault.at, case.fault.seconds
+
+
+def _add(row: Row, case: Case) -> None:
+    outcome, fault = case.outcome, case.fault
+    row.runs += 1
+    row.alone += outcome.alone
+    row.ends[outcome.end.value] += 1
+    if outcome.cause:
+        row.causes[outcome.cause] += 1
+    row.unnoticed += outcome.goes_unnoticed
+    row.broken += outcome.broken is not None
+    row.by_form.setdefault((fault.target, fault.word, fault.seconds), set()).add(outcome.words)

@@ -1,0 +1,187 @@
+"""Stage: one task on a simulated plant of its own, from the plant's first second to rest."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from arboleda.core.cell import CellRun
+from arboleda.core.cell_states import CellState
+from arboleda.model.messages import TaskChanged, TaskState
+from arboleda.model.plant_model import PlantModel
+from arboleda.simulator.invariants.places import recipes_end_as_they_say
+from arboleda.simulator.judged_world import BrokenInvariant, JudgedWorld
+from arboleda.simulator.people import Attendant, FixedAnswers
+from arboleda.simulator.run import NO_EXCEPTION
+from arboleda.simulator.world import PLANT
+
+from .end_state import EndState, differences, end_state, heard_facts, stated
+from .outcome import IS_DONE, End, Outcome, Run
+from .scenario import Scenario, alone
+
+ASKED_AT_S = 2.0  # when somebody asks for the task: everybody is connected by then
+ENDS_AS_SAID = recipes_end_as_they_say.name  # which the simulator asks of calm runs, and of places
+REQUEST = "test-1"  # as the first one of a test
+PATIENCE_S = 300.0  # beyond what the task takes without a fault
+LOST_S = 30.0  # after which a request that nobody has answered is lost
+MENDED_IN_S = 0.000_5  # after a task has ended, so that a test that names the time does the same
+GRACE_S = 30.0  # in which a cell gets ready by itself
+TRIES = 3  # times that it may go on by itself, and be held again
+STUCK = (CellState.HELD, CellState.ABORTED, CellState.STOPPED)
+ENDS = {
+    TaskState.DONE: End.DONE,
+    TaskState.FAILED: End.FAILED,
+    TaskState.CANCELLED: End.CANCELLED,
+    TaskState.REFUSED: End.REFUSED,
+}
+
+
+class AllForked(BaseException):
+    """Raised where all that is to befall a task does so in forks of this process."""
+
+
+class Stage:
+    """Stage: a task in its plant; `play` has something begin at its time, and returns what came of it.
+
+    `state` is what was so when the task was done, `stated` what its recipe says of that; `commands` are those
+    that its cell has given by then.
+    """
+
+    def __init__(self, model: PlantModel, scenario: Scenario, *, keep: bool = False) -> None:
+        self.watched = JudgedWorld(alone(model, scenario.cell), keep=keep)
+        self.world = self.watched.world
+        self.cell = model.cell(scenario.cell)
+        self.state: EndState = {}
+        self.stated: EndState = {}
+        self.heard: EndState = {}  # of that, by then, by the plant
+        self.commands: list[str] = []
+        self.told: TaskChanged | None = None  # the last word on the task
+        self.mended_at = 0.0  # when the fault was ended, s
+        self._began, self._lost_from = False, 0.0
+        self._task = scenario.task
+        FixedAnswers(self.world, dict(scenario.answers))
+        self.world.watchers.append(self._look)
+
+    @property
+    def run(self) -> CellRun:
+        """The cell as the plant that runs now has it."""
+        return self.world.plant.cells[self.cell.name]
+
+    @property
+    def ended(self) -> bool:
+        """True once the task has ended."""
+        return self.told is not None and self.told.state in ENDS
+
+    def play(
+        self,
+        at: float,
+        begin: Callable[[], None],
+        *,
+        expected: EndState,
+        commands: tuple[str, ...] | None,
+        lasts_s: float,
+    ) -> Run:
+        """Have something begin `at` s, and judge the run to its end; `lasts_s`: the task without that."""
+        outcome, attended_at = Outcome(end=End.UNFINISHED, alone=False), 0.0
+        try:
+            self.world.advance(ASKED_AT_S)
+            self.world.request_task(self._task, REQUEST)
+            self.world.settle()
+            self.world.at(self.watched.start + at, lambda _: self._begin(begin))
+            self._work(lasts_s + PATIENCE_S)
+            outcome, attended_at = self._outcome(expected, commands), self.watched.seconds
+            Attendant(self.world, seed=0)
+            self.watched.come_to_rest()
+        except BrokenInvariant as broken:
+            outcome = self._broken(outcome, broken)
+        except Exception as error:  # noqa: BLE001 - that none escapes is one of the invariants
+            outcome = self._broken(outcome, BrokenInvariant(NO_EXCEPTION, f"{type(error).__name__}: {error}"))
+        seconds = self.watched.seconds
+        return Run(
+            outcome=outcome,
+            digest=self.watched.trace.digest,
+            mended_at=self.mended_at or seconds,
+            attended_at=attended_at or seconds,
+            seconds=seconds,
+        )
+
+    def _begin(self, begin: Callable[[], None]) -> None:
+        self._began, self._lost_from = True, self.world.now + LOST_S
+        begin()
+
+    def _work(self, at_most_s: float) -> None:
+        """Let the plant work until the task has ended or waits for a person, mend what is at fault then, and
+        give the cell time to get ready.
+        """
+        for _ in range(TRIES):
+            self.world.advance(at_most_s, self._is_over)
+            self.world.advance(MENDED_IN_S)
+            self.mended_at = self.watched.seconds
+            self.watched.end_faults()
+            self.world.advance(GRACE_S, self._is_ready)
+            if self.ended or self._is_stuck:
+                return
+
+    def _is_over(self) -> bool:
+        lost = self.told is None and self.world.now >= self._lost_from
+        return self._began and (self.ended or self._is_stuck or lost)
+
+    @property
+    def _is_stuck(self) -> bool:
+        return self.run.state in STUCK and not self.run.goes_on
+
+    def _is_ready(self) -> bool:
+        run = self.run
+        idle = run.state is CellState.IDLE and run.task is None and not run.queue
+        return idle and self.world.is_on(PLANT) and run.not_ready is None
+
+    def _outcome(self, expected: EndState, commands: tuple[str, ...] | None) -> Outcome:
+        end, cause = self._end_and_cause()
+        if end is End.DONE and commands is not None and tuple(self.commands) != commands:
+            end = End.RECOVERED
+        untrue = differences(expected, self.state, self.heard) if end in IS_DONE else ()
+        broken = self._false_end() if end in IS_DONE else None
+        return Outcome(end=end, cause=cause, alone=self._is_ready(), untrue=untrue, broken=broken)
+
+    def _false_end(self) -> tuple[str, str] | None:
+        """The breach of a task that is done, and not as its recipe says; none where a board has lied."""
+        false = () if self.world.deceptions else differences(self.stated, self.state, self.heard)
+        return (ENDS_AS_SAID, f"{self._task} is called done, but {'; '.join(false)}") if false else None
+
+    def _end_and_cause(self) -> tuple[End, str]:
+        told, run = self.told, self.run
+        if told is not None and told.state in ENDS:
+            return ENDS[told.state], told.reason.value if told.reason and told.state in _FAILED else ""
+        if run.state in STUCK and (told is not None or run.task is not None):
+            return End.HELD, run.trouble.reason.value if run.trouble else run.state.value
+        return (End.LOST if told is None and run.task is None else End.UNFINISHED), ""
+
+    def _broken(self, outcome: Outcome, broken: BrokenInvariant) -> Outcome:
+        return Outcome(
+            end=outcome.end,
+            cause=outcome.cause,
+            alone=outcome.alone,
+            untrue=outcome.untrue,
+            broken=(broken.invariant, broken.sentence),
+        )
+
+    def _look(self) -> None:
+        entries = self.world.plant.dispatcher.ledger.entries
+        for message in self.world.moment.sent:
+            if isinstance(message, TaskChanged):
+                self._follow(message)
+            elif (entry := entries.get(getattr(message, "id", ""))) and entry.cell == self.cell.name:
+                self.commands.append(f"{entry.command.robot}: {entry.doing}")
+
+    def _follow(self, told: TaskChanged) -> None:
+        mine = told.request == REQUEST or (self.told is not None and told.task == self.told.task)
+        if not mine or self.ended:
+            return
+        self.told = told
+        if told.state is TaskState.DONE:
+            self.state = end_state(self.watched, self.cell)
+            order = self.world.plant.intake.tasks[told.task].order
+            self.heard = heard_facts(self.watched, self.cell)
+            self.stated = stated(self.cell, order.recipe, order.values)
+
+
+_FAILED = (TaskState.FAILED, TaskState.CANCELLED, TaskState.REFUSED)

@@ -1,0 +1,117 @@
+"""The command `arboleda prove`: its options and its exit status."""
+
+from __future__ import annotations
+
+import math
+import re
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from arboleda.plant_file.user_file import check_writable
+
+from .plant_options import StateFolder, folder
+
+BUDGET = "10m"
+HELP = f"""Try every single fault at every moment of every recipe, and judge each run.
+
+\b
+arboleda prove                          the shipped plant, for {BUDGET}
+arboleda prove my_plant.yaml            your plant; what is kept is not run again
+arboleda prove my_plant.yaml --recipe weigh --budget all
+arboleda prove my_plant.yaml --html out.html --tests test_found.py
+
+Each recipe runs once without faults, for each class of parameters and each answer that can lead elsewhere.
+Then each kind of fault begins before and after each event of that run, and in the middle between two,
+one run each. Steps' beginnings come first, so that a short budget is spent well.
+
+Exit status: 0 every invariant held, 1 one was broken, or a task failed where nothing had
+gone wrong, 2 bad input, 130 Ctrl-C."""
+BUDGETS = re.compile(r"(\d+(?:\.\d+)?)(s|m|h)")
+SECONDS = {"s": 1.0, "m": 60.0, "h": 3600.0}
+ALL = "all"
+
+PlantArgument = Annotated[
+    Path | None, typer.Argument(metavar="[PLANT]", help="Plant file. [default: the shipped plant]")
+]
+Recipes = Annotated[
+    list[str] | None,
+    typer.Option("--recipe", metavar="NAME", help="Only this recipe; may be given several times."),
+]
+Faults = Annotated[
+    list[str] | None,
+    typer.Option("--fault", metavar="KIND", help="Only this kind of fault; may be given several times."),
+]
+Budget = Annotated[
+    str,
+    typer.Option(
+        metavar="TIME", help="Begin no more runs after so long: 30s, 10m, 2h; all: until everything is run."
+    ),
+]
+Json = Annotated[Path | None, typer.Option("--json", metavar="FILE", help="Write the whole answer.")]
+Html = Annotated[
+    Path | None,
+    typer.Option("--html", metavar="FILE", help="Write the answer as one page, in English and Spanish."),
+]
+JUnit = Annotated[
+    Path | None, typer.Option("--junit", metavar="FILE", help="Write it as JUnit XML, for a CI server.")
+]
+Tests = Annotated[
+    Path | None, typer.Option("--tests", metavar="FILE", help="Write a pytest for each invariant that broke.")
+]
+Anew = Annotated[bool, typer.Option("--anew", help="Run again what is kept from before, too.")]
+Jobs = Annotated[
+    int | None,
+    typer.Option(metavar="N", min=1, help="How many processes share the runs. [default: one per processor]"),
+]
+
+
+def add_to(cli: typer.Typer) -> None:
+    """Add the command."""
+    cli.command("prove", help=HELP, short_help=HELP.partition("\n")[0])(prove)
+
+
+def prove(
+    plant: PlantArgument = None,
+    recipe: Recipes = None,
+    fault: Faults = None,
+    budget: Budget = BUDGET,
+    json: Json = None,
+    html: Html = None,
+    junit: JUnit = None,
+    tests: Tests = None,
+    anew: Anew = False,
+    jobs: Jobs = None,
+    state: StateFolder = None,
+) -> None:
+    from arboleda.campaigns import screen  # the simulator takes a while to load
+    from arboleda.campaigns.proof.proof_campaign import ProofCampaign, ProofRequest
+    from arboleda.campaigns.workers import processors
+
+    for file in (json, html, junit, tests):
+        if file is not None:
+            check_writable(file)
+    request = ProofRequest(
+        plant=plant,
+        recipes=tuple(recipe or ()),
+        kinds=tuple(fault or ()),
+        budget_s=seconds_of(budget),
+        folder=folder(plant, state) / "prove",
+        anew=anew,
+        json=json,
+        html=html,
+        junit=junit,
+        tests=tests,
+    )
+    raise typer.Exit(ProofCampaign(request, screen.console()).run(jobs or processors()))
+
+
+def seconds_of(budget: str) -> float:
+    """The seconds of a budget as people write it."""
+    if budget == ALL:
+        return math.inf
+    found = BUDGETS.fullmatch(budget)
+    if found is None:
+        raise typer.BadParameter(f"--budget: {budget!r} is no time; write 30s, 10m, 2h or {ALL}")
+    return float(found[1]) * SECONDS[found[2]]

@@ -1,0 +1,141 @@
+"""Check of recipes in advance: each way through a recipe, and what it leaves, without running it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
+
+from py_trees.behaviour import Behaviour
+
+from arboleda.bt_xml.recipe import TreeRecipe
+from arboleda.core.plant import Plant
+from arboleda.model.plant_model import Cell, PlantModel
+from arboleda.model.recipe import Recipe
+from arboleda.model.task import Order
+from arboleda.recipes.authoring import WrittenRecipe
+from arboleda.recipes.decorators import Again, AtMost
+from arboleda.trees.context import Context
+
+from .foresight import OVER, Foresight, Scene
+from .node_rules import RULES as NODE_RULES
+from .recipe_check import orders
+from .recipe_ends import certain_ends, of_ends
+from .scene_variables import first_values
+from .spots import START
+from .step_rules import RULES as STEP_RULES
+from .walkthrough import Rule, Walkthrough
+
+MOST_TRIES, LONGEST_S = 100, 3600.0  # of a retry, and the time of its pauses
+RULES: Mapping[type[Behaviour], Rule] = {**STEP_RULES, **NODE_RULES}
+
+
+def warnings(plant: PlantModel) -> tuple[str, ...]:
+    """Warnings of what recipes do in vain, and of what they forget, each with the place of its recipe."""
+    return tuple(said for check in _checks(plant) for said in check.warnings())
+
+
+def ends(plant: PlantModel) -> tuple[str, ...]:
+    """Ends of recipes: all that is so for certain once a task is done, with any parameters."""
+    return tuple(said for check in _checks(plant) for said in check.ends())
+
+
+def _checks(plant: PlantModel) -> list[CellCheck]:
+    runs = Plant(plant, epoch=0, now=0.0).cells
+    return [CellCheck(cell=cell, context=runs[cell.name].context) for cell in plant.cells]
+
+
+@dataclass(kw_only=True)
+class CellCheck:
+    """Check of the recipes of one cell: of each way through each of them, with all its parameters."""
+
+    cell: Cell
+    context: Context
+    said: dict[str, None] = field(default_factory=dict)
+    waits: dict[str, dict[str, str]] = field(default_factory=dict)  # by robot and recipe: where it ends
+
+    def warnings(self) -> Iterable[str]:
+        written = [each for each in self.cell.recipes if _is_own(each)]
+        for recipe in written:
+            for order in orders(self.cell, recipe):
+                self._check(recipe, order)
+        for recipe in written:
+            self._say(recipe, self._elsewhere(recipe))
+        return self.said
+
+    def ends(self) -> Iterator[str]:
+        for recipe in (each for each in self.cell.recipes if _place(each) is not None):
+            ends, wanted = [], []
+            for order in orders(self.cell, recipe):
+                ends += self._followed(recipe.build(order, self.context))[1]
+                wanted.append(recipe.end_of(order.values))
+            same = {
+                what: value
+                for what, value in wanted[0].items()
+                if all(value == each.get(what) for each in wanted)
+            }
+            sure = ", ".join(certain_ends(self.cell, same, ends)) or "nothing that is certain"
+            yield f"{self.cell.name}: {recipe.name} ends with {sure}"
+
+    def _followed(self, tree: Behaviour) -> tuple[Walkthrough, tuple[Scene, ...]]:
+        """All ways through a recipe's tree, and the scenes at their ends."""
+        back = {robot: pose.name for robot, pose in self.context.parts.back.items()}
+        walk = Walkthrough(foresight=Foresight(self.cell, back), rules=RULES)
+        begin = walk.foresight.begin().put(first_values(tree))
+        return walk, walk.follow(tree.children[0], [begin]).passed
+
+    def _check(self, recipe: Recipe, order: Order) -> None:
+        tree = recipe.build(order, self.context)
+        self._say(recipe, _endless(tree))
+        walk, ends = self._followed(tree)
+        for place, sentence in walk.findings:
+            self._say(recipe, [sentence], place)
+        self._say(recipe, of_ends(self.cell, recipe.end_of(order.values), ends))
+        for space in (each for each in self.cell.spaces if each.robot.joints):
+            over = {end.get(space.robot.name, OVER) for end in ends}
+            if len(over) == 1 and None not in over:
+                self.waits.setdefault(space.robot.name, {}).update({recipe.name: str(over.pop())})
+
+    def _elsewhere(self, recipe: Recipe) -> Iterator[str]:
+        """The arms that others leave at home, and this one does not; what drives may wait anywhere."""
+        for robot, waits in self.waits.items():
+            others = [name for name, target in waits.items() if target == START]
+            here = waits.get(recipe.name, START)
+            if others and here != START and robot not in self.cell.shared:
+                yield f"ends with {robot} at {here}; {others[0]} ends with it at {START}"
+
+    def _say(self, recipe: Recipe, sentences: Iterable[str], place: str | None = None) -> None:
+        where = f"{place or _place(recipe)}: {self.cell.name}: {recipe.name}"
+        self.said |= dict.fromkeys(f"{where} {sentence}" for sentence in sentences)
+
+
+def _place(recipe: Recipe) -> str | None:
+    """The place of a recipe in its file; None of one that is in no file of a plant."""
+    if isinstance(recipe, TreeRecipe):
+        return str(recipe.place)
+    if not isinstance(recipe, WrittenRecipe):
+        return None
+    code = recipe.function.__code__
+    return f"{code.co_filename}:{code.co_firstlineno}:1"
+
+
+def _is_own(recipe: Recipe) -> bool:
+    """True for a recipe of the plant; nobody who checks a plant can change those that come with Arboleda."""
+    if isinstance(recipe, WrittenRecipe):
+        return not recipe.function.__module__.startswith("arboleda.recipes.")
+    return _place(recipe) is not None
+
+
+def _endless(tree: Behaviour) -> Iterator[str]:
+    """The retries that go on for longer than people wait, and that nothing ends before."""
+    for node in tree.iterate():
+        if not isinstance(node, Again) or _is_limited(node):
+            continue
+        if node.times > MOST_TRIES or node.times * node.pause_s > LONGEST_S:
+            tries = f"{node.times:,} times, {node.pause_s:g} s apart"
+            yield f"tries {node.decorated.name} again {tries}; a task that cannot be done never ends so"
+
+
+def _is_limited(node: Behaviour) -> bool:
+    """True for a step in one that ends it after some time."""
+    around = node.parent
+    return around is not None and (isinstance(around, AtMost) or _is_limited(around))

@@ -1,0 +1,51 @@
+"""Check of grids: nodes in a zone by which another robot may drive although none of its targets is there."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+from arboleda.kinds.mobile.grid import Grid
+from arboleda.model.plant_model import PlantModel, Pose, Workspace
+
+MEETING_M = 0.010  # two nodes that are so near to each other are one place
+
+
+def warnings(plant: PlantModel) -> tuple[str, ...]:
+    """The nodes in zones that other robots come by without a target there in that zone."""
+    spaces = [space for cell in plant.cells for space in cell.spaces if space.robot.floor_grid is not None]
+    return tuple(
+        _sentence(one, pose, other, node)
+        for one in spaces
+        for pose in one.poses
+        for other in spaces
+        if pose.zones and other.robot.name != one.robot.name
+        for node in _open_nodes(one, pose, other)
+    )
+
+
+def _sentence(one: Workspace, pose: Pose, other: Workspace, node: int) -> str:
+    there = f"{one.robot.name} is at {pose.name} in {', '.join(sorted(pose.zones))}"
+    name = other.robot.name
+    how = f"a target of {name} at it, in that zone, does"
+    return f"{there}, and nothing keeps {name} off its node {node} there; {how}"
+
+
+def _open_nodes(one: Workspace, pose: Pose, other: Workspace) -> Iterator[int]:
+    """The nodes of another robot at the place of a pose that lies in zones, if it has none of these there."""
+    place, grid = _place(one.robot.floor_grid, pose.q), other.robot.floor_grid
+    for node in range(grid.size):
+        guarded = any(each.q == node and each.zones & pose.zones for each in other.poses)
+        if math.dist(place, _place(grid, node)) <= MEETING_M and not guarded:
+            yield node
+
+
+def _place(grid: Grid, node: object) -> tuple[float, float]:
+    """A node on the floor, m."""
+    assert isinstance(node, int)
+    x, y = grid.position(node)
+    turn = grid.origin.yaw
+    return (
+        grid.origin.x + x * math.cos(turn) - y * math.sin(turn),
+        grid.origin.y + x * math.sin(turn) + y * math.cos(turn),
+    )

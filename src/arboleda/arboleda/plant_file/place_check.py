@@ -1,0 +1,95 @@
+"""Check of places: what a plant file leaves unsaid about where parts lie, and who gets in whose way there."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from itertools import combinations
+from typing import Any
+
+from arboleda.dashboard.twin import bodies, kinematics
+from arboleda.kinds.declared import DeviceVerb, Effect
+from arboleda.model.errors import ArboledaError
+from arboleda.model.plant_model import Cell, Place, PlantModel, Robot, Workspace
+
+from .urdf import robot_urdf
+
+APART_M = 0.030  # beside each other, two tools at one place; a part is hardly smaller
+
+
+def warnings(plant: PlantModel) -> tuple[str, ...]:
+    """The places that nothing guards, the devices that have none, and those that are two."""
+    unsaid = [each for cell in plant.cells for each in (*_unguarded(cell), *_without_place(cell))]
+    try:
+        return (*unsaid, *(each for cell in plant.cells for each in _split(plant, cell)))
+    except ArboledaError:  # whoever looks where arms can meet says why
+        return tuple(unsaid)
+
+
+def _unguarded(cell: Cell) -> Iterator[str]:
+    """The places in or under devices that move there, whatever stands there."""
+    for place in cell.places:
+        device = next((each for each in cell.robots if each.name == place.device), None)
+        moves = _moves(device)
+        reaching = [space.robot.name for space in cell.spaces if place.target in space.targets]
+        if device is None or not (moves and reaching) or _is_guarded(cell, place):
+            continue
+        told = f"{cell.name}: {place.target} is at {device.name}, which moves ({', '.join(moves)})"
+        how = "a zone with this target and free_while or held_while of the device does"
+        yield f"{told}, and nothing keeps {' and '.join(reaching)} out of there meanwhile; {how}"
+
+
+def _verbs(device: Any) -> dict[str, DeviceVerb]:
+    """The verbs of a device by their names; none of what has no kind with verbs."""
+    return dict(device.kind.verbs) if device.verb_names else {}
+
+
+def _moves(device: Robot | None) -> list[str]:
+    """The verbs with which something of a device moves."""
+    verbs = {} if device is None else _verbs(device)
+    return [name for name, verb in verbs.items() if verb.effect is Effect.MOTION]
+
+
+def _is_guarded(cell: Cell, place: Place) -> bool:
+    zones = {each.zone for each in cell.interlocks if each.device == place.device}
+    poses = [space.targets[place.target] for space in cell.spaces if place.target in space.targets]
+    robots = {name for space in cell.spaces for name in (space.robot.name, space.hand.name)}
+    pairs = [(each.device, each.other) for each in cell.needs]
+    needed = any(place.device in pair and not robots.isdisjoint(pair) for pair in pairs)
+    return needed or all(pose.zones & zones for pose in poses)
+
+
+def _without_place(cell: Cell) -> Iterator[str]:
+    """The devices that have to do with parts, of which nobody knows whether one is there."""
+    known = {place.device for place in cell.places}
+    known |= {space.hand.name for space in cell.spaces}
+    for role, device in cell.members:
+        if device.name in known:
+            continue
+        works = [name for name, verb in _verbs(device).items() if verb.works_on_part]
+        holds = [name for name, verb in _verbs(device).items() if verb.holds and cell.places]
+        if works or holds:
+            what = f"works on a part ({works[0]})" if works else f"takes hold of a part ({holds[0]})"
+            how = f"places: {{TARGET: {{of: {role}}}}}" + ("" if works else ", or tool_of")
+            yield f"{cell.name}: {device.name} {what}, and no place is of it; say where: {how}"
+
+
+def _split(plant: PlantModel, cell: Cell) -> Iterator[str]:
+    """The places that two arms go to, and that are far from each other."""
+    arms = [space for space in cell.spaces if space.robot.joints and space.robot.drawn()]
+    for one, other in combinations(arms, 2):
+        for place in cell.places:
+            spaces = (one, other)
+            if all(place.target in space.targets for space in spaces):
+                apart = math.dist(*(_tool(plant, space, place.target) for space in spaces))
+                if apart > APART_M and one.robot.base != other.robot.base:
+                    names, mm = f"{one.robot.name} and {other.robot.name}", f"{apart * 1000:.0f} mm"
+                    yield f"{cell.name}: {place.target} is one place, and {names} go {mm} apart"
+
+
+def _tool(plant: PlantModel, space: Workspace, target: str) -> Sequence[float]:
+    """Where the tool of an arm is at a target, in plan."""
+    base = space.robot.base
+    frame = kinematics.floor((base.x, base.y, base.yaw))
+    body = bodies.read(robot_urdf(plant, space.robot.name))
+    return kinematics.at(kinematics.tool(body, space.targets[target].q, frame))[:2]

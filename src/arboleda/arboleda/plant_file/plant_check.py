@@ -1,0 +1,14 @@
+"""Check of a plant whose file is good: all that it is warned of."""
+
+from __future__ import annotations
+
+from arboleda.model.plant_model import PlantModel
+
+from . import advance_check, grid_check, layout_check, loader, meeting_points, need_check, place_check
+
+CHECKS = (loader, layout_check, meeting_points, grid_check, place_check, need_check, advance_check)
+
+
+def warnings(plant: PlantModel) -> tuple[str, ...]:
+    """What all checks warn of, one sentence each."""
+    return tuple(sentence for check in CHECKS for sentence in check.warnings(plant))

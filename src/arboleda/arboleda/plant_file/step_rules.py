@@ -1,0 +1,207 @@
+"""Rules of a walkthrough for the steps of recipes in Python: what can be so after each class of them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+from itertools import product
+from math import prod
+
+from py_trees import composites
+from py_trees.behaviour import Behaviour
+from py_trees.common import ParallelPolicy
+from py_trees.decorators import Decorator
+
+from arboleda.model.facts import Value
+from arboleda.recipes.authoring import FAIL, IS, NO_OTHER
+from arboleda.recipes.decorators import Again, AtMost, Forgiven, Inverted, Rescue, Times
+from arboleda.recipes.handles import FactCheck, FactWait
+from arboleda.trees.leaves import Act, Leaf, Require, Unless
+
+from .foresight import Key, Scene, common
+from .parallel_scenes import Branches
+from .walkthrough import MOST_ROUNDS, Outcome, Rule, Walkthrough, answer_key, few
+
+MOST_MERGED = 64  # scenes of a parallel that are put together one by one
+
+
+def _leaf(walk: Walkthrough, node: Leaf, scenes: Sequence[Scene]) -> Outcome:
+    return Outcome(done=tuple(scenes), failed=tuple(scenes))
+
+
+def _act(walk: Walkthrough, node: Act, scenes: Sequence[Scene]) -> Outcome:
+    walk.check(node, scenes)
+    command, asked = node.make(id=""), {answer_key(node)}
+    done = tuple(walk.foresight.after(command, scene).without(asked) for scene in scenes)
+    return Outcome(done=done, failed=walk.blurred(node, scenes))
+
+
+def _require(walk: Walkthrough, node: Require, scenes: Sequence[Scene]) -> Outcome:
+    never = node.title.key in (FAIL.key, NO_OTHER.key)
+    return Outcome(done=() if never else tuple(scenes), failed=tuple(scenes))
+
+
+def _unless(walk: Walkthrough, node: Unless, scenes: Sequence[Scene]) -> Outcome:
+    if node.title.key == IS.key:  # the choice sees to it that these are the scenes of this answer
+        return Outcome(done=tuple(scenes))
+    walk.doubts += 1
+    return Outcome(done=tuple(scenes), failed=tuple(scenes))
+
+
+def _fact_check(walk: Walkthrough, node: FactCheck, scenes: Sequence[Scene]) -> Outcome:
+    """The outcome of a check: what is known otherwise fails it."""
+    facts = _facts(node)
+    possible = [each for each in scenes if all(each.get(*key) in (None, facts[key]) for key in facts)]
+    return _told(walk, facts, possible, scenes)
+
+
+def _fact_wait(walk: Walkthrough, node: FactWait, scenes: Sequence[Scene]) -> Outcome:
+    """The outcome of waiting for facts: what is known may change by itself meanwhile."""
+    return _told(walk, _facts(node), scenes, scenes)
+
+
+def _facts(node: FactCheck | FactWait) -> dict[Key, Value]:
+    return {(node.device, fact): value for fact, value in node.facts.items()}
+
+
+def _told(
+    walk: Walkthrough, facts: Mapping[Key, Value], possible: Sequence[Scene], scenes: Sequence[Scene]
+) -> Outcome:
+    unlike = [scene for scene in scenes if any(scene.get(*key) != facts[key] for key in facts)]
+    walk.doubts += any(scene.get(*key) is None for scene in unlike for key in facts)
+    return Outcome(done=tuple(scene.put(facts) for scene in possible), failed=tuple(unlike))
+
+
+def _sequence(walk: Walkthrough, node: composites.Sequence, scenes: Sequence[Scene]) -> Outcome:
+    if not node.memory:
+        return walk.unsure(node, scenes)
+    outcome = Outcome(done=tuple(scenes))
+    for child in node.children:
+        found = walk.follow(child, outcome.done)
+        outcome = Outcome(done=found.passed, failed=(*outcome.failed, *found.failed))
+    return outcome
+
+
+def _selector(walk: Walkthrough, node: composites.Selector, scenes: Sequence[Scene]) -> Outcome:
+    asked = getattr(node, "asked", None)
+    if asked is not None:
+        return _chosen(walk, node, asked, scenes)
+    if not node.memory:
+        return walk.unsure(node, scenes)
+    outcome = Outcome(failed=tuple(scenes))
+    for child in node.children:
+        found = walk.follow(child, outcome.failed)
+        outcome = Outcome(done=(*outcome.done, *found.passed), failed=found.failed)
+    return outcome
+
+
+def _chosen(
+    walk: Walkthrough, node: composites.Selector, asked: Behaviour, scenes: Sequence[Scene]
+) -> Outcome:
+    """The outcome of a choice by an answer: each way begins where the answer is its own."""
+    outcome, key = Outcome(), answer_key(asked)
+    for number, child in enumerate(node.children):
+        begin = [scene.put({key: number}) for scene in scenes if scene.get(*key) in (None, number)]
+        found = walk.follow(child, begin)
+        outcome = outcome.plus(done=found.passed, failed=found.failed)
+    return outcome
+
+
+def _parallel(walk: Walkthrough, node: composites.Parallel, scenes: Sequence[Scene]) -> Outcome:
+    if not isinstance(node.policy, ParallelPolicy.SuccessOnAll):
+        return walk.unsure(node, scenes)
+    return at_once(walk, node, scenes)
+
+
+def at_once(walk: Walkthrough, node: Behaviour, scenes: Sequence[Scene]) -> Outcome:
+    """The outcome of steps at the same time that are done once all of them are.
+
+    Each is followed with nothing known of what the others may change meanwhile.
+    """
+    outcome = Outcome(failed=walk.blurred(node, scenes))
+    for scene in scenes:
+        branches = Branches(walk, node.children, scene)
+        found = [walk.follow(child, [branches.begin_of(n)]) for n, child in enumerate(node.children)]
+        every = [branches.merged(ends) for ends in _combined([each.passed for each in found])]
+        none = [branches.merged(ends) for ends in _combined([each.skipped for each in found])]
+        is_none = {each.mark for each in none}
+        outcome = outcome.plus(done=[each for each in every if each.mark not in is_none], skipped=none)
+    return outcome
+
+
+def _combined(ends: Sequence[Sequence[Scene]]) -> Iterator[tuple[Scene, ...]]:
+    """One end of each branch, in all ways; where these are many, what the ends of each have in common."""
+    many = prod(map(len, ends)) > MOST_MERGED
+    return product(*(common(each) if many else each for each in ends))
+
+
+def _around(walk: Walkthrough, node: Decorator, scenes: Sequence[Scene]) -> Outcome:
+    found = walk.follow(node.decorated, scenes)
+    return Outcome(done=found.passed, failed=found.failed)
+
+
+def _at_most(walk: Walkthrough, node: AtMost, scenes: Sequence[Scene]) -> Outcome:
+    found = walk.follow(node.decorated, scenes)
+    return Outcome(done=found.passed, failed=walk.blurred(node, scenes))
+
+
+def _rescue(walk: Walkthrough, node: Rescue, scenes: Sequence[Scene]) -> Outcome:
+    found = walk.follow(node.decorated, scenes)
+    return Outcome(failed=(*found.passed, *found.failed))
+
+
+def _inverted(walk: Walkthrough, node: Inverted, scenes: Sequence[Scene]) -> Outcome:
+    found = walk.follow(node.decorated, scenes)
+    return Outcome(done=found.failed, failed=found.passed)
+
+
+def _again(walk: Walkthrough, node: Again, scenes: Sequence[Scene]) -> Outcome:
+    return tried(walk, node.decorated, scenes, node.times + 1)
+
+
+def tried(walk: Walkthrough, step: Behaviour, scenes: Sequence[Scene], times: float) -> Outcome:
+    """The outcome of a step that is tried again where it failed: after that, halfway may be anywhere."""
+    first = walk.follow(step, scenes)
+    if times <= 1:
+        return first
+    later = walk.follow(step, walk.blurred(step, first.failed))
+    return first.plus_all(later)
+
+
+def _times(walk: Walkthrough, node: Times, scenes: Sequence[Scene]) -> Outcome:
+    found = repeated(walk, node.decorated, scenes, node.times)
+    return Outcome(done=found.passed, failed=found.failed)
+
+
+def repeated(walk: Walkthrough, step: Behaviour, scenes: Sequence[Scene], times: int) -> Outcome:
+    """The outcome of a step that is done so many times; of many rounds the last one counts."""
+    outcome = Outcome(done=tuple(scenes))
+    for number in range(min(times, MOST_ROUNDS)):
+        is_last = number + 1 == MOST_ROUNDS < times
+        begin = walk.blurred(step, outcome.done) if is_last else outcome.done
+        found = walk.follow(step, begin)
+        others = outcome.plus(failed=found.failed, skipped=found.skipped)
+        outcome = replace(others, done=found.done)
+        if few(outcome.done) == few(begin):
+            break
+    return outcome
+
+
+RULES: Mapping[type[Behaviour], Rule] = {
+    Leaf: _leaf,
+    Act: _act,
+    Require: _require,
+    Unless: _unless,
+    FactCheck: _fact_check,
+    FactWait: _fact_wait,
+    composites.Sequence: _sequence,
+    composites.Selector: _selector,
+    composites.Parallel: _parallel,
+    Forgiven: _around,
+    Again: _again,
+    AtMost: _at_most,
+    Rescue: _rescue,
+    Inverted: _inverted,
+    Times: _times,
+}
+"""The rule for each class of steps; what is none of them is unsure."""

@@ -1,0 +1,197 @@
+"""Span of a recipe over which a cell holds what it shares: from the first step that tells it something."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Iterator, Sequence
+from dataclasses import dataclass
+from functools import partial
+from typing import Protocol, runtime_checkable
+
+from py_trees import composites
+from py_trees.behaviour import Behaviour
+from py_trees.decorators import Decorator
+
+from arboleda.model.sentence import Phrase
+from arboleda.trees import steps
+from arboleda.trees.context import Context
+from arboleda.trees.leaves import TakeDevices, TakeZones
+
+from .decorators import Again, Forgiven, Inverted
+from .errors import RecipeError
+
+Take = Callable[[], Behaviour]
+WORK = Phrase("step.work", "work")
+
+
+@runtime_checkable
+class TakesLate(Protocol):
+    """Node of another kind of tree that has a place of its own for the taking of devices."""
+
+    def uses_first(self) -> bool:
+        """True where nothing comes before its first use of a shared device."""
+
+    def take_late(self, take: Take) -> None:
+        """Have them taken before that."""
+
+
+def held(context: Context, step: Behaviour) -> Behaviour:
+    """The step with what it uses of shared devices held from before the first use until after the last.
+
+    A recipe with a `using` of its own says itself when.
+    """
+    outside = context.cell.together(used(step)) if context.cell.shared else frozenset[str]()
+    if not outside:
+        return step
+    if any(isinstance(node, TakeDevices) for node in step.iterate()):
+        told = f"{min(outside)} is told something outside of using(...)"
+        raise RecipeError(f"{told}; where a recipe has one, all that cells share is used in one")
+    if _is_work(step):
+        _hold_in(context, step)
+        return step
+    return steps.framed(steps.sequence(WORK(), *_hold(context, outside, [step])))
+
+
+def _take_late(step: Behaviour, take: Take) -> bool:
+    """Have shared devices taken in a step, before the first of its parts that uses one; whether they are
+    taken for certain once it has succeeded.
+
+    A part that stays whole, as a visit does with its zones, has them taken before it. A part that is done
+    again, or one of two that run at the same time, may find them taken already.
+    """
+    if isinstance(step, TakesLate):
+        step.take_late(take)
+        return True
+    if _is_work(step):
+        parts, certain = _late(step.children, take)
+        _replace(step, parts)
+        return certain
+    if isinstance(step, Decorator):
+        return _take_late(step.decorated, take) and not isinstance(step, Inverted)
+    if isinstance(step, composites.Parallel):
+        branches = [_take_late(child, take) for child in step.children if any(used(child))]
+        return any(branches)
+    ways = [_late([child], take) for child in step.children]
+    _replace(step, [])  # a step has one parent
+    _replace(step, [_one(parts) for parts, _ in ways])
+    return all(certain for _, certain in ways)
+
+
+@dataclass
+class _Group:
+    """Steps next to each other, from the first to the last use of the devices that they need together."""
+
+    first: int
+    last: int
+    devices: frozenset[str]
+
+
+def _hold_in(context: Context, work: Behaviour) -> None:
+    """Hold what the steps of a work use, each device from its first use to its last."""
+    children = list(work.children)
+    for group in reversed(_groups(context, children)):
+        parts = children[group.first : group.last + 1]
+        if len(parts) == 1 and _is_work(parts[0]):
+            _hold_in(context, parts[0])
+        else:
+            _replace(work, [])  # a step has one parent
+            children[group.first : group.last + 1] = _hold(context, group.devices, parts)
+    _replace(work, children)
+
+
+def _hold(context: Context, devices: frozenset[str], parts: Sequence[Behaviour]) -> list[Behaviour]:
+    """The steps, with the devices taken before the first use among them and given back after all of them."""
+    late, _ = _late(parts, partial(steps.take_devices, context, devices))
+    return [*late, *steps.leave_devices(context, devices)]
+
+
+def _groups(context: Context, parts: Sequence[Behaviour]) -> list[_Group]:
+    """The parts that use shared devices, in groups of which none uses what another one does.
+
+    A person is asked for one answer at a time, and is free for other cells between two questions.
+    """
+    needed = [context.cell.together(used(part)) for part in parts]
+    for index, part in enumerate(parts):
+        if _may_stay_in_zones(part):
+            needed[index] = needed[index].union(*needed[index:])
+    people = {each.name for each in context.cell.robots if each.is_asked}
+    last = {device: index for index, devices in enumerate(needed) for device in devices - people}
+    found: list[_Group] = []
+    for index, devices in enumerate(needed):
+        end = max([index, *(last[device] for device in devices - people)])
+        if found and index <= found[-1].last:
+            found[-1].last, found[-1].devices = max(found[-1].last, end), found[-1].devices | devices
+        elif devices:
+            found.append(_Group(first=index, last=end, devices=devices))
+    return found
+
+
+def _late(parts: Sequence[Behaviour], take: Take) -> tuple[list[Behaviour], bool]:
+    """The parts of a sequence, with the devices taken in them or between them; whether that is certain."""
+    found: list[Behaviour] = []
+    certain = False
+    for part in parts:
+        if not certain and (any(used(part)) or _may_stay_in_zones(part)):
+            if certain := _uses_first(part):
+                found.append(take())
+            else:
+                certain = _take_late(part, take)
+        found.append(part)
+    return found, certain
+
+
+def _uses_first(step: Behaviour) -> bool:
+    """True for a step that has to find the devices taken: nothing comes, or may come, before they are."""
+    if isinstance(step, TakesLate):
+        return step.uses_first()
+    if _may_stay_in_zones(step):
+        return True
+    if _is_work(step):
+        return bool(step.children) and _uses_first(step.children[0])
+    if isinstance(step, composites.Parallel) and _is_open(step):
+        return any(map(_uses_first, step.children))
+    return _uses_first(step.children[0]) if _is_open(step) else any(used(step))
+
+
+def _may_stay_in_zones(step: Behaviour) -> bool:
+    """True where a robot may have failed in a zone and the work goes on: who holds one asks for no device."""
+    return any(_goes_on_after_failure(each) and _takes_zones(each) for each in step.iterate())
+
+
+def _goes_on_after_failure(step: Behaviour) -> bool:
+    if isinstance(step, Again):  # the next try may go another way
+        return any(isinstance(each, composites.Selector) and steps.is_frame(each) for each in step.iterate())
+    return isinstance(step, Forgiven | Inverted)
+
+
+def _takes_zones(step: Behaviour) -> bool:
+    return any(isinstance(each, TakeZones) for each in step.iterate())
+
+
+def _is_work(step: Behaviour) -> bool:
+    return isinstance(step, composites.Sequence) and steps.is_frame(step)
+
+
+def _is_open(step: Behaviour) -> bool:
+    """True for a step whose parts stand for themselves, so that something may be done between them."""
+    several = composites.Sequence | composites.Selector | composites.Parallel | Decorator
+    return isinstance(step, several) and steps.is_frame(step)
+
+
+def _one(parts: Sequence[Behaviour]) -> Behaviour:
+    return parts[0] if len(parts) == 1 else steps.framed(steps.sequence(WORK(), *parts))
+
+
+def _replace(step: Behaviour, parts: Collection[Behaviour]) -> None:
+    assert isinstance(step, composites.Composite)
+    step.remove_all_children()
+    step.add_children(list(parts))
+
+
+def used(step: Behaviour) -> Iterator[str]:
+    """Names of the shared devices that a part of a recipe tells something, without those it takes itself."""
+    if any(isinstance(child, TakeDevices) for child in step.children):
+        return
+    if device := getattr(step, "uses", None):
+        yield device
+    for child in step.children:
+        yield from used(child)

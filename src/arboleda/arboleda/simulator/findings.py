@@ -1,0 +1,145 @@
+"""Findings of a run without faults: tasks that fail, and commands that are refused."""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import dataclass, field
+from enum import Enum
+
+from arboleda.bt_xml.running.root import FAILED as TREE_FAILED
+from arboleda.core.plant import Plant
+from arboleda.dispatch.ledger import Entry, State
+from arboleda.model.messages import Reason, TaskChanged, TaskState
+from arboleda.recipes.authoring import FAIL
+from arboleda.recipes.decorators import RESCUE_FAILED
+
+from .record import Record
+from .storage.tasks import NAMES
+from .world import World
+
+BY_PEOPLE = frozenset({Reason.STOPPED, Reason.CANCELLED, Reason.INTERRUPTED})
+REFUSALS = frozenset({Reason.REJECTED, Reason.PRECONDITION})
+
+
+class FindingKind(str, Enum):
+    """What was found; its words are those of the summary."""
+
+    TASK = "task failed"
+    COMMAND = "command refused"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Finding:
+    """Finding of a recipe: the step, the reason, and one of the sentences with which it was told, with the
+    task of which it was told and the seed of that.
+    """
+
+    kind: FindingKind
+    recipe: str
+    step: str
+    reason: str
+    sentence: str = field(compare=False)
+    task: str = field(compare=False, default="")
+    seed: int | None = field(compare=False, default=None)
+
+
+class Findings:
+    """Counter of what is found in the recipes of a plant, as long as no fault has come.
+
+    `as_written` counts failures that a recipe asks for: by `cell.fail`, in a task in which a device or a
+    person has answered, for answers are drawn. Tasks of storage have an invariant of their own, and what a
+    person has ended is none.
+    """
+
+    def __init__(self, world: World, record: Record) -> None:
+        self.found: Counter[Finding] = Counter()
+        self.as_written: Counter[Finding] = Counter()
+        self._world = world
+        self._record = record
+        self._plant: Plant | None = None
+        self._seen = 0  # commands that were not given
+        self._refused: dict[str, list[Finding]] = {}  # by cell, of the task that runs there
+        self._recipes: dict[str, str] = {}  # by cell, of the same task
+        self._tasks: dict[str, str] = {}  # by cell, its text
+
+    def look(self) -> None:
+        """Take in a step; no fault has come until then."""
+        record, plant = self._record, self._world.plant
+        if plant is not self._plant:
+            self._plant, self._seen = plant, 0
+        if record.tasks.changes or record.commands.moved or plant.dispatcher.not_given_count != self._seen:
+            self._take_in()
+
+    def _take_in(self) -> None:
+        changes = [change.said for change in self._record.tasks.changes if not change.answer]
+        for said in changes:
+            if said.state is TaskState.RUNNING and said.cell not in self._recipes:
+                self._began(said)
+        for entry in self._not_given():
+            self._refuse(entry)
+        for sent, _ in self._record.commands.moved:
+            if sent.entry is not None and sent.entry.state is State.FAILED:
+                self._refuse(sent.entry)
+        for said in changes:
+            self._follow(said)
+
+    def _not_given(self) -> list[Entry]:
+        """The commands that did not leave in this step."""
+        dispatcher = self._world.plant.dispatcher
+        fresh = dispatcher.not_given_count - self._seen
+        self._seen += fresh
+        return list(dispatcher.not_given)[-fresh:] if fresh else []
+
+    def _began(self, said: TaskChanged) -> None:
+        self._recipes[said.cell or ""] = self._world.plant.intake.tasks[said.task].order.recipe
+        self._tasks[said.cell or ""] = said.text
+
+    def _follow(self, said: TaskChanged) -> None:
+        if said.state is TaskState.RUNNING:
+            self._began(said)
+        elif said.state in (TaskState.DONE, TaskState.FAILED, TaskState.CANCELLED):
+            self._ended(said)
+
+    def _refuse(self, entry: Entry) -> None:
+        failure, recipe = entry.failure, self._recipes.get(entry.cell)
+        if entry.too_early or failure is None or failure.reason not in REFUSALS or recipe is None:
+            return
+        step = f"{entry.command.robot}: {entry.doing}"
+        self._refused.setdefault(entry.cell, []).append(
+            Finding(
+                kind=FindingKind.COMMAND,
+                recipe=recipe,
+                step=step,
+                reason=failure.reason.value,
+                sentence=str(failure.sentence),
+                task=self._tasks.get(entry.cell, ""),
+            )
+        )
+
+    def _ended(self, said: TaskChanged) -> None:
+        recipe = self._recipes.pop(said.cell or "", None)
+        refused = self._refused.pop(said.cell or "", [])
+        if recipe is None or recipe in NAMES:
+            return
+        failed = said.state is TaskState.FAILED and said.reason not in BY_PEOPLE
+        if failed:
+            self._failed(recipe, said)
+        told = str(said.sentence)
+        self.found.update(each for each in refused if not (failed and each.sentence == told))
+
+    def _failed(self, recipe: str, said: TaskChanged) -> None:
+        task = self._world.plant.intake.tasks[said.task]
+        step = task.failed_step
+        by_itself = (step is not None and step.key == FAIL.key) or said.sentence.key == TREE_FAILED.key
+        is_whole = said.sentence.key != RESCUE_FAILED.key
+        counted = self.as_written if by_itself and is_whole and task.answers else self.found
+        counted[
+            Finding(
+                kind=FindingKind.TASK,
+                recipe=recipe,
+                step="" if step is None else str(step),
+                reason="" if said.reason is None else said.reason.value,
+                sentence=str(said.sentence),
+                task=said.text,
+            )
+        ] += 1

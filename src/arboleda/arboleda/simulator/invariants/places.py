@@ -1,0 +1,107 @@
+"""Invariants of parts: where they are, and what a task leaves behind."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+from arboleda.core import text
+from arboleda.model.facts import Value, shown
+from arboleda.model.messages import Fact
+from arboleda.model.plant_model import Cell
+
+from .invariant import Look, Trigger, invariant
+
+
+@invariant(Trigger.MISPLACED)
+def parts_are_taken_and_put_where_they_can_be(look: Look) -> Iterator[str]:
+    """No hand takes hold of a part at a place where none is, or lets go of one at a place that is full."""
+    yield from look.truth.places.wrong
+
+
+@invariant(Trigger.DONE_TASKS)
+def books_of_parts_are_true(look: Look) -> Iterator[str]:
+    """When a task is called done, each place of its cell has as many parts as the plant has booked there, and
+    has kept for its next start.
+    """
+    for cell, task, _ in look.truth.done_tasks:
+        places = look.truth.places.cells.get(cell)
+        if places is None:
+            continue
+        booked, kept = (
+            look.world.plant.cells[cell].context.places.counts,
+            look.world.memory.get(Fact.PARTS, {}),
+        )
+        if booked != places.parts and not places.is_doubtful:
+            yield f"{task} is called done; by the books there are {booked}, and truly {places.parts}"
+        words = {word for word in kept.get(cell, "").split() if "=" in word}
+        if words != {f"{target}={parts}" for target, parts in booked.items() if parts}:
+            yield f"{task} is called done; by the books there are {booked}, and kept is {kept.get(cell)!r}"
+
+
+@invariant(Trigger.DONE_TASKS)
+def done_tasks_leave_nothing_behind(look: Look) -> Iterator[str]:
+    """A task that is called done leaves no part in a hand, and none in a device where there was none before,
+    unless its recipe says so or people fill and empty that place; as long as nothing has gone wrong in a cell
+    without places.
+    """
+    for cell, task, _ in look.truth.done_tasks:
+        model = look.world.model.cell(cell)
+        if not _is_known(look, cell) or task not in look.world.plant.intake.tasks:
+            continue
+        wanted = _wanted(look, model, task)
+        for name in model.holders:
+            robot = look.truth.robot(name)
+            if robot is not None and robot.body.true_facts.get(robot.robot.held_fact) and name not in wanted:
+                yield f"{task} is called done, and {name} still holds a part"
+        yield from _left_in_devices(look, model, task, wanted)
+
+
+def _left_in_devices(look: Look, cell: Cell, task: str, wanted: dict[str, Value]) -> Iterator[str]:
+    for place in cell.places:
+        places = look.truth.places.cells[cell.name]
+        now, before = places.at_end[place.target], places.at_begin[place.target]
+        is_of_task = place.device is not None and not place.by_people
+        if is_of_task and now != before and place.target not in wanted:
+            yield f"{task} is called done, with {now} parts at {place.target}, and began with {before}"
+
+
+@invariant(Trigger.DONE_TASKS)
+def recipes_end_as_they_say(look: Look) -> Iterator[str]:
+    """When a task is called done, what its recipe says of its end is so."""
+    for cell, task, _ in look.truth.done_tasks:
+        model = look.world.model.cell(cell)
+        if not _is_known(look, cell) or task not in look.world.plant.intake.tasks:
+            continue
+        for what, value in _wanted(look, model, task).items():
+            found = _found(look, model, what)
+            if found != value:
+                yield f"{task} is called done, and {what} is {shown(found)}, not {shown(value)}"
+
+
+def _is_known(look: Look, cell: str) -> bool:
+    """True where somebody can know what a task of the cell did."""
+    if look.world.model.cell(cell).places:
+        return not look.truth.places.cells[cell].is_doubtful
+    return look.world.last_fault_at == -math.inf and look.record.undisturbed
+
+
+def _wanted(look: Look, cell: Cell, task: str) -> dict[str, Value]:
+    order = text.parse(look.world.plant.intake.tasks[task].order.text, look.world.model)
+    return cell.recipe(order.recipe).end_of(order.values)
+
+
+def _found(look: Look, cell: Cell, what: str) -> Value:
+    """The true value of a fact, as `reader.lid`, or the true number of parts at a place."""
+    role, dot, fact = what.partition(".")
+    if not dot:
+        return look.truth.places.cells[cell.name].at_end[what]
+    return look.truth.robot(cell.roles[role].name).body.true_facts[fact]  # type: ignore[no-any-return]
+
+
+PLACES = (
+    parts_are_taken_and_put_where_they_can_be,
+    books_of_parts_are_true,
+    done_tasks_leave_nothing_behind,
+    recipes_end_as_they_say,
+)

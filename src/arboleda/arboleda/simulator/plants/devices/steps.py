@@ -1,0 +1,305 @@
+"""Steps of a drawn recipe as plain data, which `python_text.py` and `xml_text.py` write out."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, fields
+
+Value = bool | int | float | str
+
+
+@dataclass(frozen=True, kw_only=True)
+class Param:
+    """Parameter of a recipe in the place of a value."""
+
+    name: str
+
+
+Given = tuple[tuple[str, Value | Param], ...]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Tell:
+    """A verb of a device; `answer` names the variable for what it answers, empty where it is no query."""
+
+    role: str
+    verb: str
+    values: Given = ()
+    answer: str = ""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Ask:
+    """A question to a person."""
+
+    role: str
+    question: str
+    answers: tuple[str, ...]
+    at_most_s: float
+    answer: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class Says:
+    """A check of a fact."""
+
+    role: str
+    fact: str
+    value: Value
+
+
+@dataclass(frozen=True, kw_only=True)
+class Becomes:
+    """A wait for a fact."""
+
+    role: str
+    fact: str
+    value: Value
+    at_most_s: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class Go:
+    """A robot goes to a target, and stays there where that is in no zone."""
+
+    role: str
+    target: str | Param
+
+
+@dataclass(frozen=True, kw_only=True)
+class Home:
+    """A robot goes home."""
+
+    role: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class Visit:
+    """A robot goes to a target, and something is done there."""
+
+    role: str
+    target: str | Param
+    body: Step
+
+
+@dataclass(frozen=True, kw_only=True)
+class Grip:
+    """A robot takes hold with its own effector."""
+
+    role: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class LetGo:
+    """A robot lets go with its own effector."""
+
+    role: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class Tour:
+    """A robot takes a part with its own effector, brings it to the goal and goes home."""
+
+    role: str
+    source: str | Param
+    goal: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class Follow:
+    """A mobile robot drives over one of its paths."""
+
+    role: str
+    path: str | Param
+
+
+@dataclass(frozen=True, kw_only=True)
+class Wait:
+    """Nothing, for so long."""
+
+    seconds: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class Fail:
+    """The task has failed."""
+
+    sentence: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class Work:
+    """Steps one after the other."""
+
+    steps: tuple[Step, ...] = ()
+
+
+@dataclass(frozen=True, kw_only=True)
+class Parallel:
+    """Steps at the same time."""
+
+    branches: tuple[Step, ...]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Choose:
+    """A way for each answer that stands in the variable `answer`."""
+
+    answer: str
+    ways: tuple[tuple[Value, Step], ...]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Retry:
+    """The step, again where it fails."""
+
+    step: Step
+    times: int
+    pause_s: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class Repeat:
+    """The step several times."""
+
+    step: Step
+    times: int
+
+
+@dataclass(frozen=True, kw_only=True)
+class Timeout:
+    """The step, for so long at most."""
+
+    step: Step
+    seconds: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class Fallback:
+    """The first step that does not fail."""
+
+    steps: tuple[Step, ...]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Recover:
+    """The work, and the rescue where it fails."""
+
+    work: Step
+    rescue: Step
+
+
+@dataclass(frozen=True, kw_only=True)
+class Invert:
+    """The step, which has to fail."""
+
+    step: Step
+
+
+@dataclass(frozen=True, kw_only=True)
+class Using:
+    """Steps during which shared devices are held."""
+
+    roles: tuple[str, ...]
+    step: Step
+
+
+@dataclass(frozen=True, kw_only=True)
+class Run:
+    """Another recipe as a step."""
+
+    recipe: str
+    values: Given = ()
+
+
+Step = (
+    Tell
+    | Ask
+    | Says
+    | Becomes
+    | Go
+    | Home
+    | Visit
+    | Grip
+    | LetGo
+    | Tour
+    | Follow
+    | Wait
+    | Fail
+    | Work
+    | Parallel
+    | Choose
+    | Retry
+    | Repeat
+    | Timeout
+    | Fallback
+    | Recover
+    | Invert
+    | Using
+    | Run
+)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Choice:
+    """Parameter that is one of some words or numbers."""
+
+    name: str
+    words: tuple[Value, ...]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Limits:
+    """Parameter that is a number within limits."""
+
+    name: str
+    lower: float
+    upper: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class OfGroup:
+    """Parameter that is one of a group of targets."""
+
+    name: str
+    group: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class OfPaths:
+    """Parameter that is one of the paths of a cell."""
+
+    name: str
+
+
+Parameter = Choice | Limits | OfGroup | OfPaths
+
+
+@dataclass(frozen=True, kw_only=True)
+class Recipe:
+    """Recipe by its name: its parameters and its step."""
+
+    name: str
+    parameters: tuple[Parameter, ...]
+    step: Step
+
+
+def walk(step: Step) -> Iterator[Step]:
+    """The step and all in it."""
+    yield step
+    for inner in children(step):
+        yield from walk(inner)
+
+
+def children(step: Step) -> tuple[Step, ...]:
+    """The steps that are right in it."""
+    if isinstance(step, Choose):
+        return tuple(way for _, way in step.ways)
+    found: list[Step] = []
+    for each in fields(step):
+        value = getattr(step, each.name)
+        if isinstance(value, Step):
+            found.append(value)
+        elif each.name in ("steps", "branches"):
+            found += value
+    return tuple(found)

@@ -1,0 +1,146 @@
+"""Drawn recipes as trees of BehaviorTree.CPP, a file for each."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from xml.etree.ElementTree import Element, SubElement, indent, tostring
+
+from .steps import (
+    Ask,
+    Becomes,
+    Choose,
+    Fallback,
+    Go,
+    Grip,
+    Home,
+    Invert,
+    LetGo,
+    Parallel,
+    Param,
+    Recipe,
+    Recover,
+    Repeat,
+    Retry,
+    Run,
+    Says,
+    Step,
+    Tell,
+    Timeout,
+    Value,
+    Visit,
+    Wait,
+    Work,
+    walk,
+)
+
+
+def xml_of(recipe: Recipe, others: Mapping[str, Recipe]) -> str:
+    """The file of a recipe, with those of `others` that it runs."""
+    main = _id(recipe.name)
+    root = Element("root", {"BTCPP_format": "4", "main_tree_to_execute": main})
+    for each in _together(recipe, others):
+        tree = SubElement(root, "BehaviorTree", {"ID": _id(each.name)})
+        _add(tree, each.step)
+    model = SubElement(SubElement(root, "TreeNodesModel"), "SubTree", {"ID": main})
+    for parameter in recipe.parameters:
+        SubElement(model, "input_port", {"name": parameter.name})
+    indent(root)
+    return tostring(root, encoding="unicode") + "\n"
+
+
+def _together(recipe: Recipe, others: Mapping[str, Recipe]) -> list[Recipe]:
+    """The recipe and those that it runs, each once."""
+    found = {recipe.name: recipe}
+    waiting = [recipe]
+    while waiting:
+        for step in walk(waiting.pop().step):
+            if isinstance(step, Run) and step.recipe not in found:
+                found[step.recipe] = others[step.recipe]
+                waiting.append(others[step.recipe])
+    return list(found.values())
+
+
+def _id(name: str) -> str:
+    return name.capitalize()
+
+
+def _add(parent: Element, step: Step) -> None:
+    name, given, inner = _node(step)
+    made = SubElement(parent, name, given)
+    for each in inner:
+        _add(made, each)
+    if isinstance(step, Choose) and len(step.ways) > 1:
+        SubElement(made, "AlwaysFailure")
+
+
+def _node(step: Step) -> tuple[str, dict[str, str], Sequence[Step]]:
+    """The name of a node, its attributes and the steps below it."""
+    if isinstance(step, Tell | Ask | Says | Becomes | Go | Home | Grip | LetGo | Visit):
+        return _leaf(step)
+    if isinstance(step, Choose) and len(step.ways) == 1:
+        return "Sequence", {}, [step.ways[0][1]]
+    if isinstance(step, Choose):
+        cases = {f"case_{n}": _text(value) for n, (value, _) in enumerate(step.ways, 1)}
+        ways = [way for _, way in step.ways]
+        return f"Switch{len(ways)}", {"variable": f"{{{step.answer}}}", **cases}, ways
+    if isinstance(step, Work):
+        return ("Sequence", {}, step.steps) if step.steps else ("AlwaysSuccess", {}, ())
+    if isinstance(step, Parallel):
+        return "Parallel", {"success_count": "-1", "failure_count": "1"}, step.branches
+    if isinstance(step, Fallback):
+        return "Fallback", {}, step.steps
+    if isinstance(step, Recover):
+        return "TryCatch", {}, (step.work, step.rescue)
+    if isinstance(step, Retry):
+        return "RetryUntilSuccessful", {"num_attempts": str(step.times + 1)}, (step.step,)
+    if isinstance(step, Repeat):
+        return "Repeat", {"num_cycles": str(step.times)}, (step.step,)
+    if isinstance(step, Timeout):
+        return "Timeout", {"msec": _msec(step.seconds)}, (step.step,)
+    if isinstance(step, Invert):
+        return "Inverter", {}, (step.step,)
+    if isinstance(step, Run):
+        given = {name: _text(value) for name, value in step.values}
+        return "SubTree", {"ID": _id(step.recipe), **given}, ()
+    return (
+        ("Sleep", {"msec": _msec(step.seconds)}, ()) if isinstance(step, Wait) else ("AlwaysFailure", {}, ())
+    )
+
+
+def _leaf(step: Step) -> tuple[str, dict[str, str], Sequence[Step]]:
+    if isinstance(step, Tell):
+        answer = {"answer": f"{{{step.answer}}}"} if step.answer else {}
+        return f"{step.role}_{step.verb}", {**{n: _text(v) for n, v in step.values}, **answer}, ()
+    if isinstance(step, Ask):
+        given = {"question": step.question, "answers": ";".join(step.answers)}
+        return (
+            f"{step.role}_ask",
+            {**given, "at_most_s": _text(step.at_most_s), "answer": f"{{{step.answer}}}"},
+            (),
+        )
+    if isinstance(step, Says):
+        return f"{step.role}_says", {step.fact: _text(step.value)}, ()
+    if isinstance(step, Becomes):
+        return (
+            f"{step.role}_becomes",
+            {step.fact: _text(step.value), "at_most_s": _text(step.at_most_s)},
+            (),
+        )
+    if isinstance(step, Visit):
+        return f"{step.role}_visit", {"target": _text(step.target)}, (step.body,)
+    if isinstance(step, Go):
+        return f"{step.role}_go", {"target": _text(step.target)}, ()
+    ways = {Home: "home", Grip: "grip", LetGo: "let_go"}
+    return f"{step.role}_{ways[type(step)]}", {}, ()  # type: ignore[index, union-attr]
+
+
+def _text(value: Value | Param) -> str:
+    if isinstance(value, Param):
+        return f"{{{value.name}}}"
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    return str(value)
+
+
+def _msec(seconds: float) -> str:
+    return str(max(1, round(seconds * 1000)))

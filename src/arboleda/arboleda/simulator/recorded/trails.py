@@ -1,0 +1,100 @@
+"""Record of what was kept of tasks at work, and of what the plant that found it makes of that."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+
+from arboleda.core.cell_states import CellState
+from arboleda.dispatch.ledger import State
+from arboleda.model.messages import Fact, Remember
+from arboleda.model.plant_model import Evidence
+from arboleda.model.sentence import Sentence
+from arboleda.trees.leaves import Act
+from arboleda.trees.trail import Trail
+from arboleda.trees.walk_back import MORE
+
+from .cells import KnownCell
+from .commands import Commands
+from .robots import KnownRobot
+
+Kept = Mapping[Fact, Mapping[str, str]]
+Transitions = Iterable[tuple[KnownCell, CellState, CellState]]
+
+
+class Trails:
+    """Trails that a plant found when it started, by cell, until their tasks go on or end.
+
+    `wrong` are sentences of this step on boots that were not looked at, and on trails that do not say what
+    became of a command.
+    """
+
+    def __init__(self, robots: Mapping[str, KnownRobot]) -> None:
+        self.wrong: list[str] = []
+        self._robots = robots
+        self._found: dict[str, Trail] = {}
+        self._holders: Mapping[str, str] = {}  # of zones and shared devices, when it started
+        self._said: dict[str, Sentence | None] = {}  # by cell, why its task does not go on
+
+    def restart(self, kept: Kept, running: Mapping[str, str]) -> None:
+        """Begin another start of the plant, with what it found of the tasks that were at work, by cell."""
+        self._said.clear()
+        steps, self._holders = kept.get(Fact.STEP, {}), kept.get(Fact.QUARANTINE, {})
+        self._found = {cell: Trail.read(steps[task]) for cell, task in running.items() if task in steps}
+
+    def look(self, cells: Mapping[str, KnownCell], transitions: Transitions, *, retried: bool) -> None:
+        """Take in what became of the tasks that were found; `retried`: somebody had steps given anew."""
+        self.wrong = []
+        for name in self._found:
+            self.wrong += self._told_more(cells[name])
+        for cell, _, after in transitions:
+            trail = self._found.pop(cell.name, None)
+            if trail is None or after is not CellState.EXECUTE or retried or cell.run.run.recovering:
+                continue
+            booted = [robot for robot in self._devices(cell) if self._has_booted(trail, robot)]
+            self.wrong += (f"{cell.name} goes on with its task, and {robot} has booted" for robot in booted)
+
+    def keep(self, said: Iterable[object], cells: Mapping[str, KnownCell], commands: Commands) -> None:
+        """Take in what is kept of tasks in this step, in which somebody holds a cell or gets one going: the
+        commands of steps that wait for that may be done.
+        """
+        steps = [each for each in said if isinstance(each, Remember) and each.fact is Fact.STEP]
+        at_work = {cell.run.task.id: cell for cell in cells.values() if cell.run.task is not None}
+        for each in steps:
+            if each.value is not None and each.name in at_work:
+                self.wrong += _said_otherwise(at_work[each.name], Trail.read(each.value), commands)
+
+    def _devices(self, cell: KnownCell) -> list[str]:
+        """The devices of a cell, of shared ones those that it held when the plant started."""
+        shared = [name for name in cell.cell.shared if self._holders.get(name) == cell.name]
+        return [*cell.cell.own, *shared]
+
+    def _told_more(self, cell: KnownCell) -> Iterator[str]:
+        """Sentences on a device that has booted, of which it is said now that it was told more."""
+        trouble = cell.run.trouble
+        said, before = trouble.sentence if trouble else None, self._said.get(cell.name)
+        self._said[cell.name] = said
+        if said is None or before is not None or said.phrase is not MORE:
+            return
+        robot = str(said.values["robot"])
+        if self._has_booted(self._found[cell.name], robot):
+            yield f"{cell.name} is held as {said}, and {robot} has booted"
+
+    def _has_booted(self, trail: Trail, robot: str) -> bool:
+        """True for a device that numbers its commands, and has told of another boot than it had then."""
+        known, now = trail.known.get(robot), self._robots[robot]
+        numbers = now.robot.evidence is Evidence.IDS and now.heard_at is not None
+        return numbers and known is not None and None not in (known.boot, now.boot) and known.boot != now.boot
+
+
+def _said_otherwise(cell: KnownCell, trail: Trail, commands: Commands) -> Iterator[str]:
+    """Sentences on steps under way of which a trail does not say whether their last command is done."""
+    nodes = cell.run.run.nodes
+    for number, kept in trail.nodes.items():
+        step, last = nodes[number], kept.get("last")
+        if last is None or not isinstance(step, Act) or step.entry is None:
+            continue
+        sent = commands.last.get(last["robot"])
+        if sent is None or sent.command.id != step.entry.command.id:
+            continue  # it gave another one since
+        if last["done"] is not (sent.state is State.DONE):
+            yield f"of {sent} it is kept that it is {'' if last['done'] else 'not '}done"

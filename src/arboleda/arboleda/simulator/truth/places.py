@@ -1,0 +1,177 @@
+"""Truth about the places of cells: where parts are by what hands have truly done."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from typing import Any
+
+from arboleda.model.messages import OperatorAnswer, TaskChanged, TaskState
+from arboleda.model.plant_model import Cell, Place, Workspace
+
+from ..recorded.scopes import Scopes
+from ..world import World
+from .robot import RobotTruth
+
+
+class CellPlaces:
+    """True number of parts at each place of one cell. A station of a rack has one or none.
+
+    `at_begin` and `at_end` have those when its last task that is done began and ended; `is_doubtful` once
+    nobody could know them any more: a device has lied or lost its power, somebody took a hand's part, a hand
+    took one at a station where none was known, or two places are one to its robot. The next task begins with
+    what is in the books then.
+    """
+
+    def __init__(self, cell: Cell, robots: Mapping[str, Any]) -> None:
+        self.cell = cell
+        self.parts = {place.target: 0 for place in cell.counted}
+        self.at_begin = self.at_end = dict(self.parts)
+        self._began_with = dict(self.parts)
+        self.is_doubtful = False
+        self._places = {place.target: place for place in cell.counted}
+        self._rack = frozenset(place.target for place in cell.rack)
+        self._hands = {space.hand.name: space for space in cell.spaces if space.hand.held_fact}
+        self._held = {hand: _holds(robots[hand]) for hand in self._hands if hand in robots}
+
+    def begin(self, booked: Mapping[str, int]) -> None:
+        """A task begins: people have filled the supplies and emptied the outputs."""
+        if self.is_doubtful:
+            self.parts, self.is_doubtful = dict(booked), False
+        for place in self._places.values():
+            if place.by_people:
+                self.parts[place.target] = place.holds if place.supply else 0
+        self._began_with = dict(self.parts)
+
+    def end(self) -> None:
+        """The task is done."""
+        self.at_begin, self.at_end = self._began_with, dict(self.parts)
+
+    def follow(self, hand: RobotTruth, carrier: RobotTruth | None) -> str | None:
+        """Take in what a hand did in this step; the sentence about what cannot be."""
+        name = hand.robot.name
+        before, now = self._held[name], _holds(hand)
+        self._held[name] = now
+        if now == before:
+            return None
+        found = [] if carrier is None else self._found(self._hands[name], carrier)
+        if len(found) != 1:
+            self.is_doubtful |= not now or bool(found)
+            return None
+        place = found[0]
+        if place.target in self._rack:
+            self.is_doubtful |= now and not self.parts[place.target]
+            self.parts[place.target] = 0 if now else 1
+            return None
+        self.parts[place.target] += -1 if now else 1
+        if now and self.parts[place.target] < 0:
+            return f"{name} takes hold of a part at {place.target}, where none is"
+        if self.parts[place.target] > place.holds:
+            return f"{name} lets go of a part at {place.target}, which has {place.holds} already"
+        return None
+
+    def set(self, parts: Mapping[str, int]) -> None:
+        """Have a person see to it that so many parts are at places.
+
+        A task that is at work meanwhile has not done that, and began with so many more or less.
+        """
+        for target, now in parts.items():
+            self._began_with[target] += now - self.parts[target]
+            self.parts[target] = now
+
+    def has(self, hand: str) -> bool:
+        """True for a hand of one of its robots."""
+        return hand in self._held
+
+    @property
+    def tools(self) -> list[str]:
+        """The hands that are devices of their own, which take their time to close and to open."""
+        return [name for name, space in self._hands.items() if name != space.robot.name]
+
+    def carrier(self, hand: str) -> str:
+        """The robot that carries a hand."""
+        return self._hands[hand].robot.name
+
+    def _found(self, space: Workspace, carrier: RobotTruth) -> list[Place]:
+        """The places where a hand is; several lie so close together that its carrier cannot tell which.
+
+        What is known of a carrier that cells share has the targets of the first of them only.
+        """
+        targets = [(name, pose) for name, pose in space.targets.items() if name in self._places]
+        if carrier.cell.name != self.cell.name:
+            return [self._places[name] for name, pose in targets if carrier.stands_at(pose.q)]
+        stands = carrier.here | carrier.stood
+        return [self._places[name] for name, pose in targets if pose.name in stands]
+
+
+class PlacesTruth:
+    """Truth of the places of all cells that have some; `wrong`: sentences about this step."""
+
+    def __init__(
+        self,
+        world: World,
+        robots: Mapping[str, RobotTruth],
+        *,
+        mistaken: Callable[[RobotTruth], bool],
+        released: Callable[[str], bool],
+    ) -> None:
+        self.wrong: list[str] = []
+        self.cells = {cell.name: CellPlaces(cell, robots) for cell in world.model.cells if cell.counted}
+        self._world = world
+        self._scopes = Scopes(world.model)
+        self._robots = robots
+        self._mistaken = mistaken
+        self._released = released
+        self._cells_of: dict[str, list[CellPlaces]] = {}
+        for places in self.cells.values():
+            for robot in places.cell.robots:
+                self._cells_of.setdefault(robot.name, []).append(places)
+
+    def forget(self) -> None:
+        """Forget what happened in the step before."""
+        self.wrong = []
+
+    def follow(self, changed: Iterable[RobotTruth]) -> None:
+        """Take in what robots did in this step."""
+        for robot in changed:
+            name = robot.robot.name
+            for places in self._cells_of.get(name, ()):
+                places.is_doubtful |= self._is_doubtful(robot)
+                if not places.has(name):
+                    continue
+                found = places.follow(robot, self._robots.get(places.carrier(name)))
+                if found is not None and not places.is_doubtful and not self._released(name):
+                    self.wrong.append(found)
+
+    def told(self, answer: OperatorAnswer) -> None:
+        """Take in what a person did before they said it: they put parts at a place, or took them out."""
+        for name, parts in self._scopes.parts(answer).items():
+            self.cells[name].set(parts)
+            self.cells[name].is_doubtful |= any(map(self._closes_or_opens, self.cells[name].tools))
+
+    def task(self, change: TaskChanged) -> None:
+        """Take in the plant's word on a task."""
+        places = self.cells.get(change.cell or "")
+        if places is None or change.request is not None:
+            return
+        if change.state is TaskState.RUNNING:
+            places.begin(self._world.plant.cells[places.cell.name].context.places.counts)
+        elif change.state is TaskState.DONE:
+            places.end()
+
+    def _closes_or_opens(self, hand: str) -> bool:
+        """True in the middle of a grip: nobody knows whether a person counted that part, too."""
+        robot = self._robots.get(hand)
+        return robot is not None and robot.body.next_change_us is not None
+
+    def _is_doubtful(self, robot: RobotTruth) -> bool:
+        """True where nobody can know what a robot did: it lies, lost its power, or somebody was at it."""
+        lies = any(
+            number > 0 and board == robot.robot.mqtt for (board, _), number in self._world.deceptions.items()
+        )
+        by_hand = robot.taken_away or getattr(robot, "by_hand", False) or getattr(robot, "opened", False)
+        return lies or robot.lost_power or by_hand or self._mistaken(robot)
+
+
+def _holds(hand: Any) -> bool:
+    """True while a hand is closed around something, as far as it can know."""
+    return bool(hand.on if hand.robot.has_effector else hand.held)

@@ -1,0 +1,268 @@
+"""Places of a cell and the parts that lie there: moved by the evidence of grips, and kept over restarts."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
+
+from arboleda.dispatch.dispatcher import Dispatcher
+from arboleda.dispatch.effectors import Handling
+from arboleda.model.commands import Command, Motion, Position, Switch
+from arboleda.model.grips import Grip
+from arboleda.model.messages import Fact, Failure, Reason
+from arboleda.model.plant_model import Cell, Workspace
+from arboleda.model.sentence import Phrase, Sentence
+
+from .cell_robots import CellRobots
+
+EMPTY = Phrase(
+    "place.empty", "{robot}: no part is known to be at {place} (load {cell} {place} says that one is)"
+)
+FULL = Phrase(
+    "place.full",
+    "{robot}: {place} has {parts} already, and takes no more (unload {cell} {place} says that it is empty)",
+)
+HOLDS_ONE = Phrase("place.holds_one", "{robot} holds a part already, taken at {place}")
+STILL_HELD = Phrase("place.still_held", "{robot} stays at {place}: {device} still holds the part there")
+NO_PART = Phrase("place.no_part", "{robot} has no part to work on: none is known to be at {places}")
+
+
+def trouble_in(sentence: Sentence) -> Sentence | None:
+    """The part of a sentence that tells of a place without a part, or without room."""
+    return next((each for each in sentence.parts() if each.key in (EMPTY.key, FULL.key)), None)
+
+
+OF_PLACE, OF_HAND, SURE, LETTING_GO = "=", ":", "+", "-"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Held:
+    """Part that a hand may hold: the `target` where it took it, None where no part was known to be.
+
+    `is_sure`: it has held it since; `lets_go`: it was told to let go.
+    """
+
+    target: str | None = None
+    is_sure: bool = False
+    lets_go: bool = False
+
+    def back(self, here: str | None) -> str | None:
+        """The target at which the part lies once the hand is empty; None where it is lost."""
+        if self.lets_go and (self.is_sure or self.target):
+            return here
+        return None if self.is_sure else self.target
+
+    @property
+    def written(self) -> str:
+        """The part as one word, which `read` reads."""
+        return (self.target or "") + SURE * self.is_sure + LETTING_GO * self.lets_go
+
+    @classmethod
+    def read(cls, word: str) -> Held:
+        """The part that such a word stands for."""
+        target = word.rstrip(SURE + LETTING_GO)
+        return cls(target=target or None, is_sure=SURE in word, lets_go=LETTING_GO in word)
+
+
+class Places:
+    """Books of the parts at the places of one cell.
+
+    A part is moved when a hand is told to take it, and when the hand has let go of it; a part that is lost
+    on the way is nowhere until a person says where. A target that is no place gives and takes any number. The
+    stations of a rack are counted, and nothing is refused there.
+    """
+
+    def __init__(self, cell: Cell, dispatcher: Dispatcher, robots: CellRobots) -> None:
+        self._cell = cell
+        self._dispatcher = dispatcher
+        self._robots = robots
+        self._places = {place.target: place for place in cell.places}
+        self._by_people = {each.target: each.holds * each.supply for each in cell.places if each.by_people}
+        self._rack = frozenset(place.target for place in cell.rack)
+        self._noted = {None, *self._rack}  # what a hand took there is kept, where there is but a rack
+        self._hands = {space.hand.name: space for space in cell.spaces if space.hand.held_fact}
+        self._of_device: dict[str, list[str]] = {}
+        for place in cell.places:
+            if place.device is not None:
+                self._of_device.setdefault(place.device, []).append(place.target)
+        self._parts = {place.target: 0 for place in cell.counted}
+        self._held: dict[str, Held] = {}
+        if self._parts:
+            self._take_over(self._kept())
+            for hand in self._hands:
+                dispatcher.effectors.watchers[hand].append(self._follow)
+
+    def _kept(self) -> list[str]:
+        """The words that an earlier start kept; version 0.1 kept the numbers of full stations."""
+        kept, cell = self._dispatcher.memory.value, self._cell
+        full = (kept(Fact.STORED, cell.name) or "").split()
+        stations = [name for number, name in enumerate(cell.station_targets) if str(number) in full]
+        return [f"{name}{OF_PLACE}1" for name in stations] + (kept(Fact.PARTS, cell.name) or "").split()
+
+    def _take_over(self, kept: list[str]) -> None:
+        numbers = [(target, n) for target, n in _read(kept, OF_PLACE) if n.isdigit()]
+        self._parts |= {target: int(n) for target, n in numbers if target in self._parts}
+        grips, words = self._dispatcher.effectors.grips, dict(_read(kept, OF_HAND))
+        for hand in self._hands:
+            taken = Held(is_sure=True, lets_go=grips[hand] is Grip.SWITCHING)  # from no place
+            held = Held.read(words[hand]) if hand in words else taken
+            if grips.holding(hand):
+                self._held[hand] = held
+            elif hand in words:  # the plant ended before it told the hand
+                self._move(held.back(None), +1)
+
+    def parts(self, target: str) -> int:
+        """The number of parts at a place."""
+        return self._parts[target]
+
+    @property
+    def counts(self) -> dict[str, int]:
+        """The number of parts at each place."""
+        return dict(self._parts)
+
+    @property
+    def full(self) -> frozenset[str]:
+        """The places with a part."""
+        return frozenset([target for target, parts in self._parts.items() if parts])
+
+    @property
+    def carriers(self) -> dict[str, bool]:
+        """The robots with a part in the hand, as far as is known; True where it holds it for sure."""
+        grips = self._dispatcher.effectors.grips
+        return {self._hands[hand].robot.name: grips[hand] is Grip.ON for hand in self._held}
+
+    def is_so_still(self, trouble: Sentence) -> bool:
+        """True while a place that people neither fill nor empty has no part, or no room, as it was told."""
+        place = self._places[str(trouble.values["place"])]
+        parts = self.parts(place.target)
+        return not place.by_people and (parts >= place.holds if trouble.key == FULL.key else not parts)
+
+    def begin(self) -> None:
+        """A task begins: people have filled the supplies and emptied the outputs."""
+        if self._by_people:
+            self.set(self._by_people)
+
+    def set(self, parts: Mapping[str, int]) -> None:
+        """Take the word of a person on how many parts are at places."""
+        self._parts |= parts
+        self._keep()
+
+    def objection(self, command: Command) -> Failure | None:
+        """Objection to a command: there is no part, or no room, where it would take or put one."""
+        if not self._places:
+            return None
+        if isinstance(command, Switch) and command.grips is not None:
+            sentence = self._to_grip(command.robot) if command.grips else self._to_let_go(command.robot)
+        elif isinstance(command, Motion) and command.robot in self._cell.reach:
+            sentence = self._to_leave(command.robot)
+        else:
+            sentence = self._to_work(command)
+        return None if sentence is None else Failure(reason=Reason.PRECONDITION, sentence=sentence)
+
+    def _to_grip(self, hand: str) -> Sentence | None:
+        space = self._hands.get(hand)
+        if space is None:
+            return self._without_part(hand)
+        here = self._target(space)
+        if self._dispatcher.effectors.grips[hand] is Grip.ON:
+            taken = self._held.get(hand, Held()).target
+            return HOLDS_ONE(robot=hand, place=taken) if taken not in (None, here) else None
+        known = here in self._places and not self.parts(here)
+        return EMPTY(robot=hand, place=here, cell=self._cell.name) if here is not None and known else None
+
+    def _to_let_go(self, hand: str) -> Sentence | None:
+        space = self._hands.get(hand)
+        here = self._target(space) if space is not None else None
+        if here not in self._places or not self._dispatcher.effectors.grips.holding(hand):
+            return None
+        parts = self.parts(here)
+        if parts < self._places[here].holds:
+            return None
+        return FULL(robot=hand, place=here, parts=parts, cell=self._cell.name)
+
+    def _to_leave(self, robot: str) -> Sentence | None:
+        """Why a robot must not leave with what it holds: a device holds the same part."""
+        space = self._cell.reach[robot]
+        here, grips = self._target(space), self._dispatcher.effectors.grips
+        place = self._places.get(here or "")
+        if place is None or place.device not in self._cell.holders or space.hand.held_fact is None:
+            return None
+        both = grips[place.device] is Grip.ON and grips[space.hand.name] is Grip.ON
+        return STILL_HELD(robot=robot, place=place.target, device=place.device) if both else None
+
+    def _to_work(self, command: Command) -> Sentence | None:
+        return self._without_part(command.robot) if command.works_on_part else None
+
+    def _without_part(self, device: str) -> Sentence | None:
+        """Why a device cannot take hold of a part, or work on one; a part in a hand there counts."""
+        targets = self._of_device.get(device)
+        if not targets or any(map(self.parts, targets)):
+            return None
+        holding = (
+            each for hand, each in self._hands.items() if self._dispatcher.effectors.grips.holding(hand)
+        )
+        if any(self._target(space) in targets for space in holding):
+            return None
+        return NO_PART(robot=device, places=tuple(targets))
+
+    def _target(self, space: Workspace) -> str | None:
+        """The target at which a robot stands, as far as that is known; of several, one that is a place."""
+        here = self._robots.position(space.robot.name)
+        if here is None:
+            return None
+        reached = self._dispatcher.reached.get(space.robot.name)
+        found = [target for target, pose in space.targets.items() if pose.q == reached]
+        if not found or (
+            (self._places or not self._rack.isdisjoint(found)) and not _stands(space, here, reached)
+        ):
+            found = [target for target, pose in space.targets.items() if _stands(space, here, pose.q)]
+        counted = [target for target in found if target in self._parts]
+        return next(iter(counted or found), None)
+
+    def _follow(self, hand: str, handling: Handling) -> None:
+        """Take in a step of a part's way through a hand."""
+        held = self._held.get(hand) or Held()
+        here = held.target
+        if handling is Handling.TOLD_TO_TAKE:
+            here = self._target(self._hands[hand])
+            held = Held(target=None if here in self._rack and not self._parts[here] else here)
+            self._held[hand] = held
+            self._move(here, -1)
+        elif handling is Handling.HELD:
+            self._held[hand] = replace(held, is_sure=True)
+        elif handling is Handling.TOLD_TO_LET_GO and hand in self._held:
+            self._held[hand] = replace(held, lets_go=True)
+        elif handling in (Handling.EMPTY, Handling.TAKEN_OUT):
+            self._held.pop(hand, None)
+            if handling is Handling.EMPTY:
+                here = self._target(self._hands[hand]) if held.lets_go else None
+                self._move(held.back(here), +1)
+        if self._places or not self._noted.isdisjoint((held.target, here)):
+            self._keep()
+
+    def _move(self, target: str | None, parts: int) -> None:
+        if target in self._rack:
+            self._parts[target] = max(parts, 0)
+        elif target in self._places:
+            self._parts[target] = max(self._parts[target] + parts, 0)
+
+    def _keep(self) -> None:
+        """Have the books kept: `nest=1` for a place, `jaw:nest+` for a hand and where it took its part.
+
+        Where there is but a rack, the grip of a hand says enough of a part that comes from elsewhere.
+        """
+        words = [f"{target}{OF_PLACE}{number}" for target, number in sorted(self._parts.items()) if number]
+        held = sorted([each for each in self._held.items() if self._places or each[1].target in self._noted])
+        words += [f"{hand}{OF_HAND}{part.written}" for hand, part in held]
+        self._dispatcher.memory.remember(Fact.STORED, self._cell.name, None)
+        self._dispatcher.memory.remember(Fact.PARTS, self._cell.name, " ".join(words) or None)
+
+
+def _stands(space: Workspace, here: Position, at: Position | None) -> bool:
+    return at is not None and space.robot.motion.stands_at(here, at)
+
+
+def _read(kept: Iterable[str], mark: str) -> list[tuple[str, str]]:
+    """The names and the rest of those of the words that have this mark."""
+    parts = (word.partition(mark) for word in kept)
+    return [(name, rest) for name, found, rest in parts if found]

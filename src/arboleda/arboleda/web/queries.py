@@ -1,0 +1,39 @@
+"""Query parameters of a route: read as a model, and described for the API."""
+
+from __future__ import annotations
+
+from typing import Any, TypeVar
+
+from fastapi import Request
+from pydantic import BaseModel, ValidationError
+
+from arboleda.model.errors import PayloadError
+from arboleda.model.outside import quoted
+
+from .schema import Sentence
+
+Query = TypeVar("Query", bound=BaseModel)
+Answers = dict[int | str, dict[str, Any]]
+WRONG: Answers = {422: {"model": Sentence, "description": "The request is wrong."}}
+
+
+def asked(request: Request, model: type[Query]) -> Query:
+    """The query parameters as `model`; raises PayloadError, which names the first wrong one."""
+    try:
+        return model.model_validate(dict(request.query_params))
+    except ValidationError as error:
+        found = error.errors(include_url=False, include_context=False)[0]
+        name = quoted(str(found["loc"][0]), 80)
+        if found["type"] == "extra_forbidden":
+            raise PayloadError(
+                f"{name} is nothing to ask for; there are {', '.join(model.model_fields)}."
+            ) from None
+        raise PayloadError(f"{name} is {quoted(str(found['input']), 80)}: {found['msg'].lower()}.") from None
+
+
+def described(model: type[BaseModel]) -> dict[str, Any]:
+    """The OpenAPI description of the query parameters of `model`."""
+    properties = model.model_json_schema()["properties"]
+    return {
+        "parameters": [{"name": name, "in": "query", "schema": each} for name, each in properties.items()]
+    }

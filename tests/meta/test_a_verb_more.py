@@ -1,0 +1,105 @@
+"""A verb is added by its row, what the plant does at it, and its words: all that knows verbs has it then."""
+
+from __future__ import annotations
+
+import pytest
+
+from .copied_tree import CopiedTree
+
+ROW = """    WIPE = "wipe", Row(scopes=_CELLS, arguments=(Argument(name="times", type=int),))
+"""
+PROCEDURE = """    Verb.WIPE: Procedure(check=_not_holdable, do=lambda operator, cell, robots: cell.hold()),
+"""
+WORDS = """    Verb.WIPE: VerbWords(
+        label="Wipe it",
+        page="Has somebody wipe the cell.",
+        brief="Wipe a cell.",
+        does="has a cell wiped",
+        refused="where nobody works",
+        asks=("Wipe {of}?",),
+        arguments={"times": "How often."},
+    ),
+"""
+LOOK = r"""
+import contextlib, io, json, runpy, sys, types
+from typer.testing import CliRunner
+for name, member in (("rclpy.node", "Node"), ("std_srvs.srv", "Trigger")):  # without ROS 2, too
+    made = type(member, (), {"Request": None, "Response": None})
+    sys.modules[name.partition(".")[0]] = types.ModuleType(name)
+    sys.modules[name] = types.SimpleNamespace(**{member: made})
+from arboleda.cli.main import cli
+from arboleda.dashboard.panel import OFFERS
+from arboleda.dashboard.wording import words
+from arboleda.model.messages import Verb
+from arboleda.simulator.faults.operators import KINDS
+from arboleda.testing.plants import shipped
+from arboleda.testing.rig import Rig
+from arboleda.views import view
+from arboleda.web.api import make_app, verb_arguments, verb_of
+from arboleda.web.auth import Role, allowed
+from arboleda.web.openapi import render
+from arboleda_ros.verbs import VerbServices
+
+rig, services, page = Rig(shipped()), [], io.StringIO()
+verb = verb_of("wipe")
+node = types.SimpleNamespace(create_service=lambda kind, name, serve: services.append(name))
+VerbServices(node, None)
+with contextlib.redirect_stdout(page):
+    runpy.run_path("scripts/verb-reference", run_name="__main__")
+refused = rig.operate(verb, "sis_a", times=3)
+rig.submit("sis_a 0B 7")
+rig.wait(5.0)
+print(json.dumps({
+    "refused": refused,
+    "shown": "wipe" in view.snapshot(rig.plant)["cells"][1]["refused"],
+    "other argument": rig.operate(verb, "sis_a", station=3),
+    "done": rig.operate(verb, "sis_a", times=3),
+    "said": str(rig.plant.acts[-1].sentence),
+    "body": verb_arguments(b'{"times": 3}').of(verb),
+    "schema": render(make_app(types.SimpleNamespace()).openapi()),
+    "viewer": allowed(Role.VIEWER, "wipe"),
+    "commands": CliRunner().invoke(cli, ["--help"]).output,
+    "help": CliRunner().invoke(cli, ["wipe", "--help"]).output,
+    "offer": OFFERS["wipe"].scopes,
+    "page": [[words(each)("verb.wipe"), words(each).asks("wipe")] for each in ("en", "es")],
+    "ros": services,
+    "people": [kind.name for kind in KINDS],
+    "reference": page.getvalue(),
+}))
+"""
+
+
+@pytest.fixture(scope="module")
+def seen(tmp_path_factory: pytest.TempPathFactory) -> dict:
+    tree = CopiedTree(tmp_path_factory.mktemp("tree"))
+    tree.insert("model/verbs.py", "\n    _value_: str", ROW)
+    tree.insert("core/operator.py", "    Verb.ANSWER: Procedure(", PROCEDURE)
+    tree.insert("views/verb_words.py", "    Verb.ANSWER: VerbWords(", WORDS)
+    assert len(tree.changed) == 3  # the two halves of its row, and its words
+    return tree.run(LOOK)
+
+
+def test_the_plant_does_it_or_says_why_not(seen: dict) -> None:
+    assert seen["refused"] == "sis_a is idle; only a cell at work can be held"
+    assert seen["other argument"] == "wipe takes no argument 'station'"
+    assert (seen["done"], seen["said"], seen["shown"]) == (None, "wipe sis_a 3", True)
+
+
+def test_it_is_a_command_with_its_argument(seen: dict) -> None:
+    assert "wipe" in seen["commands"] and "Wipe a cell." in seen["commands"]
+    assert "Has a cell wiped." in seen["help"] and "TIMES" in seen["help"] and "How often." in seen["help"]
+
+
+def test_http_describes_and_takes_it_from_operators(seen: dict) -> None:
+    assert seen["body"] == [["times", 3]] and seen["viewer"] is False
+    assert "<th>wipe</th>" in seen["schema"] and "How often." in seen["schema"]
+
+
+def test_the_page_offers_it_and_asks_first(seen: dict) -> None:
+    assert seen["offer"] == ["plant", "cell"]
+    assert seen["page"] == [["Wipe it", ["Wipe {of}?"]]] * 2  # in English until Spanish has words for it
+
+
+def test_ros_the_simulator_and_the_docs_have_it(seen: dict) -> None:
+    assert "plant/wipe" in seen["ros"] and "operator_wipe" in seen["people"]
+    assert "| `wipe` | has a cell wiped | where nobody works |" in seen["reference"]

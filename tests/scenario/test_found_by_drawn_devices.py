@@ -1,0 +1,132 @@
+"""What drawn plants with cells of devices have found: each plant, as much of it as was needed."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import pytest
+import yaml
+
+from arboleda.campaigns.random_plants import loaded
+from arboleda.simulator.faults import Fault
+from arboleda.simulator.run import Simulation
+from arboleda.simulator.shrink import explicit
+
+
+@dataclass(frozen=True, kw_only=True)
+class Found:
+    """A breach: the plant file and the files beside it, the seed of the people, and what went wrong."""
+
+    file: str
+    beside: Mapping[str, str] = field(default_factory=dict)
+    seed: int = 1
+    seconds: float = 60.0
+    faults: tuple[Fault, ...] = ()
+
+
+FOUND = {
+    "a shared arm was judged by the targets of another cell that have the same names": Found(
+        file="""
+            name: drawn_1005
+            uses: [recipes.py]
+            shared:
+              our_loader: {kind: arm, model: scara}
+              our_tool: {kind: gripper, tool_of: our_loader}
+            cells:
+              cell:
+                devices: {loader: {shared: our_loader}, tool: {shared: our_tool}, eye: {kind: camera}}
+                targets:
+                  home: {loader: {deg: [0, 0], mm: 0}}
+                  tray: {loader: {deg: [34.57, -38.59], mm: 80}}
+              cell_2:
+                devices: {loader: {shared: our_loader}, tool: {shared: our_tool}, lens: {kind: camera}}
+                targets:
+                  home: {loader: {deg: [0, 0], mm: 0}}
+                  tray: {loader: {deg: [41.57, -38.59], mm: 80}}
+                places: {tray: {}}
+        """,
+        beside={
+            "recipes.py": """
+from arboleda.recipes import recipe, work
+
+
+@recipe("do_1")
+def do_1(cell):
+    tool, loader = cell.devices("tool", "loader")
+    return work(tool.close(width_mm=30, force_n=5), loader.visit("tray", tool.open()))
+"""
+        },
+    ),
+    "a device kept the zone of a verb that was done in the instant in which it was told": Found(
+        file="""
+            name: drawn_302
+            uses: [recipes.py]
+            kinds:
+              one:
+                facts: {mode: [up, down]}
+                verbs: {put: {effect: switch, with: {to: [up, down]}, sets: {mode: $to}}}
+            cells:
+              cell: {devices: {oven: {kind: one}, lamp: {kind: one}}, zone_wait_s: 3600}
+            zones:
+              mouth: {free_while: {oven: {mode: up}}, held_while: {lamp: [put]}}
+        """,
+        beside={
+            "recipes.py": """
+from arboleda.recipes import recipe, work
+
+
+@recipe("do_1")
+def do_1(cell):
+    oven, lamp = cell.devices("oven", "lamp")
+    return work(oven.put(to="up"), lamp.put(to="up"), oven.put(to="down"), oven.put(to="up"))
+"""
+        },
+    ),
+    "a step that was left in the instant in which it began had not been seen to begin": Found(
+        file="""
+            name: drawn_203
+            uses: [recipes.py]
+            cells: {cell: {devices: {eye: {kind: camera}}}}
+        """,
+        beside={
+            "recipes.py": """
+from arboleda.recipes import recipe, work
+
+
+@recipe("do_1")
+def do_1(cell):
+    eye = cell.device("eye")
+    return work(cell.fallback(cell.timeout(cell.wait(1), 0), cell.wait(0.5)), eye.look())
+"""
+        },
+    ),
+    "who answered seven questions of one recipe had not led its cell to work": Found(
+        seconds=120.0,
+        file="""
+            name: drawn_76
+            uses: [recipes.py]
+            cells: {cell: {devices: {ana: {kind: person}}}}
+        """,
+        beside={
+            "recipes.py": """
+from arboleda.recipes import recipe, work
+
+
+@recipe("do_1")
+def do_1(cell):
+    ana = cell.device("ana")
+    return work([ana.ask(f"Is part {number} good?", ["sí", "no"], at_most_s=900) for number in range(8)])
+"""
+        },
+    ),
+}
+
+
+@pytest.mark.parametrize("found", FOUND.values(), ids=FOUND)
+def test_every_invariant_holds(found: Found) -> None:
+    plant = loaded(yaml.safe_load(found.file), found.beside)
+    result = Simulation(plant.model, found.seed, explicit(found.faults)).run(seconds=found.seconds)
+    assert result.broken is None, str(result.broken)
+    assert len(result.faults) == len(found.faults), "each of them happened"
+    assert result.outcomes.get("done", 0) > 0

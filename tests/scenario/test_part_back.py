@@ -1,0 +1,51 @@
+"""After a failure an arm puts its part down where it took it, not from above."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from arboleda.kinds.joints import MoveJoints
+from arboleda.model.commands import Switch
+from arboleda.plant_file.loader import load
+from arboleda.testing import Rig
+
+from .restarts import ENDED
+
+PLANT = """
+name: shelf
+uses: [recipes.py]
+cells:
+  bay:
+    devices: {arm: {kind: arm, model: scara}}
+    targets:
+      home: {arm: {deg: [0, 0], mm: 0}}
+      rack: {arm: {deg: [30, 20], mm: 80, approach_mm: 30}}
+"""
+RECIPES = """
+from arboleda.recipes import recipe, work
+
+@recipe("fetch")
+def fetch(cell):
+    arm = cell.device("arm")
+    return work(arm.visit("rack", arm.grip()), arm.home(), cell.fail("nobody wants it"))
+"""
+
+
+def test_a_part_is_put_down_at_its_target_by_way_of_its_approach(tmp_path: Path) -> None:
+    (tmp_path / "plant.yaml").write_text(PLANT)
+    (tmp_path / "recipes.py").write_text(RECIPES)
+    rig = Rig(load(tmp_path / "plant.yaml"))
+    rig.wait(5.0)
+    rack = rig.model.cell("bay").workspaces["arm"].targets["rack"]
+    told: list[object] = []
+    rig.watchers.append(lambda: told.extend(_goals(rig)))
+    rig.submit("bay fetch")
+    assert rig.wait(120.0, until=lambda: any(each.state in ENDED for each in rig.outcomes().values()))
+    let_go = told.index("let go")
+    assert told[let_go - 2 : let_go + 2] == [rack.above, rack.q, "let go", rack.above]
+
+
+def _goals(rig: Rig) -> list[object]:
+    """Where the arm is sent to in this step, and that it lets go."""
+    sent = [each for each in rig.moment.sent if isinstance(each, MoveJoints | Switch)]
+    return [each.q if isinstance(each, MoveJoints) else "grip" if each.grips else "let go" for each in sent]

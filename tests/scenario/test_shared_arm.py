@@ -1,0 +1,25 @@
+"""Two cells that share an arm, its gripper and a person hold under faults of each level, and without any."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from arboleda.plant_file.loader import load
+from arboleda.simulator.climate import Climate
+from arboleda.simulator.run import Simulation
+
+from ..lengths import length
+
+PLANT = Path(__file__).parent / "shared_arm" / "plant.yaml"
+SEEDS = length(1, 40)
+RUNS = [(level, seed) for level in ("none", "normal", "many", "crashes") for seed in range(1, SEEDS + 1)]
+
+
+@pytest.mark.parametrize(("level", "seed"), RUNS)
+def test_nothing_is_broken(level: str, seed: int) -> None:
+    plant = load(PLANT)
+    result = Simulation(plant, seed, Climate.draw(plant, seed, level).faults).run(cycles=6)
+    assert result.broken is None
+    assert result.cycles >= 1

@@ -1,0 +1,156 @@
+"""What a proof is made of: instants, single faults, classes of parameters, what is kept."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from arboleda.campaigns.proof.calm import calm_run
+from arboleda.campaigns.proof.end_state import differences
+from arboleda.campaigns.proof.instants import Instant, Mark, Side, instants
+from arboleda.campaigns.proof.kept import Kept, key_of
+from arboleda.campaigns.proof.outcome import End, Outcome, outcome_from, plain
+from arboleda.campaigns.proof.proof import Proof, Proved
+from arboleda.campaigns.proof.scenario import alone, scenarios
+from arboleda.campaigns.proof.single_faults import single_faults
+from arboleda.campaigns.request import shared
+from arboleda.cli.prove import seconds_of
+from arboleda.model.plant_model import PlantModel
+from arboleda.recorder.preamble import PlantFiles
+from arboleda.testing import shipped
+
+AT = Instant(at=2.0, side=Side.BEFORE, what="the request", commits=2)
+
+
+@pytest.fixture
+def model() -> PlantModel:
+    return shipped("sis_a")
+
+
+def mark(at: float, what: str, *, begins: bool = True, commits: int = 0) -> Mark:
+    return Mark(at=at, what=what, begins=begins, commits=commits)
+
+
+def test_an_instant_lies_before_and_after_each_event_and_in_the_middle_between_two() -> None:
+    found = instants([mark(2.0, "a step"), mark(3.0, "its end", begins=False)])
+    assert [(each.at, each.side) for each in found] == [
+        (2.0, Side.BEFORE),
+        (2.000001, Side.AFTER),
+        (2.5, Side.BETWEEN),
+        (3.0, Side.BEFORE),
+        (3.000001, Side.AFTER),
+    ]
+    assert [each.level for each in found] == [0, 2, 1, 2, 2]
+
+
+def test_events_that_follow_at_once_have_no_middle() -> None:
+    assert [each.side for each in instants([mark(2.0, "a"), mark(2.01, "b")])] == [
+        Side.BEFORE,
+        Side.AFTER,
+        Side.BEFORE,
+        Side.AFTER,
+    ]
+
+
+def test_events_of_one_time_are_one_with_the_name_of_the_step_and_all_commits() -> None:
+    found = instants([mark(2.0, "an end", begins=False, commits=1), mark(2.0, "a step", commits=2)])
+    assert [(each.what, each.commits, each.level) for each in found] == [("a step", 3, 0), ("a step", 0, 2)]
+
+
+def test_an_instant_is_never_after_the_event_that_it_precedes() -> None:
+    before, after = instants([mark(2.12345678, "a step")])
+    assert before.at <= 2.12345678 < after.at
+
+
+def test_faults_of_an_instant_are_one_form_of_each_kind_and_target_then_all_others(
+    model: PlantModel,
+) -> None:
+    first, others = single_faults(model, model.cell("sis_a"), AT)
+    assert len({(each.kind, each.target) for each in first}) == len(first)
+    assert not set(first) & set(others)
+    assert {each.at for each in (*first, *others)} == {2.0}
+
+
+def test_each_form_comes_first_at_one_of_the_instants(model: PlantModel) -> None:
+    cell = model.cell("sis_a")
+    parts = [single_faults(model, cell, AT, number=number, only=["reboot"])[0] for number in range(2)]
+    assert {each.word for faults in parts for each in faults} == {"will", "no will"}
+
+
+def test_a_death_of_the_plant_comes_at_each_commit_that_follows(model: PlantModel) -> None:
+    parts = single_faults(model, model.cell("sis_a"), AT, only=["crash_in_step"])
+    assert {each.amount for faults in parts for each in faults} == {1.0, 2.0}
+
+
+def test_what_belongs_to_other_cells_is_left_alone() -> None:
+    model = shipped()
+    first, others = single_faults(model, model.cell("sis_a"), AT)
+    assert "rb_1" not in {each.target for each in (*first, *others)}
+    assert {"ra_1", "plant", "bridge", "broker"} <= {each.target for each in (*first, *others)}
+
+
+def test_tasks_of_one_shape_have_one_scenario(model: PlantModel) -> None:
+    found = list(scenarios(model))
+    assert [(each.task, each.alike) for each in found] == [("sis_a 0A 0", 81), ("sis_a palletizing", 1)]
+    assert [each.recipe for each in scenarios(model, ["palletizing"])] == ["palletizing"]
+
+
+def test_a_cell_that_shares_nothing_is_alone_on_its_stage() -> None:
+    assert [cell.name for cell in alone(shipped(), "sis_b").cells] == ["sis_b"]
+    assert alone(shared(), shared().cells[0].name) == shared()
+
+
+def test_an_end_differs_in_facts_places_and_parts_but_not_in_a_hair() -> None:
+    expected = {"lamp.lit": True, "the place of arm": (0.0, 1.0), "parts at nest": 1}
+    assert differences(expected, {"lamp.lit": True, "the place of arm": (0.0, 1.000001)}, {}) == ()
+    found = {"lamp.lit": False, "parts at nest": 0}
+    assert differences(expected, found, {}) == ("lamp.lit is false, not true", "parts at nest is 0, not 1")
+
+
+def test_of_a_fact_that_is_not_so_it_is_said_whether_the_plant_was_told() -> None:
+    expected, found = {"lamp.lit": True}, {"lamp.lit": False}
+    (known,) = differences(expected, found, {"lamp.lit": False})
+    (unknown,) = differences(expected, found, {"lamp.lit": True})
+    assert known == "lamp.lit is false, not true (the plant was told: a check would notice)"
+    assert unknown == "lamp.lit is false, not true (its board had not said so)"
+
+
+def test_an_outcome_is_the_same_after_it_was_written() -> None:
+    outcome = Outcome(end=End.HELD, cause="held", alone=False, untrue=("a",), broken=("rule", "sentence"))
+    assert outcome_from(plain(outcome)) == outcome
+
+
+def test_another_file_or_another_content_is_another_key() -> None:
+    files = PlantFiles(plant="a.yaml", contents={"a.yaml": b"1", "b.py": b"2"})
+    changed = PlantFiles(plant="a.yaml", contents={"a.yaml": b"1", "b.py": b"3"})
+    assert key_of(files) == key_of(PlantFiles(plant="a.yaml", contents=dict(files.contents)))
+    assert key_of(files) != key_of(changed)
+
+
+def test_what_is_kept_cannot_be_read_by_a_proof_of_something_else(tmp_path: Path, model: PlantModel) -> None:
+    files = PlantFiles(plant="a.yaml", contents={"a.yaml": b"1"})
+    kept = Kept(tmp_path, files, Proof(model=model))
+    (tmp_path / f"{key_of(files)}.jsonl").write_text('{"portion": "gone"}\n{"portio')
+    assert kept.known() == {}
+    kept.forget(all=True)
+    assert not list(tmp_path.iterdir())
+
+
+def test_what_cannot_be_kept_is_noted(tmp_path: Path, model: PlantModel) -> None:
+    (tmp_path / "taken").write_text("a file where a folder is needed")
+    proof = Proof(model=model, calm=(calm_run(model, next(scenarios(model))),), kinds=("forgets", "reboot"))
+    kept = Kept(tmp_path / "taken", PlantFiles(plant="a.yaml"), proof)
+    kept.keep(Proved(number=0, outcomes=(Outcome(end=End.DONE),), rows=(0,), digest=""))
+    assert kept.trouble is not None and "taken" in kept.trouble
+
+
+def test_a_portion_is_broken_where_one_of_its_outcomes_is() -> None:
+    held, broken = Outcome(end=End.DONE), Outcome(end=End.DONE, broken=("rule", "sentence"))
+    assert not Proved(number=0, outcomes=(held,), rows=(0, 0), digest="").broken
+    assert Proved(number=0, outcomes=(held, broken), rows=(0, 1), digest="").each == [held, broken]
+
+
+@pytest.mark.parametrize(("budget", "seconds"), [("30s", 30.0), ("10m", 600.0), ("1.5h", 5400.0)])
+def test_a_budget_is_a_time_as_people_write_it(budget: str, seconds: float) -> None:
+    assert seconds_of(budget) == seconds

@@ -1,0 +1,255 @@
+"""`arboleda prove` on a lamp: what it finds, what it keeps, and the tests that it writes."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+from xml.etree import ElementTree as Xml
+
+import pytest
+
+from arboleda.campaigns.plants import Plant
+from arboleda.campaigns.proof.calm import Calm, calm_run, calm_runs
+from arboleda.campaigns.proof.forks import CAN_FORK, run_all
+from arboleda.campaigns.proof.instants import Instant
+from arboleda.campaigns.proof.proof import Proof, Proved
+from arboleda.campaigns.proof.scenario import scenarios
+from arboleda.campaigns.proof.single_faults import single_faults
+from arboleda.cli.main import main
+from arboleda.model.plant_model import PlantModel
+from arboleda.plant_file import loader
+from arboleda.testing import Sim
+
+PLANT = """
+name: small
+uses: [small.py]
+kinds:
+  lamp:
+    facts: {lit: bool}
+    verbs:
+      light: {effect: switch, with: {on: bool}, sets: {lit: $on}}
+      test: {effect: query, answers: [good, bad], takes_s: 1}
+cells:
+  bench: {devices: {lamp: {kind: lamp}}}
+"""
+GOOD = """
+from arboleda.recipes import recipe, work
+
+
+@recipe("shine", ends_with={"lamp.lit": True})
+def shine(cell):
+    return work(cell.device("lamp").light(on=True))
+"""
+QUIET = GOOD.replace(
+    'cell.device("lamp").light(on=True)',
+    'cell.fallback(cell.device("lamp").light(on=True), cell.wait(1))',
+)
+TESTED = """
+from arboleda.recipes import recipe, work
+
+
+@recipe("shine")
+def shine(cell):
+    lamp = cell.device("lamp")
+    seen = lamp.test()
+    return work(seen, cell.choose(seen, {"good": lamp.light(on=True), "bad": cell.fail("a bad lamp")}))
+"""
+PRESS = """
+name: small
+uses: [small.py]
+kinds:
+  press:
+    facts: {ram: [up, down]}
+    verbs:
+      press: {effect: motion, sets: {ram: down}, takes_s: 2}
+      lift: {effect: motion, sets: {ram: up}, takes_s: 1}
+cells:
+  bench: {devices: {press: {kind: press}}}
+"""
+STAMP = """
+from arboleda.recipes import recipe, work
+
+
+@recipe("stamp")
+def stamp(cell):
+    press = cell.device("press")
+    return work(press.press(), press.lift())
+"""
+KINDS = ("reboot", "driver_alarm", "refuses")
+Prove = Callable[..., int]
+
+
+@pytest.fixture
+def plant(tmp_path: Path) -> Path:
+    (tmp_path / "small.yaml").write_text(PLANT)
+    (tmp_path / "small.py").write_text(GOOD)
+    return tmp_path / "small.yaml"
+
+
+@pytest.fixture
+def prove(plant: Path, monkeypatch: pytest.MonkeyPatch) -> Prove:
+    """Runs the command in this process; returns its exit status."""
+
+    def run(*words: str) -> int:
+        state = ["--state", str(plant.parent / "state"), "--jobs", "1", "--budget", "all"]
+        monkeypatch.setattr("sys.argv", ["arboleda", "prove", str(plant), *state, *words])
+        with pytest.raises(SystemExit) as ended:
+            main()
+        return int(ended.value.code or 0)
+
+    return run
+
+
+def ends(model: PlantModel, calm: Calm, instant: Instant) -> dict[tuple[str, str, float], str]:
+    """The end of each fault of some kinds that begins at an instant, by kind, word and span."""
+    faults = [each for part in single_faults(model, model.cells[0], instant, only=KINDS) for each in part]
+    runs = run_all(model, calm, faults, lambda: None)
+    rows = zip(faults, runs, strict=True)
+    return {(fault.kind, fault.word, fault.seconds): run.outcome.words for fault, run in rows}
+
+
+def summary(plant: Path) -> dict[str, Any]:
+    found: dict[str, Any] = json.loads((plant.parent / "out.json").read_text())
+    return found
+
+
+def test_what_holds_is_said_of_every_run(
+    plant: Path, prove: Prove, capsys: pytest.CaptureFixture[str]
+) -> None:
+    out = str(plant.parent / "out.json")
+    assert prove("--fault", "refuses", "--fault", "lying_fact", "--json", out) == 0
+    said = capsys.readouterr().out
+    assert "HELD: all 30 runs, every single fault of 2 kinds at every instant" in said
+    assert "lying_fact lamp: lamp.lit is false, not true (its board had not said so)" in said
+    found = summary(plant)
+    assert found["runs"] == {"done": 30, "of": 30} and found["complete"]
+    assert found["scenarios"][0]["ends_with"] == {"lamp.lit": True}
+    refuses = found["table"][0]["faults"]["refuses"]
+    assert refuses["ends"] == {"done": 4, "failed": 16} and refuses["changes_with_the_moment"]
+
+
+def test_a_second_run_runs_nothing_again_until_a_file_changes(
+    plant: Path, prove: Prove, capsys: pytest.CaptureFixture[str]
+) -> None:
+    prove("--fault", "forgets")
+    assert "kept from before" not in capsys.readouterr().out
+    prove("--fault", "forgets")
+    assert "5 runs, 5 of them kept from before" in capsys.readouterr().out
+    (plant.parent / "small.py").write_text(GOOD + "# changed\n")
+    prove("--fault", "forgets")
+    assert "kept from before" not in capsys.readouterr().out
+
+
+def test_a_recipe_that_gives_up_in_silence_is_found_and_its_test_fails_alike(
+    plant: Path, prove: Prove, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (plant.parent / "small.py").write_text(QUIET)
+    tests = plant.parent / "test_found.py"
+    assert prove("--fault", "refuses", "--tests", str(tests)) == 1
+    said = capsys.readouterr().out
+    assert "lamp.lit is false, not true (the plant was told: a check would notice)" in said
+    assert "breaks recipes_end_as_they_say" in said and "BROKEN: 1 breach" in said
+    namespace: dict[str, Any] = {}
+    exec(tests.read_text(), namespace)
+    (written,) = [each for name, each in namespace.items() if name.startswith("test_")]
+    with pytest.raises(AssertionError):
+        written(Sim(plant.parent))
+    (plant.parent / "small.py").write_text(GOOD)
+    written(Sim(plant.parent))
+
+
+def test_each_answer_that_leads_elsewhere_is_a_scenario(plant: Path) -> None:
+    (plant.parent / "small.py").write_text(TESTED)
+    model = Plant(declared=loader.load(plant)).model
+    found = list(calm_runs(model, scenarios(model)))
+    assert [(each.scenario.name, each.run.outcome.words) for each in found] == [
+        ("bench", "done"),
+        ("bench (lamp says bad)", "failed: rejected"),
+    ]
+    assert all(each.is_sound for each in found)
+
+
+@pytest.mark.skipif(not CAN_FORK, reason="this system cannot fork")
+def test_forks_do_the_same_as_runs_from_the_beginning(plant: Path) -> None:
+    model = Plant(declared=loader.load(plant)).model
+    calm = calm_run(model, next(scenarios(model)))
+    proof = Proof(model=model, calm=(calm,), kinds=("brown_out", "partition", "crash_in_step"))
+    faults = proof.faults(proof.portions[3])
+    forked = run_all(proof.model, calm, faults, lambda: None, forks=True)
+    assert faults and forked == run_all(proof.model, calm, faults, lambda: None, forks=False)
+
+
+def test_a_kind_of_fault_or_a_recipe_that_there_is_not_is_refused(
+    prove: Prove, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert prove("--fault", "rain") == 2
+    assert "'rain' is no kind of fault; there are reboot" in capsys.readouterr().err
+    assert prove("--recipe", "dance") == 2
+    assert "'dance' is no recipe of this plant; there are shine" in capsys.readouterr().err
+    assert prove("--budget", "soon") == 2
+    assert "'soon' is no time" in capsys.readouterr().err
+
+
+def test_the_page_and_the_junit_file_say_what_broke_and_what_nobody_notices(
+    plant: Path, prove: Prove
+) -> None:
+    (plant.parent / "small.py").write_text(QUIET)
+    html, junit = plant.parent / "out.html", plant.parent / "out.xml"
+    assert (
+        prove("--fault", "refuses", "--fault", "lying_fact", "--html", str(html), "--junit", str(junit)) == 1
+    )
+    said = html.read_text()
+    assert "<span lang=en>What nobody notices</span><span lang=es>Lo que nadie nota</span>" in said
+    assert "recipes_end_as_they_say" in said and "sim.submit(" in said
+    assert "http://" not in said and "https://" not in said
+    suite = Xml.parse(junit).getroot()[0]
+    assert [case.get("name") for case in suite] == ["without faults: bench", "refuses", "lying_fact"]
+    assert [case.find("failure") is not None for case in suite] == [False, True, False]
+    assert "nobody notices" in (suite[2].findtext("system-out") or "")
+
+
+def test_any_other_moment_ends_as_one_of_the_instants_beside_it(plant: Path) -> None:
+    plant.write_text(PRESS)
+    (plant.parent / "small.py").write_text(STAMP)
+    model = Plant(declared=loader.load(plant)).model
+    calm = calm_run(model, next(scenarios(model)))
+    known = [(each.at, ends(model, calm, each)) for each in calm.instants]
+    for number in range(1, 8, 2):
+        at = round(2.0 + 0.43 * number, 3)
+        before = [found for when, found in known if when <= at][-1]
+        after = next(found for when, found in known if when > at)
+        for fault, end in ends(model, calm, replace(calm.instants[0], at=at)).items():
+            assert end in (before[fault], after[fault]), (at, fault)
+
+
+def test_ctrl_c_says_what_was_done_and_the_next_run_goes_on_there(
+    plant: Path, prove: Prove, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    run, out = Proof.run, plant.parent / "out.json"
+
+    def interrupted(proof: Proof, seed: int, **options: Any) -> Proved:
+        if seed == 2:
+            raise KeyboardInterrupt
+        return run(proof, seed, **options)
+
+    monkeypatch.setattr(Proof, "run", interrupted)
+    assert prove("--fault", "reboot", "--json", str(out)) == 130
+    said = capsys.readouterr().out
+    assert "interrupted; so far:" in said and "HELD in 2 of 10 runs (20%): a sample" in said
+    assert not summary(plant)["complete"]
+    monkeypatch.setattr(Proof, "run", run)
+    assert prove("--fault", "reboot") == 0
+    assert "10 runs, 2 of them kept from before" in capsys.readouterr().out
+
+
+def test_any_number_of_processes_gives_the_same(plant: Path, prove: Prove) -> None:
+    out = str(plant.parent / "out.json")
+    digests = []
+    for jobs in ("1", "2"):
+        prove("--fault", "reboot", "--anew", "--jobs", jobs, "--json", out)
+        digests.append(summary(plant)["digests"])
+    assert digests[0] == digests[1]
+    assert len(digests[0]) == 10

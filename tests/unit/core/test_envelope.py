@@ -1,0 +1,65 @@
+"""What an effector of a running task holds is not known after a power cut before its device says so."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from arboleda.core.envelope import unsettled
+from arboleda.model.messages import Fact, KeptTask, Remember, TaskState
+from arboleda.testing import Rig, shipped
+
+AT_WORK = KeptTask(id="a", text="sis_a 0B 7", cell="sis_a", state=TaskState.RUNNING)
+SWITCHING = Remember(fact=Fact.EFFECTOR, name="ra1", value="switching")
+
+
+@pytest.fixture(scope="module")
+def rig() -> Rig:
+    """A plant whose arm, which reports what it holds, is about to grip for a task."""
+    made = Rig(shipped("sis_a"))
+    made.wait(1.0)
+    made.submit("sis_a 0B 7 #a")
+    made.wait_for("sis_a", "drive path 0B")
+    return made
+
+
+@pytest.fixture
+def trail(rig: Rig) -> str:
+    return str(rig.memory[Fact.STEP]["a"])
+
+
+@pytest.mark.parametrize("grip", [{}, {"ra1": "off"}, {"ra1": "on"}])
+def test_whatever_was_kept_an_effector_of_a_running_task_counts_as_switching(
+    trail: str, grip: dict[str, str]
+) -> None:
+    memory = {Fact.STEP: {"a": trail}, Fact.EFFECTOR: grip}
+    assert [*unsettled(memory, [AT_WORK])] == [SWITCHING]
+
+
+def test_what_counts_as_switching_does_so_already(trail: str) -> None:
+    memory = {Fact.STEP: {"a": trail}, Fact.EFFECTOR: {"ra1": "switching"}}
+    assert [*unsettled(memory, [AT_WORK])] == []
+
+
+@pytest.mark.parametrize("state", [TaskState.QUEUED, TaskState.DONE, TaskState.FAILED])
+def test_a_task_that_does_not_run_switches_nothing(trail: str, state: TaskState) -> None:
+    assert [*unsettled({Fact.STEP: {"a": trail}}, [replace(AT_WORK, state=state)])] == []
+
+
+def test_what_an_earlier_version_kept_had_no_envelope() -> None:
+    assert [*unsettled({Fact.STEP: {"a": "[]"}}, [AT_WORK])] == []
+    assert [*unsettled({}, [AT_WORK])] == []
+
+
+def test_a_command_does_not_wait_for_the_effector_of_a_running_task(rig: Rig) -> None:
+    assert not rig.plant.precedes_commands(SWITCHING)
+    assert not rig.plant.precedes_commands(replace(SWITCHING, value="on"))
+    assert rig.plant.precedes_commands(replace(SWITCHING, name="rb1"))
+    assert rig.plant.precedes_commands(Remember(fact=Fact.QUARANTINE, name="mesa", value="ra1"))
+
+
+def test_a_command_waits_for_an_effector_that_a_person_switches() -> None:
+    rig = Rig(shipped("sis_a"))
+    rig.wait(1.0)
+    assert rig.plant.precedes_commands(SWITCHING)

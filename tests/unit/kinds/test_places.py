@@ -1,0 +1,278 @@
+"""The books of parts: what lies where by what grips have done, and what is refused for that."""
+
+from __future__ import annotations
+
+from io import StringIO
+from pathlib import Path
+
+import pytest
+from rich.console import Console
+
+from arboleda.cli import screen
+from arboleda.core.advice import in_words
+from arboleda.model.errors import ConfigError
+from arboleda.model.messages import Reason
+from arboleda.model.verbs import Verb
+from arboleda.plant_file.loader import load
+from arboleda.views import view
+
+from .lab import Bench
+
+PLANT = """
+name: lab
+uses: [recipes.py]
+kinds:
+  hand:
+    facts: {closed: bool}
+    verbs:
+      close: {effect: switch, sets: {closed: true}, holds: part, takes_s: 0.2}
+      open:  {effect: switch, sets: {closed: false}, holds: part, takes_s: 0.2}
+  oven:
+    facts: {clamped: bool}
+    verbs:
+      clamp: {effect: switch, with: {on: bool}, sets: {clamped: $on}, holds: part}
+      bake:  {effect: process, takes_s: 2, works_on: part}
+cells:
+  lab:
+    devices:
+      mover: {kind: arm, model: scara}
+      hand: {kind: hand, tool_of: mover}
+      oven: {kind: oven}
+    targets:
+      home: {mover: {deg: [0, 0], mm: 0}}
+      rack_1: {mover: {deg: [60, 10], mm: 80}}
+      rack_2: {mover: {deg: [70, 10], mm: 80}}
+      nest: {mover: {deg: [-60, 10], mm: 80}}
+      inside: {mover: {deg: [-30, 10], mm: 80}}
+      bin: {mover: {deg: [30, 40], mm: 80}}
+    groups: {racks: [rack_1, rack_2]}
+    places:
+      racks: {supply: true}
+      nest: {}
+      inside: {of: oven}
+      bin: {holds: 2, output: true}
+"""
+
+
+def written(folder: Path, plant: str, body: str) -> Path:
+    code = f"""
+from arboleda.recipes import recipe, work
+
+@recipe("try")
+def attempt(cell):
+    mover, hand, oven = cell.devices("mover", "hand", "oven")
+    take, put = lambda at: mover.visit(at, hand.close()), lambda at: mover.visit(at, hand.open())
+    return work({body})
+"""
+    (folder / "recipes.py").write_text(code, "utf-8")
+    (folder / "plant.yaml").write_text(plant, "utf-8")
+    return folder / "plant.yaml"
+
+
+class Lab:
+    """Bench with a recipe whose steps a test writes."""
+
+    def __init__(self, folder: Path, body: str) -> None:
+        self.bench = Bench(load(written(folder, PLANT, body)))
+        self.bench.wait(1.0)
+        self.places = self.bench.plant.cells["lab"].context.places
+
+    def run(self) -> str | None:
+        """The sentence for which the task failed; None where it is done."""
+        self.bench.submit("lab try")
+        end = self.bench.outcome(300.0)
+        assert end.reason in (None, Reason.PRECONDITION), end
+        return None if end.sentence is None or end.reason is None else str(end.sentence)
+
+
+def test_parts_are_where_grips_have_put_them(tmp_path: Path) -> None:
+    lab = Lab(tmp_path, 'take("rack_1"), put("nest"), take("rack_2"), put("bin")')
+    assert lab.run() is None
+    assert lab.places.counts == {"rack_1": 0, "rack_2": 0, "nest": 1, "inside": 0, "bin": 1}
+
+
+def test_people_fill_supplies_and_empty_outputs_before_a_task(tmp_path: Path) -> None:
+    lab = Lab(tmp_path, 'take("rack_1"), put("bin")')
+    assert [lab.run(), lab.run(), lab.run()] == [None, None, None]
+    assert lab.places.counts["rack_1"] == 0 and lab.places.counts["bin"] == 1
+
+
+@pytest.mark.parametrize(
+    ("body", "sentence"),
+    [
+        ('take("nest"), put("bin")', "hand: no part is known to be at nest"),
+        ('take("rack_1"), put("bin"), take("rack_1")', "hand: no part is known to be at rack_1"),
+        ('take("rack_1"), put("nest"), take("rack_2"), put("nest")', "hand: nest has 1 already"),
+        ('take("rack_1"), take("rack_2"), put("bin")', "hand holds a part already, taken at rack_1"),
+        ("oven.bake()", "oven has no part to work on: none is known to be at inside"),
+        ("oven.clamp(on=True)", "oven has no part to work on: none is known to be at inside"),
+        (
+            'take("rack_1"), mover.visit("inside", oven.clamp(on=True)), mover.home()',
+            "mover stays at inside: oven still holds the part there",
+        ),
+    ],
+)
+def test_what_cannot_be_is_refused(tmp_path: Path, body: str, sentence: str) -> None:
+    why = Lab(tmp_path, body).run()
+    assert why is not None and sentence in why
+
+
+def test_a_part_that_a_hand_holds_in_a_device_is_there_for_it(tmp_path: Path) -> None:
+    body = (
+        'take("rack_1"), mover.visit("inside", oven.clamp(on=True), hand.open()), oven.bake(),'
+        ' mover.visit("inside", hand.close(), oven.clamp(on=False)), put("bin")'
+    )
+    lab = Lab(tmp_path, body)
+    assert lab.run() is None
+    assert lab.places.counts == {"rack_1": 0, "rack_2": 1, "nest": 0, "inside": 0, "bin": 1}
+
+
+def test_a_part_is_brought_back_where_it_was_taken(tmp_path: Path) -> None:
+    lab = Lab(tmp_path, 'take("rack_1"), mover.visit("nest", cell.fail("not today"))')
+    lab.bench.submit("lab try")
+    assert lab.bench.outcome(300.0).state.value == "failed"
+    assert lab.places.counts["rack_1"] == 1 and lab.places.counts["nest"] == 0
+
+
+def test_a_person_says_what_lies_where(tmp_path: Path) -> None:
+    lab = Lab(tmp_path, 'take("nest"), put("bin")')
+    assert lab.bench.operate(Verb.LOAD, "lab", place="nest") is None
+    assert lab.run() is None
+    assert lab.places.counts["nest"] == 0
+    assert lab.bench.operate(Verb.LOAD, "lab", place="bin", parts=2) is None
+    assert lab.bench.operate(Verb.UNLOAD, "lab", place="bin") is None
+    assert lab.places.counts["bin"] == 0
+    shown = {place["name"]: place["parts"] for place in lab.bench.snapshot()["cells"][0]["places"]}
+    assert shown == lab.places.counts
+
+
+@pytest.mark.parametrize(
+    ("verb", "told", "refusal"),
+    [
+        (
+            Verb.LOAD,
+            {"place": "nst"},
+            "'nst' is no place of lab; there are rack_1, rack_2, nest, inside, bin",
+        ),
+        (Verb.LOAD, {"place": "bin", "parts": 3}, "bin of lab holds 1 to 2 parts, not 3"),
+        (Verb.LOAD, {"place": "bin", "parts": "x"}, "bin of lab holds 1 to 2 parts, not 'x'"),
+        (Verb.UNLOAD, {"place": "nest"}, "no part is known to be at nest of lab"),
+        (Verb.LOAD, {}, "'' is no place of lab; there are rack_1, rack_2, nest, inside, bin"),
+    ],
+)
+def test_what_a_person_says_wrongly_is_refused(
+    tmp_path: Path, verb: Verb, told: dict[str, int | str], refusal: str
+) -> None:
+    lab = Lab(tmp_path, "mover.home()")
+    before = lab.places.counts
+    assert lab.bench.operate(verb, "lab", **told) == refusal
+    assert lab.places.counts == before
+
+
+def test_parts_outlive_the_plant(tmp_path: Path) -> None:
+    lab = Lab(tmp_path, 'take("rack_1"), put("nest")')
+    assert lab.run() is None
+    lab.bench.crash()
+    lab.bench.wait(1.0)
+    assert lab.bench.plant.cells["lab"].context.places.counts["nest"] == 1
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "problem"),
+    [
+        ("nest: {}", "nst: {}", "cells.lab.places.nst: must be bin, inside, nest, rack_1, rack_2 or racks"),
+        ("nest: {}", "home: {}", "home is where robots wait; no part lies there"),
+        ("of: oven", "of: ovn", 'cells.lab.places.inside.of: must be hand or oven, is "ovn"'),
+        ("supply: true", "supply: true, output: true", "people fill a supply and empty an output"),
+        ("holds: 2", "holds: 0", "cells.lab.places.bin.holds: must be at least 1"),
+    ],
+)
+def test_a_wrong_place_is_named_with_what_is_allowed(
+    tmp_path: Path, old: str, new: str, problem: str
+) -> None:
+    assert PLANT.count(old) >= 1
+    head, mark, tail = PLANT.partition("    places:\n")
+    with pytest.raises(ConfigError) as caught:
+        load(written(tmp_path, head + mark + tail.replace(old, new, 1), "mover.home()"))
+    assert any(problem in each for each in caught.value.problems), caught.value.problems
+
+
+SHARE_A_LAMP = """
+name: two
+uses: [recipes.py]
+kinds: {lamp: {facts: {lit: bool}, verbs: {put: {effect: switch, with: {lit: bool}, sets: {lit: $lit}}}}}
+shared: {our_lamp: {kind: lamp}}
+cells:
+  left:
+    devices: {arm: {kind: arm, model: scara}, lamp: {shared: our_lamp}}
+    targets: {home: {arm: {deg: [0, 0], mm: 0}}, nest: {arm: {deg: [40, 20], mm: 40}}}
+    places: {nest: {}}
+  right:
+    devices: {arm: {kind: arm, name: arm_2, model: scara}, lamp: {shared: our_lamp}}
+    targets: {home: {arm: {deg: [0, 0], mm: 0}}, nest: {arm: {deg: [40, 20], mm: 40}}}
+    places: {nest: {}}
+"""
+
+
+def test_a_cell_that_shares_a_device_has_places_of_its_own(tmp_path: Path) -> None:
+    head = "from arboleda.recipes import recipe\n\n"
+    recipe = '@recipe("look")\ndef look(cell):\n    return cell.device("arm").go("nest")\n'
+    (tmp_path / "recipes.py").write_text(head + recipe, "utf-8")
+    (tmp_path / "plant.yaml").write_text(SHARE_A_LAMP, "utf-8")
+    bench = Bench(load(tmp_path / "plant.yaml"))
+    bench.wait(1.0)
+
+    def parts() -> dict[str, int]:
+        return {name: cell.context.places.parts("nest") for name, cell in bench.plant.cells.items()}
+
+    assert bench.operate(Verb.LOAD, "right", place="nest") is None
+    assert parts() == {"left": 0, "right": 1}
+    assert bench.operate(Verb.LOAD, "left", place="nest") is None
+    assert bench.operate(Verb.UNLOAD, "right") is None
+    assert parts() == {"left": 1, "right": 0}
+
+
+FULL = 'take("rack_1"), put("nest"), take("rack_2"), put("nest")'
+SEE = "see that lab nest is empty and say so (unload lab nest)"
+PUT = "put a part at lab nest and say so (load lab nest)"
+
+
+def advice(lab: Lab) -> list[str]:
+    return [str(in_words(each)) for each in lab.bench.plant.advice("lab")]
+
+
+@pytest.mark.parametrize(
+    ("body", "said", "verb"),
+    [(FULL, SEE, Verb.UNLOAD), ('take("nest"), put("bin")', PUT, Verb.LOAD)],
+    ids=["full", "empty"],
+)
+def test_the_verb_and_the_place_that_a_task_failed_for_are_advised(
+    tmp_path: Path, body: str, said: str, verb: Verb
+) -> None:
+    lab = Lab(tmp_path, body)
+    assert advice(lab) == []
+    assert lab.run() is not None
+    assert advice(lab) == [said]
+    console = Console(width=200, file=StringIO())
+    console.print(screen.table(view.snapshot(lab.bench.plant)))
+    assert f"lab: {said}" in console.file.getvalue()
+    assert lab.bench.operate(verb, "lab", place="nest") is None
+    assert advice(lab) == []
+
+
+def test_a_place_that_people_see_to_between_tasks_is_not_advised(tmp_path: Path) -> None:
+    lab = Lab(tmp_path, 'take("rack_1"), put("bin"), take("rack_1")')
+    assert "no part is known to be at rack_1" in str(lab.run())
+    assert advice(lab) == []
+
+
+def test_who_says_that_a_part_is_out_is_told_what_leads_on_where_that_is_known(tmp_path: Path) -> None:
+    lab = Lab(tmp_path, 'take("rack_1"), cell.wait(100.0)')
+    lab.bench.submit("lab try")
+    assert lab.bench.wait(60.0, lambda: bool(lab.bench.plant.cells["lab"].context.parts.holding))
+    assert lab.bench.operate(Verb.HOLD, "lab") is None
+    lab.bench.wait(2.0)
+    lab.bench.set_by_hand("hand", (("closed", False),))
+    lab.bench.wait(2.0)
+    told = str(lab.bench.operate(Verb.RELEASE, "hand", by_hand=True))
+    assert told == "no part is known to be in hand, so nothing has to be said of it; go on with abandon lab"

@@ -1,0 +1,216 @@
+"""What `check` says of a recipe without running it: what cannot be done, and what is forgotten at the end."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from arboleda.model.plant_model import PlantModel
+from arboleda.plant_file import advance_check
+from arboleda.plant_file.loader import load
+
+PLANT = """
+name: lab
+uses: [recipes.py]
+kinds:
+  reader:
+    facts: {lid: [closed, open], clamped: bool}
+    verbs:
+      open:  {effect: motion, sets: {lid: open}}
+      close: {effect: motion, sets: {lid: closed}}
+      clamp: {effect: switch, with: {on: bool}, sets: {clamped: $on}, holds: part}
+      read:  {effect: query, answers: [clear, unclear], needs: {lid: closed}, works_on: part}
+cells:
+  lab:
+    devices:
+      loader: {kind: arm, model: scara}
+      jaw: {kind: gripper, tool_of: loader}
+      reader: {kind: reader}
+    targets:
+      home: {loader: {deg: [0, 0], mm: 0}}
+      rack: {loader: {deg: [60, 10], mm: 80, approach_mm: 20}}
+      nest: {loader: {deg: [-60, 10], mm: 80, approach_mm: 20}}
+      drawer: {loader: {deg: [-30, 10], mm: 80, approach_mm: 20}}
+      bin: {loader: {deg: [30, 40], mm: 80, approach_mm: 20}}
+    places:
+      rack: {supply: true}
+      nest: {}
+      drawer: {of: reader}
+      bin: {holds: 20, output: true}
+zones:
+  in_the_reader: {poses: [lab drawer], free_while: {reader: {lid: open}}}
+"""
+INTO = 'take("rack"), reader.open(), put("drawer"), reader.close()'
+OUT = 'reader.open(), take("drawer"), put("bin"), reader.close(), loader.home()'
+BRING_BACK = 'loader.brings_back_to("bin") or cell.wait(1)'
+LID_OPENS = "reader.becomes(lid='open', at_most_s=5)"
+WAYS = 'cell.choose(seen, {"clear": [%s], "unclear": [%s]})'
+
+
+def written(folder: Path, body: str, decorator: str) -> PlantModel:
+    code = f"""
+from arboleda.recipes import parallel, recipe, work
+
+@recipe({decorator})
+def attempt(cell):
+    loader, jaw, reader = cell.devices("loader", "jaw", "reader")
+    take = lambda at: loader.visit(at, jaw.close(width_mm=20, force_n=20))
+    put = lambda at: loader.visit(at, jaw.open())
+    seen = reader.read()
+    return work({body})
+"""
+    (folder / "recipes.py").write_text(code, "utf-8")
+    (folder / "plant.yaml").write_text(PLANT, "utf-8")
+    return load(folder / "plant.yaml")
+
+
+def warned(folder: Path, body: str, decorator: str = '"try"') -> list[str]:
+    found = advance_check.warnings(written(folder, body, decorator))
+    where = f"{folder / 'recipes.py'}:4:1: lab: try "
+    assert all(each.startswith(where) for each in found)
+    return [each.removeprefix(where) for each in found]
+
+
+@pytest.mark.parametrize(
+    "body",
+    [
+        f"{INTO}, seen, {OUT}",
+        f"{INTO}, cell.retry(seen), {WAYS % ('', '')}, {OUT}",
+        f"{INTO}, seen, {WAYS % (OUT, OUT)}",
+        f"{INTO}, seen, {WAYS % ('reader.open()', '')}, {WAYS % (OUT.partition(', ')[2], OUT)}",
+        f"{INTO}, cell.fallback(cell.timeout(seen, 5), reader.read()), {OUT}",
+        f"parallel(reader.open(), take('rack')), put('drawer'), {OUT}",
+        f"parallel(work({INTO}), cell.wait(1)), {OUT}",
+        f"take('rack'), parallel(work({LID_OPENS}, put('drawer')), reader.open()), {OUT}",
+        "reader.close(), cell.fallback(work(reader.says(lid='open'), put('drawer')), cell.wait(1)), seen",
+        "cell.timeout(cell.retry(seen, times=1000), 60)",
+        f"cell.repeat(work({INTO}, {OUT}), 1)",
+        f"cell.recover(work({INTO}, {OUT}), reader.open())",
+        'take("nest"), put("nest"), put("nest")',
+        f'{INTO}, reader.open(), take("drawer"), {BRING_BACK}, reader.close(), put("bin"), loader.home()',
+    ],
+)
+def test_nothing_is_said_of_what_can_be_so(tmp_path: Path, body: str) -> None:
+    assert warned(tmp_path, body) == []
+
+
+@pytest.mark.parametrize(
+    ("body", "sentence"),
+    [
+        (
+            f"{INTO}, reader.open(), seen, {OUT}",
+            "has reader read, which needs lid of reader to be closed, where it is open",
+        ),
+        (
+            f'reader.close(), take("rack"), put("drawer"), {OUT}',
+            "has loader go to drawer where lid of reader is closed; it has to be open",
+        ),
+        (
+            'take("rack"), reader.open(), loader.visit("drawer", jaw.open(), reader.close()), ' + OUT,
+            "has reader close while loader stands at drawer",
+        ),
+        (
+            'take("rack"), put("bin"), take("rack"), put("bin"), loader.home()',
+            "has jaw take hold of a part at rack, where nothing can be",
+        ),
+        (
+            'take("rack"), put("nest"), take("bin"), put("nest")',
+            "has jaw take hold of a part at bin, where nothing can be",
+        ),
+        (
+            'take("rack"), put("rack"), take("nest"), put("rack")',
+            "has jaw let go of a part at rack, which is full already",
+        ),
+        (
+            f'{INTO}, reader.open(), take("drawer"), reader.close(), put("bin"), loader.home()',
+            "has loader go to bin with a part that goes back to drawer after a failure, where lid of reader"
+            " is closed; it has to be open, or brings_back_to another target",
+        ),
+        ('take("rack"), loader.home(), jaw.open()', "has jaw let go of a part at home, where none lies"),
+        (
+            'loader.home(), jaw.close(width_mm=20, force_n=20), put("bin"), loader.home()',
+            "has jaw take hold of a part at home, where none lies",
+        ),
+        ('take("rack"), loader.home()', "ends with a part that jaw still holds"),
+        (f"{INTO}, loader.home()", "ends with 1 more at drawer of reader than it began with"),
+        (
+            f"{INTO}, seen, {WAYS % (OUT, OUT.replace('reader.close(), ', ''))}",
+            "ends with reader lid closed and open, by which way it goes",
+        ),
+        (
+            f"{INTO}, seen, {WAYS % (OUT, OUT.replace(', loader.home()', ''))}",
+            "ends with loader at bin and home, by which way it goes",
+        ),
+        (
+            "reader.open(), parallel(take('rack'), seen), put('bin'), loader.home()",
+            "has reader read, which needs lid of reader to be closed, where it is open",
+        ),
+        (
+            "parallel(take('rack'), reader.open()), seen, put('bin'), loader.home()",
+            "has reader read, which needs lid of reader to be closed, where it is open",
+        ),
+        (f"parallel(work({INTO}), cell.wait(1))", "ends with 1 more at drawer of reader than it began with"),
+        (
+            "cell.recover(seen, work(reader.open(), reader.read()))",
+            "has reader read, which needs lid of reader to be closed, where it is open",
+        ),
+        (
+            "cell.retry(reader.open(), times=1000)",
+            "tries reader open again 1,000 times, 1 s apart; a task that cannot be done never ends so",
+        ),
+        (
+            "cell.retry(reader.open(), times=10, pause_s=600)",
+            "tries reader open again 10 times, 600 s apart; a task that cannot be done never ends so",
+        ),
+    ],
+)
+def test_it_says_what_is_wrong_for_certain(tmp_path: Path, body: str, sentence: str) -> None:
+    assert sentence in warned(tmp_path, body)
+
+
+def test_what_a_recipe_says_of_its_end_counts(tmp_path: Path) -> None:
+    left = '"try", ends_with={"drawer": 1, "reader.lid": "open"}'
+    assert warned(tmp_path, f"{INTO}, reader.open(), loader.home()", left) == []
+    assert warned(tmp_path, f"{INTO}, loader.home()", left) == [
+        "ends with reader.lid closed, and says that it ends with open"
+    ]
+
+
+@pytest.mark.parametrize(
+    ("body", "decorator", "told"),
+    [
+        (
+            'take("rack"), loader.visit("nest", jaw.open()), loader.home()',
+            '"try"',
+            "jaw.gripped false, 1 fewer at rack, 1 more at nest, loader at home",
+        ),
+        (f"seen, {WAYS % ('reader.close()', 'reader.open()')}", '"try"', "nothing that is certain"),
+        ("reader.open()", '"try", ends_with={"reader.lid": "open"}', "reader.lid open (it says so)"),
+    ],
+    ids=["parts and robots", "ways that differ", "what the recipe says"],
+)
+def test_the_end_of_a_recipe_is_what_all_its_ways_leave(
+    tmp_path: Path, body: str, decorator: str, told: str
+) -> None:
+    (found,) = advance_check.ends(written(tmp_path, body, decorator))
+    assert found == f"lab: try ends with {told}"
+
+
+def test_a_number_of_parts_that_people_begin_with_is_compared_with_what_the_recipe_says(
+    tmp_path: Path,
+) -> None:
+    body = 'take("rack"), loader.visit("bin", jaw.open()), loader.home()'
+    assert warned(tmp_path, body, '"try", ends_with={"bin": 1, "rack": 0}') == []
+    assert warned(tmp_path, body, '"try", ends_with={"bin": 0}') == [
+        "ends with bin 1, and says that it ends with 0"
+    ]
+
+
+def test_a_part_that_stays_is_compared_with_what_the_recipe_says_however_many_were_there(
+    tmp_path: Path,
+) -> None:
+    assert warned(tmp_path, f"{INTO}, loader.home()", '"try", ends_with={"drawer": 0}') == [
+        "ends with drawer 1, and says that it ends with 0"
+    ]
+    assert warned(tmp_path, f"{INTO}, {OUT}", '"try", ends_with={"drawer": 0}') == []

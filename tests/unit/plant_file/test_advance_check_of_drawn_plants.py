@@ -1,0 +1,31 @@
+"""What `check` says of drawn plants, whose recipes can be done: nothing wrong, the same in both forms."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+from tests.lengths import sample
+
+from arboleda.campaigns.random_plants import loaded
+from arboleda.plant_file import advance_check
+from arboleda.simulator.plants import devices
+from arboleda.simulator.plants.devices import DrawnDevices, Form, can_be_xml
+
+REFUSED = (24, 41, 56)  # plants that `arboleda check` refuses, as the simulator passes over them
+OF_TASTE = ("by which way it goes", "at home")  # how sentences end on what a drawn recipe leaves on purpose
+
+
+def found(drawn: DrawnDevices, form: Form) -> tuple[list[str], list[str]]:
+    """The sentences, without places, and the ends."""
+    plant = loaded(replace(drawn, form=form)).model
+    return [each.split(": ", 1)[1] for each in advance_check.warnings(plant)], list(advance_check.ends(plant))
+
+
+@pytest.mark.parametrize("seed", sample([each for each in range(1, 61) if each not in REFUSED], 10))
+def test_nothing_wrong_is_said_of_a_drawn_plant_and_the_same_in_both_forms(seed: int) -> None:
+    drawn = devices.draw(seed)
+    forms = list(Form) if all(map(can_be_xml, drawn.recipes)) else [Form.PYTHON]
+    of_forms = [found(drawn, form) for form in forms]
+    assert all(each == of_forms[0] for each in of_forms)
+    assert [each for each in of_forms[0][0] if not each.endswith(OF_TASTE)] == []

@@ -1,0 +1,95 @@
+"""What `check` warns of: places that nothing guards, devices of parts without one, places that are two."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from arboleda.plant_file import place_check
+from arboleda.plant_file.loader import load
+
+PLANT = """
+name: lab
+uses: [recipes.py]
+kinds:
+  oven:
+    facts: {door: [closed, open]}
+    verbs:
+      open:  {effect: motion, sets: {door: open}}
+      close: {effect: motion, sets: {door: closed}}
+      bake:  {effect: process, works_on: part, takes_s: 2}
+cells:
+  lab:
+    devices:
+      left:  {kind: arm, model: scara, base: {origin_m: [-0.6, 0], yaw_deg: 135}}
+      right: {kind: arm, model: scara, base: {origin_m: [0.6, 0], yaw_deg: 45}}
+      jaw:   {kind: gripper, tool_of: left}
+      oven:  {kind: oven}
+    targets:
+      home:   {left: {deg: [0, 0], mm: 0}, right: {deg: [0, 0], mm: 0}}
+      nest:   {left: {deg: [-52.24, -87.7], mm: 80}, right: {deg: [52.24, 87.7], mm: 80}}
+      inside: {left: {deg: [60, 10], mm: 80}}
+    places:
+      nest:   {}
+      inside: {of: oven}
+zones:
+  over_the_nest: {poses: [lab nest]}
+  in_the_oven: {poses: [lab inside], free_while: {oven: {door: open}}}
+"""
+RECIPES = """
+from arboleda.recipes import recipe, work
+
+@recipe("try")
+def attempt(cell):
+    return work(cell.device("left").home())
+"""
+IN_THE_OVEN = "  in_the_oven: {poses: [lab inside], free_while: {oven: {door: open}}}\n"
+NEEDS = "    needs: {left.go: {oven.door: open}}\nzones:\n"
+
+
+def warned(folder: Path, *edits: tuple[str, str]) -> tuple[str, ...]:
+    text = PLANT
+    for old, new in edits:
+        assert text.count(old) == 1
+        text = text.replace(old, new)
+    (folder / "recipes.py").write_text(RECIPES, "utf-8")
+    (folder / "plant.yaml").write_text(text, "utf-8")
+    return place_check.warnings(load(folder / "plant.yaml"))
+
+
+def test_nothing_is_wrong_with_a_plant_that_says_all(tmp_path: Path) -> None:
+    assert warned(tmp_path) == ()
+
+
+@pytest.mark.parametrize(
+    ("edit", "sentence"),
+    [
+        (
+            (IN_THE_OVEN, ""),
+            "lab: inside is at oven, which moves (open, close), and nothing keeps left out of there "
+            "meanwhile; a zone with this target and free_while or held_while of the device does",
+        ),
+        (
+            ("inside: {of: oven}", "inside: {}"),
+            "lab: oven works on a part (bake), and no place is of it; say where: "
+            "places: {TARGET: {of: oven}}",
+        ),
+        (
+            ("jaw:   {kind: gripper, tool_of: left}", "jaw:   {kind: gripper}"),
+            "lab: jaw takes hold of a part (close), and no place is of it; say where: "
+            "places: {TARGET: {of: jaw}}, or tool_of",
+        ),
+        (
+            ("right: {kind: arm, model: scara, base: {origin_m: [0.6, 0], yaw_deg: 45}}",
+             "right: {kind: arm, model: scara, base: {origin_m: [0.5, 0], yaw_deg: 45}}"),
+            "lab: nest is one place, and left and right go 100 mm apart",
+        ),
+    ],
+)  # fmt: skip
+def test_it_warns(tmp_path: Path, edit: tuple[str, str], sentence: str) -> None:
+    assert warned(tmp_path, edit) == (sentence,)
+
+
+def test_a_need_guards_a_place_as_a_zone_does(tmp_path: Path) -> None:
+    assert warned(tmp_path, (IN_THE_OVEN, ""), ("zones:\n", NEEDS)) == ()

@@ -1,0 +1,183 @@
+"""What a plant has written is synced in a thread; only some of it, and only commands, wait for that."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from arboleda.adapters import clock
+from arboleda.core.leaving import MOST_UNSYNCED_S
+from arboleda.model.errors import ArboledaError
+from arboleda.runtime.parts.durability import Durability
+from arboleda.store.sqlite import Store
+
+SOON_S = 20.0
+
+
+class Disk(Store):
+    """A memory whose syncs are counted, may hang, and may fail."""
+
+    def __init__(self) -> None:
+        super().__init__(Path(":memory:"))
+        self.syncs = 0
+        self.reached, self.let_go = threading.Event(), threading.Event()
+        self.let_go.set()
+        self.error: ArboledaError | None = None
+
+    def sync(self) -> None:
+        self.reached.set()
+        assert self.let_go.wait(SOON_S)
+        if self.error is not None:
+            raise self.error
+        self.syncs += 1
+
+
+class People:
+    """Those who are told, and what befell the plant."""
+
+    def __init__(self) -> None:
+        self.told: list[tuple[str, Exception | None]] = []
+        self.failures: list[Exception] = []
+        self.all_told = threading.Event()
+
+    def tell(self, message: str, failure: Exception | None) -> None:
+        self.told.append((message, failure))
+        if message == "last":
+            self.all_told.set()
+        if message == "raise":
+            raise ValueError(message)
+
+
+@pytest.fixture
+def disk() -> Disk:
+    return Disk()
+
+
+@pytest.fixture
+def people() -> People:
+    return People()
+
+
+@pytest.fixture
+def durability(disk: Disk, people: People) -> Iterator[Durability]:
+    made = Durability(disk, people.tell, people.failures.append)
+    yield made
+    disk.let_go.set()
+    made.stop()
+
+
+@pytest.fixture
+def now(monkeypatch: pytest.MonkeyPatch) -> list[float]:
+    moved = [100.0]
+    monkeypatch.setattr(clock, "seconds", lambda: moved[0])
+    return moved
+
+
+def test_a_command_waits_only_for_writes_that_it_must_not_precede(durability: Durability, disk: Disk) -> None:
+    durability.wrote(precedes_commands=False)
+    durability.let_commands_leave()
+    assert disk.syncs == 0
+    durability.wrote(precedes_commands=True)
+    durability.let_commands_leave()
+    durability.let_commands_leave()
+    assert disk.syncs == 1
+
+
+def test_no_command_leaves_while_a_write_is_not_durable_for_too_long(
+    durability: Durability, disk: Disk, now: list[float]
+) -> None:
+    durability.wrote(precedes_commands=False)
+    now[0] += MOST_UNSYNCED_S
+    durability.let_commands_leave()
+    assert disk.syncs == 0
+    now[0] += 0.01
+    durability.let_commands_leave()
+    assert disk.syncs == 1
+    durability.wrote(precedes_commands=False)
+    durability.let_commands_leave()
+    assert disk.syncs == 1
+
+
+def test_what_is_written_while_a_sync_is_under_way_is_not_durable_by_that(
+    durability: Durability, disk: Disk, people: People
+) -> None:
+    disk.let_go.clear()
+    durability.start()
+    durability.wrote(precedes_commands=False)
+    durability.tell("first")
+    durability.wake()
+    assert disk.reached.wait(SOON_S)
+    durability.wrote(precedes_commands=False)
+    durability.tell("last")
+    assert not durability.reach(1, 0.0) and people.told == []
+    disk.let_go.set()
+    assert people.all_told.wait(SOON_S)
+    assert people.told == [("first", None), ("last", None)]
+    assert disk.syncs == 2 and durability.reach(2, 0.0)
+
+
+def test_one_sync_is_for_all_that_was_written_by_then(
+    durability: Durability, disk: Disk, people: People
+) -> None:
+    for _ in range(100):
+        durability.wrote(precedes_commands=True)
+    durability.tell("last")
+    assert disk.syncs == 1 and people.told == [("last", None)]
+
+
+def test_the_thread_syncs_what_nobody_waits_for(durability: Durability, disk: Disk) -> None:
+    durability.start()
+    durability.wrote(precedes_commands=False)
+    durability.wake()
+    assert durability.reach(1, SOON_S)
+    assert disk.syncs == 1
+
+
+def test_a_sync_that_fails_is_the_last_one_and_whoever_waits_hears_of_it(
+    durability: Durability, disk: Disk, people: People
+) -> None:
+    durability.wrote(precedes_commands=False)
+    durability.tell("kept")
+    disk.error = ArboledaError("The disk is broken.")
+    durability.wrote(precedes_commands=True)
+    durability.tell("lost")
+    disk.error = None
+    with pytest.raises(ArboledaError, match=r"The disk is broken\."):
+        durability.let_commands_leave()
+    assert [(message, str(failure)) for message, failure in people.told] == [
+        ("kept", "None"),
+        ("lost", "The disk is broken."),
+    ]
+    assert [str(each) for each in people.failures] == ["The disk is broken."]
+    assert disk.syncs == 1 and not durability.reach(2, SOON_S)
+
+
+def test_whoever_is_told_and_raises_ends_the_plant_and_keeps_nobody_else_from_being_told(
+    durability: Durability, people: People
+) -> None:
+    durability.tell("raise")
+    durability.tell("last")
+    assert [type(each) for each in people.failures] == [ValueError]
+    assert people.all_told.is_set()
+
+
+def test_what_is_left_at_the_end_is_synced_and_told(
+    durability: Durability, disk: Disk, people: People
+) -> None:
+    disk.let_go.clear()
+    durability.start()
+    durability.wrote(precedes_commands=False)
+    durability.tell("last")
+    disk.let_go.set()
+    durability.stop()
+    assert people.told == [("last", None)]
+
+
+def test_a_plant_without_a_memory_tells_at_once(people: People) -> None:
+    durability = Durability(None, people.tell, people.failures.append)
+    durability.tell("last")
+    durability.let_commands_leave()
+    assert people.told == [("last", None)]

@@ -1,0 +1,147 @@
+"""Drawn plants with cells of devices: everything is drawn, the reader takes it, and recipes are right."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import get_args
+
+import pytest
+
+from arboleda.campaigns.plants import Plant
+from arboleda.campaigns.random_plants import RandomPlants, keep, loaded, of_devices
+from arboleda.campaigns.setting import Setting
+from arboleda.plant_file import loader
+from arboleda.simulator.plants import devices
+from arboleda.simulator.plants.devices import DrawnDevices, Form, steps
+from arboleda.simulator.plants.devices.kinds import Span
+
+SEEDS = range(150)
+
+
+@pytest.fixture(scope="module")
+def drawn() -> list[DrawnDevices]:
+    return [devices.draw(seed) for seed in SEEDS]
+
+
+def test_a_seed_draws_the_same_and_another_something_else() -> None:
+    assert devices.draw(7) == devices.draw(7) != devices.draw(8)
+    assert devices.draw(7, 1) != devices.draw(7)
+
+
+def test_half_of_the_plants_have_cells_of_devices() -> None:
+    of_them = [bool(RandomPlants().of(seed).drawn) for seed in range(1, 21)]
+    assert 5 <= sum(of_them) <= 15
+
+
+def test_every_step_is_drawn_and_nested(drawn: list[DrawnDevices]) -> None:
+    found = {type(step) for each in drawn for recipe in each.recipes for step in steps.walk(recipe.step)}
+    assert found == set(get_args(steps.Step))
+    inside = {
+        (type(outer), type(inner))
+        for each in drawn
+        for recipe in each.recipes
+        for outer in steps.walk(recipe.step)
+        for inner in steps.walk(outer)
+    }
+    assert (steps.Timeout, steps.Retry) in inside and (steps.Retry, steps.Parallel) in inside
+    assert (steps.Parallel, steps.Choose) in inside
+
+
+def test_kinds_have_every_effect_and_type_of_fact(drawn: list[DrawnDevices]) -> None:
+    kinds = [kind for each in drawn for kind in each.section.get("kinds", {}).values()]
+    verbs = [verb for kind in kinds for verb in kind["verbs"].values()]
+    assert {verb["effect"] for verb in verbs} == {"motion", "process", "switch", "query"}
+    types = [type for kind in kinds for type in kind.get("facts", {}).values()]
+    assert {type for type in types if isinstance(type, str)} == {"bool", "int", "number", "text"}
+    assert {"needs", "on_stop", "holds", "with", "answers"} <= {key for verb in verbs for key in verb}
+    assert any("takes_s" not in verb for verb in verbs) and any(verb.get("takes_s", 0) > 20 for verb in verbs)
+
+
+def test_kinds_are_written_in_python_too_with_numbers_within_limits(drawn: list[DrawnDevices]) -> None:
+    written = [each for each in drawn if each.kinds is not None]
+    assert 0.2 < len(written) / len(drawn) < 0.5
+    types = [type for each in written for kind in each.kinds or () for _, type in kind.facts]
+    given = [
+        type
+        for each in written
+        for kind in each.kinds or ()
+        for verb in kind.verbs
+        for _, type in verb.parameters
+    ]
+    assert any(isinstance(type, Span) for type in types) and any(isinstance(type, Span) for type in given)
+    texts = "".join(each.beside["kinds.py"] for each in written)
+    assert all(
+        word in texts for word in ("takes_s=lambda", "virtual=lambda", "finishes=True", "holds_part=True")
+    )
+
+
+def test_numbers_and_paths_are_parameters_of_recipes(drawn: list[DrawnDevices]) -> None:
+    found = {type(each) for one in drawn for recipe in one.recipes for each in recipe.parameters}
+    assert found == set(get_args(steps.Parameter))
+
+
+def test_a_machine_may_work_on_what_lies_in_it(drawn: list[DrawnDevices]) -> None:
+    texts = [str(each.section) + each.beside.get("kinds.py", "") for each in drawn]
+    assert any("'works_on': 'part'" in text for text in texts)
+    assert any("works_on_part=True" in text for text in texts)
+
+
+def test_cells_have_what_a_cell_can_have(drawn: list[DrawnDevices]) -> None:
+    cells = [cell for each in drawn for cell in each.section["cells"].values()]
+    rows = [device for cell in cells for device in cell["devices"].values()]
+    assert {"needs", "places", "groups", "targets", "paths"} <= {key for cell in cells for key in cell}
+    assert {device.get("kind") for device in rows} >= {
+        "arm",
+        "mobile",
+        "person",
+        "camera",
+        "gripper",
+        "conveyor",
+        "turntable",
+    }
+    assert {device.get("evidence") for device in rows} >= {"ids", "facts", "joints", "state"}
+    shared = [device for each in drawn for device in each.section.get("shared", {}).values()]
+    assert {"arm", "gripper", "kind_1", "person"} <= {device["kind"] for device in shared}
+    zones = [zone for each in drawn for zone in each.section.get("zones", {}).values()]
+    assert {"poses", "free_while", "held_while"} <= {key for zone in zones for key in zone}
+    assert any(each.section.get("timing", {}).get("dwell_s") == 0 for each in drawn)
+
+
+def test_both_forms_of_recipes_are_drawn_and_read_by_the_ordinary_reader(tmp_path: Path) -> None:
+    plants = [of_devices(seed) for seed in range(1, 5)]
+    assert {plant.drawn.form for plant in plants if plant.drawn is not None} == {Form.PYTHON, Form.XML}
+    for number, plant in enumerate(plants):
+        read = loader.load(keep(plant, tmp_path / str(number)))
+        assert [recipe.name for recipe in read.cells[0].recipes] == [
+            recipe.name for recipe in plant.declared.cells[0].recipes
+        ]
+
+
+def test_a_plant_is_read_again_from_what_json_has_of_it() -> None:
+    plain = of_devices(2).plain
+    again = loaded(plain["plant_file"], plain["plant_files"])
+    assert again.declared.name == "drawn_2" and again.files.contents.keys() == {"drawn_2.yaml", "recipes.py"}
+
+
+def test_smaller_plants_have_a_recipe_a_step_or_a_key_less() -> None:
+    drawn = next(
+        each for each in map(devices.draw, SEEDS) if len(each.recipes) > 1 and each.form is Form.PYTHON
+    )
+    less = list(devices.smaller(drawn))
+    assert len(less) > 20 and all(len(str(each)) < len(str(drawn)) for each in less)
+    assert {len(each.recipes) for each in less} == {len(drawn.recipes), len(drawn.recipes) - 1}
+    assert any(each.section != drawn.section for each in less)
+
+
+@pytest.mark.parametrize("seed", [1, 2])
+def test_without_faults_nothing_fails(seed: int) -> None:
+    result = Setting(plants=OfDevices(), cycles=2, level="none").run(seed)
+    assert result.broken is None, str(result.broken)
+    assert not result.findings and result.outcomes["done"] > 0
+
+
+class OfDevices:
+    """Plants with cells of devices only."""
+
+    def of(self, seed: int) -> Plant:
+        return of_devices(seed)

@@ -1,0 +1,95 @@
+"""What a bridge says of robots at rest is judged by their bytes alone, and nothing wrong in it passes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import pytest
+
+from arboleda.campaigns.request import Request
+from arboleda.model.messages import Report
+from arboleda.model.plant_model import MotionState
+from arboleda.simulator.recorded.bridge import REPORTS, Bridges
+from arboleda.simulator.world import BridgeStep, World
+from arboleda.wire.transport import Delivery
+
+SETTLED_S = 3.0
+
+
+@pytest.fixture
+def world() -> World:
+    return World(Request(cycles=1).setting.plant(1))
+
+
+@pytest.fixture
+def bridges(world: World) -> Bridges:
+    """The judge of the bridge of a plant that has been at rest for some time."""
+    judge = Bridges(world.model)
+    judge.take_over(world.bridge, world.now, world.plant.dispatcher.beliefs)
+    wrong: list[str] = []
+
+    def look() -> None:
+        if world.moment.bridged:
+            judge.look(world.moment.bridged)
+            wrong.extend(sentence for each in judge.wrong.values() for sentence in each)
+
+    world.watchers.append(look)
+    world.advance(SETTLED_S)
+    assert not wrong
+    world.watchers.remove(look)
+    return judge
+
+
+@pytest.fixture
+def step(world: World, bridges: Bridges) -> BridgeStep:
+    """The next step of the bridge in which telemetry came."""
+    steps: list[BridgeStep] = []
+    world.watchers.append(lambda: steps.extend(world.moment.bridged))
+    assert world.advance(1.0, lambda: any(reports(each) for each in steps))
+    return next(each for each in steps if reports(each))
+
+
+def reports(step: BridgeStep) -> list[Report]:
+    return [each for each in step.out if isinstance(each, Report)]
+
+
+def test_what_is_as_it_was_is_right(bridges: Bridges, step: BridgeStep) -> None:
+    bridges.look([step])
+    assert not any(bridges.wrong.values())
+
+
+ALTERED: dict[str, Callable[[Report], list[Report]]] = {
+    "not reported": lambda report: [],
+    "reported twice": lambda report: [report, report],
+    "of another time": lambda report: [replace(report, at=report.at - 0.05)],
+    "of another state": lambda report: [replace(report, state=MotionState.MOVING)],
+    "of no link": lambda report: [replace(report, state=MotionState.NO_LINK)],
+    "of another place": lambda report: [replace(report, q=report.q and (9.0, *report.q[1:]), node=99)],
+    "of another boot": lambda report: [replace(report, homed=not report.homed)],
+    "of a command": lambda report: [replace(report, done="1-1")],
+    "of commands of others": lambda report: [replace(report, foreign_refused=1)],
+    "of another plant": lambda report: [replace(report, plant=1)],
+}
+
+
+@pytest.mark.parametrize("altered", ALTERED.values(), ids=ALTERED)
+def test_a_report_that_differs_is_found(
+    bridges: Bridges, step: BridgeStep, altered: Callable[[Report], list[Report]]
+) -> None:
+    step.out = [*altered(reports(step)[0]), *step.out[1:]]
+    bridges.look([step])
+    assert bridges.wrong[REPORTS]
+
+
+def test_telemetry_that_came_before_is_found_if_it_is_reported(bridges: Bridges, step: BridgeStep) -> None:
+    bridges.look([step])
+    bridges.look([step])
+    assert bridges.wrong[REPORTS]
+
+
+def test_retained_telemetry_is_found_if_it_is_reported(bridges: Bridges, step: BridgeStep) -> None:
+    first = next(each for each in step.events if isinstance(each, Delivery))
+    step.events = [replace(each, retain=each is first) for each in step.events]
+    bridges.look([step])
+    assert bridges.wrong[REPORTS]
