@@ -16,7 +16,7 @@ from arboleda.store.sqlite import Store
 
 from ..patience import PATIENCE_MS
 from .conftest import SHIPPED
-from .page import PARTS, connected, running, show
+from .page import PARTS, connected, running, show, until
 
 pytestmark = [pytest.mark.system, pytest.mark.requires("chromium", "playwright")]
 
@@ -432,16 +432,14 @@ PLAN = """() => {
 
 @pytest.mark.parametrize("width", [1280, 1366, 1700, 1920])
 def test_a_tree_is_drawn_the_same_way_in_every_language(width: int, open_page: Open) -> None:
+    sender = open_page("tasks", locale="en")
+    wait_for_task(sender, send(sender, "sis_a 0B 1"), "done")
     size = {"width": width, "height": 800}
-    english = open_page("cells&lang=en", viewport=size)
-    wait_for_task(english, send(english, "sis_a 0B 1"), "done")
-    show(english, "cells")
-    spanish = open_page("cells&lang=es", viewport=size)
-    for page in (english, spanish):
+    pages = [open_page(f"cells&lang={language}", viewport=size) for language in ("en", "es")]
+    for page in pages:
         page.wait_for_selector(".cell.chosen g.node[data-path=root]")
-    # A tree is planned anew once what stands beside it has come; the page in Spanish was just opened.
-    plan = json.dumps(english.evaluate(PLAN), separators=(",", ":"))
-    spanish.wait_for_function(f"plan => JSON.stringify(({PLAN})()) === plan", arg=plan)
+    # Each page plans its trees anew when what stands beside them has come.
+    until(lambda: pages[0].evaluate(PLAN) == pages[1].evaluate(PLAN))
 
 
 def test_a_tab_is_a_link_to_be_opened_elsewhere(open_page: Open) -> None:

@@ -27,7 +27,9 @@ export function start() {
   });
   document.addEventListener("click", clicked);
   document.addEventListener("keydown", pressed);
-  new ResizeObserver(refit).observe(document.getElementById("parts"));
+  const resized = new ResizeObserver(refit);
+  resized.observe(document.getElementById("parts"));
+  resized.observe(document.getElementById("answer")); // an answer above a tree takes of its room
 }
 
 export const refit = () => drawn.forEach(fit);
@@ -49,7 +51,9 @@ function fit(one) {
   if (one.box.clientWidth === 0) return;
   const unit = parseFloat(getComputedStyle(document.documentElement).fontSize) / 16;
   const wall = matchMedia("(min-width: 1800px)").matches && one.box.closest(".cells.few");
-  const room = { w: one.box.clientWidth / unit, h: (innerHeight - top(one.box) - MARGIN) / unit };
+  // A tree that begins low on the screen, or below it, gets half a screen: it has to be scrolled to anyway.
+  const high = Math.max(innerHeight / 2, innerHeight - top(one.box) - MARGIN);
+  const room = { w: one.box.clientWidth / unit, h: high / unit };
   const [name, scale] = wall ? largest(one.tree, room) : readable(one.tree, room);
   if (one.plan !== name) lay(one, name);
   one.svg.setAttribute("width", one.tree[name].w * scale * unit * one.zoom);
