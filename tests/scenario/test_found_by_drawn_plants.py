@@ -38,6 +38,22 @@ ASSUMES_HOMED = """
 """
 
 FOUND = {
+    "the first step, tried again, was taken for the second where a cell rests at its pick-up": Found(
+        seed=78,
+        faults=(Fault(kind="stuck_bit", at=12.5, seconds=4.0, target="arm_1", word="q2_mov"),),
+        file="""
+            name: drawn_78
+            cells:
+              cell_1:
+                arm: {name: arm_1, model: scara, link: mqtt, evidence: joints}
+                mobile: {name: mobile_1, link: mqtt, evidence: joints}
+                home: {deg: [-107.7, 5.6], mm: 0.3}
+                pickup: {deg: [-107.7, 5.6], mm: 0.3}
+                paths: {C4: [1, 4, 7, 8, 7, 8], "01": [2, 5, 8, 7, 8, 5]}
+                stations: {columns_q1_deg: [-17.1], rows_q2_deg: [-14.5, -7.4, -2.2], mm: 7.3}
+                retry: {times: 1}
+        """,
+    ),
     "after a restart a path that ends where it begins was taken for the way to its start": Found(
         seed=1015,
         seconds=85.0,

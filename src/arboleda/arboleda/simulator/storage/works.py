@@ -103,8 +103,7 @@ class Works:
         work.walked_back = False
         work.undone = False
         again = last is not None and (walked_back or last.state is not State.DONE)
-        follows = work.at < len(work.steps) and step == work.steps[work.at]  # a path may end where it begins
-        if again and not follows and _is_again(step, work.steps[work.at - 1]):
+        if again and self._repeats(work, step, walked_back=walked_back):
             work.last = sent
             return
         if again and not walked_back:
@@ -123,6 +122,18 @@ class Works:
         self._in_time(name, work, sent)
         work.at += 1
         work.last = sent
+
+    @staticmethod
+    def _repeats(work: Work, step: Step | None, *, walked_back: bool) -> bool:
+        """True if a command is the last step once more, and not the next one.
+
+        Two steps in a row may command the same: a cell may rest where it picks up, a path may end where it
+        begins. What an earlier start commanded may have been done, so that the next step is as good.
+        """
+        before = work.steps[work.at - 1]
+        if work.at < len(work.steps) and step == work.steps[work.at]:
+            return not walked_back and _fits(step, before)
+        return _is_again(step, before)
 
     def _stands_at_start(self, name: str, work: Work, step: Step | None, now: float) -> bool:
         """True if the path comes without the way to its start, as its robot has said that it stands there."""
