@@ -17,6 +17,7 @@ from arboleda.model.messages import Reason, TaskState, Verb
 from arboleda.model.sentence import Sentence
 from arboleda.plant_file.poses import HOME, STATION
 from arboleda.recipes import storage
+from arboleda.simulator.run import Simulation
 from arboleda.trees import paths, steps
 from arboleda.trees.tree_run import IN_RECOVERY
 from arboleda.views.tree_view import KINDS
@@ -129,7 +130,7 @@ def run(seed: int, said: set[Sentence]) -> None:
             return out
 
         patch.setattr(Plant, "step", heard)
-        setting.run(seed)
+        Simulation(setting.plant(seed), seed, setting.climate(seed).faults, invariants=()).run(cycles=8)
 
 
 def test_what_is_no_sentence_stays_as_it_is() -> None:
