@@ -65,8 +65,8 @@ def test_the_default_recipe_needs_no_name() -> None:
 
 def test_the_wrong_word_is_named_with_what_there_is_and_the_nearest() -> None:
     asked = refusal("sis_a paint gren 1001", PAINT)
-    assert asked == "'gren' is not a colour of sis_a; there are red, green; did you mean green?"
-    assert "'1003' is not a program of sis_a; there are 1001, 1002" in refusal("sis_a paint red 1003", PAINT)
+    assert asked == "colour of sis_a cannot be 'gren'; there are red, green; did you mean green?"
+    assert "program of sis_a cannot be '1003'; there are 1001, 1002" in refusal("sis_a paint red 1003", PAINT)
     assert "'pait' is not a recipe of sis_a; there are paint, rest; did you mean paint?" in refusal(
         "sis_a pait red 1001", PAINT, REST
     )
@@ -152,7 +152,7 @@ def test_named_values_are_spelled_in_their_order() -> None:
         ),
         (
             {"recipe": "paint", "values": {"colour": "red green", "program": 1001}},
-            "'red green' is not a colour of sis_a; there are red, green",
+            "colour of sis_a cannot be 'red green'; there are red, green",
         ),
         ({"recipe": "rest", "id": "a b"}, "'#a b' is not a task id"),
         ({"recipe": "rest", "id": "t-1"}, "'#t-1' is not a task id; ids that start with t- are made by"),

@@ -51,7 +51,7 @@ def test_a_wrong_dose_is_refused_with_what_there_is(here: Bench) -> None:
     here.submit("bench weigh 7")
     refused = here.outcome()
     assert refused.state is TaskState.REFUSED
-    assert "'7' is not a ml of bench; there are 5, 10, 20" in str(refused.sentence)
+    assert "ml of bench cannot be '7'; there are 5, 10, 20" in str(refused.sentence)
 
 
 def test_it_is_short_and_imports_only_what_is_public() -> None:

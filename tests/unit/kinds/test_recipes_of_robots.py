@@ -164,12 +164,12 @@ def test_numbers_and_names_in_the_text_of_a_task() -> None:
     named = parse("tending press side=a 7 speed=2", model)
     assert named.text == "tending press 7 2.0 a"
     for text, sentence in (
-        ("tending press 41 1 a", "'41' is no force; it is a whole number from 1 to 40"),
-        ("tending press 7 fast a", "'fast' is no speed; it is a number from 0.5 to 2"),
-        ("tending press 7.5 1 a", "'7.5' is no force; it is a whole number from 1 to 40"),
-        ("tending press 7 1 colour=b", "'colour=b' is not a side of tending"),
+        ("tending press 41 1 a", "force is a whole number from 1 to 40, not '41'"),
+        ("tending press 7 fast a", "speed is a number from 0.5 to 2, not 'fast'"),
+        ("tending press 7.5 1 a", "force is a whole number from 1 to 40, not '7.5'"),
+        ("tending press 7 1 colour=b", "side of tending cannot be 'colour=b'"),
         ("tending press force=1 force=2 a", "force is named twice"),
-        ("tending press force=1 speed=1 side=c", "'c' is not a side of tending"),
+        ("tending press force=1 speed=1 side=c", "side of tending cannot be 'c'"),
     ):
         with pytest.raises(TextError) as caught:
             parse(text, model)

@@ -109,7 +109,7 @@ def test_what_fails_names_them_as_they_are(folder: Path) -> None:
     here = Bench(plant(folder))
     here.submit("taller cocer carbón")
     assert here.changes[-1].state.value == "refused"
-    assert str(here.changes[-1].sentence) == "'carbón' is not a con of taller; there are leña, 炭"
+    assert str(here.changes[-1].sentence) == "con of taller cannot be 'carbón'; there are leña, 炭"
     device = kiln(folder)
     report = Report(at=0.0, robot="horno", facts=(("carga", "salmón"),))
     assert device.objection(report) == "carga is 'salmón'; horno knows vacía, leña, 炭"

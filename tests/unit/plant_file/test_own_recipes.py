@@ -393,7 +393,7 @@ def test_a_task_of_the_only_recipe_may_name_it(tmp_path: Path) -> None:
         assert (order.recipe, order.values, order.text) == ("heat", {"celsius": 60}, "bench 60")
     with pytest.raises(TextError, match="the task has 2 words; write <cell> <celsius>, e"):
         parse("bench heat", plant)
-    with pytest.raises(TextError, match="'50' is not a celsius of bench; there are 40, 60"):
+    with pytest.raises(TextError, match="celsius of bench cannot be '50'; there are 40, 60"):
         parse("bench heat 50", plant)
 
 

@@ -43,10 +43,15 @@ UNKNOWN_BUT_NEAR = Phrase(
     "text.unknown_but_near",
     "{word} is not a {kind} of {where}; there are {there}; did you mean {near}?",
 )
+NO_CHOICE = Phrase("text.no_choice", "{name} of {where} cannot be {word}; there are {there}")
+NO_CHOICE_BUT_NEAR = Phrase(
+    "text.no_choice_but_near",
+    "{name} of {where} cannot be {word}; there are {there}; did you mean {near}?",
+)
 TWICE = Phrase("text.twice", "{name} is named twice; {form}")
-OUTSIDE = Phrase("text.outside", "{word} is no {kind}; it is a number from {lower:g} to {upper:g}")
+OUTSIDE = Phrase("text.outside", "{kind} is a number from {lower:g} to {upper:g}, not {word}")
 OUTSIDE_WHOLE = Phrase(
-    "text.outside_whole", "{word} is no {kind}; it is a whole number from {lower:g} to {upper:g}"
+    "text.outside_whole", "{kind} is a whole number from {lower:g} to {upper:g}, not {word}"
 )
 NO_PARAMETER = Phrase("text.no_parameter", "{recipe} of {cell} takes no values, and {word} was given")
 NO_VALUE = Phrase("text.no_value", "{recipe} of {cell} needs a value for {names}")
@@ -248,10 +253,12 @@ def _read(cell: Cell, parameter: Parameter, word: str) -> str:
     read = parameter.reads(cell, word)
     if read is not None:
         return read
-    called = parameter.called() if parameter.called else parameter.name
-    limits = parameter.limits(cell)
+    limits, words = parameter.limits(cell), parameter.words(cell)
+    if limits is None and parameter.called:
+        raise TextError(_unknown(parameter.called(), word, words, cell.name))
     if limits is None:
-        raise TextError(_unknown(called, word, parameter.words(cell), cell.name))
+        raise TextError(_no_choice(parameter.name, word, words, cell.name))
+    called = parameter.called() if parameter.called else parameter.name
     outside = OUTSIDE_WHOLE if limits.whole else OUTSIDE
     raise TextError(outside(word=quoted(word), kind=called, lower=limits.lower, upper=limits.upper))
 
@@ -282,7 +289,7 @@ def _cell(word: str, plant: PlantModel, *, robots: bool) -> Cell:
         by_name |= {cell.roles[role].name: cell for cell in plant.cells if role in cell.roles}
     name = known(word, by_name)
     if name is None:
-        raise TextError(_unknown(_cell_or_robot(roles, plant), word, by_name, THIS_PLANT()))
+        raise TextError(_unknown(_cell_or_robot(roles, plant), word, [*by_name], THIS_PLANT()))
     return by_name[name]
 
 
@@ -323,10 +330,23 @@ def _cell_or_robot(roles: Iterable[str], plant: PlantModel) -> Sentence:
     return CELL_OR_ROBOT(robot=robots) if robots else CELL()
 
 
-def _unknown(kind: Sentence | str, word: str, names: Iterable[str], where: str | Sentence) -> Sentence:
+def _unknown(kind: Sentence | str, word: str, names: Sequence[str], where: str | Sentence) -> Sentence:
     there = tuple(names)
-    near = get_close_matches(word.lower(), [name.lower() for name in there], n=1)
-    hint = known(near[0], there) if near else None
-    if hint is None:
+    near = _nearest(word, there)
+    if near is None:
         return UNKNOWN(word=quoted(word), kind=kind, where=where, there=there)
-    return UNKNOWN_BUT_NEAR(word=quoted(word), kind=kind, where=where, there=there, near=hint)
+    return UNKNOWN_BUT_NEAR(word=quoted(word), kind=kind, where=where, there=there, near=near)
+
+
+def _no_choice(name: str, word: str, choices: Sequence[str], where: str) -> Sentence:
+    """That a word is none of the choices for a parameter, whose name may be any word."""
+    there = tuple(choices)
+    near = _nearest(word, there)
+    if near is None:
+        return NO_CHOICE(name=name, word=quoted(word), where=where, there=there)
+    return NO_CHOICE_BUT_NEAR(name=name, word=quoted(word), where=where, there=there, near=near)
+
+
+def _nearest(word: str, names: Sequence[str]) -> str | None:
+    near = get_close_matches(word.lower(), [name.lower() for name in names], n=1)
+    return known(near[0], names) if near else None
