@@ -127,6 +127,10 @@ def test_nothing_is_said_of_what_can_be_so(tmp_path: Path, body: str) -> None:
             "has loader go to bin with a part that goes back to drawer after a failure, where lid of reader"
             " is closed; it has to be open, or brings_back_to another target",
         ),
+        (
+            'take("rack"), take("nest"), put("bin"), loader.home()',
+            "has jaw take hold of a part at nest while it holds one from rack",
+        ),
         ('take("rack"), loader.home(), jaw.open()', "has jaw let go of a part at home, where none lies"),
         (
             'loader.home(), jaw.close(width_mm=20, force_n=20), put("bin"), loader.home()',

@@ -160,6 +160,8 @@ class Foresight:
     def _by_hand(self, command: Switch, scene: Scene) -> Iterator[str]:
         hand, here = command.robot, self._here(command.robot, scene)
         held, place = scene.get(hand, HELD), self.places.get(str(here))
+        if held is True and command.grips:
+            yield from self._second_part(hand, here, scene)
         if held is None or here is None or held == command.grips:
             return
         does = "take hold" if command.grips else "let go"
@@ -169,6 +171,12 @@ class Foresight:
         elif not self._can(scene, place, -1 if command.grips else +1):
             why = "where nothing can be" if command.grips else "which is full already"
             yield f"has {hand} {does} of a part at {here}, {why}"
+
+    def _second_part(self, hand: str, here: Value | None, scene: Scene) -> Iterator[str]:
+        """A second part in a hand, taken elsewhere than the first; cells with places refuse it."""
+        taken = scene.get(hand, TAKEN)
+        if self.places and None not in (here, taken) and here != taken:
+            yield f"has {hand} take hold of a part at {here} while it holds one from {taken}"
 
     def _home(self, hand: str) -> str:
         space = self.hands[hand]
