@@ -103,6 +103,24 @@ def test_where_a_cell_drives_to_no_start_a_path_is_given_anew_as_it_was(stage: S
     assert honest(witness)
 
 
+@pytest.mark.parametrize("starts_on", [0, 4])
+def test_a_mobile_that_is_silent_as_its_drive_begins_is_led_to_the_start_from_where_it_is_seen_next(
+    stage: Stage, starts_on: int
+) -> None:
+    rig, witness = stage(retry=TWICE)
+    put(rig, starts_on)
+    rig.lost = lambda publication: publication.topic.startswith("rm_sis_a/")
+    rig.wait(rig.plant.model.timing.stale_after_s - 0.1)
+    rig.submit(TASK)
+    rig.wait(0.4, until=lambda: not rig.plant.dispatcher.beliefs["rm_sis_a"].online)
+    rig.wait(0.2)
+    rig.lost = lambda publication: False
+    assert ended(rig).state is TaskState.DONE
+    drives = [each.nodes for each in rig.sent if isinstance(each, FollowPath)]
+    assert drives == [*([(4, 1, 0)] if starts_on else []), (0, 3, 4, 7)]
+    assert honest(witness)
+
+
 def put(rig: Rig, node: int) -> None:
     """Carry the mobile robot there, and wait until it has said so."""
     body = cast(MobileBody, rig.devices.boards["rm_sis_a"].body)

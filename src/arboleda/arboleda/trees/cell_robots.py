@@ -42,6 +42,11 @@ class CellRobots:
             return self.as_planned.positions.get(robot)
         return self._dispatcher.beliefs[robot].known_position
 
+    def is_out_of_sight(self, robot: str) -> bool:
+        """True where a robot that reports its position is silent, or its position means nothing."""
+        belief = self._dispatcher.beliefs[robot]
+        return self.as_planned is None and belief.position is not None and not belief.is_located
+
     def standing(self, robot: str) -> Pose:
         """The zone-free pose at which a robot's next way begins: where it is seen, else home; the home of a
         shared one that the cell does not hold.

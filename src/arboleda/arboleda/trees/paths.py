@@ -25,15 +25,16 @@ NOT_AT_START = Phrase(
 
 
 class Approach(Act):
-    """A drive to where the next one begins; done at once where the robot is there already."""
+    """A drive to where the next one begins; done without a command where the robot is there already."""
 
     is_there: Callable[[], bool]
 
-    def initialise(self) -> None:
-        if self.is_there():
-            self.proven, self.began = True, self.time.now
+    def send(self) -> None:
+        """Give the command, unless none has left and the robot is seen there, also after it was silent."""
+        if not self.left and self.is_there():
+            self.proven = True
         else:
-            super().initialise()
+            super().send()
 
 
 def follow(context: Context, robot: str, path: Path) -> list[Behaviour]:
@@ -80,5 +81,5 @@ def follow(context: Context, robot: str, path: Path) -> list[Behaviour]:
     if not context.cell.drive_to_start:
         return [Require(AT_START(), context.failures, objection), drive]
     there = Approach(AT_NODE(node=start), context, to_start, DRIVING_TO(node=start))
-    there.is_there = is_at_start
+    there.is_there = lambda: is_at_start() and not context.robots.is_out_of_sight(robot)
     return [there, drive]

@@ -76,7 +76,7 @@ class Works:
                 cell = self._cells[said.cell].layout
                 if not is_storage_task(cell.cell, said.text):
                     continue
-                steps = list(_steps(cell, said.text.split(), self._robots[cell.mobile.name], now))
+                steps = list(_steps(cell, said.text.split()))
                 self._works[said.cell] = Work(said.task, steps, now)
         for sent in new:
             if sent.entry is not None and sent.entry.cell in self._works and not _by_operator(sent):
@@ -108,7 +108,7 @@ class Works:
             return
         if again and not walked_back:
             self.wrong.append(f"{name}: {sent} leaves, and {last} before it was not done")
-        if self._stands_at_start(name, work, step, sent.at):
+        if self._stands_at_start(name, work, step):
             work.at += 1
         while work.at < len(work.steps) and not _fits(step, work.steps[work.at]):
             if work.steps[work.at][0] != OPTIONAL:
@@ -135,13 +135,14 @@ class Works:
             return not walked_back and _fits(step, before)
         return _is_again(step, before)
 
-    def _stands_at_start(self, name: str, work: Work, step: Step | None, now: float) -> bool:
-        """True if the path comes without the way to its start, as its robot has said that it stands there."""
+    def _stands_at_start(self, name: str, work: Work, step: Step | None) -> bool:
+        """True if the path comes without the way to its start, as its robot has said that it stands there,
+        or never says where it stands.
+        """
         expected, after = [*work.steps[work.at : work.at + 2], ("", None), ("", None)][:2]
         if expected[0] != TO_START or step != after:
             return False
-        mobile = self._robots[self._cells[name].layout.mobile.name]
-        return _stands_on(mobile, now) in (None, expected[1])
+        return self._robots[self._cells[name].layout.mobile.name].node in (None, expected[1])
 
     def _is_anywhere(self, name: str, work: Work) -> bool:
         """True if the task may stand at a step too early, by a power cut, and a person had it tried again."""
@@ -192,8 +193,8 @@ def _is_again(step: Step | None, expected: Step) -> bool:
     return _fits(step, expected) or (step is not None and step[0] == "path" and expected[0] == "path")
 
 
-def _steps(cell: StorageLayout, words: list[str], mobile: KnownRobot, now: float) -> Iterator[Step]:
-    """The steps that a task of this text commands if it begins now, in order."""
+def _steps(cell: StorageLayout, words: list[str]) -> Iterator[Step]:
+    """The steps that a task of this text commands, in order; its robot may stand at the start of its path."""
     if words[1] == "palletizing":
         yield "move", cell.home.q
         yield from _at(cell.palletizing.pick, list(_grip(cell)))
@@ -201,17 +202,12 @@ def _steps(cell: StorageLayout, words: list[str], mobile: KnownRobot, now: float
         return
     nodes = cell.path(words[1]).nodes
     pickup = cell.pickup_of(cell.path(words[1]))
-    if cell.cell.drive_to_start and _stands_on(mobile, now) not in (None, nodes[0]):
+    if cell.cell.drive_to_start:
         yield TO_START, nodes[0]
     yield "path", nodes
     yield from _at(pickup, list(_grip(cell)))
     yield from _at(cell.stations[int(words[2])], [("effector", False)])
     yield from _at(cell.home, [])
-
-
-def _stands_on(mobile: KnownRobot, now: float) -> int | None:
-    """The node on which the robot has said that it stands, if that can be believed."""
-    return None if mobile.offline(now) or mobile.unhomed else mobile.node
 
 
 def _at(pose: Pose, work: list[Step]) -> Iterator[Step]:
