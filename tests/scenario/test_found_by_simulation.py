@@ -337,6 +337,15 @@ FOUND = {
             Fault(kind="operator_stop", at=4.0, target="sis_a"),
         ),
     ),
+    "a person who was stopped counted as not stopped once a plant had died as it cleared the cell": Found(
+        seed=21,
+        seconds=58,
+        example="lab_bench",
+        faults=(
+            Fault(kind="operator_stop", at=53.303, target="operator"),
+            Fault(kind="crash_in_step", at=53.433, seconds=6.838, target="plant", amount=6.036, word="after"),
+        ),
+    ),
 }
 
 

@@ -39,7 +39,7 @@ from .recorded.courses import Courses
 from .recorded.foreign import ForeignCommands
 from .recorded.proofs import Proofs
 from .recorded.refusals import differences
-from .recorded.robots import KnownRobot, Obstacle, StopProgress
+from .recorded.robots import STOPS, KnownRobot, Obstacle, StopProgress
 from .recorded.scopes import Scopes
 from .recorded.starts import Starts, Step, turn_of
 from .recorded.stops import EarlyStops
@@ -659,7 +659,6 @@ class Record:
                 task.cancelled = None
 
 
-STOPS = {"on": StopProgress.LATCHED, "cleared": StopProgress.CLEARED}
 TAKES: dict[type, Callable[[Record, Any], None]] = {
     Command: Record._on_command,
     TaskChanged: Record._on_task,

@@ -24,7 +24,7 @@ from arboleda.model.sentence import Sentence
 from arboleda.recipes.storage_layout import StorageLayout
 
 from ..recorded.cells import KnownCell
-from ..recorded.robots import StopProgress
+from ..recorded.robots import STOPS, StopProgress
 from ..recorded.scopes import UNSENT
 from ..storage.tasks import NAMES
 from ..truth.mobile import MobileTruth
@@ -237,17 +237,24 @@ def _reachable(before: CellState, causes: frozenset[Cause]) -> set[CellState]:
 
 def _stopped_alone(look: Look, cell: Cell) -> Iterator[str]:
     """The devices that a cell shares and no stop of another one has stopped."""
-    cells_of, robots = look.world.model.cells_of, look.record.robots
+    cells_of = look.world.model.cells_of
     for name in cell.shared:
-        if not any(robots[own].stop for other in cells_of[name] for own in other.own):
+        if not any(_stop_of(look, own) for other in cells_of[name] for own in other.own):
             yield name
+
+
+def _stop_of(look: Look, name: str) -> StopProgress | None:
+    """The stop of a device; to whom nothing is sent, as to a person, it is known from memory alone."""
+    known = look.record.robots[name]
+    if known.robot.link not in UNSENT:
+        return known.stop
+    return STOPS.get(look.world.found.facts.get(Fact.LATCH, {}).get(name, ""))
 
 
 def _at_birth(look: Look) -> Iterator[str]:
     """Sentences on cells that start in a wrong state: a stop lasts until clear and reset."""
-    robots = look.record.robots
     for cell in look.record.cells.values():
-        stops = {robots[name].stop for name in (*cell.cell.own, *_stopped_alone(look, cell.cell))}
+        stops = {_stop_of(look, name) for name in (*cell.cell.own, *_stopped_alone(look, cell.cell))}
         uncleared, unreset = StopProgress.LATCHED in stops, cell.stopped or any(stops)
         state = CellState.ABORTED if uncleared else CellState.STOPPED if unreset else None
         if state is not None and cell.run.state is not state:

@@ -34,6 +34,9 @@ class StopProgress(Enum):
     CLEARED = "cleared"
 
 
+STOPS = {"on": StopProgress.LATCHED, "cleared": StopProgress.CLEARED}  # by the word that is kept
+
+
 class KnownRobot:
     """Last word of a robot on everything, None where it never said; `stop` outlives the plant."""
 
