@@ -40,11 +40,14 @@ def measure(root: Path, folders: Sequence[str], say: Say) -> dict[str, Any]:
 def judge(sources: Sources, mutant: Mutant, tests: list[tuple[str, float]], say: Say) -> dict[str, Any]:
     """Run these tests, each with how long it took when nothing was planted, until one fails."""
     plant(mutant, sources)
-    watcher = _Judging(dict(tests), say)
     files = list(dict.fromkeys(name.partition("::")[0] for name, _ in tests))
-    status = _pytest(sources.root, ARGUMENTS, files, watcher)
-    killer = watcher.failed or ("the tests cannot be collected" if status not in (0, 5) else "")
-    return {"killed": bool(killer), "by": killer, "ran": watcher.ran}
+    return _judged(sources.root, files, _Judging(dict(tests), say))
+
+
+def judge_files(sources: Sources, mutant: Mutant, files: Sequence[str], say: Say) -> dict[str, Any]:
+    """Run all tests of these files, the first file first, until one fails."""
+    plant(mutant, sources)
+    return _judged(sources.root, files, _Judging({}, say))
 
 
 def in_order(mutant: Mutant, reach: Reach, breadth: dict[str, int], before: str) -> list[tuple[str, float]]:
@@ -56,6 +59,12 @@ def in_order(mutant: Mutant, reach: Reach, breadth: dict[str, int], before: str)
     times = dict(zip(reach.names, reach.cpu_s, strict=True))
     names.sort(key=lambda name: (name != before, (times[name] + 0.01) * breadth[name]))
     return [(name, times[name]) for name in names]
+
+
+def _judged(root: Path, files: Sequence[str], watcher: _Judging) -> dict[str, Any]:
+    status = _pytest(root, ARGUMENTS, files, watcher)
+    killer = watcher.failed or ("the tests cannot be collected" if status not in (0, 5) else "")
+    return {"killed": bool(killer), "by": killer, "ran": watcher.ran}
 
 
 def _pytest(root: Path, arguments: Sequence[str], files: Sequence[str], plugin: object) -> int:
@@ -95,6 +104,8 @@ class _Measuring(_Watching):
 
 
 class _Judging(_Watching):
+    """Runs `tests`, by name with the s that each took, in order; all that there are, where none is named."""
+
     def __init__(self, tests: dict[str, float], say: Say) -> None:
         self._tests = tests
         self._order = {name: number for number, name in enumerate(tests)}
@@ -104,8 +115,9 @@ class _Judging(_Watching):
 
     @pytest.hookimpl(trylast=True)
     def pytest_collection_modifyitems(self, items: list[pytest.Item]) -> None:
-        chosen = [item for item in items if item.nodeid in self._order]
-        items[:] = sorted(chosen, key=lambda item: self._order[item.nodeid])
+        if self._order:
+            chosen = [item for item in items if item.nodeid in self._order]
+            items[:] = sorted(chosen, key=lambda item: self._order[item.nodeid])
 
     def pytest_collectreport(self, report: pytest.CollectReport) -> None:
         if report.failed:
@@ -116,7 +128,7 @@ class _Judging(_Watching):
         self._say({"at": item.nodeid})
         self.ran += 1
         # the signal ends this process, whatever catches exceptions
-        signal.setitimer(signal.ITIMER_PROF, max(LEAST_CPU_S, TIMES * self._tests[item.nodeid]))
+        signal.setitimer(signal.ITIMER_PROF, max(LEAST_CPU_S, TIMES * self._tests.get(item.nodeid, 0.0)))
         try:
             return (yield)
         finally:

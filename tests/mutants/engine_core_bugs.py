@@ -1,0 +1,106 @@
+"""Bugs of the engine: cells, their states and queues, and the choice among them."""
+
+from __future__ import annotations
+
+from .engine_bug import bug
+
+CELL = "core/cell.py"
+
+CORE_BUGS = (
+    bug(
+        CELL,
+        "A hold halts nothing.",
+        "        self.context.time.pause()\n        self.context.commands.cancel_motions()\n\n    def resume",
+        "        self.context.time.pause()\n\n    def resume",
+    ),
+    bug(
+        CELL,
+        "A held cell's time goes on.",
+        "        self.context.time.pause()\n        self.context.commands.cancel_motions()\n\n    def resume",
+        "        self.context.commands.cancel_motions()\n\n    def resume",
+    ),
+    bug(
+        CELL,
+        "Resume gives the interrupted step not anew.",
+        "        for act in self.run.interrupted():\n            act.send()\n",
+        "        self.run.interrupted()\n",
+    ),
+    bug(
+        CELL,
+        "A stop leaves the queue running.",
+        "        self.queue.paused = True\n        self.become(Cause.STOP)\n",
+        "        self.become(Cause.STOP)\n",
+    ),
+    bug(
+        CELL,
+        "A cell is held although something still moves.",
+        "        if any(entry.halts for entry in self.context.commands.open()):\n            return False\n",
+        "",
+    ),
+    bug(
+        CELL,
+        "A cancelled task counts as failed.",
+        "self._finish(task, TaskState.CANCELLED if cancelled else TaskState.FAILED)",
+        "self._finish(task, TaskState.FAILED)",
+    ),
+    bug(
+        CELL,
+        "A recovery that failed leaves the cell ready.",
+        "            self._stuck(self.context.failures.last or unknown)\n        else:",
+        "            self.become(Cause.ENDED)\n        else:",
+    ),
+    bug(
+        CELL,
+        "A task that has failed is not recovered from once it is abandoned.",
+        "        self.task.fail(self.trouble or given_up)\n        self._recover()\n",
+        "        self.interrupt(self.trouble or given_up)\n        self.become(Cause.ENDED)\n",
+    ),
+    bug(
+        CELL,
+        "An operator who opens a hand strands nobody.",
+        "            self.stranded = NO_PART(arm=robot)\n\n    def _recover",
+        "            self.dirty = True\n\n    def _recover",
+    ),
+    bug(
+        CELL,
+        "Supplies are not filled for the next task.",
+        "        self.context.places.begin()\n",
+        "",
+    ),
+    bug(
+        CELL,
+        "The failures of the last task are those of the next.",
+        "        self._changed(task)\n        self.context.start_afresh()\n",
+        "        self._changed(task)\n",
+    ),
+    bug(
+        "core/readiness.py",
+        "A cell starts with a part in its hand.",
+        "        found += [astray[1] if astray else None, self.part_in_hand()]\n",
+        "        found += [astray[1] if astray else None]\n",
+    ),
+    bug(
+        "core/readiness.py",
+        "A cell starts with a robot astray.",
+        "        found += [astray[1] if astray else None, self.part_in_hand()]\n",
+        "        found += [self.part_in_hand()]\n",
+    ),
+    bug(
+        "core/task_queue.py",
+        "A queue takes one more than its limit.",
+        "return len(self) >= self._cell.queue_limit",
+        "return len(self) > self._cell.queue_limit",
+    ),
+    bug(
+        "core/choosing.py",
+        "A cell that is full is chosen.",
+        "return self.is_full, self.hindrance is not None, self.seconds",
+        "return self.hindrance is not None, self.seconds",
+    ),
+    bug(
+        "core/leading.py",
+        "A leader is sure of itself for too long.",
+        "self._until = asked_at + SURE_S",
+        "self._until = asked_at + 1.2 * SURE_S",
+    ),
+)

@@ -1,0 +1,106 @@
+"""Weathers in which the simulator alone looks for bugs of the engine: plants and faults by the seed.
+
+Half of the seeds run on cells of devices that they draw, with their recipes; the others on the packaged
+plants, the examples, and cells of storage that they draw. Imports what may have a bug.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from functools import cache
+from importlib.resources import as_file, files
+from pathlib import Path
+
+from arboleda.campaigns import random_plants
+from arboleda.campaigns.plants import Plant
+from arboleda.campaigns.setting import Setting
+from arboleda.plant_file import loader
+
+SECONDS = 30.0  # for which faults come; then everything has to come to rest
+NONE, MANY, CRASHES = "none", "many", "crashes"
+EXAMPLES = Path(__file__).parents[2] / "examples"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Drawn:
+    """Plants of one sort, a plant of its own for each seed."""
+
+    of: Callable[[int], Plant]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Turns:
+    """Plants of which each of its seeds takes the next one."""
+
+    load: tuple[Callable[[], Plant], ...]
+
+    def of(self, seed: int) -> Plant:
+        return self.load[seed // len(WEATHERS) % len(self.load)]()
+
+
+@dataclass(frozen=True, kw_only=True)
+class Weather:
+    """Weather of a seed; without faults a task that fails is a finding, too."""
+
+    plants: Drawn | Turns
+    level: str = MANY
+    options: dict[str, bool] = field(default_factory=dict)
+
+    def found(self, seed: int) -> str:
+        """What is found at a seed, "" for nothing: the invariant that breaks, or the sort of a finding."""
+        setting = Setting(plants=self.plants, cycles=0, level=self.level, seconds=SECONDS, **self.options)
+        result = setting.run(seed)
+        if result.broken is not None:
+            return result.broken.invariant
+        finding = next(iter(result.findings), None) if self.level == NONE else None
+        return finding.kind.value if finding is not None else ""
+
+
+@cache
+def _example(name: str) -> Plant:
+    return Plant(declared=loader.load(EXAMPLES / name / "plant.yaml"))
+
+
+@cache
+def _packaged(name: str) -> Plant:
+    with as_file(files("arboleda").joinpath("plants", f"{name}.yaml")) as path:
+        return Plant(declared=loader.load(path) if name == "shared" else loader.load())
+
+
+def example(name: str) -> Callable[[], Plant]:
+    return lambda: _example(name)
+
+
+def packaged(name: str) -> Callable[[], Plant]:
+    return lambda: _packaged(name)
+
+
+DEVICES, STORAGE = Drawn(of=random_plants.of_devices), Drawn(of=random_plants.of_storage)
+CELLS = Turns(load=tuple(map(example, ("own_tree", "machine_tending", "lab_bench"))))
+PACKAGED = Turns(load=(packaged("shared"), packaged("plant")))
+WEATHERS = (
+    Weather(plants=DEVICES),
+    Weather(plants=CELLS),
+    Weather(plants=DEVICES, level=NONE),
+    Weather(plants=PACKAGED),
+    Weather(plants=DEVICES, level=CRASHES),
+    Weather(plants=STORAGE, options={"any_of": True}),
+    Weather(plants=DEVICES, options={"any_of": True}),
+    Weather(plants=CELLS, level=CRASHES),
+    Weather(plants=DEVICES),
+    Weather(plants=PACKAGED, level=CRASHES, options={"any_of": True}),
+    Weather(plants=DEVICES, level=CRASHES),
+    Weather(plants=PACKAGED, options={"standby": True}),
+)
+
+
+def forget() -> None:
+    """Have the next seed load its plant anew."""
+    _example.cache_clear()
+    _packaged.cache_clear()
+
+
+def found_at(seed: int) -> str:
+    """What is found at a seed, "" for nothing."""
+    return WEATHERS[seed % len(WEATHERS)].found(seed)
