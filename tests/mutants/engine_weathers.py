@@ -86,7 +86,7 @@ WEATHERS = (
     Weather(plants=PACKAGED),
     Weather(plants=DEVICES, level=CRASHES),
     Weather(plants=STORAGE, options={"any_of": True}),
-    Weather(plants=DEVICES, options={"any_of": True}),
+    Weather(plants=DEVICES, level=NONE, options={"any_of": True}),
     Weather(plants=CELLS, level=CRASHES),
     Weather(plants=DEVICES),
     Weather(plants=PACKAGED, level=CRASHES, options={"any_of": True}),

@@ -11,6 +11,8 @@ from arboleda.core.plant import Plant as CorePlant
 from arboleda.model.plant_model import PlantModel
 from arboleda.simulator.climate import Climate
 from arboleda.simulator.faults import Fault
+from arboleda.simulator.invariants import Invariant
+from arboleda.simulator.invariants.as_drawn import as_drawn
 from arboleda.simulator.judged import judged_by
 from arboleda.simulator.run import NO_EXCEPTION, BrokenInvariant, Plan, Result, Simulation
 from arboleda.simulator.scripted_people import Script, script_from
@@ -80,6 +82,7 @@ class Setting:
             model,
             seed,
             plan,
+            invariants=self._judges(self.plants.of(seed)),
             keep=keep,
             tell=tell,
             make_plant=make_plant,
@@ -96,6 +99,7 @@ class Setting:
             plant.model,
             seed,
             plan,
+            invariants=self._judges(plant),
             keep=keep,
             script=script,
             any_of=self.any_of,
@@ -103,8 +107,14 @@ class Setting:
         )
         return simulation.run(seconds=seconds)
 
+    def _judges(self, plant: Plant) -> tuple[Invariant, ...]:
+        """Those of every plant, and of a drawn one that its recipes do what was drawn."""
+        drawn = () if plant.drawn is None else (as_drawn(plant.drawn.recipes),)
+        return (*judged_by(standby=self.standby), *drawn)
+
 
 def rules() -> dict[str, str]:
     """The sentence of each invariant, by its name."""
-    sentences = {each.name: " ".join(each.sentence.split()) for each in judged_by(standby=True)}
+    judges = (*judged_by(standby=True), as_drawn(()))
+    sentences = {each.name: " ".join(each.sentence.split()) for each in judges}
     return {NO_EXCEPTION: "No exception escapes a step."} | sentences

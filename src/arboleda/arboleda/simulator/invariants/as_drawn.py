@@ -1,0 +1,109 @@
+"""Invariant of drawn recipes: whichever form they have, their tasks tell devices what was drawn."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+
+from arboleda.kinds.declared import VerbCall
+from arboleda.model.commands import Command
+from arboleda.model.messages import OperatorRequest, TaskChanged, TaskState, Verb
+from arboleda.model.plant_model import Cell
+from arboleda.model.task import Task
+
+from ..plants.devices.meaning import Meaning, Told, Unsure, plain
+from ..plants.devices.steps import Recipe, Value
+from ..recorded.commands import SentCommand
+from .invariant import Invariant, Look, Trigger
+
+ENDS = (TaskState.DONE, TaskState.FAILED, TaskState.CANCELLED)
+HARMLESS = (Verb.ANSWER, Verb.LOAD, Verb.UNLOAD)
+NAME = "recipes_do_what_was_drawn"
+SENTENCE = """A task of a drawn recipe that is called done, before anything went wrong, has told each device
+    what was drawn, in that order, in Python as in a tree of a file."""
+
+
+def as_drawn(recipes: Sequence[Recipe]) -> Invariant:
+    """The invariant for a plant with these recipes."""
+    return Invariant(NAME, SENTENCE, Trigger.STEPPED, DrawnTasks(recipes).look)
+
+
+class DrawnTasks:
+    """Book of what the running task of each cell has told its devices."""
+
+    def __init__(self, recipes: Sequence[Recipe]) -> None:
+        self._recipes = recipes
+        self._names = {each.name for each in recipes}
+        self._sent: dict[str, list[SentCommand]] = {}  # by cell
+        self._is_disturbed = False
+
+    def look(self, look: Look) -> Iterator[str]:
+        """Take in a step: each breach in a sentence."""
+        asked = [each for each in look.moment.asked if isinstance(each, OperatorRequest)]
+        self._is_disturbed |= any(each.verb not in HARMLESS for each in asked)
+        if self._is_disturbed or look.world.last_fault_at > -math.inf:
+            return
+        for sent in look.record.commands.new:
+            if sent.entry is not None and isinstance(sent.command, VerbCall):
+                self._sent.setdefault(sent.entry.cell, []).append(sent)
+        for change in look.record.tasks.changes:
+            if not change.answer and change.said.state in ENDS:
+                yield from self._ended(look, change.said)
+
+    def _ended(self, look: Look, said: TaskChanged) -> Iterator[str]:
+        cell, task = look.world.model.cell(said.cell or ""), look.world.plant.intake.tasks.get(said.task)
+        sent = self._sent.pop(cell.name, [])
+        if cell.name in look.record.tasks.running:  # the next one has begun in this step
+            self._sent[cell.name] = [each for each in sent if each in look.record.commands.new]
+            sent = [each for each in sent if each not in look.record.commands.new]
+        if task is None or said.state is not TaskState.DONE or task.order.recipe not in self._names:
+            return
+        try:
+            drawn = _drawn(self._recipes, cell, task, sent)
+        except Unsure:
+            return
+        if drawn is None:
+            yield f"{said.task} of {task.order.recipe} is called done, and was drawn to fail"
+        else:
+            tools = {space.tool.name for space in cell.spaces if space.tool is not None}  # told by grips
+            roles = [role for role, robot in cell.roles.items() if robot.name not in tools]
+            yield from _differences(said.task, roles, _told(cell, sent), drawn)
+
+
+def _drawn(
+    recipes: Sequence[Recipe], cell: Cell, task: Task, sent: Sequence[SentCommand]
+) -> dict[str, list[Told]] | None:
+    """What a task was drawn to tell each role; None where it was drawn to fail."""
+    roles = {robot.name: role for role, robot in cell.roles.items()}
+    answers: dict[str, list[Value]] = {}
+    for each in task.answers:
+        answers.setdefault(roles.get(each.by, each.by), []).append(plain(each.answer))
+
+    def takes_s(role: str, told: Told) -> float:
+        alike = (each for each in sent if roles[each.robot] == role and _order(each.command) == told)
+        return max((each.command.takes_s for each in alike), default=0.0)
+
+    meaning = Meaning(recipes, answers, takes_s)
+    return meaning.told if meaning.run(task.order.recipe, task.order.values) else None
+
+
+def _told(cell: Cell, sent: Sequence[SentCommand]) -> dict[str, list[Told]]:
+    """What each role was told, in that order."""
+    roles = {robot.name: role for role, robot in cell.roles.items()}
+    found: dict[str, list[Told]] = {}
+    for each in sent:
+        found.setdefault(roles[each.robot], []).append(_order(each.command))
+    return found
+
+
+def _differences(
+    task: str, roles: Sequence[str], told: dict[str, list[Told]], drawn: dict[str, list[Told]]
+) -> Iterator[str]:
+    for role in roles:
+        if (said := told.get(role, [])) != (wanted := drawn.get(role, [])):
+            yield f"{task} is called done; {role} was told {said}, and {wanted} was drawn"
+
+
+def _order(command: Command) -> Told:
+    assert isinstance(command, VerbCall)
+    return command.verb, tuple(plain(value) for _, value in sorted(command.values))

@@ -1,0 +1,140 @@
+"""Meaning of a drawn recipe: what its steps tell each device, in their order, where nothing goes wrong.
+
+It reads the plain data from which the recipe was written in Python or as XML, and runs none of that.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+
+from . import steps
+from .steps import Param, Recipe, Step, Value
+
+Told = tuple[str, tuple[Value, ...]]  # a verb and its values, as `plain` writes them
+TakesS = Callable[[str, Told], float]  # of a role's verb, s
+
+
+class Unsure(Exception):
+    """Nobody can say what the recipe does: an answer is missing, or a parallel was left."""
+
+
+def plain(value: object) -> Value:
+    """A value as every form of a recipe has it: numbers and truth values are floats."""
+    words = {"true": 1.0, "false": 0.0}
+    if isinstance(value, bool | int | float):
+        return float(value)
+    try:
+        return words[str(value)] if str(value) in words else float(str(value))
+    except ValueError:
+        return str(value)
+
+
+@dataclass(kw_only=True)
+class Scope:
+    """Values of one recipe: those of its parameters, and what was answered."""
+
+    values: Mapping[str, object] = field(default_factory=dict)
+    answers: dict[str, Value] = field(default_factory=dict)
+
+    def value(self, said: object) -> object:
+        return self.values[said.name] if isinstance(said, Param) else said
+
+
+class Meaning:
+    """Reader of drawn recipes; `told` has what it tells each role.
+
+    `answers` are those to the questions of each role, in their order.
+    """
+
+    def __init__(
+        self, recipes: Iterable[Recipe], answers: Mapping[str, Sequence[Value]], takes_s: TakesS
+    ) -> None:
+        self.told: dict[str, list[Told]] = {}
+        self._recipes = {each.name: each for each in recipes}
+        self._answers = {role: deque(those) for role, those in answers.items()}
+        self._takes_s = takes_s
+
+    def run(self, recipe: str, values: Mapping[str, object]) -> bool:
+        """Take a recipe in; whether it succeeds. Raises Unsure."""
+        return self._does(self._recipes[recipe].step, Scope(values=values))
+
+    def _does(self, step: Step, scope: Scope) -> bool:
+        read = getattr(self, f"_{type(step).__name__.lower()}", None)
+        return True if read is None else read(step, scope)
+
+    def _tell(self, step: steps.Tell, scope: Scope) -> bool:
+        self.told.setdefault(step.role, []).append(_order(step, scope))
+        if step.answer:
+            scope.answers[step.answer] = self._answer(step.role)
+        return True
+
+    def _ask(self, step: steps.Ask, scope: Scope) -> bool:
+        scope.answers[step.answer] = self._answer(step.role)
+        return True
+
+    def _answer(self, role: str) -> Value:
+        left = self._answers.get(role)
+        if not left:
+            raise Unsure
+        return left.popleft()
+
+    def _fail(self, step: steps.Fail, scope: Scope) -> bool:
+        return False
+
+    def _visit(self, step: steps.Visit, scope: Scope) -> bool:
+        return self._does(step.body, scope)
+
+    def _work(self, step: steps.Work, scope: Scope) -> bool:
+        return all(self._does(each, scope) for each in step.steps)
+
+    def _parallel(self, step: steps.Parallel, scope: Scope) -> bool:
+        if not all(self._does(each, scope) for each in step.branches):
+            raise Unsure  # how far the others came by then is a matter of time
+        return True
+
+    def _choose(self, step: steps.Choose, scope: Scope) -> bool:
+        ways = {plain(value): way for value, way in step.ways}
+        return self._does(ways[scope.answers[step.answer]], scope)
+
+    def _retry(self, step: steps.Retry, scope: Scope) -> bool:
+        return any(self._does(step.step, scope) for _ in range(step.times + 1))
+
+    def _repeat(self, step: steps.Repeat, scope: Scope) -> bool:
+        return all(self._does(step.step, scope) for _ in range(step.times))
+
+    def _timeout(self, step: steps.Timeout, scope: Scope) -> bool:
+        succeeds = self._does(step.step, scope)
+        return succeeds and not self._is_late(step, scope)
+
+    def _is_late(self, step: steps.Timeout, scope: Scope) -> bool:
+        if isinstance(step.step, steps.Tell):
+            return step.seconds < self._takes_s(step.step.role, _order(step.step, scope))
+        return isinstance(step.step, steps.Wait) and step.seconds < step.step.seconds
+
+    def _fallback(self, step: steps.Fallback, scope: Scope) -> bool:
+        *failing, last = step.steps  # drawn so that they fail
+        for each in failing:
+            self._does(each, scope)
+        return self._does(last, scope)
+
+    def _recover(self, step: steps.Recover, scope: Scope) -> bool:
+        if self._does(step.work, scope):
+            return True
+        self._does(step.rescue, scope)
+        return False
+
+    def _invert(self, step: steps.Invert, scope: Scope) -> bool:
+        self._does(step.step, scope)  # drawn so that it fails
+        return True
+
+    def _using(self, step: steps.Using, scope: Scope) -> bool:
+        return self._does(step.step, scope)
+
+    def _run(self, step: steps.Run, scope: Scope) -> bool:
+        return self.run(step.recipe, {name: scope.value(value) for name, value in step.values})
+
+
+def _order(step: steps.Tell, scope: Scope) -> Told:
+    return step.verb, tuple(plain(scope.value(value)) for _, value in sorted(step.values))

@@ -1,0 +1,106 @@
+"""What a drawn recipe means, and that its tasks do that, is judged by the data from which it was written."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import pytest
+
+from arboleda.campaigns.random_plants import of_devices
+from arboleda.campaigns.setting import Setting
+from arboleda.recipes.decorators import Times
+from arboleda.simulator.invariants.as_drawn import NAME
+from arboleda.simulator.plants.devices.meaning import Meaning, Unsure, plain
+from arboleda.simulator.plants.devices.steps import (
+    Ask,
+    Choose,
+    Fail,
+    Fallback,
+    Parallel,
+    Param,
+    Recipe,
+    Recover,
+    Repeat,
+    Retry,
+    Run,
+    Step,
+    Tell,
+    Timeout,
+    Value,
+    Wait,
+    Work,
+)
+
+from ...mutants.mutant import edit
+
+OPEN, CLOSE = Tell(role="oven", verb="open"), Tell(role="oven", verb="close")
+ASKED = Ask(role="ana", question="Again?", answers=("yes", "no"), at_most_s=9.0, answer="a1")
+BY_ANSWER = Choose(answer="a1", ways=(("yes", OPEN), ("no", Fail(sentence="no"))))
+FOUR_S = {("open", ()): 4.0}
+
+
+def told(step: Step, **answers: Sequence[Value]) -> tuple[bool, list[str]]:
+    """Whether a recipe of this step succeeds, and the verbs that it tells the oven."""
+    meaning = Meaning([Recipe(name="it", parameters=(), step=step)], answers, lambda role, told: FOUR_S[told])
+    return meaning.run("it", {}), [verb for verb, _ in meaning.told.get("oven", [])]
+
+
+@pytest.mark.parametrize(
+    ("step", "succeeds", "verbs"),
+    [
+        (Work(steps=(OPEN, Wait(seconds=1), CLOSE)), True, ["open", "close"]),
+        (Work(steps=(OPEN, Fail(sentence="so"), CLOSE)), False, ["open"]),
+        (Repeat(step=OPEN, times=3), True, ["open"] * 3),
+        (Retry(step=Work(steps=(OPEN, Fail(sentence="so"))), times=2, pause_s=0), False, ["open"] * 3),
+        (Retry(step=OPEN, times=2, pause_s=0), True, ["open"]),
+        (Fallback(steps=(Timeout(step=OPEN, seconds=2), CLOSE)), True, ["open", "close"]),
+        (Timeout(step=OPEN, seconds=2), False, ["open"]),
+        (Timeout(step=OPEN, seconds=9), True, ["open"]),
+        (Recover(work=Fail(sentence="so"), rescue=CLOSE), False, ["close"]),
+        (Recover(work=OPEN, rescue=CLOSE), True, ["open"]),
+        (Parallel(branches=(OPEN, Wait(seconds=1))), True, ["open"]),
+    ],
+)
+def test_what_a_step_means(step: Step, succeeds: bool, verbs: list[str]) -> None:
+    assert told(step) == (succeeds, verbs)
+
+
+def test_each_turn_goes_by_its_own_answer() -> None:
+    again = Retry(step=Work(steps=(CLOSE, ASKED, BY_ANSWER)), times=5, pause_s=0)
+    assert told(again, ana=["no", "no", "yes"]) == (True, ["close", "close", "close", "open"])
+
+
+@pytest.mark.parametrize("step", [ASKED, Parallel(branches=(OPEN, Fail(sentence="so")))])
+def test_what_nobody_can_say_is_not_judged(step: Step) -> None:
+    with pytest.raises(Unsure):
+        told(step)
+
+
+def test_a_recipe_within_another_has_values_of_its_own() -> None:
+    inner = Recipe(
+        name="inner", parameters=(), step=Tell(role="oven", verb="heat", values=(("to", Param(name="p1")),))
+    )
+    outer = Recipe(name="outer", parameters=(), step=Run(recipe="inner", values=(("p1", Param(name="p2")),)))
+    meaning = Meaning([inner, outer], {}, lambda role, told: 0.0)
+    assert meaning.run("outer", {"p2": "7"})
+    assert meaning.told == {"oven": [("heat", (7.0,))]}
+
+
+@pytest.mark.parametrize(
+    ("value", "read"), [(True, 1.0), ("false", 0.0), (3, 3.0), ("-1.25", -1.25), ("ñandú", "ñandú")]
+)
+def test_values_are_read_alike_in_both_forms(value: object, read: object) -> None:
+    assert plain(value) == read
+
+
+class _Devices:
+    of = staticmethod(of_devices)
+
+
+def test_a_recipe_that_does_other_than_was_drawn_is_found() -> None:
+    setting = Setting(plants=_Devices(), cycles=4, level="none")
+    with pytest.MonkeyPatch.context() as patch:
+        edit(Times.update, "self.done >= self.times", "self.done >= self.times - 1").make(patch)
+        broken = [result.broken for seed in (6, 7) if (result := setting.run(seed)).broken is not None]
+    assert {each.invariant for each in broken} == {NAME}
+    assert all(setting.run(seed).broken is None for seed in (6, 7))
