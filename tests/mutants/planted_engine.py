@@ -113,6 +113,12 @@ def _tests() -> dict[str, str]:
     return {path.relative_to(ROOT).as_posix(): path.read_text(encoding="utf-8") for path in sorted(paths)}
 
 
+def _worlds() -> list[Path]:
+    """What a run of the simulator goes by, and not only its judgement."""
+    folders = [path for path in sorted((ROOT / PACKAGE / "simulator").iterdir()) if path.is_dir()]
+    return [path.relative_to(ROOT) for path in folders if path.name != "invariants"]
+
+
 class Looking:
     """Has the book of verdicts, below `state`."""
 
@@ -126,6 +132,8 @@ class Looking:
         self.book = Book(state / "engine.jsonl")
         weathers = Path(__file__).with_name("engine_weathers.py").read_bytes()
         engine = fingerprint(ROOT, (*FOLDERS[SIMULATOR], str(PACKAGE / "bt_xml")))
+        runs = fingerprint(ROOT, [*(str(PACKAGE / each) for each in LAYERS), *map(str, _worlds())])
+        self._run_by = sha256(runs.encode() + weathers).hexdigest()[:16]
         self._of = {
             SIMULATOR: sha256(engine.encode() + weathers).hexdigest()[:16],
             TESTS: fingerprint(ROOT, (str(PACKAGE), *by_tests.TESTS)),
@@ -153,16 +161,17 @@ class Looking:
         survived = self.book.survived(bug.key, judge, self._of[judge])
         first = before.removeprefix("seed ").partition(":")[0]
         place = Place(bug.file, bug.lines(self._sources.path(bug.file).read_text(encoding="utf-8")))
-        seeds = [seed for seed in map(int, self._reach.of(place)) if seed > survived]  # type: ignore[arg-type]
+        reached = map(int, self._reach.of(place))  # type: ignore[arg-type]
+        seeds = [seed for seed in reached if survived < seed <= self._seeds]
         seeds.sort(key=lambda seed: str(seed) != first)
         return partial(by_simulator, self._sources, bug, seeds)
 
     @cached_property
     def _reach(self) -> Reach:
         """Which seeds come by which lines; the others cannot find what is wrong there."""
-        file, of = self._reach_file, self._of[SIMULATOR]
+        file, of = self._reach_file, self._run_by
         kept = json.loads(file.read_text()) if file.exists() else {}
-        if (kept.get("of"), kept.get("seeds")) != (of, self._seeds):
+        if kept.get("of") != of or kept["seeds"] < self._seeds:
             print("measuring which seeds come by which lines", flush=True)
             with Children[str](1, self._log) as children:
                 ((_, ended),) = children.run([("reach", partial(measure, self._seeds))])

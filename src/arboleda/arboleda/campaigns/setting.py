@@ -14,6 +14,7 @@ from arboleda.simulator.faults import Fault
 from arboleda.simulator.invariants import Invariant
 from arboleda.simulator.invariants.as_drawn import as_drawn
 from arboleda.simulator.judged import judged_by
+from arboleda.simulator.plants.devices import Form
 from arboleda.simulator.run import NO_EXCEPTION, BrokenInvariant, Plan, Result, Simulation
 from arboleda.simulator.scripted_people import Script, script_from
 
@@ -109,8 +110,10 @@ class Setting:
 
     def _judges(self, plant: Plant) -> tuple[Invariant, ...]:
         """Those of every plant, and of a drawn one that its recipes do what was drawn."""
-        drawn = () if plant.drawn is None else (as_drawn(plant.drawn.recipes),)
-        return (*judged_by(standby=self.standby), *drawn)
+        judges, drawn = judged_by(standby=self.standby), plant.drawn
+        if drawn is None:
+            return judges
+        return (*judges, as_drawn(drawn.recipes, pauses=drawn.form is Form.PYTHON))
 
 
 def rules() -> dict[str, str]:

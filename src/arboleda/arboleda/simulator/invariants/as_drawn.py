@@ -20,19 +20,21 @@ ENDS = (TaskState.DONE, TaskState.FAILED, TaskState.CANCELLED)
 HARMLESS = (Verb.ANSWER, Verb.LOAD, Verb.UNLOAD)
 NAME = "recipes_do_what_was_drawn"
 SENTENCE = """A task of a drawn recipe that is called done, before anything went wrong, has told each device
-    what was drawn, in that order, in Python as in a tree of a file."""
+    what was drawn, in that order, and has waited as long, in Python as in a tree of a file."""
+JITTER_S = 0.05
 
 
-def as_drawn(recipes: Sequence[Recipe]) -> Invariant:
-    """The invariant for a plant with these recipes."""
-    return Invariant(NAME, SENTENCE, Trigger.STEPPED, DrawnTasks(recipes).look)
+def as_drawn(recipes: Sequence[Recipe], *, pauses: bool = True) -> Invariant:
+    """The invariant for a plant with these recipes; `pauses`: their form can say that a retry has a pause."""
+    return Invariant(NAME, SENTENCE, Trigger.STEPPED, DrawnTasks(recipes, pauses=pauses).look)
 
 
 class DrawnTasks:
     """Book of what the running task of each cell has told its devices."""
 
-    def __init__(self, recipes: Sequence[Recipe]) -> None:
+    def __init__(self, recipes: Sequence[Recipe], *, pauses: bool) -> None:
         self._recipes = recipes
+        self._pauses = pauses
         self._names = {each.name for each in recipes}
         self._sent: dict[str, list[SentCommand]] = {}  # by cell
         self._is_disturbed = False
@@ -58,22 +60,24 @@ class DrawnTasks:
             sent = [each for each in sent if each not in look.record.commands.new]
         if task is None or said.state is not TaskState.DONE or task.order.recipe not in self._names:
             return
+        drawn = _meaning(self._recipes, cell, task, sent, pauses=self._pauses)
         try:
-            drawn = _drawn(self._recipes, cell, task, sent)
+            if not drawn.run(task.order.recipe, task.order.values):
+                yield f"{said.task} of {task.order.recipe} is called done, and was drawn to fail"
         except Unsure:
             return
-        if drawn is None:
-            yield f"{said.task} of {task.order.recipe} is called done, and was drawn to fail"
-        else:
-            tools = {space.tool.name for space in cell.spaces if space.tool is not None}  # told by grips
-            roles = [role for role, robot in cell.roles.items() if robot.name not in tools]
-            yield from _differences(said.task, roles, _told(cell, sent), drawn)
+        tools = {space.tool.name for space in cell.spaces if space.tool is not None}  # told by grips
+        roles = [role for role, robot in cell.roles.items() if robot.name not in tools]
+        yield from _differences(said.task, roles, _told(cell, sent), drawn.told)
+        took_s = (task.ended_at or 0.0) - (task.started_at or 0.0)
+        if took_s < drawn.seconds - JITTER_S:
+            yield f"{said.task} is called done after {took_s:g} s, and was drawn to wait {drawn.seconds:g} s"
 
 
-def _drawn(
-    recipes: Sequence[Recipe], cell: Cell, task: Task, sent: Sequence[SentCommand]
-) -> dict[str, list[Told]] | None:
-    """What a task was drawn to tell each role; None where it was drawn to fail."""
+def _meaning(
+    recipes: Sequence[Recipe], cell: Cell, task: Task, sent: Sequence[SentCommand], *, pauses: bool
+) -> Meaning:
+    """Reader of the recipe of a task, by what was answered to it."""
     roles = {robot.name: role for role, robot in cell.roles.items()}
     answers: dict[str, list[Value]] = {}
     for each in task.answers:
@@ -83,8 +87,7 @@ def _drawn(
         alike = (each for each in sent if roles[each.robot] == role and _order(each.command) == told)
         return max((each.command.takes_s for each in alike), default=0.0)
 
-    meaning = Meaning(recipes, answers, takes_s)
-    return meaning.told if meaning.run(task.order.recipe, task.order.values) else None
+    return Meaning(recipes, answers, takes_s, pauses=pauses)
 
 
 def _told(cell: Cell, sent: Sequence[SentCommand]) -> dict[str, list[Told]]:

@@ -1,4 +1,5 @@
-"""Meaning of a drawn recipe: what its steps tell each device, in their order, where nothing goes wrong.
+"""Meaning of a drawn recipe: what its steps tell each device, in their order, and how long they wait at
+least, where nothing goes wrong.
 
 It reads the plain data from which the recipe was written in Python or as XML, and runs none of that.
 """
@@ -43,15 +44,22 @@ class Scope:
 
 
 class Meaning:
-    """Reader of drawn recipes; `told` has what it tells each role.
+    """Reader of drawn recipes; `told` has what it tells each role, `seconds` how long it waits at least.
 
-    `answers` are those to the questions of each role, in their order.
+    `answers` are those to the questions of each role, in their order; `pauses`: a retry has its pause.
     """
 
     def __init__(
-        self, recipes: Iterable[Recipe], answers: Mapping[str, Sequence[Value]], takes_s: TakesS
+        self,
+        recipes: Iterable[Recipe],
+        answers: Mapping[str, Sequence[Value]],
+        takes_s: TakesS,
+        *,
+        pauses: bool = True,
     ) -> None:
         self.told: dict[str, list[Told]] = {}
+        self.seconds = 0.0
+        self._pauses = pauses
         self._recipes = {each.name: each for each in recipes}
         self._answers = {role: deque(those) for role, those in answers.items()}
         self._takes_s = takes_s
@@ -83,6 +91,10 @@ class Meaning:
     def _fail(self, step: steps.Fail, scope: Scope) -> bool:
         return False
 
+    def _wait(self, step: steps.Wait, scope: Scope) -> bool:
+        self.seconds += step.seconds
+        return True
+
     def _visit(self, step: steps.Visit, scope: Scope) -> bool:
         return self._does(step.body, scope)
 
@@ -90,8 +102,13 @@ class Meaning:
         return all(self._does(each, scope) for each in step.steps)
 
     def _parallel(self, step: steps.Parallel, scope: Scope) -> bool:
-        if not all(self._does(each, scope) for each in step.branches):
-            raise Unsure  # how far the others came by then is a matter of time
+        began, ends = self.seconds, []
+        for each in step.branches:
+            self.seconds = began
+            if not self._does(each, scope):
+                raise Unsure  # how far the others came by then is a matter of time
+            ends.append(self.seconds)
+        self.seconds = max(ends)
         return True
 
     def _choose(self, step: steps.Choose, scope: Scope) -> bool:
@@ -99,14 +116,22 @@ class Meaning:
         return self._does(ways[scope.answers[step.answer]], scope)
 
     def _retry(self, step: steps.Retry, scope: Scope) -> bool:
-        return any(self._does(step.step, scope) for _ in range(step.times + 1))
+        for number in range(step.times + 1):
+            self.seconds += step.pause_s if number and self._pauses else 0.0
+            if self._does(step.step, scope):
+                return True
+        return False
 
     def _repeat(self, step: steps.Repeat, scope: Scope) -> bool:
         return all(self._does(step.step, scope) for _ in range(step.times))
 
     def _timeout(self, step: steps.Timeout, scope: Scope) -> bool:
+        until = self.seconds + step.seconds
         succeeds = self._does(step.step, scope)
-        return succeeds and not self._is_late(step, scope)
+        if not self._is_late(step, scope):
+            return succeeds
+        self.seconds = until
+        return False
 
     def _is_late(self, step: steps.Timeout, scope: Scope) -> bool:
         if isinstance(step.step, steps.Tell):
