@@ -17,7 +17,7 @@ class Net:
         self.now = 0.0
         self.heard: list[tuple[float, str, bytes, bool]] = []
         self._agenda: list[tuple[float, int, object, object]] = []
-        self.broker = Broker(lambda: self.now, self._at, self._hear)
+        self.broker = Broker(self, self._at, self._hear)
         self.board, self.bridge = Client("ra_1", [COMMAND]), Client("bridge", [TELEMETRY, PRESENCE])
         for client in (self.board, self.bridge):
             self.broker.join(client)

@@ -3,12 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from typing import Any
+from typing import Any, Protocol
 
 from arboleda.wire.transport import Delivery, Publication
 
 At = Callable[[float, Callable[[Any], None], Any], None]  # (time, call, its argument): have it called then
 Trouble = Callable[[Any], Iterable[float]]  # a message -> how late each of its copies comes, s; none: lost
+
+
+class Clock(Protocol):
+    """Whoever has the time, s."""
+
+    @property
+    def now(self) -> float: ...
 
 
 class Line:
@@ -98,7 +105,7 @@ class Broker:
     A publication that is not delayed anywhere is in the inbox before `publish` returns.
     """
 
-    def __init__(self, clock: Callable[[], float], at: At, heard: Callable[[Client, Delivery], None]) -> None:
+    def __init__(self, clock: Clock, at: At, heard: Callable[[Client, Delivery], None]) -> None:
         self.is_up = True
         self.retained: dict[str, Publication] = {}
         self.clients: dict[str, Client] = {}
@@ -128,7 +135,7 @@ class Broker:
 
     def publish(self, publication: Publication, sender: Client | None = None) -> None:
         """Publish for a sender; None: somebody outside the plant, or the broker with a client's last will."""
-        now = self._clock()
+        now = self._clock.now
         if sender is None or (sender.connected and sender.up.is_clear(now)):
             self._spread(publication, now)
         elif sender.connected:
@@ -139,7 +146,7 @@ class Broker:
         """Deliver the retained messages to a client that has just subscribed."""
         for publication in self.retained.values():
             if publication.topic in client.topics:
-                self._send(client, publication, self._clock(), retained=True)
+                self._send(client, publication, self._clock.now, retained=True)
 
     def die(self) -> None:
         """End every connection, and drop all that was retained or under way."""
@@ -150,7 +157,7 @@ class Broker:
             client.connect(False)
 
     def _when(self, at: float, call: Callable[[Any], None], argument: Any) -> None:
-        if at <= self._clock():
+        if at <= self._clock.now:
             call(argument)
         else:
             self._at(at, call, argument)
@@ -158,7 +165,7 @@ class Broker:
     def _arrive(self, carried: tuple[int, Publication]) -> None:
         life, publication = carried
         if life == self._lives:
-            self._spread(publication, self._clock())
+            self._spread(publication, self._clock.now)
 
     def _spread(self, publication: Publication, now: float) -> None:
         if not self.is_up:
@@ -183,5 +190,5 @@ class Broker:
         client, connection, queue, publication, retained = carried
         if client.connection == connection and (client.queue == queue or keeps_its_place(publication)):
             topic, payload = publication.topic, publication.payload
-            delivery = Delivery(at=self._clock(), topic=topic, payload=payload, retain=retained)
+            delivery = Delivery(at=self._clock.now, topic=topic, payload=payload, retain=retained)
             self._heard(client, delivery)

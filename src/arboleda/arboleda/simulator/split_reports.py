@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import json
 from collections import deque
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from functools import partial
 
@@ -79,26 +79,27 @@ def _two_instants(world: World, robot: Robot, dice: Dice) -> None:
     mixed = partial(_mixed, state_s=dice.between(0.0, PERIOD_S), place_s=dice.between(0.0, PERIOD_S))
     said: deque[tuple[float, bytes]] = deque()
 
-    def carry(publication: Publication) -> Iterable[Publication]:
-        # a stranger may publish there too, and is not altered
-        if publication.topic != address or world.moment.published[-1][0] != robot.mqtt:
-            return (publication,)
+    def mix(publication: Publication) -> Publication:
+        if publication.topic != address:
+            return publication
         said.append((world.now, publication.payload))
         while len(said) > 1 and said[1][0] <= world.now - PERIOD_S:
             said.popleft()
-        return (replace(publication, payload=mixed(said, world.now)),)
+        return replace(publication, payload=mixed(said, world.now))
 
-    world.carriers.append(carry)
+    world.mixers[robot.mqtt] = mix
 
 
-def _mixed(said: Iterable[tuple[float, bytes]], now: float, *, state_s: float, place_s: float) -> bytes:
+def _mixed(said: Sequence[tuple[float, bytes]], now: float, *, state_s: float, place_s: float) -> bytes:
     """The state of `state_s` ago with all else of `place_s` ago, as far back as is known."""
-    state, place = (_as_of(said, now - ago_s) for ago_s in (state_s, place_s))
+    state, place = _as_of(said, now - state_s), _as_of(said, now - place_s)
     if state == place:
         return place
     return json.dumps({**json.loads(place), STATE: json.loads(state)[STATE]}, separators=(",", ":")).encode()
 
 
-def _as_of(said: Iterable[tuple[float, bytes]], at: float) -> bytes:
-    rows = list(said)
-    return next((payload for when, payload in reversed(rows) if when <= at), rows[0][1])
+def _as_of(said: Sequence[tuple[float, bytes]], at: float) -> bytes:
+    for when, payload in reversed(said):
+        if when <= at:
+            return payload
+    return said[0][1]

@@ -52,6 +52,7 @@ ENDS_S = 6.0  # how long a plant that ends waits for its robots to stand
 BY_HAND_S = 1.0  # from putting a robot right by hand to declaring it
 AT_ONE_INSTANT = 1000  # passes; more means two machines that never stop talking
 Carry = Callable[[Publication], Iterable[Publication]]
+Mix = Callable[[Publication], Publication]
 Part = Callable[[Report], Iterable[Report]]
 Gate = Callable[[Command | Heartbeat], None]
 
@@ -163,9 +164,10 @@ class World:
     """A plant at `now` seconds; `advance` moves it from deadline to deadline, `watchers` are called after
     every pass with what happened in `moment`.
 
-    `carriers` turn what somebody publishes into what the network gets, `partings` a robot's report into
-    several, stamped with when they come; `make_plant` makes the plant of each start. `disk` is what the plant
-    kept, `found` what of it was there when it started last; `starts` counts that.
+    `mixers` turn what a board itself publishes into what it says instead, `carriers` what anybody publishes
+    into what the network gets, `partings` a robot's report into several, stamped with when they come;
+    `make_plant` makes the plant of each start. `disk` is what the plant kept, `found` what of it was there
+    when it started last; `starts` counts that.
     Processes and their lines are named by `PLANT`, `BRIDGE` and the boards' MQTT names.
     """
 
@@ -189,6 +191,7 @@ class World:
         self.moment = Moment()
         self.watchers = list(watchers)
         self.carriers = list(carriers)
+        self.mixers: dict[str, Mix] = {}
         self.partings: dict[str, Part] = {}
         self.before_asking: list[Callable[[], None]] = []  # called before a step in which somebody asks
         self.disk = disk or Disk()
@@ -211,7 +214,7 @@ class World:
         self._stalled: dict[str, float] = {}
         self.skipped_s = 0.0  # of `now`, in which nobody did anything
         self._off: set[str] = set()
-        self.broker = Broker(lambda: self.now, self.at, self._hear)
+        self.broker = Broker(self, self.at, self._hear)
         self.to_bridge, self.to_plant = Hop(), Hop()  # the hop between plant and bridge
         self.beat_reached_bridge_at = -math.inf  # the last heartbeat, since the bridge started
         self.recipes = recipes
@@ -491,7 +494,10 @@ class World:
 
     def publish(self, publication: Publication, sender: Client | None = None) -> None:
         """Publish for a sender; None: a foreign client, over a line without faults."""
-        self.moment.published.append((sender.name if sender else "", publication))
+        name = sender.name if sender else ""
+        self.moment.published.append((name, publication))
+        if name in self.mixers:
+            publication = self.mixers[name](publication)
         if not self.carriers:
             self.broker.publish(publication, sender)
             return
@@ -541,8 +547,10 @@ class World:
     def _has_work(self) -> bool:
         if self._plant_inbox and self._plant_awake:
             return True
-        full = [client.name for client in self.broker.clients.values() if client.inbox]
-        return any(map(self._awake, full))
+        for client in self.broker.clients.values():  # noqa: SIM110 - no generator: it is asked in every pass
+            if client.inbox and self._awake(client.name):
+                return True
+        return False
 
     def _awake(self, process: str) -> bool:
         return process not in self._off and process not in self._stalled
@@ -564,8 +572,9 @@ class World:
         now_us = _us(now)
         if bridge.inbox:  # what the plant said
             self._step_bridge(bridge)
+        off, stalled = self._off, self._stalled
         for name, board, client in self._stations:
-            if (client.inbox or due[name] <= now) and self._awake(name):
+            if (client.inbox or due[name] <= now) and name not in off and name not in stalled:
                 self._step_board(now_us, name, board, client)
         if bridge.inbox or due.get(BRIDGE, math.inf) <= now:  # what the boards said
             self._step_bridge(bridge)

@@ -27,6 +27,7 @@ from arboleda.trees.steps import MAIN, PHASES, is_frame
 
 Times = tuple["float | None", "float | None"]  # s since it began, s left until it is given up
 UNKNOWN: Times = (None, None)
+WORDS = {status: status.value for status in Status}
 
 
 def rows(tree: Behaviour, now: float) -> list[dict[str, Any]]:
@@ -60,22 +61,22 @@ def _steps(frame: Behaviour, *, done: bool) -> list[bool]:
 
 
 def _add(node: Behaviour, path: str, now: float, found: list[dict[str, Any]]) -> None:
-    running = node.status is Status.RUNNING
-    since_s, deadline_s = _times(node, now) if running else UNKNOWN
+    since_s, deadline_s = _times(node, now) if node.status is Status.RUNNING else UNKNOWN
+    sign, feedback = kind(node), _feedback(node)
     found.append(
         {
             "path": path or "root",
             "name": title_of(node),
             "phase": node.name if node.name in PHASES else None,
-            "kind": kind(node),
+            "kind": sign,
             "frame": is_frame(node),
-            "status": node.status.value,
-            "feedback": _feedback(node),
-            "description": _description(node),
-            "parameters": _parameters(node),
+            "status": WORDS[node.status],
+            "feedback": feedback,
+            "description": _description(node) if sign == OWN else "",
+            "parameters": _parameters(node, sign),
             "since_s": since_s,
             "deadline_s": deadline_s,
-            "failure": _failure(node),
+            "failure": _failure(node, feedback),
         }
     )
     for number, child in enumerate(node.children):
@@ -110,13 +111,13 @@ def kind(node: Behaviour) -> str:
 
 def _description(node: Behaviour) -> str:
     """The first line of a user's node's docstring; screens describe KINDS in their own words."""
-    lines = (type(node).__doc__ or "").strip().splitlines() if kind(node) == OWN else []
+    lines = (type(node).__doc__ or "").strip().splitlines()
     return lines[0].strip() if lines else ""
 
 
-def _parameters(node: Behaviour) -> dict[str, Any]:
-    """The parameters of a node; of a command only those that it was sent with."""
-    told = TOLD.get(kind(node))
+def _parameters(node: Behaviour, sign: str) -> dict[str, Any]:
+    """The parameters of a node of this kind; of a command only those that it was sent with."""
+    told = TOLD.get(sign)
     if told is not None:
         return told(node)
     own = getattr(node, "parameters", None)
@@ -164,11 +165,12 @@ def _command_times(node: Act, now: float) -> Times:
 
 def _feedback(node: Behaviour) -> Sentence | str:
     """The feedback of a node; "" if it gives none."""
-    return getattr(node, "told", NOTHING) or node.feedback_message
+    told: Sentence = getattr(node, "told", NOTHING)
+    return node.feedback_message if told is NOTHING else told or node.feedback_message
 
 
-def _failure(node: Behaviour) -> Sentence | str | None:
+def _failure(node: Behaviour, feedback: Sentence | str) -> Sentence | str | None:
     """The sentence of the node's last failure."""
-    if node.status is Status.FAILURE and (said := _feedback(node)):
-        return said
+    if node.status is Status.FAILURE and feedback:
+        return feedback
     return getattr(node, "last_failure", None)

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from itertools import pairwise
+from operator import attrgetter
 
 from arboleda.model.messages import ENDED, TaskState
 from arboleda.views.oee import ENOUGH, LATE_S, TIMES, KeptFigures, Oee, Run, Shortest, Work, oee
@@ -80,33 +81,35 @@ class _Interval:
         return self._best.get((work.cell, work.order))
 
     def took_s(self, work: Work) -> float:
-        return self.total(self.is_up, work.started_s or 0.0, work.ended_s or 0.0)
+        pieces = self.pieces(work.started_s or 0.0, work.ended_s or 0.0)
+        return sum([seconds for at, seconds in pieces if self.is_up(at)])
 
-    def total(self, is_so: Callable[[float], bool], since_s: float, until_s: float) -> float:
-        """The seconds for which `so` was true; it changes at edges only."""
-        edges = [since_s, *(edge for edge in self._edges if since_s < edge < until_s), until_s]
-        return sum(b - a for a, b in pairwise(edges) if b > a and is_so((a + b) / 2))
+    def pieces(self, since_s: float, until_s: float) -> list[tuple[float, float]]:
+        """The middle and the length of each piece of a time in which nothing changed, s."""
+        edges = [since_s, *[edge for edge in self._edges if since_s < edge < until_s], until_s]
+        return [((a + b) / 2, b - a) for a, b in pairwise(edges) if b > a]
 
     def is_up(self, at: float) -> bool:
         """True if the plant ran then, and the cell did not stand."""
-        stood = any(each.since_s < at and (each.until_s is None or at < each.until_s) for each in self._downs)
+        downs = [each for each in self._downs if each.since_s < at]
+        stood = [each for each in downs if each.until_s is None or at < each.until_s]
         return not stood and self._run_at(at)[1]
 
     def is_planned(self, at: float) -> bool:
         """True if a task waited or was at work then, and the plant was not ended."""
-        wanted = any(
-            each.accepted_s < at and (each.ended_s is None or at < each.ended_s) for each in self._works
-        )
+        accepted = [each for each in self._works if each.accepted_s < at]
+        wanted = [each for each in accepted if each.ended_s is None or at < each.ended_s]
         run, runs = self._run_at(at)
-        return wanted and (runs or not run.ended)
+        return bool(wanted) and (runs or not run.ended)
 
     def is_at_work(self, at: float) -> bool:
         begun = [each for each in self._works if each.started_s is not None and each.started_s < at]
-        return any(each.ended_s is None or at < each.ended_s for each in begun) and self.is_up(at)
+        last = [each for each in begun if each.ended_s is None or at < each.ended_s]
+        return bool(last) and self.is_up(at)
 
     def _run_at(self, at: float) -> tuple[Run, bool]:
         """The last start of the plant before that time, and whether it still ran."""
-        run = max((each for each in self._runs if each.since_s < at), key=lambda each: each.since_s)
+        run = max([each for each in self._runs if each.since_s < at], key=attrgetter("since_s"))
         lasts = run is self._runs[-1] and not run.ended and self._until_s - run.seen_s <= LATE_S
         return run, lasts or at < run.seen_s
 
@@ -118,8 +121,9 @@ def _unlike(told: Oee, seen: _Interval) -> Iterator[str]:
     timed = [(best_s, work) for work in items if (best_s := seen.best_s(work)) is not None]
     took_s = sum(seen.took_s(work) for _, work in timed)
     compared = items and len(timed) >= ENOUGH * len(items) and took_s > 0
-    planned_s = seen.total(seen.is_planned, begin, until_s)
-    worked_s = seen.total(lambda at: seen.is_planned(at) and seen.is_at_work(at), begin, until_s)
+    planned = [(at, seconds) for at, seconds in seen.pieces(begin, until_s) if seen.is_planned(at)]
+    planned_s = sum([seconds for _, seconds in planned])
+    worked_s = sum([seconds for at, seconds in planned if seen.is_at_work(at)])
     availability = worked_s / planned_s if planned_s else None
     performance = sum(best_s for best_s, _ in timed) / took_s if compared else None
     quality = states[TaskState.DONE] / len(items) if items else None

@@ -117,9 +117,9 @@ def node(cell: KnownCell, there: Behaviour, row: Row, now: float) -> Iterator[st
     word = WORDS.get(type(there).__name__)
     if word is not None and row["kind"] != word:
         yield f"{where} is shown as a {row['kind']}, it is a {word}"
-    failed = there.status is Status.FAILURE and there.feedback_message
-    shown = (str(row["feedback"]), str(row["failure"]) if failed else there.feedback_message)
-    if shown != (there.feedback_message, there.feedback_message):
+    message = there.feedback_message
+    failed = there.status is Status.FAILURE and message
+    if str(row["feedback"]) != message or (failed and str(row["failure"]) != message):
         yield f"{where} is shown with {row['feedback']!r} and {row['failure']!r}"
     seconds = getattr(there, "seconds", None)
     timed = seconds is not None and row["kind"] in ("dwell", "await")
