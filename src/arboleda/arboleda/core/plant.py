@@ -452,10 +452,10 @@ class Plant:
             is_news = self.dispatcher.beliefs[report.robot].repeats < SETTLES_IN
             is_news = is_news or self.dispatcher.effectors.version != before
             for run in runs:
-                if run.state is not CellState.EXECUTE:  # what such a cell waits for shows in reports
-                    self._touched.add(run.cell.name)
                 if is_news or run.state is not CellState.IDLE:
                     self._revised.add(run.cell.name)
+                    if run.state is not CellState.EXECUTE:  # what such a cell waits for shows in reports
+                        self._touched.add(run.cell.name)
                 if report.piece is not None and run.context.sensors.awaited:
                     run.context.sensors.awaited = False  # who goes on waiting asks again
                     self.dispatcher.ledger.changed.add(run.cell.name)

@@ -119,7 +119,6 @@ class Belief:
         if not self.online or report.at < self.position_at or report.words != self._said:
             return False
         self.repeats += 1
-        self._count(report)
         self._hear(report)
         if report.at - self._counted[0] >= RATE_S:
             self._count_rate(report.at)
@@ -128,7 +127,7 @@ class Belief:
     def merge(self, report: Report) -> None:
         """Take over what the report says; what it leaves out stays."""
         self.repeats = 0
-        self._count(report)
+        self._hear(report)
         if report.epoch is not None and report.epoch != self.epoch:
             self.barred = False  # a bridge that restarted knows of no stop
         for name, value in zip(MERGED, _merged(report), strict=True):
@@ -145,7 +144,6 @@ class Belief:
             self.plant = report.plant  # a bridge that restarted has to hear the plant anew
         self._said, self.lost = report.words, report.lost
         self._count_rate(report.at)
-        self._hear(report)
         self.online = self._is_online()
 
     def _merge_facts(self, facts: Facts) -> None:
@@ -153,20 +151,9 @@ class Belief:
             self.facts.update(facts)
             self.facts_no = self.reports
 
-    def _hear(self, report: Report) -> None:
-        """Take over when it spoke."""
-        if report.q is not None or report.node is not None:
-            self.position_at = report.at
-        if report.number is not None:
-            self.number = report.number
-        if report.state is not MotionState.NO_LINK:
-            self.heard_at = report.at
-            self.stale = False
-            self.stale_at = report.at + self.stale_after_s if self.supervised else None
-
     def _count_rate(self, at: float) -> None:
         since, reports = self._counted
-        if self.heard_at is None or not self.online:
+        if self.reports == 1 or not self.online:
             self.rate_hz, self._counted = None, (at, self.reports)
         elif at - since >= RATE_S:
             self.rate_hz, self._counted = (self.reports - reports) / (at - since), (at, self.reports)
@@ -182,9 +169,15 @@ class Belief:
             return False
         return self.heard_at is not None or not self.supervised
 
-    def _count(self, report: Report) -> None:
-        """Number the reports, so that "since" never hangs on two clocks agreeing."""
+    def _hear(self, report: Report) -> None:
+        """Take over when it spoke; their numbers keep "since" from hanging on two clocks."""
         self.reports += 1
+        if report.number is not None:
+            self.number = report.number
+        if report.state is not MotionState.NO_LINK:
+            self.heard_at = report.at
+            self.stale = False
+            self.stale_at = report.at + self.stale_after_s if self.supervised else None
         if report.state is not None:
             still = report.state in STILL and self.state in STILL
             self._still_from = self.state_no if still else 0
@@ -195,6 +188,8 @@ class Belief:
             self._rested_from = self.reports if moved else self.position_no
             self._rested_at = report.at if moved else self.position_at
             self.position_no = self.reports
+        if report.q is not None or report.node is not None:
+            self.position_at = report.at
         if report.piece is not None:
             self.piece_at = report.at
             self.piece_since = report.at if report.piece is not self.piece else self.piece_since

@@ -361,7 +361,8 @@ class Dispatcher:
             verdict = evidence.judge(entry, before, belief, report)
             if verdict is not None:
                 self._book(entry, verdict, now)
-        self.unnamed.hear(report)
+        if self.unnamed.ids.get(name):
+            self.unnamed.hear(report)
         if name in self.under_way.ids or name in self.unheard_clears:
             self.under_way.hear(report, now)
             if belief.online:

@@ -15,28 +15,29 @@ KEPT = 64  # commands per arm; whatever settles a later one settles those before
 class Unnamed:
     """How many commands left for each board that numbers them, and were not named by it yet.
 
-    What proves that a command is done need not name it: a switch may already be as it was told.
+    What proves that a command is done need not name it: a switch may already be as it was told. `ids` are
+    theirs by robot, oldest first.
     """
 
     def __init__(self, model: PlantModel) -> None:
         robots = model.robots.values()
-        self._ids: dict[str, list[str]] = {
+        self.ids: dict[str, list[str]] = {
             robot.name: [] for robot in robots if robot.evidence is Evidence.IDS
         }
 
     def left(self, command: Command) -> None:
         """A command leaves for its robot."""
-        if (ids := self._ids.get(command.robot)) is not None:
+        if (ids := self.ids.get(command.robot)) is not None:
             ids.append(command.id)
             del ids[:-KEPT]
 
     def hear(self, report: Report) -> None:
         """A robot reports, and may name commands."""
-        if ids := self._ids.get(report.robot):
+        if ids := self.ids.get(report.robot):
             _settle(ids, report)
 
     def of(self, robot: str) -> int:
-        return len(self._ids.get(robot, ()))
+        return len(self.ids.get(robot, ()))
 
 
 class UnderWay:

@@ -59,9 +59,8 @@ class Status:
 def to_status(robot: Robot, report: Report) -> Status:
     """The status to publish for a report; one without a state tells of refused or foreign commands."""
     level, message = (WARN, "command refused") if report.state is None else _SAID[report.state]
-    values = {
-        key: write(getattr(report, name)) for key, (name, _, write) in _ROWS.items() if _said(report, name)
-    }
+    rows = [(key, getattr(report, name), write) for key, (name, _, write) in _ROWS.items()]
+    values = {key: write(value) for key, value, write in rows if value is not None}
     if report.foreign is not None:
         values |= _written(report.foreign)
     return Status(name=_name(robot), hardware_id=robot.mqtt, level=level, message=message, values=values)
@@ -104,10 +103,6 @@ def from_heard_labels(labels: Iterable[str]) -> int | None:
 
 def _name(robot: Robot) -> str:
     return f"arboleda: {robot.name}"
-
-
-def _said(report: Report, name: str) -> bool:
-    return getattr(report, name) is not None
 
 
 def _fits(robot: Robot, report: Report) -> None:

@@ -43,7 +43,7 @@ def _stops(look: Look) -> Iterator[str]:
     """Sentences on stops kept wrongly. A cell's clear counts, until its reset, for unstopped robots, too."""
     kept = look.world.memory.get(Fact.LATCH, {})
     for cell in look.record.cells.values():
-        for robot in (each for each in cell.cell.robots if each.link not in UNSENT):
+        for robot in [each for each in cell.cell.robots if each.link not in UNSENT]:
             stop, word = look.record.robots[robot.name].stop, kept.get(robot.name)
             if word != KEPT[stop] and not (stop is None and cell.stopped and word == "cleared"):
                 yield f"{robot.name} is {stop.value if stop else 'not stopped'}, and {word} is kept"
@@ -53,9 +53,9 @@ def _effectors(look: Look) -> Iterator[str]:
     kept = look.world.memory.get(Fact.EFFECTOR, {})
     for cell in look.record.cells.values():
         for name in cell.cell.holders:
-            grip = cell.context.parts.grip(name).value
+            grip = cell.context.parts.grip(name)
             if kept.get(name, "off") != grip:
-                yield f"the effector of {name} is {grip}, kept is {kept.get(name)}"
+                yield f"the effector of {name} is {grip.value}, kept is {kept.get(name)}"
 
 
 def _zones(look: Look) -> Iterator[str]:

@@ -94,8 +94,9 @@ class KnownBoard:
 
     def forget_read(self, unread: list[Any]) -> None:
         """Forget messages that left the board's inbox, read or lost: they are no longer new to it."""
-        read = [each for each in self.inbox if not any(each is other for other in unread)]
-        self.inbox = [each for each in self.inbox if any(each is other for other in unread)]
+        waiting = set(map(id, unread))
+        read = [each for each in self.inbox if id(each) not in waiting]
+        self.inbox = [each for each in self.inbox if id(each) in waiting]
         if not self._notice_boot():
             for delivery in read:
                 self._read(delivery)

@@ -657,7 +657,7 @@ def _agree(report: Report, said: dict[str, Any], robot: Robot) -> bool:
     for flag, key in ((report.homed, "ref"), (report.effector, "efector"), (report.piece, "pieza")):
         if flag != (None if key not in said else said[key] == 1):
             return False
-    if report.state is None or report.state.value != said["estado"]:
+    if report.state is None or report.state != said["estado"]:
         return False
     if not robot.joints:
         return report.node == said["nodo"] and report.q is None

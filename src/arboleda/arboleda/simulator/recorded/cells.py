@@ -67,7 +67,7 @@ class KnownCell:
         self.wakes = self.context.time.wakes
         if (
             run.state is self.state
-            and run.tree is self.tree
+            and run.run.tree is self.tree
             and run.task is self.task
             and run.queue.paused is self.paused
             and len(run.queue) == self.queued

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import math
 from collections import deque
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
+from functools import cache
+from operator import attrgetter
 
 from py_trees.behaviour import Behaviour
 
@@ -143,12 +145,17 @@ def turns_of(leaf: Behaviour) -> list[int]:
     """The turns of the repeating steps around a step, the outermost first."""
     turns, node = [], leaf.parent
     while node is not None:
-        if isinstance(node, StepOfFile):
-            turns.append(node.turn)  # in trees of files each step counts its turns
-        elif isinstance(node, Times | Again):
-            turns.append(node.done if isinstance(node, Times) else node.tries)
+        if (turn := _turn_in(type(node))) is not None:
+            turns.append(turn(node))
         node = node.parent
     return turns[::-1]
+
+
+@cache
+def _turn_in(kind: type[Behaviour]) -> Callable[[Behaviour], int] | None:
+    """The number of the turn in nodes of a class that repeats; in trees of files each step counts its own."""
+    counts = ((StepOfFile, "turn"), (Times, "done"), (Again, "tries"))
+    return next((attrgetter(count) for repeats, count in counts if issubclass(kind, repeats)), None)
 
 
 def most_turns(leaf: Behaviour) -> float:
