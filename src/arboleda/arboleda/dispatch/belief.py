@@ -260,7 +260,7 @@ class Belief:
     @property
     def unhomed(self) -> bool:
         """True where its position means nothing: it reports so, or it must have rebooted."""
-        return self.displaced or self.says_unhomed
+        return self.displaced or self.homed is False or self.state is MotionState.NOT_HOMED
 
     @property
     def says_unhomed(self) -> bool:

@@ -136,7 +136,7 @@ class Broker:
     def publish(self, publication: Publication, sender: Client | None = None) -> None:
         """Publish for a sender; None: somebody outside the plant, or the broker with a client's last will."""
         now = self._clock.now
-        if sender is None or (sender.connected and sender.up.is_clear(now)):
+        if sender is None or (sender.connected and not sender.up.troubles and sender.up.busy_until <= now):
             self._spread(publication, now)
         elif sender.connected:
             for at in sender.up.carry(now, publication):
@@ -174,7 +174,8 @@ class Broker:
         if publication.retain:
             self.retained[topic] = publication
         for client in self._listeners.get(topic, ()):
-            if client.connected and client.down.is_clear(now):
+            down = client.down  # `is_clear` is not called, here and above: every message comes by
+            if client.connected and not down.troubles and down.busy_until <= now:
                 self._heard(client, Delivery(at=now, topic=topic, payload=payload, retain=False))
             else:
                 self._send(client, publication, now, retained=False)

@@ -438,7 +438,8 @@ class Record:
                 continue
             if report.robot in commanded and (asked or known.robot.home_at_start):
                 self._earlier.setdefault(report.robot, []).append(known.as_it_is())
-            self.proofs.hear(report, known)
+            if report.robot in self.proofs.by_robot:
+                self.proofs.hear(report, known)
             if report.boot_id not in (None, known.boot):
                 self._booted.add(report.robot)
             if known.hear(report):

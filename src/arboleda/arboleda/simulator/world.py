@@ -602,7 +602,7 @@ class World:
         inbox, client.inbox = client.inbox, []
         self.moment.taken += [event for event in inbox if isinstance(event, FromPlant)]
         now = self.now
-        clear = self.to_plant.is_clear(now)
+        clear = self.to_plant.is_clear(now) and (PLANT not in self._off or self._ending is not None)
         out = bridge.step(now, inbox)
         self.moment.bridged.append(BridgeStep(bridge, now, inbox, out))
         for message in out:
@@ -611,7 +611,7 @@ class World:
                     for part in self.partings[message.robot](message):
                         self.at(part.at, self._report, part)
                 elif clear and message.at == now:
-                    self._post(message)
+                    self._plant_inbox.append(message)
                 else:
                     self._carry(self.to_plant.carry_on(message.robot, now, message), self._to_plant, message)
             elif isinstance(message, Publication):

@@ -51,7 +51,8 @@ def titled(node: Behaviour, title: Sentence | str) -> Behaviour:
 
 def title_of(node: Behaviour) -> Sentence:
     """The name of a node as a sentence; of one that nobody titled its plain name."""
-    return getattr(node, "title", None) or OWN(text=node.name)
+    title: Sentence | None = getattr(node, "title", None)
+    return OWN(text=node.name) if title is None else title
 
 
 class Leaf(Keeps, Behaviour):

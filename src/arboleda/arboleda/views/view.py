@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Generator, Iterable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 from arboleda.core import reasons
@@ -25,8 +25,17 @@ from arboleda.trees.tree_run import step_of
 
 from . import forms, geometry, tree_view, twin_view
 
-OF_ROBOTS = refusable(Scope.ROBOT)
-OF_CELLS = refusable(Scope.CELL)
+Row = tuple[str, Verb, bool]
+
+
+def _rows(scope: Scope) -> tuple[Row, ...]:
+    """The verbs that a scope may be shown to refuse: the word of each, and whether it was done by hand."""
+    verbs = refusable(scope)
+    alone = [(verb.value, verb, False) for verb in verbs]
+    return (*alone, *((f"{verb.value}_by_hand", verb, True) for verb in verbs if verb in BY_HAND))
+
+
+OF_ROBOTS, OF_CELLS = _rows(Scope.ROBOT), _rows(Scope.CELL)
 RECENT = 20  # ended tasks that a snapshot shows
 
 
@@ -291,13 +300,14 @@ def _advice(advice: Advice) -> dict[str, Any]:
     }
 
 
-def _refused(plant: Plant, scope: str, verbs: tuple[Verb, ...]) -> dict[str, Sentence]:
+def _refused(plant: Plant, scope: str, rows: tuple[Row, ...]) -> dict[str, Sentence]:
     """The verbs that would be refused, with the reasons; those by hand as `home_by_hand` and so on."""
-    asked = {verb.value: OperatorRequest(at=plant.now, verb=verb, scope=scope) for verb in verbs}
-    for verb in filter(BY_HAND.__contains__, verbs):
-        asked[f"{verb.value}_by_hand"] = replace(asked[verb.value], by_hand=True)
-    found = {name: plant.refusal(request) for name, request in asked.items()}
-    return {name: why for name, why in found.items() if why is not None}
+    found = {}
+    for name, verb, by_hand in rows:
+        request = OperatorRequest(at=plant.now, verb=verb, scope=scope, by_hand=by_hand)
+        if (why := plant.refusal(request)) is not None:
+            found[name] = why
+    return found
 
 
 def standing(cell: dict[str, Any]) -> str:

@@ -203,7 +203,8 @@ class Board:
             return self._turned(delivery, self._words, self._last) if self._words.joints else None
         if not self.link.hear_again(delivery.at, number):
             return None
-        self._last = self._last.again(delivery.at, **self._words.news(number))
+        news = {} if self._words.after is None else {"number": number}
+        self._last = self._last.again(delivery.at, **news)
         return self._last
 
     def _turned(self, delivery: Delivery, words: Words, last: Report) -> Report | None:
@@ -216,7 +217,9 @@ class Board:
         number = words.number(delivery.payload)
         if number is None or not self.link.hear_again(delivery.at, number):
             return None
-        news = {"q": self._in_si(angles), **words.news(number)}
+        news: dict[str, object] = {"q": self._in_si(angles)}
+        if words.after is not None:
+            news["number"] = number
         self._words, self._last = words, last.again(delivery.at, **news)
         return self._last
 

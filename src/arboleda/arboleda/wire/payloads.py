@@ -88,8 +88,10 @@ def encode(payload: Payload) -> bytes:
 
 def angles(q: tuple[float, ...]) -> bytes:
     """The beginning of an arm's telemetry, up to its last joint."""
+    if not all(map(MAX_ANGLE_DEG.__ge__, map(abs, q))):
+        _angles(q)  # says which one it is
     rows = zip(_joint_keys(len(q), "_mov"), q, strict=True)
-    return ("{" + ",".join([f'"{key}":{_angle(key, value)}' for key, value in rows])).encode()
+    return ("{" + ",".join([f'"{key}":{round(value, _DECIMALS) + 0.0}' for key, value in rows])).encode()
 
 
 def read_angles(raw: bytes, axes: int) -> tuple[tuple[float, ...], int] | None:

@@ -60,10 +60,6 @@ class Words:
         number = int(digits)
         return number if number <= UINT32 and b"%d" % number == digits else None  # else it is not JSON
 
-    def news(self, number: int) -> dict[str, int]:
-        """The fields that a message of this number adds to a repeated one; none if it has no number."""
-        return {} if self.after is None else {"number": number}
-
 
 def _joints(raw: bytes, said: Telemetry) -> int:
     """The number of bytes that hold joints; 0 unless the arm moves, as joints at rest may end a motion."""

@@ -148,6 +148,8 @@ def nothing_is_dropped(look: Look) -> Iterator[str]:
     its tool has said too early that it had let go, nobody could know.
     """
     truth = look.truth
+    if not [robot for robot in truth.changed if robot.let_go]:
+        return
     for cell in look.world.model.cells:
         for space in cell.spaces:
             hand, carrier = truth.robot(space.hand.name), truth.robot(space.robot.name)

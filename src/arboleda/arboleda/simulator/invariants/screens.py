@@ -8,6 +8,7 @@ from dataclasses import replace
 from typing import Any
 
 from py_trees.behaviour import Behaviour
+from py_trees.common import Status
 
 from arboleda.core.cell_states import CellState
 from arboleda.dispatch.ledger import OPEN, State
@@ -39,6 +40,7 @@ EXACT = 1e-6
 AT_FIRST = ("idle", "free", "offline")  # of which there is no event where a thing begins so
 GOING = (State.SENT, State.RUNNING)
 STALE, ERROR, WARN, OK = 3, 2, 1, 0
+STATUSES = {status: status.value for status in Status}
 Row = dict[str, Any]
 
 
@@ -238,7 +240,7 @@ def _tree(cell: KnownCell, rows_: list[Row], now: float, *, own: bool) -> Iterat
         node = _node(tree, row["path"])
         if row["name"].phrase is OWN and not own:
             yield f"{cell.name}: {row['path']} is shown as {row['name']} in every language"
-        if (str(row["name"]), row["status"]) != (node.name, node.status.value):
+        if str(row["name"]) != node.name or row["status"] != STATUSES[node.status]:
             yield f"{cell.name}: {row['path']} is shown as {row['name']} {row['status']}"
         entry = getattr(node, "entry", None)
         if entry is not None and row["parameters"].get("command") != entry.command.id:

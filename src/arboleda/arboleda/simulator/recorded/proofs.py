@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from itertools import starmap
 
 from arboleda.kinds.joints import MoveJoints
 from arboleda.kinds.mobile import FollowPath
@@ -55,38 +54,38 @@ class ReportEvidence:
 
 
 class Proofs:
-    """Proofs by command id in `of`, for this step; a command of which nothing was said has none."""
+    """Proofs by command id in `of`, for this step; a command of which nothing was said has none.
+
+    `by_robot` are the open commands: the reports of other robots prove nothing.
+    """
 
     def __init__(self) -> None:
         self.of: dict[str, Proof] = {}
         self._shown: dict[str, ReportEvidence] = {}
-        self._by_robot: dict[str, list[SentCommand]] = {}
+        self.by_robot: dict[str, list[SentCommand]] = {}
 
     def forget(self) -> None:
         """Forget all, as the plant that sent the commands is gone."""
         self.of.clear()
         self._shown.clear()
-        self._by_robot.clear()
+        self.by_robot.clear()
 
     def clear_news(self) -> None:
         self.of.clear()
 
     def follow(self, sent: list[SentCommand]) -> None:
         """Take over which commands are open after this step."""
-        self._by_robot.clear()
+        self.by_robot.clear()
         for each in sent:
-            self._by_robot.setdefault(each.robot, []).append(each)
+            self.by_robot.setdefault(each.robot, []).append(each)
         ids = {each.command.id for each in sent}
         self._shown = {id: shown for id, shown in self._shown.items() if id in ids}
 
     def hear(self, report: Report, known: KnownRobot) -> None:
         """Take in a report; `known` is what its robot had said before."""
-        open_commands = self._by_robot.get(report.robot)
-        if open_commands is None:
-            return
         q = known.q if report.q is None else report.q
         node = known.node if report.node is None else report.node
-        for sent in open_commands:
+        for sent in self.by_robot.get(report.robot, ()):
             proof = self.of.setdefault(sent.command.id, Proof())
             _broken(proof, sent, report, known)
             if report.at >= sent.at:
@@ -132,7 +131,8 @@ def _must(proof: Proof, reason: Reason, why: str) -> None:
 def _see(shown: ReportEvidence, sent: SentCommand, report: Report) -> None:
     shown.moving |= report.state is MotionState.MOVING
     shown.position |= report.q is not None or report.node is not None
-    shown.facts |= any(report.fact(name) is not None for name, _ in sent.command.sets)
+    for name, _ in sent.command.sets:
+        shown.facts |= report.fact(name) is not None
     shown.unhomed |= report.homed is False
 
 
@@ -207,14 +207,12 @@ def _off(sent: SentCommand, robot: Robot, q: tuple[float, ...] | None, node: int
         return None if node is None else _off_path(command.nodes, node)
     if not isinstance(command, MoveJoints) or not robot.joints or q is None:
         return None
-
-    def beyond(at: float, goal: float, step: float, tolerance: float) -> float:
-        steps = math.floor(abs(goal) / step + 0.5) * (1 if goal >= 0 else -1)
-        return abs(at - steps * step) - tolerance
-
-    tolerances = robot.tolerance or [joint.step / 2 + 1e-5 for joint in robot.joints]
-    steps = [joint.step for joint in robot.joints]
-    return max(starmap(beyond, zip(q, command.q, steps, tolerances, strict=True)))
+    beyond = -math.inf
+    for number, (at, goal, joint) in enumerate(zip(q, command.q, robot.joints, strict=True)):
+        tolerance = robot.tolerance[number] if robot.tolerance else joint.step / 2 + 1e-5
+        steps = math.floor(abs(goal) / joint.step + 0.5) * (1 if goal >= 0 else -1)
+        beyond = max(beyond, abs(at - steps * joint.step) - tolerance)
+    return beyond
 
 
 def _off_facts(sent: SentCommand, report: Report, known: KnownRobot) -> float:
