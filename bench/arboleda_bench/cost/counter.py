@@ -14,6 +14,7 @@ import arboleda
 HERE = Path(__file__).parents[2]  # the folder of benchmarks
 PRODUCT = Path(arboleda.__file__).parents[1]
 Calls = Counter[str]
+_counting: list[Profile] = []  # of the act that runs
 
 
 def count(act: Callable[[], object]) -> Calls:
@@ -25,9 +26,11 @@ def count(act: Callable[[], object]) -> Calls:
     profile = Profile(subcalls=False, builtins=False)
     collects = gc.isenabled()
     gc.disable()
+    _counting.append(profile)
     try:
         profile.runcall(act)
     finally:
+        _counting.clear()
         if collects:
             gc.enable()
     calls: Calls = Counter()
@@ -35,6 +38,12 @@ def count(act: Callable[[], object]) -> Calls:
         if isinstance(entry.code, CodeType):
             calls[_name(entry.code)] += entry.callcount
     return calls
+
+
+def stop_counting() -> None:
+    """End the count of the act that runs: what it does from here on is free."""
+    for profile in _counting:
+        profile.disable()
 
 
 def _name(code: CodeType) -> str:

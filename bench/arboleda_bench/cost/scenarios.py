@@ -19,8 +19,8 @@ from starlette.types import ASGIApp, Receive, Scope, Send
 from arboleda.adapters import clock
 from arboleda.campaigns.request import Request
 from arboleda.core.plant import Plant
-from arboleda.kinds.mobile import FollowPath
 from arboleda.model.commands import Command
+from arboleda.model.messages import TaskRequest
 from arboleda.model.plant_model import PlantModel
 from arboleda.plant_file.loader import load
 from arboleda.recorder.state import state_of
@@ -40,6 +40,7 @@ from arboleda.web.auth import Role
 from .. import plants
 from ..obedient import EPOCH, Yard, command_in, is_over
 from ..step import begin_task, go_on, leads_on, until_a_move
+from .counter import stop_counting
 
 Act = Callable[[], object]
 Scenario = Callable[[], Iterator[Act]]
@@ -73,6 +74,20 @@ def ends_of_moves(cells: int) -> Iterator[Act]:
         made: list[Any] = []
         yield lambda report=report, made=made: made.extend(yard.step(report))
         out = made
+
+
+def from_reports() -> Iterator[Act]:
+    """The way from a report that ends a command to the next one, in a plant that keeps both in a file."""
+    yard = Yard(_model(1, dwell_s=0))
+    with tempfile.TemporaryDirectory() as folder, Store(Path(folder) / "plant.sqlite") as store:
+        port, plant = Port(), WholePlant(yard.plant.model, EPOCH, _crash, store)
+        plant.connect(port)
+        plant.step(*yard.words.values(), TaskRequest(at=0.0, text=TEXT))
+        port.sent = stop_counting
+        while port.commands:
+            command = port.commands.pop()
+            plant.step(yard.accepts(command))
+            yield partial(plant.step, yard.finishes(command))
 
 
 def waking() -> Iterator[Act]:
@@ -126,9 +141,7 @@ def from_http() -> Iterator[Act]:
         port = Port()
         plant = WholePlant(model, EPOCH, _crash, store)
         plant.connect(port)
-        for words in Yard(model).words.values():
-            plant.hear(replace(words, at=clock.seconds()))
-        plant.loop.turn()
+        plant.step(*Yard(model).words.values())
         transport = httpx.ASGITransport(app=Logged(make_app(LocalPlant(plant, TaskHistory(Path("none"))))))
         client = httpx.AsyncClient(transport=transport, base_url="http://plant")
         yield lambda: asyncio.run(_ask_by_http(client, plant, port))
@@ -143,16 +156,25 @@ class WholePlant(Orchestrator):
         super().hear(event)
         self.heard()
 
+    def step(self, *events: Any) -> None:
+        """Hear events now, and step."""
+        for event in events:
+            self.hear(replace(event, at=clock.seconds()))
+        self.loop.turn()
+
 
 class Port:
-    """A port that keeps the commands that leave."""
+    """A port that keeps the commands that leave; `sent` is called after each."""
+
+    sent: Callable[[], object] = staticmethod(lambda: None)
 
     def __init__(self) -> None:
         self.commands: list[Command] = []
 
     def send(self, message: object) -> None:
-        if isinstance(message, FollowPath):
+        if isinstance(message, Command):
             self.commands.append(message)
+            self.sent()
 
 
 class Logged:
@@ -222,6 +244,7 @@ SCENARIOS: dict[str, Scenario] = {
     "step: a report of a moving arm": partial(moving_reports, 1),
     "step: the report that ends a move": partial(ends_of_moves, 1),
     "step: the report that ends a move, 100 cells": partial(ends_of_moves, 100),
+    "from a report that ends a command to the next command": from_reports,
     "waking of a tree that waits on": waking,
     "a plant from its making to its first command": first_task,
     "a task from HTTP to its first command": from_http,
