@@ -224,6 +224,57 @@ def test_a_sync_of_a_memory_that_is_not_in_its_place_is_refused(path):
 GRIP = Remember(fact=Fact.EFFECTOR, name="ra1", value="switching")
 
 
+def test_facts_that_were_noted_are_there_after_the_process_was_killed(path, tmp_path):
+    with Store(path) as store:
+        store.note(GRIP)
+        killed = tmp_path / "killed"
+        shutil.copytree(path.parent, killed, ignore=shutil.ignore_patterns("killed"))
+    with Store(killed / path.name) as store:
+        assert store.facts(Fact.EFFECTOR) == {"ra1": "switching"}
+
+
+def test_facts_that_were_noted_are_lost_with_the_power_of_the_host(path, tmp_path, monkeypatch):
+    with Store(path) as store:
+        store.note(GRIP)
+        cut = tmp_path / "cut"
+        shutil.copytree(path.parent, cut, ignore=shutil.ignore_patterns("cut"))
+    monkeypatch.setattr(sqlite, "this_boot", lambda: "the next one")
+    with Store(cut / path.name) as store:
+        assert store.facts(Fact.EFFECTOR) == {}
+
+
+@pytest.mark.parametrize("length", [0, 7, 8, 9, 50])
+def test_a_note_that_was_not_written_to_its_end_is_none(path, tmp_path, length):
+    with Store(path) as store:
+        store.note(GRIP)
+        killed = tmp_path / "killed"
+        shutil.copytree(path.parent, killed, ignore=shutil.ignore_patterns("killed"))
+    note = killed / f"{path.name}-ahead"
+    assert len(note.read_bytes()) > length
+    os.truncate(note, length)
+    with Store(killed / path.name) as store:
+        assert store.facts(Fact.EFFECTOR) == {}
+
+
+def test_what_is_written_after_a_note_comes_after_it(path):
+    with Store(path) as store:
+        store.note(GRIP)
+        store.keep(Remember(fact=Fact.EFFECTOR, name="ra1", value="on"))
+        store.settle()
+        assert store.facts(Fact.EFFECTOR) == {"ra1": "on"}
+    assert not Path(f"{path}-ahead").exists()
+
+
+def test_facts_that_cannot_be_noted_are_committed(path, monkeypatch):
+    def full(*_):
+        raise OSError("no space left on device")
+
+    with Store(path) as store, monkeypatch.context() as patch:
+        patch.setattr(os, "pwrite", full)
+        store.note(GRIP)
+        assert store.facts(Fact.EFFECTOR) == {"ra1": "switching"}
+
+
 def on_boot(boot: str, path: Path, monkeypatch: pytest.MonkeyPatch) -> Store:
     monkeypatch.setattr(sqlite, "this_boot", lambda: boot)
     store = Store(path)
@@ -506,7 +557,7 @@ def test_a_damaged_file_is_found_at_the_start(path):
     with path.open("r+b") as file:
         file.seek(4096 * 4)
         file.write(b"\xaa" * 4096 * 4)
-    assert "malformed): move it away, together with its -wal and -shm files" in refusal(path)
+    assert "malformed): move it away, together with its -wal, -shm and -ahead files" in refusal(path)
 
 
 @pytest.mark.parametrize("left", [0, 1, 100, 4096, 5000])

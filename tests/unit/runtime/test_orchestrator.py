@@ -694,6 +694,36 @@ def test_a_command_does_not_wait_until_it_is_durable_where_a_task_stands(plant, 
     assert plant.robots.messages == [ON] and syncs == []
 
 
+STEP = Remember(fact=Fact.STEP, name="a", value="[]")
+
+
+class Sent:
+    """A port that keeps what left, and asks nothing of the store."""
+
+    def __init__(self) -> None:
+        self.messages: list[object] = []
+
+    def send(self, message: object) -> None:
+        self.messages.append(message)
+
+
+def test_where_a_task_stands_is_committed_once_its_command_has_left(plant, store, monkeypatch):
+    port, keep, had_left = Sent(), store.keep, []
+    plant.connect(port)
+    monkeypatch.setattr(store, "keep", lambda *facts: (had_left.append(len(port.messages)), keep(*facts)))
+    turn(plant, STEP, ON)
+    assert port.messages == [ON] and had_left == [1]
+    assert store.facts(Fact.STEP) == {"a": "[]"}
+
+
+def test_a_plant_that_cannot_commit_what_left_its_commands_behind_ends(plant, store, crashes, monkeypatch):
+    port = Sent()
+    plant.connect(port)
+    break_disk(store, monkeypatch)
+    turn(plant, STEP, ON)
+    assert port.messages == [ON] and [str(each) for each in crashes] == ["The disk is full."]
+
+
 def test_a_stop_and_a_heartbeat_leave_whatever_is_not_durable(plant, syncs):
     halt = Stop(id="7-2", robot="ra1", mode=StopMode.HALT)
     turn(plant, GRIP, halt, Heartbeat(epoch=7))

@@ -182,8 +182,9 @@ class Plant:
         """True for what has to be durable before a command leaves; not for effectors in an envelope."""
         if not outlives_power(kept):
             return False
-        names = [kept.name] if isinstance(kept, Remember) and kept.fact is Fact.EFFECTOR else []
-        return not any(name in run.envelope for name in names for run in self.cells.values())
+        if not isinstance(kept, Remember) or kept.fact is not Fact.EFFECTOR:
+            return True
+        return not any(kept.name in run.envelope for run in self._runs.get(kept.name, ()))
 
     @property
     def version(self) -> int:

@@ -221,6 +221,9 @@ class Journal:
     arguments: Arguments = field(default=(), repr=False)
 
 
+LETS_GO = Grip.OFF.value
+
+
 def outlives_power(kept: Remember | Journal | TaskChanged) -> bool:
     """Whether a power cut must not undo that this was kept; all that was kept survives a process that dies.
 
@@ -232,7 +235,7 @@ def outlives_power(kept: Remember | Journal | TaskChanged) -> bool:
     if kept.fact is Fact.STEP:
         return False
     if kept.fact is Fact.EFFECTOR:
-        return kept.value != Grip.OFF.value  # what has gripped and counts as switching lets go in a recovery
+        return kept.value != LETS_GO  # what has gripped and counts as switching lets go in a recovery
     return kept.value is not None or kept.fact not in (Fact.QUARANTINE, Fact.DISPLACED)
 
 

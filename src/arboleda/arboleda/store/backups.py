@@ -29,7 +29,7 @@ from .memory_file import (
 from .sqlite import Store
 from .task_rows import TaskQuery
 
-BESIDE = ("-wal", "-shm", "-journal")
+BESIDE = ("-wal", "-shm", "-journal", "-ahead")
 
 
 def back_up(memory: Path, copy: Path, plant: str = "") -> None:

@@ -20,7 +20,7 @@ LOST_WITH_IT = (
     "lost with it are stop latches, what the effectors hold, quarantined zones, the tasks and the operators'"
     " journal"
 )
-MOVE_AWAY = f"move it away, together with its -wal and -shm files, and start again; {LOST_WITH_IT}"
+MOVE_AWAY = f"move it away, together with its -wal, -shm and -ahead files, and start again; {LOST_WITH_IT}"
 ADVICE = {  # by SQLite's text; Python 3.10 has no error codes
     "not a database": MOVE_AWAY,
     "malformed": MOVE_AWAY,

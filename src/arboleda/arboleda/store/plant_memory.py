@@ -154,6 +154,15 @@ class PlantMemory(ABC):
         durable = any(outlives_power(fact) for fact in facts)
         self._write(*map(_kept, last_words), durable=durable)
 
+    def note(self, *facts: Remember) -> None:
+        """Write facts that may be committed later, by `settle` or with what is written next. They survive a
+        killed process at once.
+        """
+        self.keep(*facts)
+
+    def settle(self) -> None:  # noqa: B027 - who has noted nothing has nothing to commit
+        """Commit what was noted."""
+
     def begin(self, *facts: Remember) -> None:
         """Commit what a start changes of what the one before has left, once it knows how that ended."""
         if facts:

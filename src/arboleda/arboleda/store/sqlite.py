@@ -2,14 +2,14 @@
 
 A commit appends to the log of the file (`-wal`) and waits for no disk: it survives a killed process. `sync`
 has the system write the log to the disk, by a descriptor of its own: from any thread, and while the plant
-commits more.
+commits more. What is noted is in a file of its own (`-ahead`) until it is committed.
 """
 
 from __future__ import annotations
 
 import os
 import sqlite3
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import AbstractContextManager, suppress
 from pathlib import Path
 from typing import Any
@@ -18,6 +18,7 @@ from arboleda.model.errors import ArboledaError, StartError
 from arboleda.model.messages import Remember
 
 from . import row_sums
+from .ahead import Ahead
 from .held_files import HeldFiles
 from .host_boot import this_boot
 from .memory_file import (
@@ -107,6 +108,8 @@ class Store(PlantMemory):
         self._boot = this_boot()
         self._ends_well = False  # whether closing it ends a start that lacks nothing
         self._held = HeldFiles()
+        self._ahead = None if path == IN_MEMORY else Ahead(Path(f"{path}-ahead"), self._boot)
+        self._noted: Sequence[Remember] = ()
 
     def open(self) -> None:
         """Open the file, or make a new one; raises StartError. Idempotent."""
@@ -124,13 +127,18 @@ class Store(PlantMemory):
                 raise
         self._opened = db
         self.may_lack_writes = boot(db) not in (None, self._boot)
-        if self.path != IN_MEMORY:
+        if self._ahead is not None:
             self._held = HeldFiles([self.path, self._log])
             self._log_file = os.open(self._log, os.O_RDONLY)
+            with self._explained(StartError):
+                self._noted = self._ahead.read()
+            self.settle()
 
     def close(self) -> None:
         """Close the file; idempotent."""
         if self._opened is not None:
+            with suppress(ArboledaError):  # the next start finds what is noted
+                self.settle()
             if self._held.loss() is not None:
                 with suppress(sqlite3.Error):  # SQLite itself does not read the log of a moved file
                     self._opened.execute("PRAGMA wal_checkpoint(TRUNCATE)")
@@ -141,6 +149,10 @@ class Store(PlantMemory):
                 self._ends_well = False
             self._opened.close()
             self._opened = None
+            self._noted = ()
+            if self._ahead is not None:
+                with suppress(OSError):
+                    self._ahead.close()
         if self._log_file is not None:
             os.close(self._log_file)
             self._log_file = None
@@ -150,6 +162,22 @@ class Store(PlantMemory):
         rows = (row_of_fact((fact.fact.value, fact.name), fact.value) for fact in facts)
         self._write(*rows, row_of_fact(BOOT, self._boot), durable=True)
         self._ends_well, self.may_lack_writes = True, False
+
+    def note(self, *facts: Remember) -> None:
+        """Write facts beside the memory, which takes a third of the time of a commit."""
+        self.settle()
+        if self._ahead is not None and self._ahead.takes(facts):
+            self._noted = facts
+        else:
+            self.keep(*facts)
+
+    def settle(self) -> None:
+        if self._noted:
+            facts, self._noted = self._noted, ()
+            self.keep(*facts)
+            if self._ahead is not None:
+                with self._explained(ArboledaError):
+                    self._ahead.clear()
 
     def sync(self) -> None:
         try:
@@ -185,6 +213,7 @@ class Store(PlantMemory):
         return self._opened
 
     def _write(self, *statements: Statement, durable: bool) -> None:
+        self.settle()
         with self._explained(ArboledaError):
             if len(statements) == 1:
                 self._db.execute(*statements[0])
@@ -193,6 +222,7 @@ class Store(PlantMemory):
         self.confirm()  # after the commit, so that nobody hears of a write to a file that is not in its place
 
     def _read(self, statement: str, *values: object) -> list[tuple[Any, ...]]:
+        self.settle()
         with self._explained(ArboledaError):
             return self._db.execute(statement, values).fetchall()
 

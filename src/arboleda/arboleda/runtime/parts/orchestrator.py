@@ -9,7 +9,6 @@ from collections import deque
 from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
 from concurrent.futures import Future
 from dataclasses import replace
-from itertools import groupby
 from typing import Any, NamedTuple, Protocol
 from uuid import uuid4
 
@@ -97,6 +96,10 @@ class FlightRecorder(Protocol):
     def saw(self, snapshot: dict[str, Any], drawn: dict[str, Any]) -> None: ...
 
 
+class CommandsLeft(NamedTuple):
+    """Mark at the end of a step's messages: what was only noted before its commands is to be committed."""
+
+
 class RosPort(PlantPort, Protocol):
     """The plant's port on ROS 2, which carries snapshots too and knows whether it is alone."""
 
@@ -180,6 +183,7 @@ class Orchestrator:
         self._crash = crash
         self._amnesia: Exception | None = None
         self._writes: deque[list[Remember]] = deque()  # for each fact of a step that is still to come
+        self._noted = False  # whether facts are written that are not committed
         self._port: PlantPort | None = None
         self._ros: RosPort | None = None
         self._shown = (-1, 0.0)
@@ -359,12 +363,15 @@ class Orchestrator:
         self.durability.stop()
         self.stops.loop.stop()
 
-    def _send(self, message: Command | Notice | StopsAway) -> None:
+    def _send(self, message: Command | Notice | StopsAway | CommandsLeft) -> None:
         if isinstance(message, Remember | Journal):
             self._keep(message)
             return
         if isinstance(message, StopsAway):
             self.stops.departed(message)
+            return
+        if isinstance(message, CommandsLeft):
+            self._settle()
             return
         if isinstance(message, InternalError):
             _log_defect(message.cell or "plant", message.error)
@@ -381,6 +388,7 @@ class Orchestrator:
         if isinstance(message, TaskChanged):
             self._keep_task(message)
         if isinstance(message, TaskChanged | OperatorAnswer):
+            self._settle()
             self.durability.tell(message)
         elif self._port is not None and self._may_leave(message):
             if not leaves_unkept(message):
@@ -475,7 +483,7 @@ class Orchestrator:
         if self.stops.ahead and (away := self.stops.stepped(messages)) is not None:
             stops = [*stops, away]
         self._writes = _writes(messages)
-        return [*stops, *messages] if stops else messages
+        return [*stops, *messages, CommandsLeft()] if stops or self._writes else messages
 
     def _keep(self, message: Remember | Journal) -> None:
         if isinstance(message, Journal):
@@ -485,8 +493,7 @@ class Orchestrator:
             return
         if isinstance(message, Remember):
             if facts := self._writes.popleft():
-                self._store.keep(*facts)
-                self._wrote(*facts)
+                self._keep_facts(self._store, facts)
             return
         self._store.journal(message, time.time())
         self._wrote(message)
@@ -495,6 +502,23 @@ class Orchestrator:
                 task = self.plant.cells[name].task
                 if task is not None:
                     self._store.attempted(task.id, task.attempts)
+
+    def _keep_facts(self, store: PlantMemory, facts: Sequence[Remember]) -> None:
+        """Keep facts before what comes after them leaves; what need not be durable then is only noted."""
+        if any(map(self.plant.precedes_commands, facts)):
+            store.keep(*facts)
+            self.durability.wrote(precedes_commands=True)
+        else:
+            self._settle()
+            store.note(*facts)
+            self._noted = True
+
+    def _settle(self) -> None:
+        """Commit what was noted."""
+        if self._noted and self._store is not None and self._amnesia is None:
+            self._noted = False
+            self._store.settle()
+            self.durability.wrote(precedes_commands=False)
 
     def _keep_task(self, change: TaskChanged) -> None:
         """Answer the requests for a task, and those who wait for its end, once it is kept."""
@@ -534,7 +558,7 @@ class Orchestrator:
             waiting.set_exception(unkept)
 
     def _not_sent(self, message: Any, error: Exception) -> None:
-        if isinstance(message, Remember | Journal | TaskChanged):
+        if isinstance(message, Remember | Journal | TaskChanged | CommandsLeft):
             self._forget(error)
             if isinstance(message, TaskChanged):
                 self._answer(message, error)
@@ -647,11 +671,16 @@ def _writes(messages: Sequence[Any]) -> deque[list[Remember]]:
     leaves between them, and a commit waits for the disk, or for the database's host.
     """
     writes: deque[list[Remember]] = deque()
-    for is_fact, run in groupby(messages, lambda each: isinstance(each, Remember)):
-        if is_fact:
-            facts = list(run)
-            writes.append(facts)
-            writes.extend([] for _ in facts[1:])
+    run: list[Remember] | None = None
+    for each in messages:
+        if not isinstance(each, Remember):
+            run = None
+        elif run is None:
+            run = [each]
+            writes.append(run)
+        else:
+            run.append(each)
+            writes.append([])
     return writes
 
 

@@ -1,0 +1,69 @@
+"""File of the facts of one step: written before its commands leave, and committed right after."""
+
+from __future__ import annotations
+
+import json
+import os
+import zlib
+from collections.abc import Sequence
+from pathlib import Path
+
+from arboleda.model.messages import Fact, Remember
+
+LENGTH, SUM = 4, 4  # bytes before the text
+NOTHING = bytes(LENGTH + SUM)
+
+
+class Ahead:
+    """Facts that a killed process leaves to the next start; what was written on another `boot` of the host
+    counts as lost with its power.
+
+    `read`, `clear` and `close` raise OSError.
+    """
+
+    def __init__(self, path: Path, boot: str) -> None:
+        self.path = path
+        self._boot = boot
+        self._file: int | None = None
+
+    def takes(self, facts: Sequence[Remember]) -> bool:
+        """Write facts in the place of those before; False if it cannot, as where the disk is full.
+
+        They survive a killed process, not a power cut.
+        """
+        rows = [(fact.fact, fact.name, fact.value) for fact in facts]
+        text = json.dumps([self._boot, rows]).encode()
+        words = len(text).to_bytes(LENGTH, "big") + zlib.crc32(text).to_bytes(SUM, "big") + text
+        try:
+            if self._file is None:
+                self._file = os.open(self.path, os.O_WRONLY | os.O_CREAT, 0o644)
+            return os.pwrite(self._file, words, 0) == len(words)
+        except OSError:
+            return False
+
+    def read(self) -> list[Remember]:
+        """The facts that were not committed; none if what is there was not written as a whole."""
+        try:
+            words = self.path.read_bytes()
+        except FileNotFoundError:
+            return []
+        length = int.from_bytes(words[:LENGTH], "big")
+        text = words[LENGTH + SUM :][:length]
+        if not length or len(text) < length or zlib.crc32(text).to_bytes(SUM, "big") != words[LENGTH:][:SUM]:
+            return []
+        boot, rows = json.loads(text)
+        facts = [Remember(fact=Fact(fact), name=name, value=value) for fact, name, value in rows]
+        return facts if boot == self._boot else []
+
+    def clear(self) -> None:
+        """Forget the facts: they are committed."""
+        if self._file is not None:
+            os.pwrite(self._file, NOTHING, 0)
+
+    def close(self) -> None:
+        """Remove the file, unless something is in it that was not committed; idempotent."""
+        if self._file is not None:
+            os.close(self._file)
+            self._file = None
+        if not self.read():
+            self.path.unlink(missing_ok=True)
