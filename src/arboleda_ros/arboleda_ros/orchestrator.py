@@ -195,11 +195,13 @@ class OrchestratorPort(Port):
     def _command(self, command: Command) -> None:
         """Publish a command: on `command` if our bridge listens, on the plain topic for everybody else."""
         plain, labelled = self._commands[command.robot, kind_of(command)], self._labelled.get(command.robot)
-        bridges = labelled.get_subscription_count() if labelled is not None else 0
-        listeners = plain.get_subscription_count()
-        if labelled is not None and not bridges and not listeners:
+        if labelled is None:
+            self._speak_plainly(command, plain)
+            return
+        bridges, listeners = labelled.get_subscription_count(), plain.get_subscription_count()
+        if not bridges and not listeners:
             raise NoBridge(f"no bridge listens to {labelled.topic_name}")
-        if labelled is None or not bridges:
+        if not bridges:
             self._speak_plainly(command, plain)
             return
         copied = listeners > bridges  # a bridge listens to both

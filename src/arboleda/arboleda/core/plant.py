@@ -6,7 +6,6 @@ import math
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from functools import partial
-from itertools import filterfalse
 from typing import Any
 
 from py_trees.behaviour import Behaviour
@@ -355,14 +354,13 @@ class Plant:
         if text is None or run.task is None:
             return
         outbox = self.dispatcher.outbox
-        waits = (
-            n for n in range(before, len(outbox)) if _commands(outbox[n]) or _begins(outbox[n], run.task)
-        )
-        first = next(waits, len(outbox))
+        first = before
+        while first < len(outbox) and not _waits(outbox[first], run.task):
+            first += 1
         later = outbox[first:]
-        outbox[first:] = filter(_is_fact, later)
+        outbox[first:] = [each for each in later if _is_fact(each)]
         self.dispatcher.memory.remember(Fact.STEP, run.task.id, text)
-        outbox += filterfalse(_is_fact, later)
+        outbox += [each for each in later if not _is_fact(each)]
 
     def _guard(self, cell: str, act: Callable[[], None]) -> None:
         """Do something that belongs to one cell; what it raises holds that cell, and nothing else."""
@@ -564,14 +562,11 @@ def _requests_last(events: Iterable[Event], now: float) -> list[Event]:
     return [*heard, *(replace(request, at=now) for request in requests)]
 
 
-def _commands(message: Command | Notice) -> bool:
+def _waits(message: Command | Notice, task: Task) -> bool:
+    """True for a command, and for the word that a task runs."""
+    if isinstance(message, TaskChanged):
+        return message.task == task.id and message.state is TaskState.RUNNING
     return isinstance(message, Command) and not isinstance(message, Stop)
-
-
-def _begins(message: Command | Notice, task: Task) -> bool:
-    if not isinstance(message, TaskChanged):
-        return False
-    return message.task == task.id and message.state is TaskState.RUNNING
 
 
 def _is_fact(message: Command | Notice) -> bool:

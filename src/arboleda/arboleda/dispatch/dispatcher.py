@@ -201,7 +201,10 @@ class Dispatcher:
 
     def work_of(self, robot: str) -> Entry | None:
         """The work of a robot that has not ended."""
-        return next((entry for entry in self.ledger.of_robot(robot) if entry.is_work), None)
+        for entry in self.ledger.of_robot(robot):
+            if entry.is_work:
+                return entry
+        return None
 
     def finishes(self, robot: str) -> bool:
         """True while a robot does work that goes on even when it is stopped, until it is finished."""
@@ -474,7 +477,7 @@ class Dispatcher:
 
     def _open_switch_of(self, command: Command) -> str | None:
         """The fact of a switch that another one, which is still open, switches, too."""
-        if not isinstance(command, Switch):
+        if not isinstance(command, Switch) or not self.ledger.of_robot(command.robot):
             return None
         facts = {name for name, _ in command.sets}
         others = (e.command for e in self.ledger.of_robot(command.robot) if isinstance(e.command, Switch))

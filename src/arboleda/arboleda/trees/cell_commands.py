@@ -72,6 +72,7 @@ class CellCommands:
         return self._dispatcher.may_come_to_rest(robot)
 
     def _objection(self, command: Command) -> Failure | None:
-        guarded = (guard(command) for guard in self._guards)
-        own = next(filter(None, guarded), None)
+        own: Failure | None = None
+        for guard in self._guards:
+            own = own or guard(command)
         return self._devices.objection(command.robot) or own or self._zones.objection(command)

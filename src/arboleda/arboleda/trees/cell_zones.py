@@ -209,7 +209,11 @@ class CellZones:
         """The zones that its robot has to hold for a command."""
         space = self._cell.workspaces.get(command.robot)
         if space is not None and isinstance(command, Motion) and command.way:
+            if not space.zones:
+                return space.zones
             return zone_plan.entered(space, self._dispatcher.place(space), command.way)
+        if not self._cell.interlocks:
+            return frozenset()
         locks = self._cell.interlocks_of(command.robot)
         return frozenset(each.zone for each in locks if each.is_ended_by(command))
 

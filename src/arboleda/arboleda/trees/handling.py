@@ -22,7 +22,7 @@ class Handling:
     @property
     def unchecked(self) -> tuple[Check, ...]:
         """The checks that no device has confirmed so far, in the order of the work."""
-        return tuple(check for check in Check if check in self._unchecked)
+        return tuple(check for check in Check if check in self._unchecked) if self._unchecked else ()
 
     def begin(self, taken: Mapping[str, int | None] | None = None, unchecked: Iterable[Check] = ()) -> None:
         """A task begins, or goes on with what an earlier start has kept of it."""

@@ -7,7 +7,7 @@ from __future__ import annotations
 import json
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cache, cached_property
 from typing import Any, NamedTuple
 
 from py_trees import composites
@@ -209,7 +209,7 @@ def command_kept(entry: Entry | None) -> dict[str, Any] | None:
     command = entry.command
     return {
         "robot": command.robot,
-        "effect": next(name for kind, name in EFFECTS if isinstance(command, kind)),
+        "effect": _effect(type(command)),
         "goal": entry.way[-1] if entry.way else None,
         "sets": entry.sets,
         "grips": command.grips if isinstance(command, Switch) else None,
@@ -217,6 +217,11 @@ def command_kept(entry: Entry | None) -> dict[str, Any] | None:
         "number": entry.number,
         "done": entry.state is State.DONE,
     }
+
+
+@cache
+def _effect(kind: type[Command]) -> str:
+    return next(name for base, name in EFFECTS if issubclass(kind, base))
 
 
 def failure_kept(failure: Failure) -> Any:

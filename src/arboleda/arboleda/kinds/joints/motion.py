@@ -20,6 +20,7 @@ class JointMotion(Movement):
         self.joints = joints
         self.tolerances = tolerances
         self._held: dict[Position, tuple[float, ...]] = {}  # by goal: every report on the way asks for it
+        self._longest_s: float | None = None
 
     def quantised(self, q: tuple[float, ...]) -> tuple[float, ...]:
         """The joints as their motors can hold them."""
@@ -59,12 +60,13 @@ class JointMotion(Movement):
 
     def travel_s(self, start: Position | None, way: Sequence[Position]) -> float:
         """Time of a joint move; from an unknown start, or one that cannot be, the longest possible one."""
-        longest_s = max(joint.travel_s(joint.upper - joint.lower) for joint in self.joints)
+        if self._longest_s is None:
+            self._longest_s = max(joint.travel_s(joint.upper - joint.lower) for joint in self.joints)
         if start is None:
-            return longest_s
+            return self._longest_s
         assert isinstance(start, tuple) and isinstance(way[-1], tuple)
         rows = zip(self.joints, start, way[-1], strict=True)
-        return min(longest_s, max(joint.travel_s(there - here) for joint, here, there in rows))
+        return min(self._longest_s, max(joint.travel_s(there - here) for joint, here, there in rows))
 
     def can_have_moved(self, before: Position, after: Position, elapsed_s: float) -> bool:
         assert isinstance(before, tuple) and isinstance(after, tuple)

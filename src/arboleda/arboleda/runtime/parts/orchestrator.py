@@ -100,6 +100,9 @@ class CommandsLeft(NamedTuple):
     """Mark at the end of a step's messages: what was only noted before its commands is to be committed."""
 
 
+COMMANDS_LEFT = CommandsLeft()
+
+
 class RosPort(PlantPort, Protocol):
     """The plant's port on ROS 2, which carries snapshots too and knows whether it is alone."""
 
@@ -483,7 +486,7 @@ class Orchestrator:
         if self.stops.ahead and (away := self.stops.stepped(messages)) is not None:
             stops = [*stops, away]
         self._writes = _writes(messages)
-        return [*stops, *messages, CommandsLeft()] if stops or self._writes else messages
+        return [*stops, *messages, COMMANDS_LEFT] if stops or self._writes else messages
 
     def _keep(self, message: Remember | Journal) -> None:
         if isinstance(message, Journal):
