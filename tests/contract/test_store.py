@@ -213,6 +213,41 @@ def test_a_commit_waits_for_no_disk_and_a_sync_has_the_log_written_to_it(path, m
     assert synced == [f"{path}-wal"]
 
 
+def long_work(store):
+    for number in range(sqlite.FOLDED):
+        store.keep(Remember(fact=Fact.STEP, name=f"task {number % 10}", value=f"{number}" + 20_000 * "x"))
+
+
+def test_a_long_log_is_folded_into_the_file_by_no_commit_but_by_who_asks_for_it(path, tmp_path):
+    alone = tmp_path / "alone.sqlite"
+    with Store(path) as store:
+        before = path.stat().st_size
+        long_work(store)
+        assert path.stat().st_size == before
+        store.fold()
+        shutil.copy(path, alone)
+    with Store(alone) as store:
+        assert len(store.facts(Fact.STEP)) == 10
+
+
+def test_a_short_log_is_not_folded(path):
+    with Store(path) as store:
+        before = path.read_bytes()
+        store.keep(LATCH)
+        store.fold()
+        assert path.read_bytes() == before
+
+
+def test_a_log_that_cannot_be_folded_keeps_nobody_from_writing(path):
+    with Store(path) as store, closing(sqlite3.connect(path)) as reader:
+        reader.execute("BEGIN")
+        reader.execute("SELECT * FROM fact").fetchall()
+        long_work(store)
+        store.fold()
+        store.keep(LATCH)
+        assert store.facts(Fact.LATCH) == {LATCH.name: LATCH.value}
+
+
 def test_a_sync_of_a_memory_that_is_not_in_its_place_is_refused(path):
     with Store(path) as store:
         store.keep(LATCH)

@@ -19,6 +19,7 @@ from starlette.types import ASGIApp, Receive, Scope, Send
 from arboleda.adapters import clock
 from arboleda.campaigns.request import Request
 from arboleda.core.plant import Plant
+from arboleda.kinds.joints import MoveJoints
 from arboleda.model.commands import Command
 from arboleda.model.messages import TaskRequest
 from arboleda.model.plant_model import PlantModel
@@ -77,17 +78,18 @@ def ends_of_moves(cells: int) -> Iterator[Act]:
 
 
 def from_reports() -> Iterator[Act]:
-    """The way from a report that ends a command to the next one, in a plant that keeps both in a file."""
+    """The way from a report that ends a command to the next one, in a plant whose memory is a file."""
     yard = Yard(_model(1, dwell_s=0))
     with tempfile.TemporaryDirectory() as folder, Store(Path(folder) / "plant.sqlite") as store:
         port, plant = Port(), WholePlant(yard.plant.model, EPOCH, _crash, store)
         plant.connect(port)
         plant.step(*yard.words.values(), TaskRequest(at=0.0, text=TEXT))
         port.sent = stop_counting
-        while port.commands:
-            command = port.commands.pop()
+        command = port.commands.pop()
+        while not isinstance(command, MoveJoints) or leads_on(yard, command):
             plant.step(yard.accepts(command))
             yield partial(plant.step, yard.finishes(command))
+            command = port.commands.pop()
 
 
 def waking() -> Iterator[Act]:

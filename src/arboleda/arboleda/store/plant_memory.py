@@ -100,6 +100,9 @@ class PlantMemory(ABC):
     def sync(self) -> None:
         """Make durable what was written; callable from any thread."""
 
+    def fold(self) -> None:  # noqa: B027 - a server does that by itself
+        """Put in order what has been written for a while; for one thread, which may have to wait."""
+
     @abstractmethod
     def _read(self, statement: str, *values: object) -> list[tuple[Any, ...]]:
         """The rows of a query."""

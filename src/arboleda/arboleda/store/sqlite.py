@@ -2,7 +2,8 @@
 
 A commit appends to the log of the file (`-wal`) and waits for no disk: it survives a killed process. `sync`
 has the system write the log to the disk, by a descriptor of its own: from any thread, and while the plant
-commits more. What is noted is in a file of its own (`-ahead`) until it is committed.
+commits more. `fold` brings the log into the file, by a connection of its own. What is noted is in a file
+beside them (`-ahead`) until it is committed.
 """
 
 from __future__ import annotations
@@ -89,6 +90,8 @@ SINCE = {
     10: UNCHECKED,
 }
 IN_MEMORY = Path(":memory:")
+FOLDED = 250  # commits after which the log is folded into the file: about 1,000 pages
+LONGEST_LOG = 10_000  # pages at which a commit does that itself
 SYNC = getattr(os, "fdatasync", os.fsync)  # not every system has the first
 PUT_BACK = f"put it, or a backup, in its place and start again; {LOST_WITH_IT}"
 IN_PLACE = "start again; as the plant ends now, all that it kept goes into the memory itself, if it is there"
@@ -104,6 +107,8 @@ class Store(PlantMemory):
         self.name = str(path)
         self._plant = plant
         self._opened: sqlite3.Connection | None = None
+        self._folder: sqlite3.Connection | None = None  # a connection of its own, for another thread
+        self._unfolded = 0  # commits since the log was folded
         self._log_file: int | None = None  # the descriptor by which the log is synced
         self._boot = this_boot()
         self._ends_well = False  # whether closing it ends a start that lacks nothing
@@ -122,6 +127,7 @@ class Store(PlantMemory):
             try:
                 self._prepare(db)
                 db.execute("PRAGMA synchronous = NORMAL")
+                db.execute(f"PRAGMA wal_autocheckpoint = {LONGEST_LOG}")
             except BaseException:  # whatever it is, Ctrl-C too, the file is not left open
                 db.close()
                 raise
@@ -131,6 +137,8 @@ class Store(PlantMemory):
             self._held = HeldFiles([self.path, self._log])
             self._log_file = os.open(self._log, os.O_RDONLY)
             with self._explained(StartError):
+                self._folder = sqlite3.connect(self.path, isolation_level=None, check_same_thread=False)
+                version(self._folder)  # it opens the file when it is first used
                 self._noted = self._ahead.read()
             self.settle()
 
@@ -147,6 +155,9 @@ class Store(PlantMemory):
                 with suppress(sqlite3.Error):  # then the next start is more careful than it need be
                     self._opened.execute(*row_of_fact(BOOT, None))
                 self._ends_well = False
+            if self._folder is not None:
+                self._folder.close()
+                self._folder = None
             self._opened.close()
             self._opened = None
             self._noted = ()
@@ -188,6 +199,12 @@ class Store(PlantMemory):
             raise
         self.confirm()
 
+    def fold(self) -> None:
+        if self._folder is not None and self._unfolded >= FOLDED:
+            self._unfolded = 0
+            with suppress(sqlite3.Error):  # the log grows on, until a commit cannot be made
+                self._folder.execute("PRAGMA wal_checkpoint(PASSIVE)").fetchall()
+
     def confirm(self) -> None:
         """Raises ArboledaError if the open file is no longer in its place: later writes would be lost.
 
@@ -214,6 +231,7 @@ class Store(PlantMemory):
 
     def _write(self, *statements: Statement, durable: bool) -> None:
         self.settle()
+        self._unfolded += 1
         with self._explained(ArboledaError):
             if len(statements) == 1:
                 self._db.execute(*statements[0])

@@ -107,6 +107,8 @@ class Durability:
     def _run(self) -> None:
         while self._sleep():
             self._advance(self.written)
+            if self._store is not None and self._failure is None:
+                self._store.fold()
         self._advance(self.written)
 
     def _sleep(self) -> bool:
