@@ -7,7 +7,7 @@ from __future__ import annotations
 import json
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cache, cached_property
+from functools import cached_property
 from typing import Any, NamedTuple
 
 from py_trees import composites
@@ -16,6 +16,7 @@ from py_trees.common import Status
 
 from arboleda.dispatch.belief import Belief
 from arboleda.dispatch.ledger import Entry, State
+from arboleda.model.by_class import nearest
 from arboleda.model.commands import Command, Motion, Position, Query, Switch, Work
 from arboleda.model.messages import Check, Failure, Reason, Receipt, TaskAnswer
 from arboleda.model.sentence import Sentence, retold
@@ -23,7 +24,7 @@ from arboleda.model.sentence import Sentence, retold
 VERSION = 3
 STATUSES = {status.value[0]: status for status in Status}
 MOTION, PROCESS, SWITCH, QUERY, OTHER = "motion", "process", "switch", "query", "other"
-EFFECTS = ((Motion, MOTION), (Work, PROCESS), (Switch, SWITCH), (Query, QUERY), (Command, OTHER))
+EFFECTS = {Motion: MOTION, Work: PROCESS, Switch: SWITCH, Query: QUERY, Command: OTHER}
 REMEMBERS = composites.Sequence | composites.Selector | composites.Parallel
 
 
@@ -209,7 +210,7 @@ def command_kept(entry: Entry | None) -> dict[str, Any] | None:
     command = entry.command
     return {
         "robot": command.robot,
-        "effect": _effect(type(command)),
+        "effect": nearest(EFFECTS, type(command)),
         "goal": entry.way[-1] if entry.way else None,
         "sets": entry.sets,
         "grips": command.grips if isinstance(command, Switch) else None,
@@ -217,11 +218,6 @@ def command_kept(entry: Entry | None) -> dict[str, Any] | None:
         "number": entry.number,
         "done": entry.state is State.DONE,
     }
-
-
-@cache
-def _effect(kind: type[Command]) -> str:
-    return next(name for base, name in EFFECTS if issubclass(kind, base))
 
 
 def failure_kept(failure: Failure) -> Any:
