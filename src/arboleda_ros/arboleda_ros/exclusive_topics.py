@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import time
+from collections import Counter
+from collections.abc import Sequence
 from typing import Any
 
 from rclpy.node import Node
@@ -18,7 +20,8 @@ _SETTLED_S = 1.0  # a new node tells its publishers within this time, on a busy 
 _UNSETTLED_S = 10.0  # greatest further wait while nodes come and go
 UNNAMED = "a node without a name"  # discovery may show a publisher before it knows the node
 _LOOKED_AT = 5  # topics in one look; the time for each grows with the whole graph
-_ALERT = 5  # looks at all topics once nodes have come or gone; what they publish is discovered a little later
+_ALERT = 5  # looks at a node that has come; what it publishes is discovered a little later
+_UNKNOWN = "_UNKNOWN_"  # in the name of a node of which discovery has shown only an endpoint
 
 
 class ExclusiveTopics:
@@ -30,8 +33,9 @@ class ExclusiveTopics:
         self._born = time.monotonic()
         self._intruders: dict[str, list[str]] = {}  # by topic, as of the last look at it
         self._next = 0
-        self._nodes: list[tuple[str, str]] = []
-        self._alert = 0
+        self._nodes = Counter[tuple[str, str]]()
+        self._alert: dict[tuple[str, str], int] = {}  # looks that are left at each node that has come
+        self._relative: dict[str, str] = {}  # the topics by their absolute names
 
     def others(self) -> list[tuple[str, str]]:
         """The (topic, node name) of every other publisher now."""
@@ -63,7 +67,7 @@ class ExclusiveTopics:
     def look(self) -> tuple[str, ...]:
         """A sentence for each other node that publishes; to be called every second.
 
-        Each call looks at _LOOKED_AT topics in turn, and at all of them after a change among the nodes.
+        Each call looks at _LOOKED_AT topics in turn, and at those that a node publishes which has come.
         """
         for topic in self._to_look_at():
             alone = self._node.count_publishers(topic) <= 1  # a quarter of the price of asking for names
@@ -74,16 +78,34 @@ class ExclusiveTopics:
         return tuple(_intrusion(name, topics) for name, topics in self._by_name().items())
 
     def _to_look_at(self) -> list[str]:
-        nodes = sorted(self._node.get_node_names_and_namespaces())
-        if nodes != self._nodes:
-            self._nodes, self._alert = nodes, _ALERT
-        if self._alert > 0:
-            self._alert -= 1
-            return self.topics
+        nodes = Counter(map(tuple, self._node.get_node_names_and_namespaces()))
+        self._alert |= dict.fromkeys(nodes - self._nodes, _ALERT)
+        self._nodes = nodes
+        topics = [*self._intruders, *self._in_turn()]
+        for node in self._alert:
+            topics += self._published_by(*node)
+        self._alert = {node: looks - 1 for node, looks in self._alert.items() if looks > 1}
+        return list(dict.fromkeys(topics))
+
+    def _in_turn(self) -> list[str]:
         begin, self._next = self._next, self._next + _LOOKED_AT
         if self._next >= len(self.topics):
             self._next = 0
         return self.topics[begin : begin + _LOOKED_AT]
+
+    def _published_by(self, name: str, namespace: str) -> Sequence[str]:
+        """Those of the topics that another node publishes; all if nobody can ask for it by its name."""
+        if _UNKNOWN in name or self._nodes[name, namespace] > 1:
+            return self.topics
+        if f"{namespace.rstrip('/')}/{name}" == self._node.get_fully_qualified_name():
+            return []
+        try:
+            published = self._node.get_publisher_names_and_types_by_node(name, namespace)
+        except RuntimeError:  # it has gone
+            return []
+        if len(self._relative) < len(self.topics):
+            self._relative = {self._absolute(topic): topic for topic in self.topics}
+        return [self._relative[topic] for topic, _ in published if topic in self._relative]
 
     def _by_name(self) -> dict[str, list[str]]:
         found: dict[str, list[str]] = {}
@@ -114,6 +136,6 @@ def _named(publishers: list[tuple[str, str]]) -> list[tuple[str, str]]:
 
 def full_name(info: Any) -> str:
     """The name of the node that an endpoint belongs to, with its namespace."""
-    if "_UNKNOWN_" in info.node_name:
+    if _UNKNOWN in info.node_name:
         return UNNAMED
     return plain(f"{info.node_namespace.rstrip('/')}/{info.node_name}")  # whoever joins DDS chooses it

@@ -23,6 +23,7 @@ class Graph:
     publishers: dict[float, list[str]] = field(default_factory=lambda: {0.0: [OWN[1:]]})
     nodes: dict[float, list[str]] = field(default_factory=lambda: {0.0: [OWN[1:]]})
     now: float = 0.0
+    asked_of: list[str] = field(default_factory=list)
 
     def monotonic(self) -> float:
         return self.now
@@ -37,11 +38,23 @@ class Graph:
         return f"/{topic}"
 
     def get_publishers_info_by_topic(self, topic: str) -> list[Any]:
-        assert topic == TOPIC
+        self.asked_of.append(topic)
+        if topic != TOPIC:
+            return [SimpleNamespace(node_name=OWN[1:], node_namespace="/")]
         return [SimpleNamespace(node_name=name, node_namespace="/") for name in self._shown(self.publishers)]
 
     def get_node_names_and_namespaces(self) -> list[tuple[str, str]]:
         return [(name, "/") for name in self._shown(self.nodes)]
+
+    def count_publishers(self, topic: str) -> int:
+        return len(self.get_publishers_info_by_topic(topic))
+
+    def get_publisher_names_and_types_by_node(
+        self, name: str, _namespace: str
+    ) -> list[tuple[str, list[str]]]:
+        if name not in self._shown(self.nodes):
+            raise RuntimeError("there is no such node")
+        return [(f"/{TOPIC}", [])] if name in self._shown(self.publishers) else []
 
     def _shown(self, found: dict[float, list[str]]) -> list[str]:
         return found[max(at for at in found if at <= self.now)]
@@ -127,3 +140,64 @@ def test_nodes_that_come_and_go_without_end_do_not_hold_a_start_for_ever(
 ) -> None:
     restless = {second / 2: [OWN[1:], f"node{second}"] for second in range(100)}
     assert checked(Graph(nodes=restless), monkeypatch, 3.2) == pytest.approx(13.2, abs=0.05)
+
+
+MANY = [TOPIC, *(f"ra{number}/joint_goals_q" for number in range(2, 300))]
+
+
+def watched(graph: Graph, *, looks: int) -> list[tuple[str, ...]]:
+    """What a watch over MANY topics finds by a look a second, from 1 s on."""
+    watch = exclusive_topics.ExclusiveTopics(graph)
+    watch.topics = MANY
+    for _ in range(100):
+        watch.look()
+    found = []
+    for _ in range(looks):
+        graph.now += 1.0
+        graph.asked_of.clear()
+        found.append(watch.look())
+    return found
+
+
+@pytest.mark.parametrize("tells_late_s", [0.0, 3.0])
+def test_a_node_that_comes_and_publishes_is_found_at_once_or_as_it_tells(tells_late_s: float) -> None:
+    graph = Graph(
+        nodes={0.0: [OWN[1:]], 3.0: [OWN[1:], "newcomer"]},
+        publishers={0.0: [OWN[1:]], 3.0 + tells_late_s: [OWN[1:], "newcomer"]},
+    )
+    found = watched(graph, looks=8)
+    first = 2 + int(tells_late_s)
+    assert found[:first] == [()] * first
+    assert found[first:] == [("another node commands /ra1/joint_goals_q: /newcomer",)] * (8 - first)
+
+
+def test_the_first_looks_are_not_at_all_topics_as_the_start_was() -> None:
+    graph = Graph()
+    watch = exclusive_topics.ExclusiveTopics(graph)
+    watch.topics = MANY
+    watch.look()
+    assert len(graph.asked_of) == 5
+
+
+def test_a_node_that_publishes_nothing_of_the_plant_costs_no_look_at_all_topics() -> None:
+    graph = Graph(nodes={0.0: [OWN[1:]], 3.0: [OWN[1:], "listener"]})
+    assert watched(graph, looks=3) == [()] * 3
+    assert len(graph.asked_of) == 5
+
+
+@pytest.mark.parametrize("name", [OWN[1:], UNKNOWN])
+def test_for_a_node_that_nobody_can_ask_for_by_its_name_all_topics_are_looked_at(name: str) -> None:
+    graph = Graph(
+        nodes={0.0: [OWN[1:]], 1.0: [OWN[1:], name]}, publishers={0.0: [OWN[1:]], 1.0: [OWN[1:], name]}
+    )
+    assert watched(graph, looks=1) != [()]
+    assert len(set(graph.asked_of)) == len(MANY)
+
+
+def test_an_intruder_that_has_gone_is_forgotten_by_the_next_look() -> None:
+    graph = Graph(
+        nodes={0.0: [OWN[1:]], 1.0: [OWN[1:], "newcomer"], 8.0: [OWN[1:]]},
+        publishers={0.0: [OWN[1:]], 1.0: [OWN[1:], "newcomer"], 8.0: [OWN[1:]]},
+    )
+    found = watched(graph, looks=9)
+    assert found[6] != () and found[7:] == [(), ()]
