@@ -9,9 +9,10 @@ import pytest
 from arboleda.campaigns.proof.calm import calm_run
 from arboleda.campaigns.proof.end_state import differences
 from arboleda.campaigns.proof.instants import Instant, Mark, Side, instants
-from arboleda.campaigns.proof.kept import Kept, key_of
+from arboleda.campaigns.proof.kept import Kept
 from arboleda.campaigns.proof.outcome import End, Outcome, outcome_from, plain
 from arboleda.campaigns.proof.proof import Proof, Proved
+from arboleda.campaigns.proof.recipe_digest import recipe_digests
 from arboleda.campaigns.proof.scenario import alone, scenarios
 from arboleda.campaigns.proof.single_faults import single_faults
 from arboleda.campaigns.request import shared
@@ -121,17 +122,66 @@ def test_an_outcome_is_the_same_after_it_was_written() -> None:
     assert outcome_from(plain(outcome)) == outcome
 
 
-def test_another_file_or_another_content_is_another_key() -> None:
-    files = PlantFiles(plant="a.yaml", contents={"a.yaml": b"1", "b.py": b"2"})
-    changed = PlantFiles(plant="a.yaml", contents={"a.yaml": b"1", "b.py": b"3"})
-    assert key_of(files) == key_of(PlantFiles(plant="a.yaml", contents=dict(files.contents)))
-    assert key_of(files) != key_of(changed)
+def files_of(recipes: str, *, plant: str = "cells: {one: {}, two: {}}", tree: bytes = b"<a/>") -> PlantFiles:
+    contents = {"a.yaml": plant.encode(), "b.py": recipes.encode(), "c.xml": tree}
+    return PlantFiles(plant="a.yaml", contents=contents)
+
+
+def digests(model: PlantModel, files: PlantFiles) -> tuple[str, str]:
+    """The digests of the two recipes of the first cell."""
+    found = recipe_digests(model, files)
+    return found["sis_a", "storage"], found["sis_a", "palletizing"]
+
+
+RECIPES = """
+def help(): return 1
+@recipe("storage")
+def one(cell): return help()
+@recipe("palletizing")
+def two(cell): return 2
+"""
+
+
+def test_a_change_of_one_recipe_is_seen_by_no_other(model: PlantModel) -> None:
+    before = digests(model, files_of(RECIPES))
+    after = digests(model, files_of(RECIPES.replace("return 2", "return 3")))
+    assert (before[0] == after[0], before[1] == after[1]) == (True, False)
+
+
+@pytest.mark.parametrize(
+    "changed",
+    [
+        files_of(RECIPES.replace("return 1", "return 4")),
+        files_of(RECIPES, tree=b"<b/>"),
+        files_of(RECIPES, plant="name: other"),
+    ],
+)
+def test_what_recipes_share_is_seen_by_all(model: PlantModel, changed: PlantFiles) -> None:
+    before, after = digests(model, files_of(RECIPES)), digests(model, changed)
+    assert before[0] != after[0] and before[1] != after[1]
+
+
+def test_a_recipe_that_names_another_one_sees_it(model: PlantModel) -> None:
+    calls = RECIPES.replace("return help()", "return two(cell)")
+    one = digests(model, files_of(calls))[0]
+    assert one != digests(model, files_of(calls.replace("return 2", "return 3")))[0]
+
+
+def test_a_file_that_looks_names_up_is_seen_whole(model: PlantModel) -> None:
+    looks = RECIPES.replace("return help()", 'return globals()["t" + "wo"](cell)')
+    one = digests(model, files_of(looks))[0]
+    assert one != digests(model, files_of(looks.replace("return 2", "return 3")))[0]
+
+
+def test_comments_and_cells_that_cannot_be_met_are_not_seen(model: PlantModel) -> None:
+    cells = "cells: {sis_a: {robots: 1}, other: {robots: %d}}"
+    before = digests(model, files_of(RECIPES, plant=cells % 1))
+    assert before == digests(model, files_of(RECIPES + "# more", plant=cells % 2 + " # more"))
 
 
 def test_what_is_kept_cannot_be_read_by_a_proof_of_something_else(tmp_path: Path, model: PlantModel) -> None:
-    files = PlantFiles(plant="a.yaml", contents={"a.yaml": b"1"})
-    kept = Kept(tmp_path, files, Proof(model=model))
-    (tmp_path / f"{key_of(files)}.jsonl").write_text('{"portion": "gone"}\n{"portio')
+    kept = Kept(tmp_path, {("sis_a", "storage"): "key"}, Proof(model=model))
+    (tmp_path / "key.jsonl").write_text('{"portion": "gone"}\n{"portio')
     assert kept.known() == {}
     kept.forget(all=True)
     assert not list(tmp_path.iterdir())
@@ -140,7 +190,7 @@ def test_what_is_kept_cannot_be_read_by_a_proof_of_something_else(tmp_path: Path
 def test_what_cannot_be_kept_is_noted(tmp_path: Path, model: PlantModel) -> None:
     (tmp_path / "taken").write_text("a file where a folder is needed")
     proof = Proof(model=model, calm=(calm_run(model, next(scenarios(model))),), kinds=("forgets", "reboot"))
-    kept = Kept(tmp_path / "taken", PlantFiles(plant="a.yaml"), proof)
+    kept = Kept(tmp_path / "taken", {("sis_a", "storage"): "key"}, proof)
     kept.keep(Proved(number=0, outcomes=(Outcome(end=End.DONE),), rows=(0,), digest=""))
     assert kept.trouble is not None and "taken" in kept.trouble
 

@@ -131,16 +131,20 @@ def test_what_holds_is_said_of_every_run(
     assert refuses["ends"] == {"done": 4, "failed": 16} and refuses["changes_with_the_moment"]
 
 
-def test_a_second_run_runs_nothing_again_until_a_file_changes(
+def test_a_second_run_runs_again_only_recipes_that_changed(
     plant: Path, prove: Prove, capsys: pytest.CaptureFixture[str]
 ) -> None:
+    recipes = plant.parent / "small.py"
+    recipes.write_text(GOOD + GOOD.partition("work\n")[2].replace("shine", "glow"))
     prove("--fault", "forgets")
     assert "kept from before" not in capsys.readouterr().out
     prove("--fault", "forgets")
+    assert "10 runs, 10 of them kept from before" in capsys.readouterr().out
+    recipes.write_text(recipes.read_text().replace('"glow", ends_with={"lamp.lit": True}', '"glow"'))
+    prove("--fault", "forgets", "--recipe", "shine")
     assert "5 runs, 5 of them kept from before" in capsys.readouterr().out
-    (plant.parent / "small.py").write_text(GOOD + "# changed\n")
     prove("--fault", "forgets")
-    assert "kept from before" not in capsys.readouterr().out
+    assert "10 runs, 5 of them kept from before" in capsys.readouterr().out
 
 
 def test_a_recipe_that_gives_up_in_silence_is_found_and_its_test_fails_alike(

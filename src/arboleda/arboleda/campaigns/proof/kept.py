@@ -1,40 +1,31 @@
-"""Kept portions: what was proved already of the very same plant files and version, in a file."""
+"""Kept portions: what was proved already, in a file for each recipe as it was then."""
 
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
 from hashlib import blake2b
 from pathlib import Path
 from typing import Any
 
-from arboleda import __version__
-from arboleda.recorder.preamble import PlantFiles
-
 from .outcome import outcome_from, plain
 from .proof import Portion, Proof, Proved
+from .proof_tally import RecipeKey
 
-FORMAT = 1  # of the lines; another one is another key
 SUFFIX = ".jsonl"
 
 
-def key_of(files: PlantFiles) -> str:
-    """The digest of all that decides on what comes of a run: the version, and the content of each file."""
-    digest = blake2b(f"{FORMAT} {__version__} {files.plant}".encode(), digest_size=16)
-    for name, content in sorted(files.contents.items()):
-        digest.update(f"\n{name} {len(content)}\n".encode() + content)
-    return digest.hexdigest()
-
-
 class Kept:
-    """Kept: a file of proved portions in a folder, in which files of other plant files or versions go.
+    """Kept: a file of proved portions for each recipe in a folder, under the recipe's digest.
 
-    `trouble` is why something could not be kept, read or removed.
+    `digests` has those of all recipes of the plant; what is kept of any other one goes. `trouble` is why
+    something could not be kept, read or removed.
     """
 
-    def __init__(self, folder: Path, files: PlantFiles, proof: Proof) -> None:
-        self._file = folder / f"{key_of(files)}{SUFFIX}"
+    def __init__(self, folder: Path, digests: Mapping[RecipeKey, str], proof: Proof) -> None:
+        self._folder = folder
+        self._files = {key: folder / f"{digest}{SUFFIX}" for key, digest in digests.items()}
         self.trouble: str | None = None
         self._proof = proof
         self._numbers = {_name(proof, portion): number for number, portion in enumerate(proof.portions)}
@@ -48,22 +39,24 @@ class Kept:
         name = _name(self._proof, self._proof.portions[proved.number])
         outcomes = [plain(each) for each in proved.outcomes]
         row = {"portion": name, "outcomes": outcomes, "rows": proved.rows, "digest": proved.digest}
+        scenario = self._proof.scenario(proved.number)
         with self._noted():
-            self._file.parent.mkdir(parents=True, exist_ok=True)
-            with self._file.open("a", encoding="utf-8") as file:
+            self._folder.mkdir(parents=True, exist_ok=True)
+            with self._files[scenario.cell, scenario.recipe].open("a", encoding="utf-8") as file:
                 file.write(json.dumps(row, ensure_ascii=False) + "\n")
 
     def forget(self, *, all: bool) -> None:
-        """Remove what other plant files or versions left, or all."""
+        """Remove what recipes left that are not as they were any more, or all."""
         with self._noted():
-            for each in self._file.parent.glob(f"*{SUFFIX}"):
-                if all or each != self._file:
+            for each in self._folder.glob(f"*{SUFFIX}"):
+                if all or each not in self._files.values():
                     each.unlink()
 
     def _read(self) -> Iterator[Proved]:
         lines: list[bytes] = []
         with self._noted():
-            lines = self._file.read_bytes().splitlines() if self._file.exists() else []
+            for file in (each for each in {*self._files.values()} if each.exists()):
+                lines += file.read_bytes().splitlines()
         for line in lines:
             with suppress(ValueError, KeyError, TypeError, IndexError):  # cut off, or not ours
                 yield self._proved(json.loads(line))
@@ -74,7 +67,7 @@ class Kept:
         try:
             yield
         except OSError as error:
-            self.trouble = f"{self._file}: {error.strerror}"
+            self.trouble = f"{self._folder}: {error.strerror}"
 
     def _proved(self, row: dict[str, Any]) -> Proved:
         number = self._numbers[row["portion"]]
@@ -90,5 +83,7 @@ class Kept:
 
 
 def _name(proof: Proof, portion: Portion) -> str:
-    words = (portion.instant, portion.part, portion.first, *proof.kinds)
-    return " | ".join([proof.calm[portion.scenario].scenario.name, *map(str, words)])
+    """The name of a portion: its task, and its faults with their times, as one hash."""
+    scenario = proof.calm[portion.scenario].scenario
+    faults = blake2b(repr(proof.faults(portion)).encode(), digest_size=16).hexdigest()
+    return f"{scenario.cell} | {scenario.recipe} | {scenario.name} | {faults}"

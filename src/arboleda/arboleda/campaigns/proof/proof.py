@@ -14,6 +14,7 @@ from .calm import Calm
 from .forks import run_all
 from .instants import Instant
 from .outcome import Outcome, Run
+from .scenario import Scenario
 from .single_faults import single_faults
 
 Tick = Callable[[], None]
@@ -69,6 +70,10 @@ class Proof:
     def instant(self, portion: Portion) -> Instant:
         """The instant at which the faults of a portion begin."""
         return self.calm[portion.scenario].instants[portion.instant]
+
+    def scenario(self, number: int) -> Scenario:
+        """The scenario of the portion of this number."""
+        return self.calm[self.portions[number].scenario].scenario
 
     def faults(self, portion: Portion) -> list[Fault]:
         """The faults of a portion."""

@@ -30,6 +30,7 @@ from .proof import Proof, Proved
 from .proof_request import ProofRequest
 from .proof_tally import Case, ProofTally
 from .pytest_file import Breach, as_tests
+from .recipe_digest import recipe_digests
 from .scenario import scenarios
 
 
@@ -76,7 +77,7 @@ class ProofCampaign:
     def _prove(self, jobs: int) -> None:
         sound = tuple(each for each in self._calm if each.is_sound)
         proof = Proof(model=self._plant.model, calm=sound, kinds=self._request.kinds)
-        kept = Kept(self._request.folder, self._request.files, proof)
+        kept = Kept(self._request.folder, recipe_digests(self._plant.model, self._request.files), proof)
         kept.forget(all=self._request.anew)
         self._tally = ProofTally(proof=proof, proved=kept.known())
         self._known = self._tally.runs
