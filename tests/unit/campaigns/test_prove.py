@@ -15,6 +15,7 @@ from arboleda.campaigns.plants import Plant
 from arboleda.campaigns.proof.calm import Calm, calm_run, calm_runs
 from arboleda.campaigns.proof.forks import CAN_FORK, run_all
 from arboleda.campaigns.proof.instants import Instant
+from arboleda.campaigns.proof.outcome import End
 from arboleda.campaigns.proof.proof import Proof, Proved
 from arboleda.campaigns.proof.scenario import scenarios
 from arboleda.campaigns.proof.single_faults import single_faults
@@ -184,6 +185,17 @@ def test_forks_do_the_same_as_runs_from_the_beginning(plant: Path) -> None:
     faults = proof.faults(proof.portions[3])
     forked = run_all(proof.model, calm, faults, lambda: None, forks=True)
     assert faults and forked == run_all(proof.model, calm, faults, lambda: None, forks=False)
+
+
+def test_a_task_that_ended_as_the_plant_died_counts_as_what_was_kept_of_it(plant: Path) -> None:
+    model = Plant(declared=loader.load(plant)).model
+    calm = calm_run(model, next(scenarios(model)))
+    last = [each for each in calm.instants if each.commits][-1]
+    (faults, others) = single_faults(model, model.cells[0], last, only=("crash_in_step",))
+    runs = run_all(model, calm, [*faults, *others], lambda: None)
+    assert runs and {run.outcome.end for run in runs} <= {End.DONE, End.HELD}
+    assert End.DONE in {run.outcome.end for run in runs}
+    assert max(run.seconds for run in runs) < 120.0
 
 
 def test_a_kind_of_fault_or_a_recipe_that_there_is_not_is_refused(

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 from arboleda.core.cell import CellRun
 from arboleda.core.cell_states import CellState
 from arboleda.model.messages import TaskChanged, TaskState
 from arboleda.model.plant_model import PlantModel
+from arboleda.model.task import Order
 from arboleda.simulator.invariants.places import recipes_end_as_they_say
 from arboleda.simulator.judged_world import BrokenInvariant, JudgedWorld
 from arboleda.simulator.people import Attendant, FixedAnswers
@@ -58,6 +60,7 @@ class Stage:
         self.mended_at = 0.0  # when the fault was ended, s
         self._began, self._lost_from = False, 0.0
         self._task = scenario.task
+        self._order: Order | None = None  # what the plant made of it
         FixedAnswers(self.world, dict(scenario.answers))
         self.world.watchers.append(self._look)
 
@@ -171,15 +174,25 @@ class Stage:
                 self._follow(message)
             elif (entry := entries.get(getattr(message, "id", ""))) and entry.cell == self.cell.name:
                 self.commands.append(f"{entry.command.robot}: {entry.doing}")
+        if self.world.starts > 1 and self.told is not None and not self.ended and self.world.is_on(PLANT):
+            self._look_up(self.told)
+
+    def _look_up(self, told: TaskChanged) -> None:
+        """Take the end of the task from what was kept, as a plant that died says no word on it any more."""
+        kept = self.world.disk.ended(told.task)
+        if kept is not None:
+            reason = kept.failure.reason if kept.failure else None
+            self._follow(replace(told, state=kept.state, reason=reason))
 
     def _follow(self, told: TaskChanged) -> None:
         mine = told.request == REQUEST or (self.told is not None and told.task == self.told.task)
         if not mine or self.ended:
             return
         self.told = told
-        if told.state is TaskState.DONE:
+        task = self.world.plant.intake.tasks.get(told.task)
+        self._order = self._order or (task.order if task is not None else None)
+        if told.state is TaskState.DONE and (order := self._order) is not None:
             self.state = end_state(self.watched, self.cell)
-            order = self.world.plant.intake.tasks[told.task].order
             self.heard = heard_facts(self.watched, self.cell)
             self.stated = stated(self.cell, order.recipe, order.values)
 
