@@ -20,6 +20,7 @@ from arboleda.campaigns.proof.proof import Proof, Proved
 from arboleda.campaigns.proof.scenario import scenarios
 from arboleda.campaigns.proof.single_faults import single_faults
 from arboleda.cli.main import main
+from arboleda.model.errors import ArboledaError
 from arboleda.model.plant_model import PlantModel
 from arboleda.plant_file import loader
 from arboleda.testing import Sim
@@ -269,3 +270,20 @@ def test_any_number_of_processes_gives_the_same(plant: Path, prove: Prove) -> No
         digests.append(summary(plant)["digests"])
     assert digests[0] == digests[1]
     assert len(digests[0]) == 10
+
+
+def test_a_test_proves_a_recipe_by_as_many_runs_as_it_allows(plant: Path) -> None:
+    sim = Sim(plant.parent)
+    sim.plant("small.yaml")
+    assert sim.prove("shine", "forgets") == 1.0
+    assert 0.0 < sim.prove("shine", "forgets", at_most=1) < 1.0
+
+
+def test_a_test_tells_what_breaks_a_recipe(plant: Path) -> None:
+    (plant.parent / "small.py").write_text(QUIET)
+    sim = Sim(plant.parent)
+    sim.plant("small.yaml")
+    with pytest.raises(AssertionError, match=r"(?s)bench breaks recipes_end_as_they_say.*the fault: refuses"):
+        sim.prove("shine", "refuses")
+    with pytest.raises(ArboledaError, match="'rain' is not a kind of fault"):
+        sim.prove("shine", "rain")

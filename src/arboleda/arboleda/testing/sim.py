@@ -23,7 +23,7 @@ from arboleda.simulator.run import NO_EXCEPTION
 from arboleda.simulator.world import World
 from arboleda.views import view
 
-from . import arguments, looks, seeds, wording
+from . import arguments, looks, seeds, single_faults, wording
 from .answers import prepare
 from .desk import Desk, Handle
 from .words import Misuse, known
@@ -180,6 +180,19 @@ class Sim:
         for seed in range(first, first + count):
             if (result := drawn.run(seed)).broken:
                 raise AssertionError(wording.seed(drawn.shrunk(result), drawn, len(result.faults)))
+
+    def prove(self, recipe: str, *faults: str, at_most: int | None = single_faults.RUNS) -> float:
+        """Try every single fault at every moment of a recipe, one run each, in plants of their own.
+
+        `faults` are the kinds that are tried, none: all; `at_most`: so many runs or a few more, the
+        beginnings of steps first, None: all. Raises AssertionError where a run breaks an
+        invariant, or the recipe fails without any fault; returns the share of all runs that was run.
+        """
+        if self._recipes or self._invariants is not None:
+            raise Misuse(
+                "prove tries the recipes of the plant by all invariants: without sim.recipe, sim.without"
+            )
+        return single_faults.prove(self._chosen, recipe, kinds=faults, at_most=at_most)
 
     @property
     def now(self) -> float:

@@ -11,8 +11,6 @@ from rich.console import Console
 from rich.text import Text
 
 from arboleda.model.counting import counted
-from arboleda.simulator.judged_world import BrokenInvariant
-from arboleda.simulator.run import Result
 
 from ..campaign import Campaign
 from ..plants import notes
@@ -20,15 +18,15 @@ from ..screen import Show, progress
 from ..seed_campaign import BROKEN, HELD, INTERRUPTED
 from ..workers import Workers
 from . import proof_report, proof_summary
+from .breaches import breaches_of
 from .calm import Calm, calm_runs
-from .forks import run_one
 from .junit import as_junit
 from .kept import Kept
 from .outcome import End
 from .page import ProofPage, page
 from .proof import Proof, Proved
 from .proof_request import ProofRequest
-from .proof_tally import Case, ProofTally
+from .proof_tally import ProofTally
 from .pytest_file import Breach, as_tests
 from .recipe_digest import recipe_digests
 from .scenario import scenarios
@@ -116,7 +114,7 @@ class ProofCampaign:
         return f"{done:,} of {counted(self._total, 'run')}, {rate:,.0f}/s{ends}"
 
     def _report(self, *, complete: bool) -> None:
-        tally, breaches = self._tally, self._breaches()
+        tally, breaches = self._tally, breaches_of(self._tally)
         for line in proof_report.calm_lines(self._calm):
             self._console.print(line, soft_wrap=True)
         for line in proof_report.unnoticed_lines(tally.unnoticed()):
@@ -134,25 +132,6 @@ class ProofCampaign:
         kept = f", {self._known:,} of them kept from before" if self._known else ""
         alone = f"; after {self._tally.alone:.1%} the cell got ready again without a person" if runs else ""
         return f"{counted(runs, 'run')}{kept} in {seconds:,.0f} s{alone}"
-
-    def _breaches(self) -> list[Breach]:
-        return [self._again(case, count) for case, count in self._tally.breaches()]
-
-    def _again(self, case: Case, count: int) -> Breach:
-        """The run of a case once more, with its timeline."""
-        calm = self._tally.proof.calm[case.row]
-        run, stage = run_one(self._plant.model, calm, case.fault, keep=True)
-        result = Result(seed=0, faults=[case.fault], lines=stage.watched.trace.lines, seconds=run.seconds)
-        result.broken = BrokenInvariant(*run.outcome.broken) if run.outcome.broken else None
-        return Breach(
-            scenario=case.scenario,
-            instant=case.instant,
-            fault=case.fault,
-            run=run,
-            count=count,
-            result=result,
-            stated=stage.stated,
-        )
 
     def _write(self, breaches: list[Breach], *, complete: bool) -> None:
         request = self._request
