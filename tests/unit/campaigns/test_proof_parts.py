@@ -12,6 +12,8 @@ from arboleda.campaigns.proof.instants import Instant, Mark, Side, instants
 from arboleda.campaigns.proof.kept import Kept
 from arboleda.campaigns.proof.outcome import End, Outcome, outcome_from, plain
 from arboleda.campaigns.proof.proof import Proof, Proved
+from arboleda.campaigns.proof.proof_report import unmended_lines
+from arboleda.campaigns.proof.proof_tally import ProofTally
 from arboleda.campaigns.proof.recipe_digest import recipe_digests
 from arboleda.campaigns.proof.scenario import alone, scenarios
 from arboleda.campaigns.proof.single_faults import single_faults
@@ -193,6 +195,28 @@ def test_what_cannot_be_kept_is_noted(tmp_path: Path, model: PlantModel) -> None
     kept = Kept(tmp_path / "taken", {("sis_a", "storage"): "key"}, proof)
     kept.keep(Proved(number=0, outcomes=(Outcome(end=End.DONE),), rows=(0,), digest=""))
     assert kept.trouble is not None and "taken" in kept.trouble
+
+
+@pytest.mark.parametrize(("acts", "too_much"), [(0, False), (6, False), (7, True), (None, True)])
+def test_more_acts_than_six_are_too_much_and_so_is_a_cell_that_is_never_ready(
+    acts: int | None, too_much: bool
+) -> None:
+    assert Outcome(end=End.HELD, acts=acts).takes_too_much is too_much
+    assert not Outcome(end=End.HELD, acts=acts, broken=("rule", "sentence")).takes_too_much
+
+
+def test_the_worst_case_of_what_advice_does_not_mend_is_said(model: PlantModel) -> None:
+    calm = calm_run(model, next(scenarios(model, ["palletizing"])))
+    proof = Proof(model=model, calm=(calm,), kinds=("reboot",))
+    count = len(proof.faults(proof.portions[0]))
+    outcomes = (Outcome(end=End.HELD, acts=7), Outcome(end=End.HELD, acts=None), Outcome(end=End.DONE))
+    rows = (0, 1, *([2] * (count - 2)))
+    proved = Proved(number=0, outcomes=outcomes, rows=rows, digest="")
+    tally = ProofTally(proof=proof, proved={0: proved})
+    assert [(case.outcome.acts, times) for case, times in tally.unmended()] == [(7, 1), (None, 1)]
+    assert tally.most_acts == 7
+    said = [str(line) for line in unmended_lines(tally.unmended())]
+    assert "it takes 7 acts" in said[1] and "it is never ready" in said[2]
 
 
 def test_a_portion_is_broken_where_one_of_its_outcomes_is() -> None:

@@ -272,6 +272,15 @@ def test_any_number_of_processes_gives_the_same(plant: Path, prove: Prove) -> No
     assert len(digests[0]) == 10
 
 
+def test_the_acts_are_counted_that_get_a_cell_ready_again(
+    plant: Path, prove: Prove, capsys: pytest.CaptureFixture[str]
+) -> None:
+    out = plant.parent / "out.json"
+    assert prove("--fault", "operator_stop", "--json", str(out)) == 0
+    assert "after all others with at most 3 acts of one" in capsys.readouterr().out
+    assert summary(plant)["unmended"] == []
+
+
 def test_a_test_proves_a_recipe_by_as_many_runs_as_it_allows(plant: Path) -> None:
     sim = Sim(plant.parent)
     sim.plant("small.yaml")

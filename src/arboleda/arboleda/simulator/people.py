@@ -222,10 +222,12 @@ def _word_or_first(body: MachineBody, word: Value, goal: OrderGoal) -> Value:
 class Attendant:
     """Attendant: comes by every few seconds and does the first thing that is advised, cell by cell.
 
-    It neither brings back what is lost nor repairs what is broken: that ends with its fault.
+    It neither brings back what is lost nor repairs what is broken: that ends with its fault. `acts` counts
+    what it has done.
     """
 
     def __init__(self, world: World, seed: int) -> None:
+        self.acts = 0
         self._world = world
         self._dice = Dice(seed, "attendant")
         robots = world.model.robots.values()
@@ -258,5 +260,6 @@ class Attendant:
             if advice.refusal is not None or advice.do in BY_THEMSELVES:
                 return
             do(self._world, advice)
+            self.acts += 1
             if advice.do not in (Hand.CHECK, Hand.REFERENCE):
                 return

@@ -20,18 +20,21 @@ class End(str, Enum):
     UNFINISHED = "unfinished"  # still at work when far more time had passed than it takes
 
 
+MOST_ACTS = 6  # of a person, until a cell works again
 IS_DONE = (End.DONE, End.RECOVERED)
 
 
 @dataclass(frozen=True, kw_only=True)
 class Outcome:
     """Outcome of one run. `cause`: of a failure or a hold, a word. `alone`: its cell got ready again without
-    a person. `untrue`: what is not so although the task is done. `broken`: the invariant and the sentence.
+    a person; `acts`: so many of those that the plant advises got it ready, None: it never was. `untrue`: what
+    is not so although the task is done. `broken`: the invariant and the sentence.
     """
 
     end: End
     cause: str = ""
     alone: bool = True
+    acts: int | None = 0
     untrue: tuple[str, ...] = ()
     broken: tuple[str, str] | None = None
 
@@ -39,6 +42,11 @@ class Outcome:
     def words(self) -> str:
         """The end, with its cause."""
         return f"{self.end.value}: {self.cause}" if self.cause else self.end.value
+
+    @property
+    def takes_too_much(self) -> bool:
+        """True if what the plant advises does not get the cell ready, or not in as few acts as it should."""
+        return self.broken is None and (self.acts is None or self.acts > MOST_ACTS)
 
     @property
     def goes_unnoticed(self) -> bool:
@@ -71,6 +79,7 @@ def outcome_from(data: dict[str, Any]) -> Outcome:
         end=End(data["end"]),
         cause=data["cause"],
         alone=data["alone"],
+        acts=data["acts"],
         untrue=tuple(data["untrue"]),
         broken=None if broken is None else (broken[0], broken[1]),
     )

@@ -12,7 +12,7 @@ from arboleda.web.languages import FIRST, LANGUAGES, texts
 
 from ..words import told
 from .calm import Calm
-from .outcome import End
+from .outcome import MOST_ACTS, End
 from .proof_tally import Case, ProofTally, RecipeKey, Row
 from .pytest_file import Breach, as_tests
 
@@ -73,6 +73,9 @@ def _parts(proof: ProofPage) -> Iterator[str]:
     found = "".join(_unnoticed(*each) for each in proof.tally.unnoticed())
     nothing = f"<li>{_each('nothing')}</li>"
     yield f"<ul>{found or nothing}</ul>"
+    unmended = "".join(_unmended(*each) for each in proof.tally.unmended())
+    yield f"<h2>{_each('unmended')}</h2><p class=quiet>{_each('unmended_note', acts=MOST_ACTS)}</p>"
+    yield f"<ul>{unmended or nothing}</ul>"
     yield f"<h2>{_each('breaches')}</h2>"
     yield from (_breach(each, proof.plant) for each in proof.breaches)
     yield "" if proof.breaches else f"<p>{_each('nothing')}</p>"
@@ -105,6 +108,13 @@ def _calm(calm: Calm) -> str:
 
 def _unnoticed(case: Case, count: int) -> str:
     what = escape("; ".join(case.outcome.untrue))
+    befell = escape(f"{case.scenario.name}: {told(case.fault)}, {case.instant.name}")
+    return f"<li>{what}<br><span class=quiet>{befell} ({_each('runs_like_it', count=count)})</span></li>"
+
+
+def _unmended(case: Case, count: int) -> str:
+    acts = case.outcome.acts
+    what = _each("never_ready") if acts is None else _each("acts", acts=acts)
     befell = escape(f"{case.scenario.name}: {told(case.fault)}, {case.instant.name}")
     return f"<li>{what}<br><span class=quiet>{befell} ({_each('runs_like_it', count=count)})</span></li>"
 

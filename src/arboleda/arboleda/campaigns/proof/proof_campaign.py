@@ -119,6 +119,8 @@ class ProofCampaign:
             self._console.print(line, soft_wrap=True)
         for line in proof_report.unnoticed_lines(tally.unnoticed()):
             self._console.print(line, soft_wrap=True)
+        for line in proof_report.unmended_lines(tally.unmended()):
+            self._console.print(line, soft_wrap=True)
         for table in proof_report.tables(tally):
             self._console.print(table)
         for breach in breaches:
@@ -130,8 +132,17 @@ class ProofCampaign:
     def _amount(self) -> str:
         runs, seconds = self._tally.runs, time.monotonic() - self._began
         kept = f", {self._known:,} of them kept from before" if self._known else ""
-        alone = f"; after {self._tally.alone:.1%} the cell got ready again without a person" if runs else ""
+        alone = (
+            f"; after {self._tally.alone:.1%} the cell got ready again without a person{self._acts}"
+            if runs
+            else ""
+        )
         return f"{counted(runs, 'run')}{kept} in {seconds:,.0f} s{alone}"
+
+    @property
+    def _acts(self) -> str:
+        most = self._tally.most_acts
+        return f", after all others with at most {counted(most, 'act')} of one" if most else ""
 
     def _write(self, breaches: list[Breach], *, complete: bool) -> None:
         request = self._request

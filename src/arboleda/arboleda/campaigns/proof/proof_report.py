@@ -14,7 +14,7 @@ from .. import breach_text
 from ..setting import rules
 from ..words import told
 from .calm import Calm
-from .outcome import End
+from .outcome import MOST_ACTS, End
 from .proof_tally import Case, ProofTally, Row
 from .pytest_file import Breach
 
@@ -45,6 +45,20 @@ def unnoticed_lines(found: Sequence[tuple[Case, int]]) -> Iterator[Text]:
         times = f"{counted(count, 'run')}, e.g. {case.instant.name}"
         befell = f"{case.fault.kind} {case.fault.target}"
         yield Text(f"  {case.scenario.task}: {befell}: {what} ({times})", "yellow")
+    if len(found) > MOST_UNNOTICED:
+        yield Text(f"  and {len(found) - MOST_UNNOTICED} more; --json has all", "yellow")
+
+
+def unmended_lines(found: Sequence[tuple[Case, int]]) -> Iterator[Text]:
+    """Faults after which what the plant advises does not get a cell ready in few acts."""
+    if found:
+        yield Text(f"What {MOST_ACTS} acts that the plant advises do not mend:", "bold yellow")
+    for case, count in found[:MOST_UNNOTICED]:
+        acts = "it is never ready" if case.outcome.acts is None else f"it takes {case.outcome.acts} acts"
+        times = f"{counted(count, 'run')}, e.g. {case.instant.name}"
+        yield Text(
+            f"  {case.scenario.task}: {case.fault.kind} {case.fault.target}: {acts} ({times})", "yellow"
+        )
     if len(found) > MOST_UNNOTICED:
         yield Text(f"  and {len(found) - MOST_UNNOTICED} more; --json has all", "yellow")
 

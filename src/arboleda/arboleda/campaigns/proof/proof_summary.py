@@ -44,6 +44,7 @@ def as_json(
         "scenarios": [_scenario(each) for each in calm],
         "table": [_row(*each) for each in tally.table().items()],
         "unnoticed": [{**_case(case), "runs": count} for case, count in tally.unnoticed()],
+        "unmended": [{**_case(case), "runs": count} for case, count in tally.unmended()],
         "breaches": [_breach(each, plant) for each in breaches],
         "digests": [proved.digest for _, proved in sorted(tally.proved.items())],
     }

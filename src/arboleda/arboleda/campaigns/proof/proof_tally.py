@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass, field
@@ -93,6 +94,23 @@ class ProofTally:
                 found.setdefault(key, []).append(case)
         return [(cases[0], len(cases)) for cases in found.values()]
 
+    def unmended(self) -> list[tuple[Case, int]]:
+        """For each kind of fault on each target after which few acts do not get a cell ready: the worst case,
+        and how many.
+        """
+        found: dict[tuple[str, ...], list[Case]] = {}
+        for case in self.cases():
+            if case.outcome.takes_too_much:
+                key = (case.scenario.cell, case.scenario.recipe, case.fault.kind, case.fault.target)
+                found.setdefault(key, []).append(case)
+        return [(max(cases, key=_acts), len(cases)) for cases in found.values()]
+
+    @property
+    def most_acts(self) -> int:
+        """The most acts that a cell needed of a person until it was ready."""
+        each = (outcome.acts or 0 for proved in self.proved.values() for outcome in proved.outcomes)
+        return max(each, default=0)
+
     @property
     def runs(self) -> int:
         """The number of runs so far."""
@@ -103,6 +121,10 @@ class ProofTally:
         """The share of runs after which the cell got ready again without a person."""
         alone = sum(each.alone for proved in self.proved.values() for each in proved.each)
         return alone / max(self.runs, 1)
+
+
+def _acts(case: Case) -> float:
+    return math.inf if case.outcome.acts is None else case.outcome.acts
 
 
 def _shortness(case: Case) -> tuple[int, float, float]:

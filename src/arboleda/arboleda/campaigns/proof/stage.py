@@ -60,6 +60,8 @@ class Stage:
         self.mended_at = 0.0  # when the fault was ended, s
         self._began, self._lost_from = False, 0.0
         self._task = scenario.task
+        self._attendant: Attendant | None = None
+        self._acts: int | None = None  # of the attendant, when the cell was ready first
         self._order: Order | None = None  # what the plant made of it
         FixedAnswers(self.world, dict(scenario.answers))
         self.world.watchers.append(self._look)
@@ -92,8 +94,9 @@ class Stage:
             self.world.at(self.watched.start + at, lambda _: self._begin(begin))
             self._work(lasts_s + PATIENCE_S)
             outcome, attended_at = self._outcome(expected, commands), self.watched.seconds
-            Attendant(self.world, seed=0)
+            self._attendant = Attendant(self.world, seed=0)
             self.watched.come_to_rest()
+            outcome = replace(outcome, acts=0 if outcome.alone else self._acts)
         except BrokenInvariant as broken:
             outcome = self._broken(outcome, broken)
         except Exception as error:  # noqa: BLE001 - that none escapes is one of the invariants
@@ -159,13 +162,7 @@ class Stage:
         return (End.LOST if told is None and run.task is None else End.UNFINISHED), ""
 
     def _broken(self, outcome: Outcome, broken: BrokenInvariant) -> Outcome:
-        return Outcome(
-            end=outcome.end,
-            cause=outcome.cause,
-            alone=outcome.alone,
-            untrue=outcome.untrue,
-            broken=(broken.invariant, broken.sentence),
-        )
+        return replace(outcome, broken=(broken.invariant, broken.sentence))
 
     def _look(self) -> None:
         entries = self.world.plant.dispatcher.ledger.entries
@@ -176,6 +173,8 @@ class Stage:
                 self.commands.append(f"{entry.command.robot}: {entry.doing}")
         if self.world.starts > 1 and self.told is not None and not self.ended and self.world.is_on(PLANT):
             self._look_up(self.told)
+        if self._attendant is not None and self._acts is None and self._is_ready():
+            self._acts = self._attendant.acts
 
     def _look_up(self, told: TaskChanged) -> None:
         """Take the end of the task from what was kept, as a plant that died says no word on it any more."""
