@@ -35,6 +35,7 @@ from arboleda.runtime.web_options import WebOptions
 from arboleda.web.names import listen_address, public_origin
 
 from . import (
+    apply,
     backup,
     bench,
     certs,
@@ -443,6 +444,8 @@ cli.command()(tree.tree)
 cli.command()(nodes.nodes)
 cli.command()(new.new)
 cli.command()(examples.examples)
+cli.command()(apply.apply)
+cli.command()(apply.versions)
 cli.command()(tasks.tasks)
 cli.command()(oee.oee)
 cli.command()(certs.certs)

@@ -17,6 +17,8 @@ SECTIONS: Mapping[str, tuple[str, ...]] = {
             "new",
             "examples",
             "check",
+            "apply",
+            "versions",
             "tree",
             "nodes",
             "urdf",

@@ -10,6 +10,7 @@ import threading
 import time
 from collections.abc import Callable, Collection
 from dataclasses import asdict, dataclass, field
+from datetime import datetime, timezone
 from functools import cached_property
 from importlib import import_module
 from pathlib import Path
@@ -27,6 +28,7 @@ from arboleda.recorder.preamble import Beginning, Recording
 from arboleda.store.plant_memory import JournalEntry, PlantMemory, Superseded
 from arboleda.web.names import other_address
 
+from . import at_work
 from .alarm_options import AlarmOptions
 from .demo import Demo
 from .log_queue import Output
@@ -137,6 +139,7 @@ class App:
             if "orchestrator" in parts:
                 self._state.open()
                 self._store.open()
+                self._keep_files(options.recording)
                 self._past_acts = _acts(self._store)
             self._build(set(parts), options)
         except BaseException:  # whatever it is, the next start finds the state directory free
@@ -234,6 +237,11 @@ class App:
         """Give no more tasks of the demonstration; from any thread."""
         if self._demo is not None:
             self._demo.end()
+
+    def _keep_files(self, recording: Recording | None) -> None:
+        """Keep what this start is made of, for `arboleda apply`; without a record that is not known."""
+        now = datetime.now(timezone.utc).isoformat(timespec="seconds")
+        at_work.keep(self._state.path, recording.files if recording else None, now)
 
     def _web_part(self, options: Options) -> WebPart:
         from .parts import page  # its libraries take half a second, and nodes do without them

@@ -1,0 +1,188 @@
+"""The commands `arboleda apply` and `arboleda versions`: what was changed is shown, put to work and kept."""
+
+from __future__ import annotations
+
+import getpass
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from datetime import datetime, timezone
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from arboleda.model.errors import ConfigError
+from arboleda.model.outside import plain
+from arboleda.plant_file import draft_check, loader, plant_check
+from arboleda.plant_file.changes import changes
+from arboleda.plant_file.versions import Version, Versions, version_of, whole
+from arboleda.runtime import at_work
+from arboleda.runtime.state import Running, default_state, find_running
+
+from .plant_options import PlantFile, StateFolder
+
+LONGEST = 500  # characters of a line
+NOT_SHIPPED = (
+    "the shipped plant cannot be changed: write one of your own with `arboleda new`, or copy its file, and"
+    " name it with --plant"
+)
+Back = Annotated[
+    int | None,
+    typer.Option("--back", metavar="N", min=1, help="Bring version N back: its plant file and its trees."),
+]
+Note = Annotated[str, typer.Option("--note", metavar="TEXT", help="A line that is kept with the version.")]
+Yes = Annotated[bool, typer.Option("--yes", help="Do not ask.")]
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Base:
+    """What a version is compared with, None for nothing, and the process that runs the plant."""
+
+    version: Version | None
+    running: Running | None
+
+    @property
+    def name(self) -> str:
+        if self.version is None:
+            return "nothing was kept before; this is the first version"
+        kept = f"version {self.version.number} of {_minute(self.version)}"
+        started = f"what the plant was started with at {_minute(self.version)}"
+        return kept if self.version.number else started
+
+
+def apply(
+    plant: PlantFile = None, back: Back = None, note: Note = "", yes: Yes = False, state: StateFolder = None
+) -> None:
+    """Check a plant file and all that it uses, show what is another than what is at work, and put it to work.
+
+    Versions are kept in the folder .arboleda beside the plant file. A plant that runs goes on as it is; its
+    next start takes the version. Exit status: 0 kept, or nothing to keep; 1 you said no; 2 the check refuses
+    it, and nothing was changed.
+    """
+    file = _named(plant)
+    kept = Versions(file)
+    wanted = _on_disk(file) if back is None else _checked(file, kept, kept.find(back))
+    base = _base(wanted.plant_name, kept, state)
+    lines = tuple(_differences(base.version, wanted))
+    if base.version is not None and not lines:
+        if back is not None and not kept.is_in_place(wanted.version):
+            _ask("Bring its files back?", yes=yes)
+            kept.bring_back(wanted.version)
+        _print(f"{file}: as in {base.name}; there is nothing to put to work")
+        return
+    _print(f"{file}: compared with {base.name}:" if base.version else f"{file}: {base.name}")
+    for line in lines:
+        _print(f"  {line}")
+    _ask("Put this to work?", yes=yes)
+    if back is not None:
+        kept.bring_back(wanted.version)
+    number = _keep(file, kept, base, lines, note or (f"version {back} again" if back else ""))
+    _print(f"version {number} is kept; {_what_next(base.running)}")
+
+
+def versions(plant: PlantFile = None, state: StateFolder = None) -> None:
+    """List the versions of a plant file that were put to work, oldest first, with what each has changed.
+
+    `arboleda apply --back N` brings one back.
+    """
+    file = _named(plant)
+    kept = Versions(file)
+    base = _base(loader.load(file, recipes=False).name, kept, state)
+    runs = base.version.digest if base.running and base.version else ""
+    known = kept.all()
+    if not known:
+        _print(f"{file}: no version is kept; `arboleda apply` keeps one")
+    for each in known:
+        _print("  ".join(_heading(each, is_running=each.digest == runs)))
+        for line in each.changes:
+            _print(f"  {line}")
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Wanted:
+    """The version to be put to work, the name of its plant, and whether it is one of before."""
+
+    version: Version
+    plant_name: str
+    comes_back: bool = False
+
+
+def _ask(question: str, *, yes: bool) -> None:
+    if not yes:
+        typer.confirm(question, abort=True)
+
+
+def _named(plant: Path | None) -> Path:
+    if plant is None:
+        raise ConfigError((NOT_SHIPPED,))
+    return plant
+
+
+def _on_disk(file: Path) -> _Wanted:
+    """The files as they are now; ConfigError with every problem. Prints what `check` warns of."""
+    model, files = loader.load_with_files(file)
+    for warning in plant_check.warnings(model):
+        _print(f"{file}: warning: {warning}")
+    return _Wanted(version=version_of(files, at=_now()), plant_name=model.name)
+
+
+def _checked(file: Path, kept: Versions, version: Version) -> _Wanted:
+    """A version that is to come back; ConfigError where it is no plant beside the other files of today."""
+    found = draft_check.check(version.files, file)
+    if found.plant is None:
+        raise ConfigError((f"version {version.number} cannot be brought back:", *found.problems))
+    for warning in found.warnings:
+        _print(f"{file}: warning: {warning}")
+    for name in kept.others_now(version):
+        _print(f"{name}: another file than with version {version.number}; it stays as it is")
+    return _Wanted(version=version, plant_name=found.plant.name, comes_back=True)
+
+
+def _base(plant_name: str, kept: Versions, state: Path | None) -> _Base:
+    """What is at work in the plant that runs; where none does, what was kept last."""
+    where = state or default_state(plant_name)
+    running, started, last = find_running(where), at_work.known(where), kept.last()
+    if running is not None and started is not None:
+        same = next((each for each in reversed(kept.all()) if each.digest == started.digest), None)
+        return _Base(version=same or started, running=running)
+    return _Base(version=last or started, running=running)
+
+
+def _differences(base: Version | None, wanted: _Wanted) -> Iterator[str]:
+    if base is None:
+        return
+    sides = [base.files, wanted.version.files] if wanted.comes_back else [whole(base), whole(wanted.version)]
+    yield from (each.words for each in changes(*sides))
+
+
+def _keep(file: Path, kept: Versions, base: _Base, lines: tuple[str, ...], note: str) -> int:
+    """Keep what is in the folder now, before it what is at work if no version has that; the new number."""
+    before = base.version
+    if before is not None and not before.number:
+        kept.keep(replace(before, note="at work before"))
+    _, files = loader.load_with_files(file)
+    fresh = version_of(files, at=_now(), by=getpass.getuser(), note=note)
+    return kept.keep(replace(fresh, changes=lines)).number
+
+
+def _what_next(running: Running | None) -> str:
+    if running is None:
+        return "the next start of the plant has it"
+    return f"the plant that runs (process {running.pid}) goes on as it is, and has it from its next start on"
+
+
+def _heading(version: Version, *, is_running: bool) -> Iterator[str]:
+    yield f"{version.number:>3}  {_minute(version)}"
+    yield from (each for each in (version.by, "at work" if is_running else "", version.note) if each)
+
+
+def _minute(version: Version) -> str:
+    return version.at.partition("+")[0].replace("T", " ") + " UTC"
+
+
+def _now() -> str:
+    return datetime.now(timezone.utc).isoformat(timespec="seconds")
+
+
+def _print(line: str) -> None:
+    print(plain(line, LONGEST), flush=True)

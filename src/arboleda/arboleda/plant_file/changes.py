@@ -1,0 +1,149 @@
+"""Differences between two sets of a plant's files: as data, and in words."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+from arboleda.bt_xml import reading
+from arboleda.bt_xml.findings import Findings
+from arboleda.bt_xml.forest import Node
+from arboleda.recorder.preamble import PlantFiles
+
+from .document import Place, dotted
+from .tree_file import ENDING
+from .yaml_flow import flow
+from .yaml_marks import YamlFault, clipped, parse
+
+LONGEST = 120  # characters of a value
+CELLS, TARGETS = "cells", "targets"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Missing:
+    """The value of what is not there, which is not the empty value."""
+
+
+MISSING = Missing()
+
+
+@dataclass(frozen=True, kw_only=True)
+class Change:
+    """One difference: of a value of the plant file at `place`, of a tree in `file`, or of a whole file.
+
+    `before` and `after` are plain values, MISSING where there is none; those of a tree or a file are None.
+    """
+
+    file: str
+    place: Place = ()
+    tree: str = ""
+    before: Any
+    after: Any
+
+    @property
+    def words(self) -> str:
+        """The change as one line."""
+        return f"{self._what}: {self._how}"
+
+    @property
+    def _what(self) -> str:
+        if not self.place:
+            return f"{self.file}, tree {self.tree}" if self.tree else self.file
+        if len(self.place) == 5 and (self.place[0], self.place[2]) == (CELLS, TARGETS):
+            _, cell, _, target, robot = map(str, self.place)
+            return f"cell {cell}, target {target} of {robot}"
+        return dotted(self.place)
+
+    @property
+    def _how(self) -> str:
+        if self.before is MISSING:
+            return "new" if self.after is None else f"new, {_short(self.after)}"
+        if self.after is MISSING:
+            return "gone" if self.before is None else f"gone, it was {_short(self.before)}"
+        if self.before is None and self.after is None:
+            return "changed"
+        return f"from {_short(self.before)} to {_short(self.after)}"
+
+
+def changes(before: PlantFiles, after: PlantFiles) -> tuple[Change, ...]:
+    """What is another in `after`: values of the plant file in its order, then trees, then other files.
+
+    A plant file of which layout or comments alone differ is as it was.
+    """
+    found = [*_of_plant(before, after)]
+    names = sorted(before.contents.keys() | after.contents.keys())
+    for name in [each for each in names if each not in (before.plant, after.plant)]:
+        found += _of_file(name, before.contents.get(name), after.contents.get(name))
+    return tuple(found)
+
+
+def _of_plant(before: PlantFiles, after: PlantFiles) -> Iterator[Change]:
+    old, new = before.contents.get(before.plant, b""), after.contents.get(after.plant, b"")
+    try:
+        values = [parse(each)[0].value for each in (old, new)]
+    except YamlFault:  # one cannot be read, which `check` says with its place
+        if old != new:
+            yield Change(file=after.plant, before=None, after=None)
+        return
+    yield from _of_values(after.plant, (), *values)
+
+
+def _of_values(file: str, place: Place, before: Any, after: Any) -> Iterator[Change]:
+    """The changes of a value and all that is in it; mappings are compared key by key, down to a pose."""
+    is_pose = len(place) == 5 and (place[0], place[2]) == (CELLS, TARGETS)
+    if isinstance(before, dict) and isinstance(after, dict) and not is_pose:
+        for key in [*before, *(key for key in after if key not in before)]:
+            yield from _of_values(file, (*place, key), before.get(key, MISSING), after.get(key, MISSING))
+    elif _is_group_of_poses(place, before, after):
+        rows = [{} if each is MISSING else each for each in (before, after)]
+        yield from _of_values(file, place, *rows)
+    elif before != after:
+        yield Change(file=file, place=place, before=before, after=after)
+
+
+def _is_group_of_poses(place: Place, before: Any, after: Any) -> bool:
+    """True for a target that is new or gone, of which each robot's pose is told."""
+    if len(place) != 4 or (place[0], place[2]) != (CELLS, TARGETS):
+        return False
+    values = [each for each in (before, after) if each is not MISSING]
+    return len(values) == 1 and isinstance(values[0], dict) and bool(values[0])
+
+
+def _of_file(name: str, before: bytes | None, after: bytes | None) -> Iterator[Change]:
+    if before == after:
+        return
+    if before is not None and after is not None and name.endswith(ENDING):
+        yield from _of_trees(name, before, after)
+        return
+    values = [MISSING if each is None else None for each in (before, after)]
+    yield Change(file=name, before=values[0], after=values[1])
+
+
+def _of_trees(name: str, before: bytes, after: bytes) -> Iterator[Change]:
+    """The trees of a file that are new, gone or changed; the file itself where it is none of its trees."""
+    old, new = _trees(name, before), _trees(name, after)
+    found = [
+        Change(file=name, tree=tree, before=None if tree in old else MISSING, after=None)
+        for tree in new
+        if old.get(tree) != new[tree]
+    ]
+    found += [Change(file=name, tree=tree, before=None, after=MISSING) for tree in old if tree not in new]
+    yield from found or [Change(file=name, before=None, after=None)]
+
+
+def _trees(name: str, content: bytes) -> dict[str, str]:
+    """The trees of one file by name, as text that does not depend on its layout."""
+    forest = reading.read(name, content, Findings())
+    return {each: _tree_text(tree.root) for each, tree in forest.trees.items()}
+
+
+def _tree_text(node: Node) -> str:
+    attributes = {**node.own, **node.ports}
+    words = [f"{key}={each.value!r}" for key, each in sorted(attributes.items())]
+    return f"({node.kind} {node.name!r} {' '.join(words)} {''.join(map(_tree_text, node.children))})"
+
+
+def _short(value: Any) -> str:
+    text = flow(value)
+    return text if len(text) <= LONGEST else f"{clipped(text)} ({len(text)} characters)"

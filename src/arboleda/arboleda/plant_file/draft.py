@@ -1,0 +1,109 @@
+"""Draft of a plant's files: changes that nothing runs yet, with undo and redo. No file is read or written."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from pathlib import PurePosixPath
+from typing import Any
+
+from arboleda.bt_xml.markup import LARGEST as LARGEST_TREES
+from arboleda.model.outside import quoted
+from arboleda.recorder.preamble import PlantFiles
+
+from .changes import Change, changes
+from .document import Place
+from .tree_file import ENDING
+from .yaml_edit import EditRefused, with_value, without
+
+MOST_STEPS = 1000  # that can be undone
+MOST_FILES = 50  # of trees
+Contents = Mapping[str, bytes]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Draft:
+    """Draft: the files as they are at work in `base`, as they are meant to become in `files`.
+
+    Each method answers another draft; EditRefused, and nothing is changed, where that cannot be. Plant file
+    and trees can be edited, Python never.
+    """
+
+    base: PlantFiles
+    files: PlantFiles
+    past: tuple[Contents, ...] = ()
+    future: tuple[Contents, ...] = ()
+
+    def with_value(self, place: Place, value: Any) -> Draft:
+        """The draft with a plain value at a place of the plant file, such as `cells.lab.targets.nest`."""
+        return self._with(self.files.plant, with_value(self._plant_text, place, value))
+
+    def without(self, place: Place) -> Draft:
+        """The draft without a key of the plant file."""
+        return self._with(self.files.plant, without(self._plant_text, place))
+
+    def with_trees(self, name: str, content: bytes) -> Draft:
+        """The draft with another content of a file of trees, or with a new one."""
+        _check_name(name)
+        if len(content) > LARGEST_TREES:
+            raise EditRefused(f"{name} would be larger than {LARGEST_TREES // 1024} KiB")
+        count = sum(each.endswith(ENDING) for each in {*self.files.contents, name})
+        if count > MOST_FILES:
+            raise EditRefused(f"a plant has at most {MOST_FILES} files of trees")
+        return self._with(name, content)
+
+    def without_trees(self, name: str) -> Draft:
+        """The draft without a file of trees; one that is at work stays in its folder, unused."""
+        _check_name(name)
+        if name not in self.files.contents:
+            raise EditRefused(f"{quoted(name)} is no file of this plant")
+        return self._step({key: each for key, each in self.files.contents.items() if key != name})
+
+    def undo(self) -> Draft:
+        """The draft before its last step."""
+        if not self.past:
+            raise EditRefused("there is nothing to undo")
+        *past, before = self.past
+        return self._as(before, tuple(past), (self.files.contents, *self.future))
+
+    def redo(self) -> Draft:
+        """The draft with the step that was undone last."""
+        if not self.future:
+            raise EditRefused("there is nothing to redo")
+        after, *future = self.future
+        return self._as(after, (*self.past, self.files.contents), tuple(future))
+
+    @property
+    def changes(self) -> tuple[Change, ...]:
+        """The differences from what is at work."""
+        return changes(self.base, self.files)
+
+    @property
+    def _plant_text(self) -> bytes:
+        return self.files.contents[self.files.plant]
+
+    def _with(self, name: str, content: bytes) -> Draft:
+        return self._step({**self.files.contents, name: content})
+
+    def _step(self, contents: Contents) -> Draft:
+        """The draft after a step; one that changes nothing is none."""
+        if contents == self.files.contents:
+            return self
+        past = (*self.past, self.files.contents)[-MOST_STEPS:]
+        return self._as(contents, past, ())
+
+    def _as(self, contents: Contents, past: tuple[Contents, ...], future: tuple[Contents, ...]) -> Draft:
+        return replace(self, files=replace(self.files, contents=contents), past=past, future=future)
+
+
+def draft_of(files: PlantFiles) -> Draft:
+    """An empty draft of what is at work."""
+    return Draft(base=files, files=files)
+
+
+def _check_name(name: str) -> None:
+    """Raise EditRefused for what is no file of trees in the plant's folder."""
+    path = PurePosixPath(name)
+    is_inside = not path.is_absolute() and ".." not in path.parts and name.isprintable() and "\\" not in name
+    if not is_inside or path.suffix != ENDING or not path.stem or len(name) > 200:
+        raise EditRefused(f"{quoted(name)} is no file of trees, *{ENDING}, in the plant's folder")

@@ -1,0 +1,73 @@
+"""Check of a plant's files that are not in their folder yet, by all that `arboleda check` looks at."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from arboleda.model.errors import ConfigError
+from arboleda.model.plant_model import PlantModel
+from arboleda.recorder.preamble import PlantFiles
+
+from . import loader, plant_check
+
+
+@dataclass(frozen=True, kw_only=True)
+class Checked:
+    """Checked files: the plant, None where there are `problems`; lines with file, line and column."""
+
+    plant: PlantModel | None = None
+    problems: tuple[str, ...] = ()
+    warnings: tuple[str, ...] = ()
+
+
+def check(files: PlantFiles, plant_file: Path) -> Checked:
+    """The verdict on `files` as if they were in the folder of `plant_file`, where all others are.
+
+    Lines name the files by where they would be. Nothing is written there; recipes in Python run as in
+    `arboleda check`, in a process of its own.
+    """
+    root = root_of(files, plant_file)
+    with TemporaryDirectory(prefix="arboleda-") as made:
+        shadow = Path(made) / "plant"
+        _shade(shadow, root.absolute(), files.contents)
+        shaded = shadow / files.plant
+        named = {str(shaded.parent): str(plant_file.parent), str(shadow): str(root)}
+        try:
+            plant = loader.load(shaded)
+            warnings = plant_check.warnings(plant)
+        except ConfigError as error:
+            return Checked(problems=tuple(_renamed(each, named) for each in error.problems))
+        return Checked(plant=plant, warnings=tuple(_renamed(each, named) for each in warnings))
+
+
+def root_of(files: PlantFiles, plant_file: Path) -> Path:
+    """The folder from which the paths of a plant's files count."""
+    depth = len(Path(files.plant).parts) - 1
+    return Path(os.path.normpath(plant_file.parent.joinpath(*[os.pardir] * depth)))
+
+
+def _shade(shadow: Path, folder: Path, contents: Mapping[str, bytes]) -> None:
+    """Make a folder that is as `folder`, but for the files with these contents, by paths from it."""
+    shadow.mkdir()
+    heads = {Path(name).parts[0] for name in contents}
+    for each in os.listdir(folder) if folder.is_dir() else ():
+        if each not in heads:
+            (shadow / each).symlink_to(folder / each)
+    for head in heads:
+        if head in contents:
+            (shadow / head).write_bytes(contents[head])
+            continue
+        inside = [name for name in contents if name.startswith(f"{head}/")]
+        inner = {name.partition("/")[2]: contents[name] for name in inside}
+        _shade(shadow / head, folder / head, inner)
+
+
+def _renamed(line: str, named: Mapping[str, str]) -> str:
+    """The line with the paths of the real files."""
+    for made, real in named.items():
+        line = line.replace(f"{made}{os.sep}", "" if real == os.curdir else f"{real}{os.sep}")
+    return line

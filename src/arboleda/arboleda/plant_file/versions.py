@@ -1,0 +1,216 @@
+"""Versions of a plant: what was put to work and when, kept beside its plant file."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from hashlib import blake2b
+from pathlib import Path
+from typing import Any
+
+from arboleda.model.errors import ConfigError, StartError
+from arboleda.recorder.preamble import PlantFiles
+
+from .draft_check import root_of
+from .tree_file import ENDING
+
+FOLDER, FACTS, CONTENTS = ".arboleda", "version.json", "files"
+FORMAT = 1
+DIGITS = 4  # of the name of a version's folder
+
+
+@dataclass(frozen=True, kw_only=True)
+class Version:
+    """Version: plant file and trees as they were, and a digest of each other file that was used.
+
+    `at` is when, in UTC (ISO 8601), `by` who, `changes` what was another than before, a line each.
+    """
+
+    number: int
+    at: str
+    by: str = ""
+    note: str = ""
+    changes: tuple[str, ...] = ()
+    files: PlantFiles
+    others: Mapping[str, str]
+
+    @property
+    def digest(self) -> str:
+        """One hash of all of its files: equal ones are the same plant."""
+        return _digest_of(self.files.plant, {**_digests(self.files.contents), **self.others})
+
+
+def version_of(files: PlantFiles, *, at: str, number: int = 0, by: str = "", note: str = "") -> Version:
+    """A version of a plant's files that no folder has yet."""
+    editable = {name: each for name, each in files.contents.items() if is_editable(files, name)}
+    others = {name: each for name, each in files.contents.items() if name not in editable}
+    kept = replace(files, contents=editable)
+    return Version(number=number, at=at, by=by, note=note, files=kept, others=_digests(others))
+
+
+def is_editable(files: PlantFiles, name: str) -> bool:
+    """True for the plant file and for trees: what a version brings back."""
+    return name == files.plant or name.endswith(ENDING)
+
+
+def whole(version: Version) -> PlantFiles:
+    """The files of a version to be compared: of those that it has no content of, the digest stands for it."""
+    digests = {name: each.encode() for name, each in version.others.items()}
+    return replace(version.files, contents={**digests, **version.files.contents})
+
+
+class Versions:
+    """Versions: those of one plant file, oldest first, in a folder `.arboleda` beside it."""
+
+    def __init__(self, plant_file: Path) -> None:
+        self._plant_file = plant_file
+        self._folder = plant_file.parent / FOLDER / plant_file.name
+
+    def all(self) -> list[Version]:
+        """Every version that is there whole; StartError where they cannot be read."""
+        try:
+            names = sorted(os.listdir(self._folder)) if self._folder.is_dir() else []
+        except OSError as error:
+            raise StartError(f"{self._folder} cannot be read: {error.strerror}") from error
+        return [read(self._folder / name) for name in names if name.isdigit()]
+
+    def last(self) -> Version | None:
+        """The version that was kept last; None if there is none."""
+        return next(iter(reversed(self.all())), None)
+
+    def find(self, number: int) -> Version:
+        """A version by its number; ConfigError if there is none."""
+        known = self.all()
+        found = next((each for each in known if each.number == number), None)
+        if found is None:
+            numbers = ", ".join(str(each.number) for each in known) or "none"
+            raise ConfigError((f"there is no version {number} of {self._plant_file}; kept: {numbers}",))
+        return found
+
+    def keep(self, version: Version) -> Version:
+        """Keep one more under the next number; StartError, and nothing is kept, if the disk refuses."""
+        last = self.last()
+        numbered = replace(version, number=1 if last is None else last.number + 1)
+        write(self._folder / str(numbered.number).zfill(DIGITS), numbered)
+        return numbered
+
+    def bring_back(self, version: Version) -> None:
+        """Write its plant file and trees where they were; StartError if the disk refuses."""
+        for name, content in version.files.contents.items():
+            _replace(self._path(version, name), content)
+
+    def is_in_place(self, version: Version) -> bool:
+        """True where plant file and trees are those of this version now."""
+        rows = version.files.contents.items()
+        return all(_digest_now(self._path(version, name)) == _digest(each) for name, each in rows)
+
+    def others_now(self, version: Version) -> tuple[str, ...]:
+        """The other files of its time that are gone or others now; they do not come back."""
+        return tuple(
+            name
+            for name, digest in version.others.items()
+            if _digest_now(self._path(version, name)) != digest
+        )
+
+    def _path(self, version: Version, name: str) -> Path:
+        is_plant = name == version.files.plant
+        return self._plant_file if is_plant else root_of(version.files, self._plant_file) / name
+
+
+def read(folder: Path) -> Version:
+    """The version in a folder; StartError if it is not as `write` made it."""
+    try:
+        facts: dict[str, Any] = json.loads((folder / FACTS).read_text("utf-8"))
+        contents = {name: (folder / CONTENTS / _inside(name)).read_bytes() for name in facts["files"]}
+        return Version(
+            number=int(facts["number"]),
+            at=str(facts["at"]),
+            by=str(facts["by"]),
+            note=str(facts["note"]),
+            changes=tuple(map(str, facts["changes"])),
+            files=PlantFiles(plant=_inside(facts["plant"]), contents=contents),
+            others={str(name): str(each) for name, each in facts["others"].items()},
+        )
+    except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
+        raise StartError(f"{folder} is no version of a plant: {error}; delete it") from error
+
+
+def write(folder: Path, version: Version) -> None:
+    """Write a version into a new folder, whole or not at all; StartError if the disk refuses."""
+    fresh = folder.with_name(f".{folder.name}.{os.getpid()}")
+    facts = {
+        "format": FORMAT,
+        "number": version.number,
+        "at": version.at,
+        "by": version.by,
+        "note": version.note,
+        "changes": version.changes,
+        "plant": version.files.plant,
+        "files": [*version.files.contents],
+        "others": dict(version.others),
+    }
+    try:
+        shutil.rmtree(fresh, ignore_errors=True)
+        for name, content in version.files.contents.items():
+            file = fresh / CONTENTS / _inside(name)
+            file.parent.mkdir(parents=True, exist_ok=True)
+            _write(file, content)
+        _write(fresh / FACTS, json.dumps(facts, indent=2, ensure_ascii=False).encode())
+        fresh.rename(folder)
+    except OSError as error:
+        shutil.rmtree(fresh, ignore_errors=True)
+        raise StartError(f"{folder} cannot be written: {error.strerror or error}") from error
+
+
+def _write(file: Path, content: bytes) -> None:
+    with file.open("wb") as opened:
+        opened.write(content)
+        opened.flush()
+        os.fsync(opened.fileno())
+
+
+def _replace(file: Path, content: bytes) -> None:
+    """Put another content into a file, whole; its mode stays."""
+    fresh = file.with_name(f".{file.name}.{os.getpid()}")
+    try:
+        file.parent.mkdir(parents=True, exist_ok=True)
+        _write(fresh, content)
+        if file.exists():
+            shutil.copymode(file, fresh)
+        fresh.replace(file)
+    except OSError as error:
+        fresh.unlink(missing_ok=True)
+        raise StartError(f"{file} cannot be written: {error.strerror or error}") from error
+
+
+def _inside(name: str) -> str:
+    """The name of a file within a folder; ValueError for one that leads out of it."""
+    path = Path(name)
+    if path.is_absolute() or os.pardir in path.parts or not path.parts:
+        raise ValueError(f"{name!r} is in no folder of it")
+    return name
+
+
+def _digest_now(file: Path) -> str | None:
+    try:
+        return _digest(file.read_bytes())
+    except OSError:
+        return None
+
+
+def _digest(content: bytes) -> str:
+    return blake2b(content, digest_size=16).hexdigest()
+
+
+def _digests(contents: Mapping[str, bytes]) -> dict[str, str]:
+    return {name: _digest(each) for name, each in contents.items()}
+
+
+def _digest_of(plant: str, digests: Mapping[str, str]) -> str:
+    found = blake2b(plant.encode(), digest_size=16)
+    for name, each in sorted(digests.items()):
+        found.update(f"\n{name} {each}".encode())
+    return found.hexdigest()

@@ -1,0 +1,162 @@
+"""Drafts of a plant's files: edits, undo and redo, what changed in words, and the check of them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from arboleda.plant_file import draft_check
+from arboleda.plant_file.changes import changes
+from arboleda.plant_file.draft import MOST_STEPS, Draft, draft_of
+from arboleda.plant_file.loader import load_with_files
+from arboleda.plant_file.yaml_edit import EditRefused
+from arboleda.recorder.preamble import PlantFiles
+
+FOLDER = Path(__file__).parents[3] / "examples/own_tree"
+VISE = ("cells", "cell", "targets", "vise", "loader")
+POSE = {"deg": [-75.5, -60.58], "mm": 80, "approach_mm": 40}
+
+
+@pytest.fixture(scope="module")
+def empty() -> Draft:
+    names = ("plant.yaml", "tend.xml")
+    contents = {name: (FOLDER / name).read_bytes() for name in names}
+    return draft_of(PlantFiles(plant="plant.yaml", contents=contents))
+
+
+def words(draft: Draft) -> list[str]:
+    return [each.words for each in draft.changes]
+
+
+def test_a_target_is_changed_with_its_line_alone_and_said_with_both_poses(empty: Draft) -> None:
+    draft = empty.with_value(VISE, POSE)
+    assert words(draft) == [
+        "cell cell, target vise of loader: from {deg: [-75.52, -60.58], mm: 80, approach_mm: 40}"
+        " to {deg: [-75.5, -60.58], mm: 80, approach_mm: 40}"
+    ]
+    rows = zip(
+        *(each.contents["plant.yaml"].splitlines() for each in (empty.files, draft.files)), strict=True
+    )
+    assert sum(before != after for before, after in rows) == 1
+
+
+def test_a_target_is_new_and_another_gone(empty: Draft) -> None:
+    draft = empty.with_value((*VISE[:3], "tray"), {"loader": {"deg": [1, 2]}}).without((*VISE[:3], "done"))
+    assert words(draft) == [
+        "cell cell, target done of loader: gone, it was {deg: [-21.31, 107.91], mm: 80, approach_mm: 40}",
+        "cell cell, target tray of loader: new, {deg: [1, 2]}",
+    ]
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "said"),
+    [
+        (b"a: 1\nb: {c: 2}\n", b"# why\na: 1\nb:\n  c: 2\n", []),
+        (b"a: 1\n", b"a: 2\n", ["a: from 1 to 2"]),
+        (b"a: [1]\n", b"b: x y\n", ["a: gone, it was [1]", 'b: new, "x y"']),
+        (b"a: 1\n", b"a: [\n", ["p.yaml: changed"]),
+        (b"a: 1\n", b"a: " + b"x" * 500, ["a: from 1 to " + "x" * 37 + "... (500 characters)"]),
+    ],
+)
+def test_values_are_compared_and_layout_is_not(before: bytes, after: bytes, said: list[str]) -> None:
+    files = [PlantFiles(plant="p.yaml", contents={"p.yaml": each}) for each in (before, after)]
+    assert [each.words for each in changes(*files)] == said
+
+
+def test_trees_are_compared_by_name_and_other_files_as_a_whole() -> None:
+    def tree(name: str, node: str) -> bytes:
+        return b'<root BTCPP_format="4"><BehaviorTree ID="%s"><%s/></BehaviorTree></root>' % (
+            name.encode(),
+            node.encode(),
+        )
+
+    before = {"p": b"a: 1", "t.xml": tree("A", "Load"), "u.xml": tree("B", "Load"), "r.py": b"1", "o": b""}
+    after = {"p": b"a: 1", "t.xml": tree("A", "Look"), "u.xml": tree("C", "Load"), "r.py": b"2", "n": b""}
+    files = [PlantFiles(plant="p", contents=each) for each in (before, after)]
+    assert [each.words for each in changes(*files)] == [
+        "n: new",
+        "o: gone",
+        "r.py: changed",
+        "t.xml, tree A: changed",
+        "u.xml, tree C: new",
+        "u.xml, tree B: gone",
+    ]
+
+
+def test_undo_and_redo_lead_through_all_steps(empty: Draft) -> None:
+    first = empty.with_value(VISE, POSE)
+    second = first.with_trees("more.xml", b"<root/>")
+    assert second.undo().files == first.files and second.undo().undo().files == empty.files
+    assert second.undo().undo().redo().redo().files == second.files
+    assert second.undo().undo().changes == ()
+    for refused in (empty.undo, second.redo):
+        with pytest.raises(EditRefused, match="nothing to"):
+            refused()
+
+
+def test_a_step_after_an_undo_forgets_what_was_undone(empty: Draft) -> None:
+    other = empty.with_value(VISE, POSE).undo().with_value(("timing", "dwell_s"), 1)
+    assert words(other) == ["timing: new, {dwell_s: 1}"]
+    with pytest.raises(EditRefused, match="nothing to redo"):
+        other.redo()
+
+
+def test_a_step_that_changes_nothing_is_none(empty: Draft) -> None:
+    assert empty.with_value(("name",), "own_tree") == empty
+
+
+def test_old_steps_are_forgotten(empty: Draft) -> None:
+    draft = empty
+    for number in range(MOST_STEPS + 5):
+        draft = draft.with_trees("t.xml", b"%d" % number)
+    assert len(draft.past) == MOST_STEPS
+
+
+@pytest.mark.parametrize(
+    "name", ["recipes.py", "../t.xml", "/etc/t.xml", "t.xml/..", "a\\t.xml", ".xml", "t\n.xml", "plant.yaml"]
+)
+def test_only_trees_within_the_folder_are_written(empty: Draft, name: str) -> None:
+    with pytest.raises(EditRefused, match="no file of trees"):
+        empty.with_trees(name, b"<root/>")
+
+
+def test_a_file_of_trees_is_not_too_large_and_a_gone_one_was_there(empty: Draft) -> None:
+    with pytest.raises(EditRefused, match="larger than"):
+        empty.with_trees("t.xml", b" " * 10_000_000)
+    with pytest.raises(EditRefused, match="no file of this plant"):
+        empty.without_trees("t.xml")
+    assert words(empty.without_trees("tend.xml")) == ["tend.xml: gone"]
+
+
+def test_a_draft_is_checked_beside_the_other_files_and_nothing_is_written(empty: Draft) -> None:
+    before = {each: each.read_bytes() for each in FOLDER.iterdir() if each.is_file()}
+    found = draft_check.check(empty.with_value(VISE, POSE).files, FOLDER / "plant.yaml")
+    assert found.problems == () and found.plant is not None
+    assert found.plant.name == "own_tree"
+    assert {each: each.read_bytes() for each in FOLDER.iterdir() if each.is_file()} == before
+
+
+def test_what_check_refuses_is_named_by_the_real_file_with_its_line(empty: Draft) -> None:
+    plant = FOLDER / "plant.yaml"
+    found = draft_check.check(empty.with_value((*VISE, "deg", 0), 500).files, plant)
+    line = 1 + [each.strip()[:4] for each in plant.read_bytes().decode().splitlines()].index("vise")
+    assert found.plant is None
+    assert found.problems[0].startswith(f"{plant}:{line}:") and "500" in found.problems[0]
+
+
+def test_a_mistake_in_a_tree_is_named_by_the_real_file(empty: Draft) -> None:
+    draft = empty.with_trees("tend.xml", empty.files.contents["tend.xml"].replace(b"<Retry", b"<Rety"))
+    found = draft_check.check(draft.files, FOLDER / "plant.yaml")
+    assert found.plant is None and found.problems[0].startswith(f"{FOLDER / 'tend.xml'}:")
+
+
+def test_files_above_the_plant_file_keep_their_places(tmp_path: Path) -> None:
+    (tmp_path / "cells").mkdir()
+    text = (FOLDER / "plant.yaml").read_text().replace("[tend.xml]", "[../tend.xml]")
+    (tmp_path / "cells/plant.yaml").write_text(text)
+    (tmp_path / "tend.xml").write_bytes((FOLDER / "tend.xml").read_bytes())
+    _, files = load_with_files(tmp_path / "cells/plant.yaml")
+    draft = draft_of(files).with_value(VISE, POSE)
+    assert draft_check.check(draft.files, tmp_path / "cells/plant.yaml").problems == ()
+    assert sorted(files.contents) == ["cells/plant.yaml", "tend.xml"]
