@@ -110,7 +110,9 @@ def test_a_running_plant_is_what_is_compared_with_and_it_can_be_gone_back_to(sta
     assert "from 20 to 25" in shown.output and f"(process {os.getpid()}) goes on as it is" in shown.output
     assert "version 2 is kept" in shown.output
     listed = run(started, "versions").output.splitlines()
-    assert [line for line in listed if "at work" in line] == [listed[0]] and "at work before" in listed[0]
+    assert [line for line in listed if "at work" in line] == [
+        listed[0]
+    ] and "as the plant was started" in listed[0]
 
 
 def test_the_shipped_plant_is_not_changed() -> None:

@@ -121,6 +121,20 @@ def test_only_trees_within_the_folder_are_written(empty: Draft, name: str) -> No
         empty.with_trees(name, b"<root/>")
 
 
+@pytest.mark.parametrize("word", ["mine.py", "os", "my_lab.recipes", "../x.xml", "/tmp/x.xml"])
+def test_no_draft_has_a_plant_use_python_that_it_did_not_use(empty: Draft, word: str) -> None:
+    for place, value in ((("uses", 1), word), (("uses",), [word])):
+        with pytest.raises(EditRefused, match="no file of trees"):
+            empty.with_value(place, value)
+
+
+def test_python_that_is_used_stays_used(empty: Draft) -> None:
+    text = empty.files.contents["plant.yaml"].replace(b"[tend.xml]", b"[recipes.py, tend.xml]")
+    contents = {**empty.files.contents, "plant.yaml": text}
+    draft = draft_of(PlantFiles(plant="plant.yaml", contents=contents)).with_value(("uses", 2), "more.xml")
+    assert words(draft) == ["uses: from [recipes.py, tend.xml] to [recipes.py, tend.xml, more.xml]"]
+
+
 def test_a_file_of_trees_is_not_too_large_and_a_gone_one_was_there(empty: Draft) -> None:
     with pytest.raises(EditRefused, match="larger than"):
         empty.with_trees("t.xml", b" " * 10_000_000)

@@ -159,7 +159,7 @@ def _keep(file: Path, kept: Versions, base: _Base, lines: tuple[str, ...], note:
     """Keep what is in the folder now, before it what is at work if no version has that; the new number."""
     before = base.version
     if before is not None and not before.number:
-        kept.keep(replace(before, note="at work before"))
+        kept.keep(replace(before, note="as the plant was started"))
     _, files = loader.load_with_files(file)
     fresh = version_of(files, at=_now(), by=getpass.getuser(), note=note)
     return kept.keep(replace(fresh, changes=lines)).number

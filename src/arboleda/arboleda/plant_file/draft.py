@@ -15,9 +15,11 @@ from .changes import Change, changes
 from .document import Place
 from .tree_file import ENDING
 from .yaml_edit import EditRefused, with_value, without
+from .yaml_marks import parse
 
 MOST_STEPS = 1000  # that can be undone
 MOST_FILES = 50  # of trees
+USES = "uses"
 Contents = Mapping[str, bytes]
 
 
@@ -36,11 +38,11 @@ class Draft:
 
     def with_value(self, place: Place, value: Any) -> Draft:
         """The draft with a plain value at a place of the plant file, such as `cells.lab.targets.nest`."""
-        return self._with(self.files.plant, with_value(self._plant_text, place, value))
+        return self._with_plant(with_value(self._plant_text, place, value))
 
     def without(self, place: Place) -> Draft:
         """The draft without a key of the plant file."""
-        return self._with(self.files.plant, without(self._plant_text, place))
+        return self._with_plant(without(self._plant_text, place))
 
     def with_trees(self, name: str, content: bytes) -> Draft:
         """The draft with another content of a file of trees, or with a new one."""
@@ -82,6 +84,13 @@ class Draft:
     def _plant_text(self) -> bytes:
         return self.files.contents[self.files.plant]
 
+    def _with_plant(self, text: bytes) -> Draft:
+        """The draft with another plant file; it may use more trees than now at work, no more Python."""
+        for word in _uses(text):
+            if word not in _uses(self.base.contents[self.base.plant]):
+                _check_name(word)
+        return self._with(self.files.plant, text)
+
     def _with(self, name: str, content: bytes) -> Draft:
         return self._step({**self.files.contents, name: content})
 
@@ -99,6 +108,13 @@ class Draft:
 def draft_of(files: PlantFiles) -> Draft:
     """An empty draft of what is at work."""
     return Draft(base=files, files=files)
+
+
+def _uses(text: bytes) -> list[str]:
+    """What a plant file uses; text that is no list of words is for `check` to refuse, and uses nothing."""
+    value = parse(text)[0].value
+    found = value.get(USES) if isinstance(value, dict) else None
+    return [each for each in found if isinstance(each, str)] if isinstance(found, list) else []
 
 
 def _check_name(name: str) -> None:

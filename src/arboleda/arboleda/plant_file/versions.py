@@ -138,8 +138,11 @@ def read(folder: Path) -> Version:
         raise StartError(f"{folder} is no version of a plant: {error}; delete it") from error
 
 
-def write(folder: Path, version: Version) -> None:
-    """Write a version into a new folder, whole or not at all; StartError if the disk refuses."""
+def write(folder: Path, version: Version, *, syncs: bool = True) -> None:
+    """Write a version into a new folder, whole or not at all; StartError if the disk refuses.
+
+    Without `syncs` a power cut may take it.
+    """
     fresh = folder.with_name(f".{folder.name}.{os.getpid()}")
     facts = {
         "format": FORMAT,
@@ -157,19 +160,20 @@ def write(folder: Path, version: Version) -> None:
         for name, content in version.files.contents.items():
             file = fresh / CONTENTS / _inside(name)
             file.parent.mkdir(parents=True, exist_ok=True)
-            _write(file, content)
-        _write(fresh / FACTS, json.dumps(facts, indent=2, ensure_ascii=False).encode())
+            _write(file, content, syncs=syncs)
+        _write(fresh / FACTS, json.dumps(facts, indent=2, ensure_ascii=False).encode(), syncs=syncs)
         fresh.rename(folder)
     except OSError as error:
         shutil.rmtree(fresh, ignore_errors=True)
         raise StartError(f"{folder} cannot be written: {error.strerror or error}") from error
 
 
-def _write(file: Path, content: bytes) -> None:
+def _write(file: Path, content: bytes, *, syncs: bool = True) -> None:
     with file.open("wb") as opened:
         opened.write(content)
         opened.flush()
-        os.fsync(opened.fileno())
+        if syncs:
+            os.fsync(opened.fileno())
 
 
 def _replace(file: Path, content: bytes) -> None:

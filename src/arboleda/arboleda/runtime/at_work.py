@@ -18,7 +18,8 @@ def keep(state: Path, files: PlantFiles | None, at: str) -> None:
     folder = state / FOLDER
     shutil.rmtree(folder, ignore_errors=True)
     if files is not None:
-        versions.write(folder, version_of(files, at=at))
+        # A start waits for no disk here: what a power cut takes, the next start writes again.
+        versions.write(folder, version_of(files, at=at), syncs=False)
 
 
 def known(state: Path) -> Version | None:
