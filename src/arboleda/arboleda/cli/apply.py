@@ -76,8 +76,9 @@ def apply(
     _ask("Put this to work?", yes=yes)
     if back is not None:
         kept.bring_back(wanted.version)
-    number = _keep(file, kept, base, lines, note or (f"version {back} again" if back else ""))
-    _print(f"version {number} is kept; {_what_next(base.running)}")
+        wanted = replace(wanted, version=version_of(loader.load_with_files(file)[1], at=_now()))
+    fresh = replace(wanted.version, changes=lines, note=note or (f"version {back} again" if back else ""))
+    _print(f"version {_keep(kept, base, fresh)} is kept; {_what_next(base.running)}")
 
 
 def versions(plant: PlantFile = None, state: StateFolder = None) -> None:
@@ -155,14 +156,12 @@ def _differences(base: Version | None, wanted: _Wanted) -> Iterator[str]:
     yield from (each.words for each in changes(*sides))
 
 
-def _keep(file: Path, kept: Versions, base: _Base, lines: tuple[str, ...], note: str) -> int:
-    """Keep what is in the folder now, before it what is at work if no version has that; the new number."""
+def _keep(kept: Versions, base: _Base, version: Version) -> int:
+    """Keep a version, before it what is at work if no version has that; its number."""
     before = base.version
     if before is not None and not before.number:
         kept.keep(replace(before, note="as the plant was started"))
-    _, files = loader.load_with_files(file)
-    fresh = version_of(files, at=_now(), by=getpass.getuser(), note=note)
-    return kept.keep(replace(fresh, changes=lines)).number
+    return kept.keep(replace(version, by=getpass.getuser())).number
 
 
 def _what_next(running: Running | None) -> str:
