@@ -2,23 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
+import httpx
 import pytest
+
+from arboleda.runtime.state import find_running
+
+from ..patience import PATIENCE_S
 
 pytestmark = pytest.mark.system
 
 EXAMPLE = Path(__file__).parents[2] / "examples/own_tree"
+VISE = ("cells", "cell", "targets", "vise", "loader")
 
 
 def test_what_changed_since_the_start_is_said_and_the_next_start_has_it(
     arboleda: Callable[..., Any], tmp_path: Path
 ) -> None:
-    for name in ("plant.yaml", "tend.xml"):
-        (tmp_path / name).write_bytes((EXAMPLE / name).read_bytes())
-    plant = tmp_path / "plant.yaml"
+    plant = copied(tmp_path)
     up = arboleda("up", "--no-ros", "--plant", str(plant))
     up.wait_for("HTTP API")
     plant.write_text(plant.read_text("utf-8").replace("takes_s: 20", "takes_s: 25"), "utf-8")
@@ -32,6 +37,55 @@ def test_what_changed_since_the_start_is_said_and_the_next_start_has_it(
     again.wait_for("HTTP API")
     assert at_work(arboleda, plant) == ["  2  "]
     assert again.interrupt() == 0
+
+
+def test_a_draft_over_http_is_checked_and_kept_and_the_next_start_has_it(
+    arboleda: Callable[..., Any], tmp_path: Path
+) -> None:
+    plant = copied(tmp_path)
+    up = arboleda("up", "--no-ros", "--plant", str(plant))
+    up.wait_for("HTTP API")
+    with draft(tmp_path) as step:
+        step("take", name="Ana")
+        step("set", place=[*VISE, "deg", 0], value=500)
+        refused = step("keep")
+        assert refused["version"] is None and refused["problems"][0].startswith(f"{plant}:")
+        step("undo")
+        step("set", place=[*VISE, "deg", 0], value=-75.5)
+        assert step("check")["problems"] == []
+        assert plant.read_bytes() == (EXAMPLE / "plant.yaml").read_bytes()
+        assert step("keep", note="vise moved")["version"] == 2
+    assert plant.read_text("utf-8") == (EXAMPLE / "plant.yaml").read_text("utf-8").replace("-75.52", "-75.5")
+    assert up.interrupt() == 0
+    again = arboleda("up", "--no-ros", "--plant", str(plant))
+    again.wait_for("HTTP API")
+    with draft(tmp_path) as step:
+        assert step("take", name="Ana")["waiting"] == []
+    assert at_work(arboleda, plant) == ["  2  "]
+    assert again.interrupt() == 0
+
+
+def copied(folder: Path) -> Path:
+    """The plant file of a copy of the example."""
+    for name in ("plant.yaml", "tend.xml"):
+        (folder / name).write_bytes((EXAMPLE / name).read_bytes())
+    return folder / "plant.yaml"
+
+
+@contextmanager
+def draft(folder: Path) -> Iterator[Callable[..., Any]]:
+    """`step("take", name="Ana")`: a step of the draft of the plant that runs, which has to succeed."""
+    running = find_running(folder / "state")
+    assert running is not None
+    with httpx.Client(base_url=running.url, trust_env=False, timeout=PATIENCE_S) as client:
+
+        def step(word: str, /, **body: Any) -> Any:
+            told = {} if word == "check" else {"editor": "ana-12345", **body}
+            answer = client.post(f"/api/draft/{word}", json=told)
+            assert answer.status_code == 200, answer.text
+            return answer.json()
+
+        yield step
 
 
 def at_work(arboleda: Callable[..., Any], plant: Path) -> list[str]:

@@ -9,6 +9,8 @@ import httpx
 from arboleda.model.messages import Verb
 from arboleda.web import openapi
 
+DRAFT_STEPS = ("take", "set", "remove", "undo", "redo", "discard", "check", "keep")
+
 
 def test_the_description_has_every_route_and_what_it_takes_and_gives(web: httpx.Client) -> None:
     api = web.get("/api/openapi.json").json()
@@ -25,6 +27,8 @@ def test_the_description_has_every_route_and_what_it_takes_and_gives(web: httpx.
         "/api/acts/{number}",
         "/api/cells/{scope}/{verb}",
         "/api/events",
+        "/api/draft",
+        *(f"/api/draft/{step}" for step in DRAFT_STEPS),
     }
     posted = api["paths"]["/api/tasks"]["post"]
     written, form = posted["requestBody"]["content"]["application/json"]["schema"]["anyOf"]

@@ -278,7 +278,7 @@ def up(
     shown = _Certificates(tls_cert, tls_key, broker_tls=broker_tls, broker_ca=broker_ca)
     web = WebOptions(host=host, port=port, public_url=public_url, tls=shown.by_web)
     options = _options(broker, broker_host, broker_users, shown, rate, state, store, web, recording)
-    options = replace(options, groot2=groot2, demo=demo)
+    options = replace(options, groot2=groot2, demo=demo, plant_file=plant)
     _run(model, tasks or [], options, boards=boards, ros=ros, lan=ros_lan, stay=True, standby=standby)
 
 
@@ -315,7 +315,7 @@ def run(
     shown = _Certificates(tls_cert, tls_key, broker_tls=broker_tls, broker_ca=broker_ca)
     web = WebOptions(host=host, port=port, public_url=public_url, tls=shown.by_web)
     options = _options(broker, broker_host, broker_users, shown, rate, state, store, web, recording)
-    options = replace(options, groot2=groot2)
+    options = replace(options, groot2=groot2, plant_file=plant)
     _run(model, tasks, options, boards=boards, ros=ros, lan=ros_lan, stay=False, patience_s=wait_for_devices)
 
 

@@ -17,9 +17,13 @@ from . import loader, plant_check
 
 @dataclass(frozen=True, kw_only=True)
 class Checked:
-    """Checked files: the plant, None where there are `problems`; lines with file, line and column."""
+    """Checked files: the plant, None where there are `problems`; lines with file, line and column.
+
+    `read`: all files that the plant was made of, by paths as those that were checked have.
+    """
 
     plant: PlantModel | None = None
+    read: PlantFiles | None = None
     problems: tuple[str, ...] = ()
     warnings: tuple[str, ...] = ()
 
@@ -37,11 +41,13 @@ def check(files: PlantFiles, plant_file: Path) -> Checked:
         shaded = shadow / files.plant
         named = {str(shaded.parent): str(plant_file.parent), str(shadow): str(root)}
         try:
-            plant = loader.load(shaded)
+            plant, read = loader.load_with_files(shaded)
             warnings = plant_check.warnings(plant)
         except ConfigError as error:
             return Checked(problems=tuple(_renamed(each, named) for each in error.problems))
-        return Checked(plant=plant, warnings=tuple(_renamed(each, named) for each in warnings))
+        same = read.plant == files.plant  # else it uses files by absolute paths, which have other names here
+        lines = tuple(_renamed(each, named) for each in warnings)
+        return Checked(plant=plant, read=read if same else None, warnings=lines)
 
 
 def root_of(files: PlantFiles, plant_file: Path) -> Path:

@@ -31,6 +31,7 @@ from arboleda.web.names import other_address
 from . import at_work
 from .alarm_options import AlarmOptions
 from .demo import Demo
+from .draft_desk import DraftDesk
 from .log_queue import Output
 from .parts.alarms import alarms_part
 from .parts.bridge import BridgePart
@@ -89,6 +90,7 @@ class Options:
     keeps_waiting: bool = True  # for the next start; else what waits at the end is cancelled
     page: bool = True  # the API needs none, and a page takes a second to load
     recording: Recording | None = None  # None: no record is written
+    plant_file: Path | None = None  # None: the shipped one, which nobody changes
     demo: bool = False  # tasks that never end, and faults, of a plant on virtual boards
     groot2: bool | None = None  # whether trees are shown to Groot2; None: where the plant file says so
     notes: tuple[str, ...] = ()  # what else a person should know of this start
@@ -129,6 +131,7 @@ class App:
         self._firmware = options.firmware
         self._log_name = options.log_name
         self._notes = options.notes
+        self._draft = None if options.plant_file is None else DraftDesk(options.plant_file, state)
         self._over = threading.Event()
         self._callbacks: list[Callable[[], None]] = []
         self._trouble: ArboledaError | None = None
@@ -256,6 +259,7 @@ class App:
             end_demo=self.end_demo if options.demo else None,
             recorded=None if options.recording is None else self._state.path,
             report=self.report,
+            draft=self._draft,
         )
         paged = page.PagePlant(self.plant, self._history, sources) if options.page else None
         metrics = self._metrics = Metrics(self.plant.snapshot, self.links)
@@ -273,7 +277,7 @@ class App:
     @cached_property
     def local(self) -> LocalPlant:
         """PlantApi of the plant of this process; ArboledaError where it has none."""
-        return LocalPlant(self.plant, self._history)
+        return LocalPlant(self.plant, self._history, self._draft)
 
     @property
     def plant(self) -> Orchestrator:
@@ -368,6 +372,7 @@ class App:
             self.watch(self._web.plant.saw)
             self._count()
             self._parts.append(self._web)
+            self._parts += [self._draft] if self._draft else []  # ends before what has it asked
         if self._groot2 is not None:
             self.watch(self._groot2.saw)
             self._parts.append(self._groot2)

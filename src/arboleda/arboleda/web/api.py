@@ -30,6 +30,7 @@ from arboleda.store.task_rows import COMMAND, HTTP, TaskRow, answers_of, choice_
 
 from . import limits, login, metrics, openapi, stream
 from .auth import SUBMIT, Forbidden, require
+from .draft_api import DraftRefused
 from .limits import LATER_S
 from .plain_json import PlainJson, explained
 from .plant_api import COMMAND_LINE, PlantApi
@@ -89,7 +90,7 @@ Where the plant is open to a network every request carries a token (Authorizatio
 that stands by for the plant answers 307 with the address of the one that leads it, to which a client shows
 its token itself, or 503 with Retry-After. Who names a plant in a header Arboleda-Plant is refused with 421
 where another one answers. The stop is a stop in software and no safety function."""
-STATUS = {TextError: 422, PayloadError: 422, Forbidden: 403}
+STATUS = {TextError: 422, PayloadError: 422, Forbidden: 403, DraftRefused: 409}
 OTHERS: Answers = {
     "default": {"model": Sentence, "description": "401 without a token, 413 too long, 429 too often, ..."}
 }

@@ -18,6 +18,8 @@ from arboleda.store.task_rows import TaskQuery, TaskRow
 from arboleda.views import forms, view
 from arboleda.views.oee import Oee
 
+from .draft_api import DraftApi
+
 PLANT = "arboleda-plant"  # header by which a client names the plant it means
 COMMAND_LINE = "arboleda"  # the User-Agent of our own command, before its version
 Snapshot = dict[str, Any]
@@ -54,6 +56,11 @@ class PlantApi(Protocol):
     def spelled(self, *, cell: str, recipe: str, values: Mapping[str, Value], id: str) -> str:
         """The text of a task given by its values; raises TextError if it is no task of this plant."""
         return spelled(self.model, cell=cell, recipe=recipe, values=values, id=id)
+
+    @property
+    def draft(self) -> DraftApi | None:
+        """The draft of its files; None where it has no plant file that could be changed."""
+        return None
 
     @abstractmethod
     def find(self, task: str) -> dict[str, Any] | None:

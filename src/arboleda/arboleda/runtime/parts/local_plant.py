@@ -17,6 +17,7 @@ from arboleda.store.oee_rows import OeeQuery
 from arboleda.store.task_rows import History, TaskQuery, TaskRow
 from arboleda.views import view
 from arboleda.views.oee import Oee
+from arboleda.web.draft_api import DraftApi
 from arboleda.web.plant_api import Found, PlantApi, Snapshot
 
 from .orchestrator import GLANCE_S, Orchestrator
@@ -27,8 +28,9 @@ LOG = logging.getLogger(__name__)
 class LocalPlant(PlantApi):
     """PlantApi of the plant in this process: its orchestrator, and the history of its tasks."""
 
-    def __init__(self, plant: Orchestrator, history: History) -> None:
+    def __init__(self, plant: Orchestrator, history: History, draft: DraftApi | None = None) -> None:
         self._plant = plant
+        self._draft = draft
         self._history = history
         self._watchers: tuple[Callable[[Snapshot], None], ...] = ()
         self._changing = threading.Lock()
@@ -45,6 +47,10 @@ class LocalPlant(PlantApi):
 
     def latest(self) -> Snapshot:
         return self._plant.snapshot()
+
+    @property
+    def draft(self) -> DraftApi | None:
+        return self._draft
 
     def find(self, task: str) -> dict[str, Any] | None:
         return self._plant.find(task)

@@ -16,6 +16,7 @@ from arboleda.plant_file.urdf import robot_urdf
 from arboleda.recorder.errors import NoRecord
 from arboleda.store.task_rows import History
 from arboleda.views import view
+from arboleda.web.draft_api import DraftApi
 
 from .local_plant import LocalPlant
 from .orchestrator import Orchestrator
@@ -39,6 +40,7 @@ class Sources:
     past_acts: Callable[[], list[dict[str, Any]]]
     recorded: Path | None  # the state directory of a plant that writes a record
     report: Callable[[str], str | None]
+    draft: DraftApi | None = None
     end_demo: Callable[[], None] | None = None  # None: this start is no demonstration
 
 
@@ -46,7 +48,7 @@ class PagePlant(LocalPlant):
     """PageApi of the plant in this process: LocalPlant with what only the page shows."""
 
     def __init__(self, plant: Orchestrator, history: History, sources: Sources) -> None:
-        super().__init__(plant, history)
+        super().__init__(plant, history, sources.draft)
         self._model = sources.model
         self._layout = view.layout(sources.model) | {
             "recorded": sources.recorded is not None,

@@ -1,0 +1,99 @@
+"""Check of a draft in a process of its own, which takes neither time nor memory from a plant that runs."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+import threading
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from arboleda.model.errors import ArboledaError
+from arboleda.recorder.preamble import PlantFiles
+
+from . import draft_check
+from .draft_check import Checked
+from .recipe_trial import PATH
+
+START = PATH + "from arboleda.plant_file import draft_process; draft_process.main()"
+AT_MOST_S = 300.0
+KINDNESS = 10  # that of `nice`: whatever the plant does comes first
+NO_ANSWER = "the draft could not be checked, its check gave no answer; `arboleda check` says more"
+BUSY = "the draft is being checked already; try again in some seconds"
+ENDING = "the draft is not checked any more: the plant ends"
+
+
+class CheckProcess:
+    """Check process: one check at a time, for any thread; `stop` ends it."""
+
+    def __init__(self) -> None:
+        self._turns = threading.Lock()
+        self._run: subprocess.Popen[bytes] | None = None
+        self._ended = False
+
+    def check(self, files: PlantFiles, plant_file: Path) -> Checked:
+        """The same as `draft_check.check`, without the plant. It waits; ArboledaError if no answer comes."""
+        request = {"plant_file": str(plant_file), "plant": files.plant, "contents": _texts(files.contents)}
+        run = self._start()
+        try:
+            said, _ = run.communicate(json.dumps(request).encode(), AT_MOST_S)
+        except (OSError, subprocess.TimeoutExpired):
+            said = b""
+        finally:
+            run.kill()
+            run.communicate()
+            self._run = None
+        return _answer(said, files.plant)
+
+    def stop(self) -> None:
+        """End the check that is under way, and begin no other; idempotent."""
+        with self._turns:
+            self._ended = True
+            if self._run is not None:
+                self._run.kill()
+
+    def _start(self) -> subprocess.Popen[bytes]:
+        command = [sys.executable, "-I", "-c", START, json.dumps(sys.path)]
+        with self._turns:
+            if self._ended or self._run is not None:
+                raise ArboledaError(ENDING if self._ended else BUSY)
+            pipe = subprocess.PIPE
+            self._run = subprocess.Popen(command, stdin=pipe, stdout=pipe, stderr=subprocess.DEVNULL)
+            return self._run
+
+
+def main() -> None:
+    """Run as the other process: read the request, answer on the last line, end."""
+    os.nice(KINDNESS)
+    request = json.load(sys.stdin)
+    files = PlantFiles(plant=request["plant"], contents=_bytes(request["contents"]))
+    found = draft_check.check(files, Path(request["plant_file"]))
+    read = None if found.read is None else _texts(found.read.contents)
+    answer = {"problems": found.problems, "warnings": found.warnings, "read": read}
+    print(f"\n{json.dumps(answer)}", flush=True)
+    os._exit(0)  # whatever threads the plant's Python has started
+
+
+def _answer(said: bytes, plant: str) -> Checked:
+    """The verdict on the last line of what the process said; ArboledaError if there is none."""
+    try:
+        found: dict[str, Any] = json.loads(said.splitlines()[-1])
+        read = found["read"]
+        return Checked(
+            problems=tuple(found["problems"]),
+            warnings=tuple(found["warnings"]),
+            read=None if read is None else PlantFiles(plant=plant, contents=_bytes(read)),
+        )
+    except (ValueError, KeyError, IndexError, TypeError) as error:
+        raise ArboledaError(NO_ANSWER) from error
+
+
+def _texts(contents: Mapping[str, bytes]) -> dict[str, str]:
+    return {name: each.decode("utf-8", "surrogateescape") for name, each in contents.items()}
+
+
+def _bytes(texts: Mapping[str, str]) -> dict[str, bytes]:
+    return {name: each.encode("utf-8", "surrogateescape") for name, each in texts.items()}

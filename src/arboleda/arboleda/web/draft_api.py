@@ -1,0 +1,60 @@
+"""The draft of a plant's files as the web server sees it: who edits it, its steps, its check, and its end."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from collections.abc import Sequence
+from typing import Any, Protocol
+
+from arboleda.model.errors import ArboledaError
+
+State = dict[str, Any]
+Place = Sequence[str | int]
+
+
+class DraftRefused(ArboledaError):
+    """The draft is not changed; the sentence says why, such as who edits it."""
+
+
+class DraftApi(Protocol):
+    """Draft of one plant; all data is plain, `editor` is an id that its page or tool has made for itself.
+
+    Each step answers the state that it leads to; DraftRefused, and nothing is changed, where it cannot be.
+    """
+
+    @abstractmethod
+    def state(self) -> State:
+        """Who edits, what differs from the files, what of these waits for the next start, the values."""
+
+    @abstractmethod
+    def take(self, editor: str, name: str) -> State:
+        """Begin to edit, or take over from whoever edits; `name` is shown to others."""
+
+    @abstractmethod
+    def set(self, editor: str, place: Place, value: Any) -> State:
+        """Set a plain value of the plant file."""
+
+    @abstractmethod
+    def remove(self, editor: str, place: Place) -> State:
+        """Remove a key of the plant file."""
+
+    @abstractmethod
+    def undo(self, editor: str) -> State:
+        """Take the last step back."""
+
+    @abstractmethod
+    def redo(self, editor: str) -> State:
+        """Do the step again that was taken back last."""
+
+    @abstractmethod
+    def discard(self, editor: str) -> State:
+        """Forget all of the draft."""
+
+    @abstractmethod
+    def check(self) -> State:
+        """`problems` and `warnings` of the draft, as `arboleda check` has them; it waits for seconds."""
+
+    @abstractmethod
+    def keep(self, editor: str, note: str) -> State:
+        """Check the draft, write it into the files and keep a version: its `version`, or the `problems` for
+        which nothing was changed. It waits for seconds."""

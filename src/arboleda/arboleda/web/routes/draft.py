@@ -1,0 +1,164 @@
+"""Draft of the plant's files: who edits it, its steps, its check, and keeping it as a version."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Annotated, Any, TypeVar
+
+from fastapi import APIRouter, Request
+from fastapi.concurrency import run_in_threadpool
+from fastapi.responses import JSONResponse
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from starlette.exceptions import HTTPException
+
+from arboleda.model.errors import PayloadError
+
+from ..auth import require
+from ..draft_api import DraftApi, State
+from ..plain_json import PlainJson
+from ..plant_api import PlantApi
+from ..queries import Answers
+from ..schema import ResponseModel, Sentence
+
+MAY = "editing a draft"
+SHIPPED = "This plant has no file that could be changed; `arboleda new` writes one of your own."
+REFUSED: Answers = {
+    403: {"model": Sentence, "description": "Only operators may."},
+    404: {"model": Sentence, "description": "The plant has no file of its own."},
+    409: {"model": Sentence, "description": "Somebody else edits, or it cannot be done."},
+    422: {"model": Sentence, "description": "The request is wrong."},
+}
+Key = Annotated[str, Field(max_length=200)] | Annotated[int, Field(ge=0, le=100_000)]
+
+
+class _Request(BaseModel):
+    """Body: these keys and no others, of exactly these types."""
+
+    model_config = ConfigDict(extra="forbid", strict=True)
+
+    editor: str = Field(
+        pattern="^[A-Za-z0-9_-]{8,64}$", description="An id that a page or tool makes for itself."
+    )
+
+
+class Step(_Request):
+    """A step of its editor that needs nothing else."""
+
+
+class Taking(_Request):
+    name: str = Field(min_length=1, max_length=60, description="Shown to others.", examples=["Ana"])
+
+
+class Removal(_Request):
+    place: list[Key] = Field(min_length=1, max_length=20, examples=[["cells", "lab", "targets", "nest"]])
+
+
+class Setting(Removal):
+    value: Any = Field(description="A plain value of the plant file.")
+
+
+class Keeping(_Request):
+    note: str = Field(default="", max_length=200)
+
+
+class Editing(ResponseModel):
+    name: str
+    since: str = Field(description="In UTC, ISO 8601.")
+
+
+class DraftState(ResponseModel):
+    """State of the draft."""
+
+    file: str = Field(description="The plant file's name.")
+    editor: Editing | None
+    changes: list[str] = Field(description="What the draft would change in the files, a line each.")
+    waiting: list[str] = Field(description="What the files have and only the next start of the plant takes.")
+    undo: int = Field(description="How many steps can be undone.")
+    redo: int
+    values: dict[str, Any] = Field(description="The plant file of the draft as plain values.")
+
+
+class DraftCheck(ResponseModel):
+    problems: list[str] = Field(description="With file, line and column; none where it is good.")
+    warnings: list[str]
+
+
+class KeptDraft(DraftCheck):
+    version: int | None = Field(description="Its number; null, with its problems, if nothing was changed.")
+
+
+Body = TypeVar("Body", bound=_Request)
+
+
+def routes(side: PlantApi) -> APIRouter:
+    """Register the routes."""
+    api = APIRouter(prefix="/api/draft")
+    _look(api, side)
+    _edit(api, side)
+    _keep(api, side)
+    return api
+
+
+def _look(api: APIRouter, side: PlantApi) -> None:
+    @api.get("", response_model=DraftState, responses=REFUSED)
+    async def draft(request: Request) -> JSONResponse:
+        """Who edits the draft of the plant's files, and what it would change."""
+        return await _answered(_draft(side, request).state)
+
+    @api.post("/check", response_model=DraftCheck, responses=REFUSED)
+    async def check(request: Request) -> JSONResponse:
+        """What `arboleda check` says of the draft; in a process of its own, within seconds."""
+        return await _answered(_draft(side, request).check)
+
+
+def _edit(api: APIRouter, side: PlantApi) -> None:
+    def route(path: str, model: type[Body], about: str, act: Callable[[DraftApi, Body], State]) -> None:
+        async def step(request: Request) -> JSONResponse:
+            draft = _draft(side, request)
+            told = _read(model, await request.body())
+            return await _answered(lambda: act(draft, told))
+
+        step.__doc__ = about
+        described = {"requestBody": {"content": {"application/json": {"schema": model.model_json_schema()}}}}
+        wanted: dict[str, Any] = {"responses": REFUSED, "openapi_extra": described}
+        api.post(path, response_model=DraftState, name=path.strip("/"), **wanted)(step)
+
+    route("/take", Taking, "Begin to edit, or take over.", lambda each, to: each.take(to.editor, to.name))
+    route("/set", Setting, "Set a value.", lambda each, to: each.set(to.editor, tuple(to.place), to.value))
+    route("/remove", Removal, "Remove a key.", lambda each, to: each.remove(to.editor, tuple(to.place)))
+    route("/undo", Step, "Take the last step back.", lambda each, to: each.undo(to.editor))
+    route("/redo", Step, "Do it again.", lambda each, to: each.redo(to.editor))
+    route("/discard", Step, "Forget all of the draft.", lambda each, to: each.discard(to.editor))
+
+
+def _keep(api: APIRouter, side: PlantApi) -> None:
+    described = {"requestBody": {"content": {"application/json": {"schema": Keeping.model_json_schema()}}}}
+
+    @api.post("/keep", response_model=KeptDraft, responses=REFUSED, openapi_extra=described)
+    async def keep(request: Request) -> JSONResponse:
+        """Check the draft, write it into the plant's files and keep a version, which the next start takes."""
+        draft = _draft(side, request)
+        told = _read(Keeping, await request.body())
+        return await _answered(lambda: draft.keep(told.editor, told.note))
+
+
+async def _answered(act: Callable[[], State]) -> JSONResponse:
+    return PlainJson(await run_in_threadpool(act))
+
+
+def _draft(side: PlantApi, request: Request) -> DraftApi:
+    """The plant's draft for an operator; Forbidden for others, 404 if it has none."""
+    require(request.scope["arboleda.role"], MAY)
+    draft = side.draft
+    if draft is None:
+        raise HTTPException(404, SHIPPED)
+    return draft
+
+
+def _read(model: type[Body], body: bytes) -> Body:
+    try:
+        return model.model_validate_json(body)
+    except ValidationError as error:
+        found = error.errors(include_url=False, include_context=False, include_input=False)[0]
+        where = ".".join(map(str, found["loc"])) or "the body"
+        raise PayloadError(f"{where[:80]}: {found['msg'].lower()}.") from None

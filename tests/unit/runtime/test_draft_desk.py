@@ -1,0 +1,162 @@
+"""The draft of a plant: who edits it, what it leaves alone, and how it becomes a version."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from arboleda.plant_file.draft_check import Checked
+from arboleda.plant_file.versions import Versions
+from arboleda.recorder.preamble import PlantFiles
+from arboleda.runtime import at_work
+from arboleda.runtime.draft_desk import DraftDesk
+from arboleda.web.draft_api import DraftRefused
+
+AT = "2026-11-25T20:00:00+00:00"
+ANA, BEN = "ana-12345", "ben-12345"
+TEXT = b"name: a  # mine\ntiming: {dwell_s: 1}\n"
+DWELL = ("timing", "dwell_s")
+Open = Callable[..., DraftDesk]
+
+
+def good(files: PlantFiles, plant_file: Path) -> Checked:
+    return Checked(read=files, warnings=("careful",))
+
+
+def bad(files: PlantFiles, plant_file: Path) -> Checked:
+    return Checked(problems=(f"{plant_file}:2:1: no",))
+
+
+@pytest.fixture
+def plant(tmp_path: Path) -> Path:
+    (tmp_path / "plant.yaml").write_bytes(TEXT)
+    (tmp_path / "state").mkdir()
+    files = PlantFiles(plant="plant.yaml", contents={"plant.yaml": TEXT, "r.py": b"1"})
+    at_work.keep(tmp_path / "state", files, AT)
+    return tmp_path / "plant.yaml"
+
+
+@pytest.fixture
+def open_desk(plant: Path) -> Open:
+    """A desk of the plant, as each start of it has one."""
+
+    def opened(check: Any = good, editor: str = ANA) -> DraftDesk:
+        desk = DraftDesk(plant, plant.parent / "state", check)
+        if editor:
+            desk.take(editor, editor[:3])
+        return desk
+
+    return opened
+
+
+def test_nobody_edits_at_first_and_nothing_differs(open_desk: Open) -> None:
+    state = open_desk(editor="").state()
+    assert (state["editor"], state["changes"], state["waiting"], state["undo"]) == (None, [], [], 0)
+    assert state["values"] == {"name": "a", "timing": {"dwell_s": 1}} and state["file"] == "plant.yaml"
+
+
+def test_steps_change_the_draft_and_no_file(open_desk: Open, plant: Path) -> None:
+    desk = open_desk()
+    assert desk.set(ANA, DWELL, 2)["changes"] == ["timing.dwell_s: from 1 to 2"]
+    assert desk.remove(ANA, ("timing",))["changes"] == ["timing: gone, it was {dwell_s: 1}"]
+    assert desk.undo(ANA)["changes"] == ["timing.dwell_s: from 1 to 2"]
+    state = desk.redo(ANA)
+    assert (state["undo"], state["redo"]) == (2, 0) and "timing" not in state["values"]
+    assert plant.read_bytes() == TEXT
+
+
+def test_the_second_person_is_told_who_edits_and_may_take_over(open_desk: Open) -> None:
+    desk = open_desk()
+    desk.set(ANA, DWELL, 2)
+    for refused in (lambda: desk.set(BEN, DWELL, 3), lambda: desk.undo(BEN), lambda: desk.keep(BEN, "")):
+        with pytest.raises(DraftRefused, match="ana edits this draft since"):
+            refused()
+    assert desk.take(BEN, "ben")["changes"] == ["timing.dwell_s: from 1 to 2"]
+    with pytest.raises(DraftRefused, match="ben edits"):
+        desk.set(ANA, DWELL, 4)
+
+
+def test_who_has_not_begun_edits_nothing(open_desk: Open) -> None:
+    with pytest.raises(DraftRefused, match="begin to edit"):
+        open_desk(editor="").set(ANA, DWELL, 2)
+
+
+def test_an_edit_that_cannot_be_is_refused_with_its_sentence(open_desk: Open) -> None:
+    with pytest.raises(DraftRefused, match="no such place"):
+        open_desk().set(ANA, ("name", "x"), 1)
+
+
+def test_a_draft_outlives_its_process(open_desk: Open) -> None:
+    open_desk().set(ANA, DWELL, 2)
+    again = open_desk(editor="").state()
+    assert again["changes"] == ["timing.dwell_s: from 1 to 2"] and again["editor"] is None
+
+
+def test_what_is_discarded_is_gone_from_the_next_start_too(open_desk: Open) -> None:
+    desk = open_desk()
+    desk.set(ANA, DWELL, 2)
+    assert desk.discard(ANA)["changes"] == [] and open_desk().state()["changes"] == []
+
+
+def test_a_kept_draft_is_in_the_files_and_a_version_and_waits_for_the_next_start(
+    open_desk: Open, plant: Path
+) -> None:
+    desk = open_desk()
+    desk.set(ANA, DWELL, 2)
+    assert desk.keep(ANA, "slower") == {"version": 2, "problems": (), "warnings": ("careful",)}
+    assert plant.read_bytes() == TEXT.replace(b"dwell_s: 1", b"dwell_s: 2")
+    state = desk.state()
+    assert (state["changes"], state["waiting"]) == ([], ["timing.dwell_s: from 1 to 2"])
+    started, kept = Versions(plant).all()
+    assert started.files.contents["plant.yaml"] == TEXT and [*started.others] == ["r.py"]
+    assert (kept.by, kept.note, kept.changes) == ("ana", "slower", ("timing.dwell_s: from 1 to 2",))
+
+
+def test_what_the_check_refuses_changes_nothing(open_desk: Open, plant: Path) -> None:
+    desk = open_desk(bad)
+    desk.set(ANA, DWELL, 2)
+    answer = desk.keep(ANA, "")
+    assert answer["version"] is None and answer["problems"] == (f"{plant}:2:1: no",)
+    assert plant.read_bytes() == TEXT and Versions(plant).all() == []
+    assert desk.state()["changes"] == ["timing.dwell_s: from 1 to 2"]
+
+
+def test_a_file_that_a_person_edited_meanwhile_is_not_written_over(open_desk: Open, plant: Path) -> None:
+    desk = open_desk()
+    desk.set(ANA, DWELL, 2)
+    edited = TEXT + b"# a word of mine\n"
+    plant.write_bytes(edited)
+    with pytest.raises(DraftRefused, match=r"plant\.yaml: changed by hand"):
+        desk.keep(ANA, "")
+    assert plant.read_bytes() == edited
+
+
+def test_what_was_edited_by_hand_before_is_where_a_draft_begins(open_desk: Open, plant: Path) -> None:
+    plant.write_bytes(TEXT.replace(b"dwell_s: 1", b"dwell_s: 5"))
+    state = open_desk().state()
+    assert (state["changes"], state["waiting"]) == ([], ["timing.dwell_s: from 1 to 5"])
+
+
+def test_a_draft_that_is_changed_while_it_is_checked_is_not_kept(open_desk: Open, plant: Path) -> None:
+    def slow(files: PlantFiles, plant_file: Path) -> Checked:
+        desk.set(ANA, DWELL, 3)
+        return good(files, plant_file)
+
+    desk = open_desk(slow)
+    desk.set(ANA, DWELL, 2)
+    with pytest.raises(DraftRefused, match="while it was checked"):
+        desk.keep(ANA, "")
+    assert plant.read_bytes() == TEXT
+
+
+def test_an_empty_draft_is_not_kept(open_desk: Open) -> None:
+    with pytest.raises(DraftRefused, match="changes nothing"):
+        open_desk().keep(ANA, "")
+
+
+def test_without_a_record_there_is_no_draft(tmp_path: Path) -> None:
+    with pytest.raises(DraftRefused, match="record: off"):
+        DraftDesk(tmp_path / "plant.yaml", tmp_path, good).state()
