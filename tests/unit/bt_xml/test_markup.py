@@ -16,6 +16,17 @@ def test_values_are_as_meant_and_attributes_know_their_places() -> None:
     assert child.value("code") == "x:=A && y" and child.attributes["code"].mark == Mark(3, 5)
 
 
+def test_elements_know_the_bytes_of_their_tags() -> None:
+    content = '<root><!-- <ñ> --><A x="/>"><B/></A ><C y="ñ>"></C></root>'.encode()
+    a, c = parse(content).root.children
+    assert content[a.span.start : a.span.head] == b'<A x="/>">'
+    assert content[a.span.tail : a.span.end] == b"</A >"
+    assert content[c.span.start : c.span.head] == '<C y="ñ>">'.encode()
+    assert content[c.span.tail : c.span.end] == b"</C>" and not c.span.is_empty
+    (b,) = a.children
+    assert content[b.span.start : b.span.end] == b"<B/>" and b.span.is_empty
+
+
 def test_what_behaviortree_cpp_takes_besides_is_read_and_named() -> None:
     found = parse(
         b"\n<?xml version='1.0'?><!-- a -- b & c --><r a='1 && 2' b=\"x < 3\">Q&A <![CDATA[<]]></r>"

@@ -10,7 +10,7 @@ from __future__ import annotations
 import re
 from bisect import bisect_right
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from xml.parsers import expat
 
 from .findings import Mark, XmlFault
@@ -35,12 +35,31 @@ class Attribute:
 
 
 @dataclass(frozen=True)
+class Span:
+    """Bytes of an element: its first tag from `start` to `head`, its last one from `tail` to `end`.
+
+    An empty element has only one tag, and its `tail` is its `end`.
+    """
+
+    start: int
+    head: int
+    tail: int
+    end: int
+
+    @property
+    def is_empty(self) -> bool:
+        """True if the element is one tag, `<A/>`."""
+        return self.head == self.end
+
+
+@dataclass(frozen=True)
 class Element:
     """Element of XML with its attributes and children; text between the tags is left out."""
 
     name: str
     attributes: dict[str, Attribute]
     mark: Mark
+    span: Span
     children: list[Element] = field(default_factory=list)
 
     def value(self, name: str) -> str | None:
@@ -146,23 +165,30 @@ def _write_over(tamed: bytearray, pattern: re.Pattern[bytes], start: int, end: i
 
 class _Reader:
     def __init__(self, content: bytes, lines: _Lines, ends: dict[int, int]) -> None:
-        self.top = Element("", {}, Mark(1, 1))
+        self.top = Element("", {}, Mark(1, 1), Span(0, 0, len(content), len(content)))
         self._content = content
         self._lines = lines
         self._ends = ends
         self._open = [self.top]
         self.parser = expat.ParserCreate("utf-8")
         self.parser.StartElementHandler = self._start
-        self.parser.EndElementHandler = lambda _: self._open.pop()
+        self.parser.EndElementHandler = self._end
 
     def _start(self, name: str, _: object) -> None:
         start = self.parser.CurrentByteIndex
         mark = self._lines.mark(start)
         if len(self._open) > DEEPEST:
             raise XmlFault(mark, f"nested deeper than {DEEPEST} levels; make a tree of its own of a part")
-        element = Element(name, dict(self._attributes(start, len(name.encode()))), mark)
+        head = self._ends[start]  # and its end, until that is known
+        attributes = dict(self._attributes(start, len(name.encode())))
+        self._open.append(Element(name, attributes, mark, Span(start, head, head, head)))
+
+    def _end(self, _: str) -> None:
+        element = self._open.pop()
+        span, tail = element.span, self.parser.CurrentByteIndex
+        if tail in self._ends and not self._content.startswith(b"/>", span.head - 2):
+            element = replace(element, span=replace(span, tail=tail, end=self._ends[tail]))
         self._open[-1].children.append(element)
-        self._open.append(element)
 
     def _attributes(self, start: int, length: int) -> Iterator[tuple[str, Attribute]]:
         for match in ATTRIBUTE.finditer(self._content, start + 1 + length, self._ends[start]):

@@ -1,0 +1,9 @@
+"""Error of an edit, with a sentence for people."""
+
+from __future__ import annotations
+
+from arboleda.model.errors import ArboledaError
+
+
+class EditError(ArboledaError):
+    """Error: the operation cannot be done on this text; nothing was changed."""
