@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 MOST = 200  # mistakes that are shown; a file with more is no file of trees
@@ -35,6 +36,15 @@ class XmlFault(Exception):
         self.sentence = sentence
 
 
+@dataclass(frozen=True, kw_only=True)
+class Finding:
+    """Mistake or warning with its place."""
+
+    place: Place
+    sentence: str
+    is_mistake: bool
+
+
 @dataclass
 class Findings:
     """Mistakes, which keep a tree from being used, and warnings, which do not. Each is kept once."""
@@ -47,6 +57,13 @@ class Findings:
 
     def warning(self, place: Place, sentence: str) -> None:
         self._warnings[(place, sentence)] = None
+
+    @property
+    def entries(self) -> Iterator[Finding]:
+        """All findings, in the order of the files; mistakes first."""
+        for kept, is_mistake in ((self._mistakes, True), (self._warnings, False)):
+            for place, sentence in sorted(kept):
+                yield Finding(place=place, sentence=sentence, is_mistake=is_mistake)
 
     @property
     def mistakes(self) -> tuple[str, ...]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from functools import partial
 
@@ -30,18 +30,22 @@ from .running.root import Main, Rescue
 
 @dataclass(frozen=True, kw_only=True)
 class TreeRecipe(Recipe):
-    """Recipe of a file; `file` is its name for people, `place` that of its main tree.
+    """Recipe of a file; `file` is its name for people, `content` what it was read from, `place` that of its
+    main tree.
 
     `own`: the nodes in Python that it may use. `groups`: the group of targets of which a parameter is one.
     """
 
     file: str
     place: Place
+    content: bytes = field(compare=False)
     groups: Mapping[str, str] = field(compare=False)
     own: Mapping[str, WrittenNode] = field(compare=False)
 
 
-def tree_recipe(name: str, file: str, forest: Forest, own: Mapping[str, WrittenNode]) -> TreeRecipe:
+def tree_recipe(
+    name: str, file: str, content: bytes, forest: Forest, own: Mapping[str, WrittenNode]
+) -> TreeRecipe:
     """The recipe of the main tree of a forest that can be run; in a cell it is checked with each build.
 
     `own`: the nodes in Python, of which more may come until it is first built.
@@ -74,9 +78,16 @@ def tree_recipe(name: str, file: str, forest: Forest, own: Mapping[str, WrittenN
         ends_with=tuple((each.what, each.value) for each in end),
         file=file,
         place=forest.trees[main].place,
+        content=content,
         groups=groups,
         own=own,
     )
+
+
+def own_nodes(recipes: Iterable[Recipe]) -> dict[str, WrittenNode]:
+    """The nodes in Python that the trees among these recipes may use, by name."""
+    trees = [each for each in recipes if isinstance(each, TreeRecipe)]
+    return {name: own for tree in trees for name, own in tree.own.items()}
 
 
 def _check_end(name: str, end: tuple[ends.End, ...], order: Order, cell: Cell) -> None:

@@ -9,7 +9,7 @@ import typer
 
 from arboleda.bt_xml import leaves, writing
 from arboleda.bt_xml.nodes import Kind, PortDirection
-from arboleda.bt_xml.recipe import TreeRecipe
+from arboleda.bt_xml.recipe import own_nodes
 from arboleda.model.plant_model import PlantModel
 from arboleda.plant_file import loader
 
@@ -44,8 +44,7 @@ def of_plant(model: PlantModel, cell: str | None) -> Mapping[str, Kind]:
     if cell is not None and cell not in names:
         raise typer.BadParameter(f"'{cell}' is not a cell; there are {', '.join(names)}", param_hint="--cell")
     chosen = [each for each in model.cells if cell in (None, each.name)]
-    trees = [each for each in model.recipes if isinstance(each, TreeRecipe)]
-    return leaves.of_cells(chosen, {name: own for tree in trees for name, own in tree.own.items()}.values())
+    return leaves.of_cells(chosen, own_nodes(model.recipes).values())
 
 
 def _line(kind: Kind) -> str:

@@ -136,7 +136,7 @@ def _trees(document: Document, place: Place, word: str, used: PythonUses) -> Non
         runnable.check(forest, findings)
         problems += findings.mistakes
     if not problems:
-        recipe = tree_recipe(name, known_as, forest, used.nodes)
+        recipe = tree_recipe(name, known_as, content, forest, used.nodes)
         problem = _objection("recipe", recipe, used.recipes, TAKEN, used)
         problems += [] if problem is None else [used.spot(recipe).problem(problem)]
         used.recipes.setdefault(name, recipe)

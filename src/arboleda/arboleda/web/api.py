@@ -21,6 +21,7 @@ from starlette.routing import BaseRoute, Match
 from starlette.types import Receive, Scope, Send
 
 from arboleda import __version__
+from arboleda.bt_xml.editing.errors import EditError
 from arboleda.core.leaving import StopLeft
 from arboleda.model.errors import ArboledaError, PayloadError, QueueFull, TextError
 from arboleda.model.messages import Outcome, Verb
@@ -90,7 +91,7 @@ Where the plant is open to a network every request carries a token (Authorizatio
 that stands by for the plant answers 307 with the address of the one that leads it, to which a client shows
 its token itself, or 503 with Retry-After. Who names a plant in a header Arboleda-Plant is refused with 421
 where another one answers. The stop is a stop in software and no safety function."""
-STATUS = {TextError: 422, PayloadError: 422, Forbidden: 403, DraftRefused: 409}
+STATUS = {TextError: 422, PayloadError: 422, EditError: 422, Forbidden: 403, DraftRefused: 409}
 OTHERS: Answers = {
     "default": {"model": Sentence, "description": "401 without a token, 413 too long, 429 too often, ..."}
 }

@@ -23,6 +23,7 @@ from .request import LOGIN, ClientGone, HttpError, RequestHead, with_headers
 async def whole_body(asked: RequestHead, receive: Receive) -> Receive:
     """A `receive` with the whole body; HttpError if it is too long or slow, ClientGone if it ends early."""
     most = limits.PAGE_BODY_BYTES if asked.for_page else limits.API_BODY_BYTES
+    most = limits.TREE_BODY_BYTES if asked.has_tree else most
     try:
         body = await asyncio.wait_for(_read(receive, most), limits.BODY_S)
     except asyncio.TimeoutError:

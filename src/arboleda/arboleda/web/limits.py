@@ -8,6 +8,7 @@ from collections.abc import Callable
 
 API_BODY_BYTES = 4096
 PAGE_BODY_BYTES = 65536
+TREE_BODY_BYTES = 512 * 1024  # a file of trees, of a recipe with its 2,000 nodes, as JSON
 HEADER_BYTES = 16384
 MESSAGE_BYTES = 65536  # of a websocket
 BODY_S = 10.0

@@ -7,6 +7,8 @@ from collections.abc import Callable, Mapping
 from concurrent.futures import Future
 from typing import Any, Protocol, TypeVar
 
+from arboleda.bt_xml.editing import desk
+from arboleda.bt_xml.editing.operations import Operation
 from arboleda.core.plant import Plant
 from arboleda.core.text import spelled
 from arboleda.model.facts import Value
@@ -19,6 +21,7 @@ from arboleda.views import forms, view
 from arboleda.views.oee import Oee
 
 from .draft_api import DraftApi
+from .languages import texts
 
 PLANT = "arboleda-plant"  # header by which a client names the plant it means
 COMMAND_LINE = "arboleda"  # the User-Agent of our own command, before its version
@@ -73,6 +76,19 @@ class PlantApi(Protocol):
     @abstractmethod
     def oee(self, query: OeeQuery) -> list[Oee]:
         """The OEE of its cells, in the order of the plant file; waits for the disk."""
+
+    def tree_files(self) -> list[dict[str, Any]]:
+        """The files of trees that are recipes of this plant: `recipe`, `file`, `cells`, `text`."""
+        return desk.tree_files(self.model)
+
+    def palette(self, cell: str, language: str) -> list[dict[str, Any]]:
+        """The nodes that a tree can have in a cell; raises PayloadError where there is no such cell."""
+        return desk.palette(self.model, cell, texts(language, "nodes"))
+
+    def drawn(self, cell: str, text: str, operation: Operation | None = None) -> dict[str, Any]:
+        """A file of trees as an editor shows it in a cell, after an operation on it; raises EditError where
+        that cannot be done. It computes a while, and asks nothing of the plant that runs."""
+        return desk.drawn(self.model, cell, text, operation)
 
     def promises(self, text: str) -> list[dict[str, Any]]:
         """The promise of each cell that a task text names; raises TextError or QueueFull."""

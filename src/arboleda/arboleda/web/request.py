@@ -12,6 +12,7 @@ from starlette.types import Message, Scope, Send
 from .names import is_loopback
 
 API, LOGIN, LOGOUT, METRICS = "/api/", "/login", "/logout", "/metrics"
+TREES = "/api/trees/"
 STOP = re.compile(r"/api/(plant|cells/[^/]+|plants(/[^/]+)?)/stop")
 READS = {"GET", "HEAD"}
 ONLY_ONE = {"host", "origin", "authorization", "cookie", "content-length", "transfer-encoding"}
@@ -79,6 +80,11 @@ class RequestHead:
     @property
     def for_page(self) -> bool:
         return not is_api(self.path) and self.path not in (LOGIN, LOGOUT)
+
+    @property
+    def has_tree(self) -> bool:
+        """True if the body is a file of trees."""
+        return not self.socket and self.path.startswith(TREES)
 
     @property
     def opens_page(self) -> bool:

@@ -134,7 +134,7 @@ def test_a_node_that_moves_is_the_same_elsewhere(place: tuple[str, str, str], da
     changed = apply(text, edit)
     assert shapes(changed) == wanted
     assert sorted(COMMENT.findall(changed)) == sorted(COMMENT.findall(text))
-    copied = apply(text, replace(edit, copy=True))
+    copied = apply(text, replace(edit, stays=True))
     assert len(list(walk(TreeText(copied).tree(tree)))) > len(list(walk(TreeText(text).tree(tree))))
 
 

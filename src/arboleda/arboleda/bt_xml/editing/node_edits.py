@@ -22,14 +22,14 @@ def move(text: TreeText, edit: Move) -> bytes:
     element = text.node(edit.tree, edit.path)
     place = [*steps(edit.parent), edit.index] if edit.parent else []
     path = steps(edit.path)
-    if edit.tree == edit.to_tree and not edit.copy:
+    if edit.tree == edit.to_tree and not edit.stays:
         if place[: len(path)] == path and len(place) > len(path):
             raise EditError("a node cannot go into itself")
         if place[:-1] == path[:-1] and place and path and place[-1] - path[-1] in (0, 1):
             return text.content
     fragment = layout.taken(text.content, element.span)
     content = _put(text, edit.to_tree, edit.parent, edit.index, fragment)
-    if edit.copy:
+    if edit.stays:
         return content
     there = TreeText(content.decode())
     gone = there.node(edit.tree, path_of(_after(path, place) if edit.tree == edit.to_tree else path))

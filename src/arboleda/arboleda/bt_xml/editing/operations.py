@@ -26,14 +26,14 @@ class Insert:
 
 @dataclass(frozen=True, kw_only=True)
 class Move:
-    """A node with all below it goes to another place, counted before it left; `copy`: it stays as well."""
+    """A node with all below it goes to another place, counted before it left; `stays`: here, too."""
 
     tree: str
     path: str
     to_tree: str
     parent: str
     index: int
-    copy: bool = False
+    stays: bool = False
 
 
 @dataclass(frozen=True, kw_only=True)

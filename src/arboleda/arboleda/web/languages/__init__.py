@@ -1,4 +1,4 @@
-"""Languages: a folder each, with the words of the page, the login, the waiting room, reports and proofs."""
+"""Languages: a folder each, with the words of page, nodes, login, waiting room, reports and proofs."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ LANGUAGES = _found()
 
 @cache
 def contents(language: str, part: str) -> dict[str, Any]:
-    """The file of a part of a language: page, login, waiting, report, proof; without what it does not say."""
+    """The file of a part of a language: page, nodes, login and so on; without what it does not say."""
     file = resources.files(__package__).joinpath(language, f"{part}.yaml")
     found: dict[str, Any] = yaml.safe_load(file.read_text(encoding="utf-8")) if file.is_file() else {}
     return found

@@ -1,0 +1,89 @@
+"""Trees as XML: what they can be made of in a cell, and edits of a text, of which nothing is kept here."""
+
+from __future__ import annotations
+
+import asyncio
+from typing import Any, TypeVar
+
+from fastapi import APIRouter, Request
+from fastapi.concurrency import run_in_threadpool
+from fastapi.responses import JSONResponse
+from pydantic import BaseModel, ConfigDict, ValidationError
+
+from arboleda.model.errors import PayloadError
+from arboleda.model.outside import quoted
+
+from ..auth import require
+from ..languages import FIRST
+from ..plain_json import PlainJson
+from ..plant_api import PlantApi
+from ..queries import WRONG, Answers, asked, described
+from ..schema import Sentence
+from ..tree_schema import Drawn, EditForm, Nodes, TreeFile, TreeForm, operation_of
+
+DRAW = "drawing a tree"
+REFUSED: Answers = {
+    403: {"model": Sentence, "description": "The role is not enough."},
+    422: {"model": Sentence, "description": "The text cannot be read, or the operation cannot be done."},
+}
+Form = TypeVar("Form", bound=BaseModel)
+
+
+class PaletteFilter(BaseModel):
+    """Cell for which a tree is drawn, and the language of what its nodes are about."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    cell: str
+    language: str = FIRST
+
+
+def routes(side: PlantApi) -> APIRouter:
+    """Register the routes. One edit is worked on at a time: each is work for a processor."""
+    api = APIRouter(prefix="/api/trees")
+    turn = asyncio.Lock()
+
+    @api.get("", response_model=list[TreeFile])
+    async def trees() -> JSONResponse:
+        """The files of trees that are recipes of this plant, as they were read."""
+        return PlainJson(side.tree_files())
+
+    @api.get("/palette", response_model=list[Nodes], responses=WRONG, openapi_extra=described(PaletteFilter))
+    async def palette(request: Request) -> JSONResponse:
+        """All nodes that a tree can have in a cell: of its devices, in Python, and those of Arboleda."""
+        wanted = asked(request, PaletteFilter)
+        return PlainJson(await run_in_threadpool(side.palette, wanted.cell, wanted.language))
+
+    @api.post("/check", response_model=Drawn, responses=REFUSED, openapi_extra=_body(TreeForm))
+    async def check(request: Request) -> JSONResponse:
+        """A file as an editor shows it, with what `check` says of each node in a cell."""
+        require(request.scope["arboleda.role"], DRAW)
+        form = _read(await request.body(), TreeForm)
+        async with turn:
+            return PlainJson(await run_in_threadpool(side.drawn, form.cell, form.text))
+
+    @api.post("/edit", response_model=Drawn, responses=REFUSED, openapi_extra=_body(EditForm))
+    async def edit(request: Request) -> JSONResponse:
+        """The same file after an operation, which leaves every other byte of it as it was."""
+        require(request.scope["arboleda.role"], DRAW)
+        form = _read(await request.body(), EditForm)
+        operation = operation_of(form.operation)
+        async with turn:
+            return PlainJson(await run_in_threadpool(side.drawn, form.cell, form.text, operation))
+
+    return api
+
+
+def _read(body: bytes, model: type[Form]) -> Form:
+    """A body as `model`; raises PayloadError, which names the first wrong key."""
+    try:
+        return model.model_validate_json(body)
+    except ValidationError as error:
+        found = error.errors(include_url=False, include_context=False)[0]
+        name = quoted(".".join(map(str, found["loc"])) or "the body", 80)
+        raise PayloadError(f"{name}: {found['msg'].lower()}; /api/docs says what is allowed.") from None
+
+
+def _body(model: type[BaseModel]) -> dict[str, Any]:
+    schema = model.model_json_schema(ref_template="#/components/schemas/{model}")
+    return {"requestBody": {"content": {"application/json": {"schema": schema}}, "required": True}}
