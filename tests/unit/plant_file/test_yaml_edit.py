@@ -156,6 +156,12 @@ def test_line_ends_and_byte_order_mark_stay(begin: str, newline: str) -> None:
     assert after == (begin + newline.join(["a: 5 # one", "b: 2", "c: [1]", ""])).encode()
 
 
+def test_characters_are_counted_and_not_bytes() -> None:
+    text = "# ñandú \U0001f600 日本\na: {é: 'ü', b: 1} # ñ\nc: 2\n"
+    after = with_value(with_value(text.encode(), ("a", "b"), "ö ß"), ("c",), 3)
+    assert after.decode() == text.replace("b: 1", 'b: "ö ß"').replace("c: 2", "c: 3")
+
+
 leaves = st.none() | st.booleans() | st.integers(-(10**17), 10**17) | st.floats() | st.text()
 values = st.recursive(
     leaves,

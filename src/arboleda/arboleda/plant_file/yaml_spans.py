@@ -9,6 +9,8 @@ from typing import Any
 
 import yaml
 
+from .yaml_marks import LOADER
+
 Key = str | int
 
 
@@ -40,7 +42,7 @@ class Span:
 
 def spans(text: str) -> Span:
     """The span of the whole of a text that `yaml_marks` reads."""
-    events = yaml.parse(text, Loader=yaml.SafeLoader)
+    events = yaml.parse(text, Loader=LOADER)
     opening = (yaml.StreamStartEvent, yaml.DocumentStartEvent)
     first = next(event for event in events if not isinstance(event, opening))
     return _span(first, events)
