@@ -109,7 +109,8 @@ def _complain(sentence: str) -> None:
 
 def _app(link: Link, name: str) -> App:
     values = _parameters(link.node(name), name)
-    model, recording = load_recorded(Path(values["plant"]) if values["plant"] else None)
+    plant_file = Path(values["plant"]) if values["plant"] else None
+    model, recording = load_recorded(plant_file)
     if values["virtual"]:
         model = model.on_boards(LinkKind.DRIVER)
         recording = recording and replace(recording, virtual=True)
@@ -130,6 +131,7 @@ def _app(link: Link, name: str) -> App:
         store=values.get("store", ""),
         web=WebOptions(host=values.get("dashboard_host", LOCAL)),
         recording=recording,
+        plant_file=plant_file,
     )
     if values.get("standby"):
         from arboleda.runtime.standby.process import take_over  # it shows a page, which no other start needs
