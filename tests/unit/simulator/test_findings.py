@@ -15,6 +15,7 @@ from arboleda.campaigns.request import Request
 from arboleda.campaigns.seed_campaign import BROKEN, HELD, SeedCampaign
 from arboleda.campaigns.tally import Tally
 from arboleda.model.messages import Verb
+from arboleda.plant_file.loader import load
 from arboleda.recipes import Choice, Kit, recipe, work
 from arboleda.simulator.faults import Fault
 from arboleda.simulator.findings import Finding
@@ -191,3 +192,27 @@ def test_a_campaign_that_found_something_ends_with_1(file: Path, tmp_path: Path)
     (tmp_path / "recipes.py").write_text(RECIPE.replace("plate=True", "plate=False"))
     request = Request(plant=file, seeds=1, cycles=2, faults="none")
     assert SeedCampaign(request, console, None).run(1) == HELD
+
+
+ANSWERED = '<mover_says plate="true"/>'
+BY_ANSWER = """
+<Sequence>
+  <mover_look answer="{a}"/>
+  <Switch2 variable="{a}" case_1="good" case_2="bad">
+    <AlwaysFailure/><AlwaysFailure/><AlwaysFailure/>
+  </Switch2>
+</Sequence>
+"""
+
+
+@pytest.mark.parametrize(
+    ("ways", "found", "as_written"),
+    [(ANSWERED + BY_ANSWER, 0, 1), (BY_ANSWER + ANSWERED, 1, 0)],
+    ids=["a tree that says failure to an answer", "a device that is not as it must be"],
+)
+def test_a_tree_is_judged_by_what_ended_it(tmp_path: Path, ways: str, found: int, as_written: int) -> None:
+    tree = f'<root BTCPP_format="4"><BehaviorTree ID="T"><Fallback>{ways}</Fallback></BehaviorTree></root>'
+    (tmp_path / "tree.xml").write_text(tree)
+    (tmp_path / "plant.yaml").write_text(PLANT.replace("recipes.py", "tree.xml"))
+    result = Simulation(load(tmp_path / "plant.yaml"), 1, lambda minute: ()).run(cycles=1)
+    assert (len(result.findings), len(result.as_written)) == (found, as_written)

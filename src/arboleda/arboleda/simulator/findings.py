@@ -6,6 +6,7 @@ from collections import Counter
 from dataclasses import dataclass, field
 from enum import Enum
 
+from arboleda.bt_xml.running.leaves import FAILS
 from arboleda.bt_xml.running.root import FAILED as TREE_FAILED
 from arboleda.core.plant import Plant
 from arboleda.dispatch.ledger import Entry, State
@@ -17,6 +18,7 @@ from .record import Record
 from .storage.tasks import NAMES
 from .world import World
 
+AS_WRITTEN = (FAIL.key, FAILS.key)  # steps that do nothing but fail
 BY_PEOPLE = frozenset({Reason.STOPPED, Reason.CANCELLED, Reason.INTERRUPTED})
 REFUSALS = frozenset({Reason.REJECTED, Reason.PRECONDITION})
 
@@ -46,9 +48,9 @@ class Finding:
 class Findings:
     """Counter of what is found in the recipes of a plant, as long as no fault has come.
 
-    `as_written` counts failures that a recipe asks for: by `cell.fail`, in a task in which a device or a
-    person has answered, for answers are drawn. Tasks of storage have an invariant of their own, and what a
-    person has ended is none.
+    `as_written` counts failures that a recipe asks for: by `cell.fail`, or `AlwaysFailure` of a tree, in a
+    task in which a device or a person has answered, for answers are drawn. Tasks of storage have an invariant
+    of their own, and what a person has ended is none.
     """
 
     def __init__(self, world: World, record: Record) -> None:
@@ -130,7 +132,7 @@ class Findings:
     def _failed(self, recipe: str, said: TaskChanged) -> None:
         task = self._world.plant.intake.tasks[said.task]
         step = task.failed_step
-        by_itself = (step is not None and step.key == FAIL.key) or said.sentence.key == TREE_FAILED.key
+        by_itself = (step is not None and step.key in AS_WRITTEN) or said.sentence.key == TREE_FAILED.key
         is_whole = said.sentence.key != RESCUE_FAILED.key
         counted = self.as_written if by_itself and is_whole and task.answers else self.found
         counted[

@@ -175,7 +175,7 @@ MAKERS: Mapping[str, Make] = {
     **{kind: partial(_check, same=same) for kind, same in watching.SAME.items()},
     "WasEntryUpdated": _alone(watching.WasEntryUpdated),
     "AlwaysSuccess": lambda name, below, given: leaves.ConstantLeaf(name, SUCCESS),
-    "AlwaysFailure": lambda name, below, given: leaves.ConstantLeaf(name, FAILURE),
+    "AlwaysFailure": lambda name, below, given: leaves.AlwaysFailure(name),
     "Script": lambda name, below, given: leaves.RunScript(name, given.said["code"]),
     "ScriptCondition": lambda name, below, given: leaves.ScriptCondition(name, given.said["code"]),
     "SetBlackboard": _alone(leaves.SetBlackboard),

@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import ClassVar
 
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
+from arboleda.model.sentence import Phrase
+
 from .node import FAILURE, RUNNING, SUCCESS, Node, Result
 from .ports import NodePorts
 from .scripts import Script
+
+FAILS = Phrase("step.always_failure", "{leaf}")
 
 
 class Leaf(Node):
@@ -27,6 +32,20 @@ class ConstantLeaf(Leaf):
 
     def work(self) -> Result:
         return self.result
+
+
+class AlwaysFailure(ConstantLeaf):
+    """Leaf that always fails; `note` is told of it, where given."""
+
+    def __init__(self, name: str) -> None:
+        super().__init__(name, FAILURE)
+        self.title = FAILS(leaf=name)
+        self.note: Callable[[AlwaysFailure], None] | None = None
+
+    def work(self) -> Result:
+        if self.note is not None:
+            self.note(self)
+        return super().work()
 
 
 class RunScript(Leaf):

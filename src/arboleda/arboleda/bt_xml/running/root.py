@@ -20,7 +20,7 @@ from arboleda.trees.trail import failure_kept, read_failure
 
 from .controls import InSequence, TryCatch
 from .decorators import SubTree
-from .leaves import Step
+from .leaves import AlwaysFailure, Step
 from .node import FAILURE, Node, Result
 from .scripts import ScriptError
 
@@ -130,14 +130,27 @@ class Main(Node):
         self.failures = failures
         self.causes = causes
         self.scope = tree.scope
+        self._failing: tuple[AlwaysFailure, list[Failure]] | None = None  # of this tick, and the causes then
+        for node in tree.iterate():
+            if isinstance(node, AlwaysFailure):
+                node.note = self._note
 
     @property
     def parameters(self) -> Mapping[str, Any]:
         """The variables of the tree, for screens."""
         return dict(self.scope.values)
 
+    def _note(self, leaf: AlwaysFailure) -> None:
+        self._failing = leaf, self.causes[:]
+
+    def _failed_leaf(self) -> Node:
+        """The leaf that ended the tree as it is written, with no cause after it; else the tree."""
+        leaf, causes = self._failing or (self, [])
+        return leaf if causes == self.causes else self
+
     def work(self) -> Result:
         self.begin()
+        self._failing = None
         try:
             result = self.below[0].execute()
         except ScriptError as error:
@@ -151,7 +164,7 @@ class Main(Node):
             return FAILURE
         if result is FAILURE:
             generic = Failure(reason=Reason.REJECTED, sentence=FAILED(tree=self.name))
-            self.failures.add(self.causes[0] if self.causes else generic, self)
+            self.failures.add(self.causes[0] if self.causes else generic, self._failed_leaf())
         return result
 
     def _put_aside(self) -> Failure | None:
