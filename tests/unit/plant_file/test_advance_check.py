@@ -218,3 +218,16 @@ def test_a_part_that_stays_is_compared_with_what_the_recipe_says_however_many_we
         "ends with drawer 1, and says that it ends with 0"
     ]
     assert warned(tmp_path, f"{INTO}, {OUT}", '"try", ends_with={"drawer": 0}') == []
+
+
+def test_who_goes_into_a_zone_has_seen_what_lets_it_in(tmp_path: Path) -> None:
+    wrong = warned(tmp_path, 'take("rack"), put("drawer"), seen, take("drawer"), put("bin"), loader.home()')
+    assert wrong == ["has reader read, which needs lid of reader to be closed, where it is open"]
+
+
+def test_who_goes_into_a_zone_knows_nothing_of_what_no_verb_tells(tmp_path: Path) -> None:
+    model = written(tmp_path, 'take("rack"), put("drawer"), seen, take("drawer"), put("bin")', '"try"')
+    told = PLANT.replace("sets: {lid: open}", "takes_s: 1").replace("sets: {lid: closed}", "takes_s: 1")
+    (tmp_path / "plant.yaml").write_text(told, "utf-8")
+    assert any("which needs" in each for each in advance_check.warnings(model))
+    assert not any("which needs" in each for each in advance_check.warnings(load(tmp_path / "plant.yaml")))

@@ -6,9 +6,10 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 
+from arboleda.kinds.declared import Device
 from arboleda.model.commands import Command, Motion, Switch
 from arboleda.model.facts import Value, shown
-from arboleda.model.plant_model import Cell, Place, Pose, Workspace
+from arboleda.model.plant_model import Cell, Interlock, Place, Pose, Workspace
 
 HELD, TAKEN, AT, OVER = "=held", "=taken", "=at", "=over"
 CHANGE, LEAST, MOST = "=change", "=least", "=most"
@@ -123,7 +124,27 @@ class Foresight:
         keys = (command.robot, AT), (command.robot, OVER)
         goal, over = self._goal(command), self._goal(command, is_over=True)
         found = zip(keys, (goal, goal or over), strict=True)
-        return scene.without(set(keys)).put({key: target for key, target in found if target is not None})
+        scene = scene.without(set(keys)).put({key: target for key, target in found if target is not None})
+        return scene.put(
+            {key: value for key, value in self._let_in(command.robot, goal) if key not in scene.known}
+        )
+
+    def _let_in(self, robot: str, target: str | None) -> Iterator[tuple[Key, Value]]:
+        """The facts that let a robot into the zones of a target, so far as nothing but verbs changes them."""
+        for lock in self._locks(robot, target):
+            device = next(each for each in self.cell.robots if each.name == lock.device)
+            verbs = device.kind.verbs.values() if isinstance(device, Device) else ()
+            told = {name for verb in verbs for name, _ in verb.sets}
+            for fact, value in lock.free_while:
+                if fact in told:
+                    yield (lock.device, fact), value
+
+    def _locks(self, robot: str, target: str | None) -> Iterator[Interlock]:
+        """The machines that keep a robot out of the zones of a target by their facts."""
+        for zone in self.cell.reach[robot].targets[target].zones if target is not None else ():
+            lock = self._free.get(zone)
+            if lock is not None and lock.device not in (robot, *self.cell.shared):
+                yield lock
 
     def _moved(self, scene: Scene, place: str, parts: int) -> Scene:
         if scene.get(place, CHANGE) is None:
@@ -214,12 +235,10 @@ class Foresight:
 
     def _locked(self, robot: str, target: str | None, scene: Scene) -> Iterator[tuple[str, str]]:
         """The facts that keep a robot out of the zones of a target, and what they have to be."""
-        for zone in self.cell.reach[robot].targets[target].zones if target is not None else ():
-            lock = self._free.get(zone)
-            for fact, value in lock.free_while if lock is not None else ():
-                assert lock is not None
+        for lock in self._locks(robot, target):
+            for fact, value in lock.free_while:
                 told = scene.get(lock.device, fact)
-                if told not in (None, value) and lock.device not in (robot, *self.cell.shared):
+                if told not in (None, value):
                     yield f"{fact} of {lock.device} is {shown(told)}", shown(value)
 
     def _closing(self, command: Command, scene: Scene) -> Iterator[str]:
