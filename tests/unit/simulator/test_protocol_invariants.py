@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import replace
 from itertools import product
 from operator import attrgetter
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -22,6 +23,7 @@ from arboleda.model.commands import Command, Home, Stop, StopMode
 from arboleda.model.messages import Fact, Heartbeat, OperatorRequest, TaskState, Verb
 from arboleda.model.plant_model import Evidence, ForeignCommands, PlantModel, Retry
 from arboleda.model.sentence import Phrase, as_sentence
+from arboleda.plant_file.loader import load
 from arboleda.recipes.storage_layout import StorageLayout
 from arboleda.sim.board import Board
 from arboleda.sim.freshness import Freshness
@@ -777,6 +779,22 @@ def test_no_starvation__of_an_arm_that_may_still_be_told_something():
     watch.wait(30)
     watch.end()
     assert watch.found == {}
+
+
+def test_no_starvation__of_a_cell_whose_shared_arm_may_still_be_told_something(tmp_path):
+    """Seed 110 of the drawn plants: it shares no zone, and has to be seen at its home after its last command."""
+    shared = Path(__file__).parents[2] / "scenario" / "shared_arm"
+    (tmp_path / "recipes.py").write_text((shared / "recipes.py").read_text())
+    (tmp_path / "plant.yaml").write_text((shared / "plant.yaml").read_text().partition("zones:")[0])
+    watch = Watch(load(tmp_path / "plant.yaml"))
+    watch.world.to_bridge.troubles.append(lambda each: (0.0,) if isinstance(each, Heartbeat) else ())
+    watch.verb(Verb.HOME, "arm", wait_s=1)
+    watch.world.to_plant.troubles.append(lambda each: ())
+    watch.wait(2)
+    watch.world.to_plant.troubles.clear()
+    watch.task("left press", wait_s=1)
+    assert watch.found == {}
+    assert [task.state for task in watch.record.tasks.open.values()] == [TaskState.QUEUED]
 
 
 def test_zone_requests_end(monkeypatch, bites):

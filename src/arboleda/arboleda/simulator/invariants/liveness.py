@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator
 from arboleda.core import reasons
 from arboleda.core.cell_states import CellState
 from arboleda.model.messages import Fact
-from arboleda.model.plant_model import Evidence, Link, MotionState, Workspace
+from arboleda.model.plant_model import Evidence, Link, MotionState, Pose, Workspace
 from arboleda.sim.board import Board
 
 from ..recorded.cells import KnownCell
@@ -96,22 +96,37 @@ def _is_busy(look: Look, cell: KnownCell) -> bool:
 
 
 def _outside(look: Look, cell: KnownCell) -> bool:
-    """True if each robot that shares zones is seen at a pose outside of them, and stays there.
+    """True if each robot that shares zones is seen at a pose outside of them, and stays there; one that is
+    shared itself, and that no other cell has, at its home.
 
     A report that comes just after a start may be older than the robot's last move.
     """
+    if any(_is_away(look, cell, name) for name in cell.cell.shared_movers):
+        return False
     if look.world.found.facts.get(Fact.QUARANTINE) and look.world.now < look.record.born_at + SURE_S:
         return not cell.cell.zone_users
     return all(_is_outside(look, cell.cell.workspaces[name]) for name in cell.cell.zone_users)
 
 
+def _is_away(look: Look, cell: KnownCell, robot: str) -> bool:
+    """True if a shared robot that no other cell has says where it is, and that is not its home."""
+    space, known = cell.cell.workspaces[robot], look.record.robots[robot]
+    is_lent = look.world.plant.zones.holder(robot) not in (None, cell.name)
+    says_where = known.q is not None or known.node is not None
+    return says_where and not is_lent and not _stands_at(look, space, [space.home])
+
+
 def _is_outside(look: Look, space: Workspace) -> bool:
+    return _stands_at(look, space, [pose for pose in space.poses if not pose.zones])
+
+
+def _stands_at(look: Look, space: Workspace, poses: list[Pose]) -> bool:
+    """True if a robot is seen at, or above, one of these poses, and stays there."""
     robot, known = space.robot, look.record.robots[space.robot.name]
     # until it names its last command, that may still be on its way and set it in motion
     if robot.evidence is Evidence.IDS and robot.has_stop and known.unnamed is not None:
         return False
-    free = [pose for pose in space.poses if not pose.zones]
-    points = [point for pose in free for point in (pose.q, pose.above) if point is not None]
+    points = [point for pose in poses for point in (pose.q, pose.above) if point is not None]
     here = known.node if known.q is None else known.q
     return here is not None and any(
         robot.motion.stands_at(here, robot.motion.held_at(point)) for point in points
