@@ -1,7 +1,8 @@
 """Weathers in which the simulator alone looks for bugs of the engine: plants and faults by the seed.
 
-Half of the seeds run on cells of devices that they draw, with their recipes; the others on the packaged
-plants, the examples, and cells of storage that they draw. Imports what may have a bug.
+Half of the seeds run on cells of devices that they draw, as many of them with trees as XML as with recipes in
+Python; the others on the packaged plants, the examples, and cells of storage that they draw. Imports what may
+have a bug.
 """
 
 from __future__ import annotations
@@ -10,14 +11,17 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cache
 from importlib.resources import as_file, files
+from itertools import count
 from pathlib import Path
 
 from arboleda.campaigns import random_plants
 from arboleda.campaigns.plants import Plant
 from arboleda.campaigns.setting import Setting
 from arboleda.plant_file import loader
+from arboleda.simulator.plants.devices import Form
 
 SECONDS = 30.0  # for which faults come; then everything has to come to rest
+MANY_SEEDS = 10_000  # between a plant of another form and the next that is drawn instead
 NONE, MANY, CRASHES = "none", "many", "crashes"
 EXAMPLES = Path(__file__).parents[2] / "examples"
 
@@ -57,6 +61,16 @@ class Weather:
         return finding.kind.value if finding is not None else ""
 
 
+def written_as(form: Form) -> Callable[[int], Plant]:
+    """Plants with cells of devices whose recipes have this form."""
+
+    def of(seed: int) -> Plant:
+        plants = (random_plants.of_devices(seed + MANY_SEEDS * number) for number in count())
+        return next(plant for plant in plants if plant.drawn is not None and plant.drawn.form is form)
+
+    return of
+
+
 @cache
 def _example(name: str) -> Plant:
     return Plant(declared=loader.load(EXAMPLES / name / "plant.yaml"))
@@ -76,21 +90,23 @@ def packaged(name: str) -> Callable[[], Plant]:
     return lambda: _packaged(name)
 
 
-DEVICES, STORAGE = Drawn(of=random_plants.of_devices), Drawn(of=random_plants.of_storage)
+DEVICES, TREES = (Drawn(of=written_as(form)) for form in (Form.PYTHON, Form.XML))
+STORAGE = Drawn(of=random_plants.of_storage)
 CELLS = Turns(load=tuple(map(example, ("own_tree", "machine_tending", "lab_bench"))))
 PACKAGED = Turns(load=(packaged("shared"), packaged("plant")))
 WEATHERS = (
-    Weather(plants=DEVICES),
+    Weather(plants=TREES),
     Weather(plants=CELLS),
     Weather(plants=DEVICES, level=NONE),
     Weather(plants=PACKAGED),
-    Weather(plants=DEVICES, level=CRASHES),
+    Weather(plants=TREES, level=NONE),
     Weather(plants=STORAGE, options={"any_of": True}),
-    Weather(plants=DEVICES, level=NONE, options={"any_of": True}),
-    Weather(plants=CELLS, level=CRASHES),
     Weather(plants=DEVICES),
+    Weather(plants=TREES, level=CRASHES),
+    Weather(plants=DEVICES, level=NONE, options={"any_of": True}),
     Weather(plants=PACKAGED, level=CRASHES, options={"any_of": True}),
     Weather(plants=DEVICES, level=CRASHES),
+    Weather(plants=TREES, level=NONE),
     Weather(plants=PACKAGED, options={"standby": True}),
 )
 
