@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from arboleda.simulator.network import Broker, Client, Hop, Line
-from arboleda.wire.transport import Publication
+from arboleda.wire.transport import Delivery, Publication
 
 TELEMETRY, COMMAND, PRESENCE = "ra_1/sensores", "ra_1/juntas", "ra_1/conexion"
 
@@ -15,9 +15,9 @@ class Net:
 
     def __init__(self) -> None:
         self.now = 0.0
-        self.heard: list[tuple[float, str, bytes, bool]] = []
+        self.delivered: list[tuple[str, Delivery]] = []
         self._agenda: list[tuple[float, int, object, object]] = []
-        self.broker = Broker(self, self._at, self._hear)
+        self.broker = Broker(self, self._at, self.delivered)
         self.board, self.bridge = Client("ra_1", [COMMAND]), Client("bridge", [TELEMETRY, PRESENCE])
         for client in (self.board, self.bridge):
             self.broker.join(client)
@@ -38,14 +38,15 @@ class Net:
         return [payload for _, _, payload, _ in self.heard[before:]]
 
     @property
+    def heard(self) -> list[tuple[float, str, bytes, bool]]:
+        return [(each.at, name, each.payload, each.retain) for name, each in self.delivered]
+
+    @property
     def payloads(self) -> list[bytes]:
         return [payload for _, _, payload, _ in self.heard]
 
     def _at(self, time, call, argument):
         self._agenda.append((time, len(self._agenda) + len(self.heard) * 1000, call, argument))
-
-    def _hear(self, client, delivery):
-        self.heard.append((self.now, client.name, delivery.payload, delivery.retain))
 
 
 @pytest.fixture
@@ -169,7 +170,7 @@ def test_a_lost_queue_takes_what_waits_but_not_presence(net):
 def test_the_last_retained_message_is_told_to_whoever_subscribes(net):
     for payload in (b"0", b"1"):
         net.say(payload, PRESENCE, retain=True)
-    net.heard.clear()
+    net.delivered.clear()
     net.broker.tell_retained(net.bridge)
     net.broker.tell_retained(net.board)
     assert net.heard == [(0.0, "bridge", b"1", True)]
@@ -177,7 +178,7 @@ def test_the_last_retained_message_is_told_to_whoever_subscribes(net):
 
 def test_a_broker_that_dies_takes_everything_with_it(net):
     net.say(b"1", PRESENCE, retain=True)
-    net.heard.clear()
+    net.delivered.clear()
     net.board.up.troubles.append(late(1.0))
     net.say(b"under way")
     net.broker.die()

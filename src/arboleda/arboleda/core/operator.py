@@ -279,7 +279,10 @@ class Operator:
         return STOPS_SHARED(did=did, devices=cell.cell.shared, cells=tuple(others), scope=scope)
 
     def _planned_in_cells(self, row: Procedure, robots: set[str], cells: list[CellRun]) -> Callable[[], None]:
-        refusals = {cell.cell.name: why for cell in cells if (why := row.check(self, cell, robots))}
+        refusals = {}
+        for cell in cells:
+            if (why := row.check(self, cell, robots)) is not None:
+                refusals[cell.cell.name] = why
         firm = [cell.cell.name for cell in cells if cell.state in row.must_all and cell.cell.name in refusals]
         if firm or len(refusals) == len(cells):
             raise Refused(refusals[firm[0]] if firm else next(iter(refusals.values())))

@@ -358,7 +358,7 @@ class Dispatcher:
         name = report.robot
         if belief.stale_at is not None:
             self._stale_at[name] = belief.stale_at
-        for entry in self.ledger.of_robot(name):
+        for entry in self.ledger.by_robot[name]:
             if report.accepted == entry.command.id and report.receipt is not None:
                 entry.number = report.receipt[:2]
             verdict = evidence.judge(entry, before, belief, report)

@@ -126,7 +126,7 @@ class Ledger:
 
     def __init__(self) -> None:
         self.entries: dict[str, Entry] = {}
-        self._of_robot: defaultdict[str, list[Entry]] = defaultdict(list)  # new lists: readers feed meanwhile
+        self.by_robot: defaultdict[str, list[Entry]] = defaultdict(list)  # new lists: readers feed meanwhile
         self._due: dict[str, float] = {}
         self.next_deadline = math.inf  # when a command is due, s of the plant's clock; inf where none is
         self.changed: set[str] = set()
@@ -135,7 +135,7 @@ class Ledger:
     def open(self, entry: Entry) -> None:
         robot = entry.command.robot
         self.entries[entry.command.id] = entry
-        self._of_robot[robot] = [*self.of_robot(robot), entry]
+        self.by_robot[robot] = [*self.of_robot(robot), entry]
         self.plan(entry)
 
     def plan(self, entry: Entry) -> None:
@@ -145,7 +145,7 @@ class Ledger:
 
     def of_robot(self, robot: str) -> list[Entry]:
         """The open commands of a robot, oldest first."""
-        return self._of_robot[robot]
+        return self.by_robot[robot]
 
     def of_cell(self, cell: str) -> list[Entry]:
         """The open commands of a cell, oldest first."""
@@ -166,7 +166,7 @@ class Ledger:
     def _close(self, entry: Entry) -> None:
         id, robot = entry.command.id, entry.command.robot
         del self.entries[id], self._due[id]
-        self._of_robot[robot] = [each for each in self.of_robot(robot) if each is not entry]
+        self.by_robot[robot] = [each for each in self.of_robot(robot) if each is not entry]
         self.next_deadline = min(self._due.values(), default=math.inf)
 
     def _apply(self, entry: Entry, feed: Feed, now: float) -> None:

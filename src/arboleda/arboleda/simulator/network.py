@@ -102,16 +102,17 @@ class Client:
 class Broker:
     """Takes publications from clients to the inboxes of those that listen, as `Delivery`.
 
-    A publication that is not delayed anywhere is in the inbox before `publish` returns.
+    A publication that is not delayed anywhere is in the inbox before `publish` returns. `delivered` gets each
+    delivery, with the name of the client that it reached.
     """
 
-    def __init__(self, clock: Clock, at: At, heard: Callable[[Client, Delivery], None]) -> None:
+    def __init__(self, clock: Clock, at: At, delivered: list[tuple[str, Delivery]]) -> None:
         self.is_up = True
         self.retained: dict[str, Publication] = {}
         self.clients: dict[str, Client] = {}
         self._clock = clock
         self._at = at
-        self._heard = heard
+        self._delivered = delivered
         self._lives = 0
         self._listeners: dict[str, list[Client]] = {}
 
@@ -176,7 +177,9 @@ class Broker:
         for client in self._listeners.get(topic, ()):
             down = client.down  # `is_clear` is not called, here and above: every message comes by
             if client.connected and not down.troubles and down.busy_until <= now:
-                self._heard(client, Delivery(at=now, topic=topic, payload=payload, retain=False))
+                delivery = Delivery(at=now, topic=topic, payload=payload, retain=False)
+                self._delivered.append((client.name, delivery))
+                client.inbox.append(delivery)
             else:
                 self._send(client, publication, now, retained=False)
 
@@ -192,4 +195,5 @@ class Broker:
         if client.connection == connection and (client.queue == queue or keeps_its_place(publication)):
             topic, payload = publication.topic, publication.payload
             delivery = Delivery(at=self._clock.now, topic=topic, payload=payload, retain=retained)
-            self._heard(client, delivery)
+            self._delivered.append((client.name, delivery))
+            client.inbox.append(delivery)

@@ -214,7 +214,7 @@ class World:
         self._stalled: dict[str, float] = {}
         self.skipped_s = 0.0  # of `now`, in which nobody did anything
         self._off: set[str] = set()
-        self.broker = Broker(self, self.at, self._hear)
+        self.broker = Broker(self, self.at, self.moment.delivered)
         self.to_bridge, self.to_plant = Hop(), Hop()  # the hop between plant and bridge
         self.beat_reached_bridge_at = -math.inf  # the last heartbeat, since the bridge started
         self.recipes = recipes
@@ -810,10 +810,6 @@ class World:
 
     def _to_plant(self, report: Report) -> None:
         self._post(report if report.at == self.now else report.again(self.now))
-
-    def _hear(self, client: Client, delivery: Delivery) -> None:
-        self.moment.delivered.append((client.name, delivery))
-        client.inbox.append(delivery)
 
     def _declare_homed(self, scope: str) -> None:
         """Declare robots homed by hand, unless one moves; one that has booted since is put right again."""

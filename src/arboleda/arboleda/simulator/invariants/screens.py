@@ -144,7 +144,7 @@ def _unlike(whose: str, shown: Row, expected: Row) -> Iterator[str]:
     for key, value in expected.items():
         if key not in shown:
             yield f"{whose}: nothing is shown for {key}"
-        elif not _same(shown[key], value):
+        elif shown[key] != value and not _same(shown[key], value):
             yield f"{whose}: {key} is shown as {shown[key]!r}, it is {value!r}"
 
 

@@ -52,7 +52,7 @@ class KnownBoard:
         self.boot = board.boot_id
         self.last: Numbers | None = None
         self.beat: int | None = None  # the newest epoch in the beats that it has read since it booted
-        self.told: deque[tuple[int, float]] = deque(maxlen=RECENT)  # numbers since it booted, and when
+        self.told: deque[tuple[bytes, float]] = deque(maxlen=RECENT)  # telemetry since it booted, and when
         self.inbox: list[Delivery] = []
         self.telemetry: deque[Delivery] = deque(maxlen=RECENT)
         self.legal: set[tuple[float, ...]] = set()  # goals and paths on the wire that the robot can follow
@@ -67,41 +67,35 @@ class KnownBoard:
         """Take over what the board said before this record began, as far as the plant has heard it."""
         q, node = belief.q, belief.node
         if belief.number is not None:
-            self.told.append((belief.number, at))
+            self.told.append((b'"seq":%d' % belief.number, at))
         if q is not None or node is not None:
             words = self._words(q, node) + b'"estado":0}'
             self.telemetry.append(Delivery(at=at, topic="", payload=words))
 
     def carried_out(self, goal: Goal) -> ExecutedCommand:
         """The record of a command that the board carries out now."""
-        self._notice_boot()
+        self.notice_boot()
         before, delivered = self.last, self._was_delivered(goal)
         if goal.seq is not None and goal.epoch is not None:
             self.last = (goal.epoch, goal.seq)
         told_at = None if isinstance(goal, StopGoal) else self._told_at(goal.heard)
         return ExecutedCommand(self.robot.mqtt, goal, before, delivered, self.beat, told_at)
 
-    def tell(self, at: float, payload: bytes) -> None:
-        """Take in telemetry that the board publishes."""
-        if self.boot != self.board.boot_id:
-            self._notice_boot()
-        _, number, _ = parts(payload)
-        if number:
-            self.told.append((int(number), at))
-
     def _told_at(self, number: int | None) -> float | None:
-        return next((at for told, at in reversed(self.told) if told == number), None)
+        wanted = b"" if number is None else b"%d" % number
+        numbers = ((parts(told)[1], at) for told, at in reversed(self.told))
+        return next((at for told, at in numbers if told and told == wanted), None)
 
     def forget_read(self, unread: list[Any]) -> None:
         """Forget messages that left the board's inbox, read or lost: they are no longer new to it."""
         waiting = set(map(id, unread))
         read = [each for each in self.inbox if id(each) not in waiting]
         self.inbox = [each for each in self.inbox if id(each) in waiting]
-        if not self._notice_boot():
+        if not self.notice_boot():
             for delivery in read:
                 self._read(delivery)
 
-    def _notice_boot(self) -> bool:
+    def notice_boot(self) -> bool:
         """True if the board has booted since the last look; forgets what the board forgot by that."""
         booted = self.boot != self.board.boot_id
         if booted:
@@ -180,7 +174,9 @@ class Boards:
         """Take in publications; only what boards publish about themselves counts here."""
         for name, publication in published:
             if publication.topic in self._hears and (board := self.by_name.get(name)) is not None:
-                board.tell(at, publication.payload)
+                if board.boot != board.board.boot_id:
+                    board.notice_boot()
+                board.told.append((publication.payload, at))
 
     def execute(self, name: str, goal: Goal) -> None:
         """Note that a board carries out a command."""
