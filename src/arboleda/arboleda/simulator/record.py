@@ -493,7 +493,7 @@ class Record:
         return changed
 
     def _look_at_trails(self) -> None:
-        retried = any(each.verb is Verb.RETRY for each in self.answers)
+        retried = Verb.RETRY in [each.verb for each in self.answers] if self.answers else False
         self.trails.look(self.cells, self.transitions, retried=retried)
         if self.answers:
             self.trails.keep(self.world.moment.sent, self.cells, self.commands)

@@ -129,6 +129,7 @@ class Moment:
     sent: list[Any] = field(default_factory=list)  # commands and notices of the plant
     taken: list[FromPlant] = field(default_factory=list)  # what the bridge took in from the plant and others
     published: list[tuple[str, Publication]] = field(default_factory=list)  # (client, what it published)
+    ordered: list[Publication] = field(default_factory=list)  # what the bridge published of that
     delivered: list[tuple[str, Delivery]] = field(default_factory=list)  # (client, what reached it)
     former: list[Any] = field(default_factory=list)  # what left a process that another one had superseded
     writes: list[Any] = field(default_factory=list)  # what a store took that two hosts reach
@@ -147,6 +148,7 @@ class Moment:
         self.sent.clear()
         self.taken.clear()
         self.published.clear()
+        self.ordered.clear()
         self.delivered.clear()
         self.former.clear()
         self.writes.clear()
@@ -496,6 +498,8 @@ class World:
         """Publish for a sender; None: a foreign client, over a line without faults."""
         name = sender.name if sender else ""
         self.moment.published.append((name, publication))
+        if name == BRIDGE:
+            self.moment.ordered.append(publication)
         if name in self.mixers:
             publication = self.mixers[name](publication)
         if not self.carriers:

@@ -165,7 +165,9 @@ class Board:
 
     def _answer_rivals(self, at: float) -> list[Message]:
         """Halt a motion that somebody else began, under a number above theirs."""
-        if not self.link.up or not self.rivals.answer(at, self.labels, in_motion=self.in_motion):
+        if self.rivals.noticed_at is None or not self.link.up:
+            return []
+        if not self.rivals.answer(at, self.labels, in_motion=self.in_motion):
             return []
         halt = Stop(id="", robot=self.robot.name, mode=StopMode.HALT)
         return self._send(at, halt) if self.robot.has_stop else []

@@ -24,12 +24,14 @@ class News(Enum):
 
 
 class Rivals:
-    """Detector of others; `yielded`: this bridge leaves the board to another one until it restarts."""
+    """Detector of others; `noticed_at`: when some came, until they are answered; `yielded`: this bridge
+    leaves the board to another one until it restarts.
+    """
 
     def __init__(self) -> None:
         self.yielded = False
         self._led_since: float | None = None
-        self._noticed_at: float | None = None  # until it is answered
+        self.noticed_at: float | None = None
         self._beaten_by: int | None = None
         self._moves = False  # True if the board may be carrying out somebody else's command
         self._risen: deque[float] = deque(maxlen=MOST)
@@ -44,11 +46,11 @@ class Rivals:
         if labels.leads and self._led_since is None:
             self._led_since = at
         if labels.foreign is not None:
-            self._noticed_at, self._moves = at, True
+            self.noticed_at, self._moves = at, True
             return News.TAKEN
         if self._beaten_by in (None, known) or self.yielded:
             return None
-        self._noticed_at = at
+        self.noticed_at = at
         self.yielded = self._beaten_by == labels.epoch + 1 and self._is_new(at)
         return News.YIELDED if self.yielded else News.BEATEN
 
@@ -58,10 +60,10 @@ class Rivals:
 
         Not while a motion goes on that the board would end without heartbeats of its own epoch.
         """
-        noticed, moves = self._noticed_at, self._moves
+        noticed, moves = self.noticed_at, self._moves
         if noticed is None or at < noticed or self.yielded or (in_motion and not moves):
             return False
-        self._noticed_at, self._moves = None, False
+        self.noticed_at, self._moves = None, False
         if len(self._risen) == MOST and at < self._risen[0] + WITHIN_S:
             return False
         self._risen.append(at)

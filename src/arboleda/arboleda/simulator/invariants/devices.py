@@ -201,7 +201,7 @@ def _is_offered(command: Command, request: OperatorRequest) -> bool:
     return is_meant and isinstance(command, Question) and request.argument("answer") in command.answers
 
 
-@invariant(Trigger.BRIDGED)
+@invariant(Trigger.UNTOLD)
 def commands_of_others_are_told(look: Look) -> Iterator[str]:
     """Of each command of another node that reaches a bridge that hears its plant, people are told."""
     for command in look.record.others.untold:

@@ -16,7 +16,6 @@ from arboleda.wire.payloads import StopGoal
 
 from ..record import SLOW_S
 from ..recorded.boards import fields, is_number, on_wire
-from ..world import BRIDGE
 from .invariant import Look, Trigger, invariant
 
 LIMIT_BYTES = 512
@@ -70,11 +69,11 @@ def commands_say_what_was_heard(look: Look) -> Iterable[str]:
             yield f"{sent} names telemetry {command.heard}, and the last was {robot.numbers[-1]}"
 
 
-@invariant(Trigger.PUBLISHED)
+@invariant(Trigger.ORDERED)
 def wire_targets_legal(look: Look) -> Iterable[str]:
     """Goals on the wire are finite, inside limits, whole motor steps, and what the plant commanded."""
-    for client, publication in look.moment.published:
-        if client == BRIDGE and publication.topic.endswith(("/juntas", "/camino")):
+    for publication in look.moment.ordered:
+        if publication.topic.endswith(("/juntas", "/camino")):
             name, _, channel = publication.topic.partition("/")
             body = fields(publication.payload)
             yield from _path(look, name, body) if channel == "camino" else _joints(look, name, body)
@@ -198,17 +197,14 @@ def _heard(known: Any) -> bool:
     return known.q is not None or known.node is not None
 
 
-@invariant(Trigger.PUBLISHED)
+@invariant(Trigger.ORDERED)
 def bridge_obeys_only_its_plant(look: Look) -> Iterable[str]:
     """Each motion, effector and clear that the bridge publishes is one command with an id that it took in, or
     one of others where it had heard no plant for so long that it obeys anybody.
     """
-    published = [said for client, said in look.moment.published if client == BRIDGE]
-    if not published:
-        return
     taken = [each.message for each in look.moment.taken if not isinstance(each.message, Heartbeat)]
     given = [command for command in taken if command.id] + look.record.bridges.of_others
-    for publication in published:
+    for publication in look.moment.ordered:
         name, _, channel = publication.topic.partition("/")
         obeyed = _commanded(channel, fields(publication.payload))
         robot = look.record.boards.by_name[name].robot.name

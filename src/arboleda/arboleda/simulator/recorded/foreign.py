@@ -29,9 +29,10 @@ class ForeignCommands:
             if each.bridge is not self._bridge:
                 self._bridge = each.bridge
                 self._waiting.clear()
-            heard = [event for event in each.events if isinstance(event, FromPlant) and event.sender]
             self._waiting += [
-                (each.now + UNSURE_S, event.message) for event in heard if event.message not in obeyed
+                (each.now + UNSURE_S, event.message)
+                for event in each.events
+                if isinstance(event, FromPlant) and event.sender and event.message not in obeyed
             ]
             if self._waiting:
                 self._tell(each)

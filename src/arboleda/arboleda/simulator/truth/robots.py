@@ -14,7 +14,7 @@ from arboleda.model.messages import Fact, OperatorAnswer, Remember, Verb
 from arboleda.model.plant_model import Evidence, Robot
 from arboleda.model.whole_cells import whole_cell
 
-from ..world import BRIDGE, World
+from ..world import World
 from .arm import ArmTruth
 from .boots import Boots
 from .ended_commands import CALM_S, Books
@@ -189,8 +189,8 @@ class RobotsTruth:
     def _overhear(self) -> None:
         """Take in what our bridge publishes, and what reaches the boards."""
         boards = self._boards
-        for client, publication in self.world.moment.published:
-            if client == BRIDGE and not publication.topic.endswith(BEATS):
+        for publication in self.world.moment.ordered:
+            if not publication.topic.endswith(BEATS):
                 robot = boards.get(publication.topic.partition("/")[0])
                 if robot is not None:
                     robot.expect(publication)

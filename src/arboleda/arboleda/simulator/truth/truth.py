@@ -129,8 +129,8 @@ class Truth(RobotsTruth):
 
     def _follow_questions(self, events: list[object], out: list[object]) -> None:
         """Take in the questions that the bridge sent on, each under a number."""
-        said = [each.message for each in events if isinstance(each, FromPlant)]
-        asked = [each for each in said if isinstance(each, Query) and each.id]
+        said = [each for each in events if isinstance(each, FromPlant) and isinstance(each.message, Query)]
+        asked = [each.message for each in said if each.message.id] if said else []
         for each in out if asked else ():
             name = self._orders.get(each.topic) if isinstance(each, Publication) else None
             if name is None or not isinstance(each, Publication):
