@@ -190,7 +190,7 @@ SCREENS = (
     mutant(
         "status_says_the_report",
         "The status has no word of the piece.",
-        edit(status._said, "getattr(report, name) is not None", 'getattr(report, name) and name != "piece"'),
+        edit(status.to_status, "if value is not None", 'if value and key != "piece"'),
         weather="none",
     ),
     mutant(
