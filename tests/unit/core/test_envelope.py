@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 
 from arboleda.core.envelope import unsettled
-from arboleda.model.messages import Fact, KeptTask, Remember, TaskState
+from arboleda.model.messages import Fact, KeptTask, Remember, TaskChanged, TaskState
 from arboleda.testing import Rig, shipped
 
 AT_WORK = KeptTask(id="a", text="sis_a 0B 7", cell="sis_a", state=TaskState.RUNNING)
@@ -57,6 +57,12 @@ def test_a_command_does_not_wait_for_the_effector_of_a_running_task(rig: Rig) ->
     assert not rig.plant.precedes_commands(replace(SWITCHING, value="on"))
     assert rig.plant.precedes_commands(replace(SWITCHING, name="rb1"))
     assert rig.plant.precedes_commands(Remember(fact=Fact.QUARANTINE, name="mesa", value="ra1"))
+
+
+@pytest.mark.parametrize("state", TaskState)
+def test_of_a_task_a_command_waits_for_the_begin_alone(rig: Rig, state: TaskState) -> None:
+    change = TaskChanged(task="a", text="sis_a 0B 7 #a", cell="sis_a", state=state)
+    assert rig.plant.precedes_commands(change) is (state is TaskState.RUNNING)
 
 
 def test_a_command_waits_for_an_effector_that_a_person_switches() -> None:
