@@ -106,7 +106,9 @@ class Places:
         for hand in self._hands:
             taken = Held(is_sure=True, lets_go=grips[hand] is Grip.SWITCHING)  # from no place
             held = Held.read(words[hand]) if hand in words else taken
-            if grips.holding(hand):
+            # where there are places, each part in a hand is in the books: this one was empty
+            is_empty = bool(self._places) and hand not in words and grips[hand] is Grip.SWITCHING
+            if grips.holding(hand) and not is_empty:
                 self._held[hand] = held
             elif hand in words:  # the plant ended before it told the hand
                 self._move(held.back(None), +1)

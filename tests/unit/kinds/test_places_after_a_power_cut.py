@@ -1,0 +1,64 @@
+"""The books of parts after a power cut, in which nobody knows what an effector holds before it reports."""
+
+from __future__ import annotations
+
+import pytest
+
+from arboleda.model.plant_model import PlantModel
+from arboleda.plant_file.loader import load
+from arboleda.testing import Rig
+
+PLANT = """
+name: lab
+uses: [recipes.py]
+cells:
+  lab:
+    devices:
+      loader: {kind: arm, model: scara}
+    targets:
+      home: {loader: {deg: [0, 0], mm: 0}}
+      feed: {loader: {deg: [60, 20], mm: 80}}
+      nest: {loader: {deg: [-60, 20], mm: 80}}
+    places:
+      feed: {supply: true}
+      nest: {holds: 2}
+"""
+RECIPES = """
+from arboleda.recipes import recipe, work
+
+@recipe("bring")
+def bring(cell):
+    loader = cell.device("loader")
+    return work(loader.visit("feed", loader.grip()), loader.visit("nest", loader.let_go()), loader.home())
+"""
+
+
+@pytest.fixture(scope="module")
+def model(tmp_path_factory: pytest.TempPathFactory) -> PlantModel:
+    folder = tmp_path_factory.mktemp("lab")
+    (folder / "plant.yaml").write_text(PLANT, "utf-8")
+    (folder / "recipes.py").write_text(RECIPES, "utf-8")
+    return load(folder / "plant.yaml")
+
+
+def parts_after_a_cut(model: PlantModel, at_s: float) -> int | None:
+    """The parts in the books of the next start, if the power is cut so late in a task; None after its end."""
+    rig = Rig(model)
+    rig.wait(1.0)
+    rig.submit("lab bring")
+    rig.wait(at_s)
+    if rig.plant.cells["lab"].task is None:
+        return None
+    rig.cut_power(0)
+    rig.start_plant()
+    rig.settle()
+    rig.wait(1.0)
+    places = rig.plant.cells["lab"].context.places
+    return sum(places.counts.values()) + sum(places.carriers.values())
+
+
+def test_no_part_is_booked_twice_whenever_the_power_is_cut(model: PlantModel) -> None:
+    found = [parts_after_a_cut(model, tenths / 10) for tenths in range(1, 70)]
+    lasted = found.index(None)
+    assert lasted > 20
+    assert set(found[:lasted]) == {1}
