@@ -180,7 +180,7 @@ class Plant:
     def precedes_commands(self, kept: Remember | Journal | TaskChanged) -> bool:
         """True for what has to be durable before a command leaves; not for effectors in an envelope.
 
-        Of a task that is its begin, with which its envelope is kept: what comes later is durable after that only,
+        Of a task that is its begin, with which its envelope is kept: what comes later is durable after that,
         and who asked for it, or waits for its end, is told once it is.
         """
         if isinstance(kept, TaskChanged):
