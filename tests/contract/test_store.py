@@ -268,6 +268,27 @@ def test_facts_that_were_noted_are_there_after_the_process_was_killed(path, tmp_
         assert store.facts(Fact.EFFECTOR) == {"ra1": "switching"}
 
 
+def test_facts_that_were_noted_are_taken_in_once(path, tmp_path):
+    with Store(path) as store:
+        store.note(GRIP)
+        killed = tmp_path / "killed"
+        shutil.copytree(path.parent, killed, ignore=shutil.ignore_patterns("killed"))
+    with Store(killed / path.name) as store:
+        store.keep(replace(GRIP, value="on"))
+    with Store(killed / path.name) as store:
+        assert store.facts(Fact.EFFECTOR) == {"ra1": "on"}
+
+
+def test_who_ends_leaves_the_note_of_another_plant_in_the_same_place(path):
+    note = Path(f"{path}-ahead")
+    with Store(path) as store:
+        store.note(GRIP)
+        store.settle()
+        note.unlink()
+        note.write_bytes(b"of another")
+    assert note.read_bytes() == b"of another"
+
+
 def test_facts_that_were_noted_are_lost_with_the_power_of_the_host(path, tmp_path, monkeypatch):
     with Store(path) as store:
         store.note(GRIP)

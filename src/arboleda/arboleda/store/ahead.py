@@ -56,14 +56,19 @@ class Ahead:
         return facts if boot == self._boot else []
 
     def clear(self) -> None:
-        """Forget the facts: they are committed."""
+        """Forget the facts: they are committed. Before the first are written the file itself goes."""
         if self._file is not None:
             os.pwrite(self._file, NOTHING, 0)
+        else:
+            self.path.unlink(missing_ok=True)
 
     def close(self) -> None:
-        """Remove the file, unless something is in it that was not committed; idempotent."""
-        if self._file is not None:
-            os.close(self._file)
-            self._file = None
-        if not self.read():
-            self.path.unlink(missing_ok=True)
+        """Remove the file, unless it holds what was not committed, or is another plant's; idempotent."""
+        if self._file is None:
+            return
+        mine, self._file = self._file, None
+        try:
+            if not self.read() and os.path.samestat(os.fstat(mine), os.stat(self.path)):
+                self.path.unlink()
+        finally:
+            os.close(mine)

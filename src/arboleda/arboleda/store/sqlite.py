@@ -141,6 +141,8 @@ class Store(PlantMemory):
                 version(self._folder)  # it opens the file when it is first used
                 self._noted = self._ahead.read()
             self.settle()
+            with self._explained(StartError):
+                self._ahead.clear()
 
     def close(self) -> None:
         """Close the file; idempotent."""
