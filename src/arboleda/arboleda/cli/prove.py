@@ -61,6 +61,13 @@ Tests = Annotated[
     Path | None, typer.Option("--tests", metavar="FILE", help="Write a pytest for each invariant that broke.")
 ]
 Anew = Annotated[bool, typer.Option("--anew", help="Run again what is kept from before, too.")]
+Pairs = Annotated[
+    bool,
+    typer.Option(
+        "--pairs",
+        help="Then try two faults in one run, the most likely ones first, for the rest of the budget.",
+    ),
+]
 Jobs = Annotated[
     int | None,
     typer.Option(metavar="N", min=1, help="How many processes share the runs. [default: one per processor]"),
@@ -81,6 +88,7 @@ def prove(
     html: Html = None,
     junit: JUnit = None,
     tests: Tests = None,
+    pairs: Pairs = False,
     anew: Anew = False,
     jobs: Jobs = None,
     state: StateFolder = None,
@@ -92,6 +100,8 @@ def prove(
     for file in (json, html, junit, tests):
         if file is not None:
             check_writable(file)
+    if pairs and budget == ALL:
+        raise typer.BadParameter(f"--pairs: all pairs take years; give a --budget that is a time, not {ALL}")
     request = ProofRequest(
         plant=plant,
         recipes=tuple(recipe or ()),
@@ -99,6 +109,7 @@ def prove(
         budget_s=seconds_of(budget),
         folder=folder(plant, state) / "prove",
         anew=anew,
+        pairs=pairs,
         json=json,
         html=html,
         junit=junit,

@@ -10,7 +10,6 @@ from arboleda.campaigns.proof.proof_tally import ProofTally
 from arboleda.campaigns.proof.pytest_file import Breach
 from arboleda.campaigns.proof.scenario import scenarios
 from arboleda.campaigns.proof.single_faults import possible_kinds
-from arboleda.campaigns.words import told
 from arboleda.model.plant_model import PlantModel
 
 from . import wording
@@ -53,7 +52,7 @@ def _story(breach: Breach) -> list[str]:
     name, sentence = breach.run.outcome.broken or ("", "")
     return [
         f"{breach.scenario.name} breaks {name}: {sentence}",
-        f"the fault: {told(breach.fault)}, {breach.instant.name}",
+        f"the fault: {breach.befell}, {breach.instant.name}",
         "",
         *wording.timeline(breach.result.lines),
     ]

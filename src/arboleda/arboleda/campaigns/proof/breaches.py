@@ -6,25 +6,33 @@ from arboleda.simulator.judged_world import BrokenInvariant
 from arboleda.simulator.run import Result
 
 from .forks import run_one
+from .pairs import PairTally
+from .proof import Proof
 from .proof_tally import Case, ProofTally
 from .pytest_file import Breach
 
 
-def breaches_of(tally: ProofTally) -> list[Breach]:
-    """The breaches in a tally, each run again with its timeline."""
-    return [_again(tally, case, count) for case, count in tally.breaches()]
+def breaches_of(tally: ProofTally, pairs: PairTally | None = None) -> list[Breach]:
+    """The breaches of single faults, then those of pairs that none of them broke, each run again with its
+    timeline.
+    """
+    found = tally.breaches()
+    known = frozenset(case.breaks for case, _ in found if case.breaks)
+    found += pairs.breaches(known) if pairs is not None else []
+    return [_again(tally.proof, case, count) for case, count in found]
 
 
-def _again(tally: ProofTally, case: Case, count: int) -> Breach:
+def _again(proof: Proof, case: Case, count: int) -> Breach:
     """The run of a case once more, with its timeline."""
-    proof = tally.proof
-    run, stage = run_one(proof.model, proof.calm[case.row], case.fault, keep=True)
-    result = Result(seed=0, faults=[case.fault], lines=stage.watched.trace.lines, seconds=run.seconds)
+    faults = [case.fault] if case.then is None else [case.fault, case.then]
+    run, stage = run_one(proof.model, proof.calm[case.row], *faults, keep=True)
+    result = Result(seed=0, faults=faults, lines=stage.watched.trace.lines, seconds=run.seconds)
     result.broken = BrokenInvariant(*run.outcome.broken) if run.outcome.broken else None
     return Breach(
         scenario=case.scenario,
         instant=case.instant,
         fault=case.fault,
+        then=case.then,
         run=run,
         count=count,
         result=result,

@@ -1,4 +1,4 @@
-"""Forks: each fault of an instant in a fork of the one process that has simulated what comes before it."""
+"""Forks: each fault, or group, of an instant in a fork of the process that simulated what comes before it."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ from typing import Any
 from arboleda.model.errors import ArboledaError
 from arboleda.model.plant_model import PlantModel
 from arboleda.simulator.faults import Fault
-from arboleda.simulator.judged_world import JudgedWorld
 
 from .calm import Calm
 from .outcome import Run
 from .stage import AllForked, Stage
 
 Tick = Callable[[], None]
+Faults = tuple[Fault, ...]  # of one run
 CAN_FORK = hasattr(os, "fork")
 
 
@@ -24,55 +24,63 @@ def run_all(
     model: PlantModel, calm: Calm, faults: Sequence[Fault], tick: Tick, *, forks: bool = CAN_FORK
 ) -> list[Run]:
     """A run for each of the faults, which all begin at one instant; the same with forks and without."""
-    if forks and faults:
-        return _forked(model, calm, faults, tick)
+    return run_groups(model, calm, [(fault,) for fault in faults], tick, forks=forks)
+
+
+def run_groups(
+    model: PlantModel, calm: Calm, groups: Sequence[Faults], tick: Tick, *, forks: bool = CAN_FORK
+) -> list[Run]:
+    """The same for groups of faults that befall one run: their first ones all begin at one instant."""
+    if forks and groups:
+        return _forked(model, calm, groups, tick)
     runs = []
-    for fault in faults:
-        runs.append(run_one(model, calm, fault)[0])
+    for faults in groups:
+        runs.append(run_one(model, calm, *faults)[0])
         tick()
     return runs
 
 
-def run_one(model: PlantModel, calm: Calm, fault: Fault, *, keep: bool = False) -> tuple[Run, Stage]:
+def run_one(model: PlantModel, calm: Calm, *faults: Fault, keep: bool = False) -> tuple[Run, Stage]:
     """One run from its beginning, and its stage; `keep`: with its timeline."""
     stage = Stage(model, calm.scenario, keep=keep)
-    return _play(stage, calm, fault, lambda: stage.watched.begin(fault)), stage
+    return _play(stage, calm, faults, lambda: stage.befall(faults)), stage
 
 
-def _play(stage: Stage, calm: Calm, fault: Fault, begin: Callable[[], None]) -> Run:
-    return stage.play(fault.at, begin, expected=calm.state, commands=calm.commands, lasts_s=calm.lasts_s)
+def _play(stage: Stage, calm: Calm, faults: Faults, begin: Callable[[], None]) -> Run:
+    at = faults[0].at
+    return stage.play(at, begin, expected=calm.state, commands=calm.commands, lasts_s=calm.lasts_s)
 
 
-def _forked(model: PlantModel, calm: Calm, faults: Sequence[Fault], tick: Tick) -> list[Run]:
+def _forked(model: PlantModel, calm: Calm, groups: Sequence[Faults], tick: Tick) -> list[Run]:
     stage = Stage(model, calm.scenario)
-    forks = _Forks(stage.watched, faults, tick)
+    forks = _Forks(stage, groups, tick)
     try:
-        run = _play(stage, calm, faults[0], forks.begin)
+        run = _play(stage, calm, groups[0], forks.begin)
         forks.answer(run)
     except AllForked:
         return forks.runs
     finally:
         forks.leave()
-    raise ArboledaError(f"the run without a fault ended before {faults[0].at:g} s")
+    raise ArboledaError(f"the run without a fault ended before {groups[0][0].at:g} s")
 
 
 class _Forks:
     """Forks at the instant: this process waits for each, in which one fault begins and the run goes on."""
 
-    def __init__(self, watched: JudgedWorld, faults: Sequence[Fault], tick: Tick) -> None:
+    def __init__(self, stage: Stage, groups: Sequence[Faults], tick: Tick) -> None:
         self.runs: list[Run] = []
-        self._watched, self._faults, self._tick = watched, faults, tick
+        self._stage, self._groups, self._tick = stage, groups, tick
         self._pipe: int | None = None  # in a fork: where its run is awaited
 
     def begin(self) -> None:
-        """Fork for each fault; returns in the forks only."""
-        for fault in self._faults:
+        """Fork for each group; returns in the forks only."""
+        for faults in self._groups:
             read, write = os.pipe()
             child = os.fork()
             if not child:
                 os.close(read)
                 self._pipe = write
-                self._watched.begin(fault)
+                self._stage.befall(faults)
                 return
             os.close(write)
             self.runs.append(_awaited(read, child))

@@ -5,15 +5,27 @@ from __future__ import annotations
 import json
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
-from hashlib import blake2b
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol
 
 from .outcome import outcome_from, plain
-from .proof import Portion, Proof, Proved
+from .proof import Proved
 from .proof_tally import RecipeKey
+from .scenario import Scenario
 
 SUFFIX = ".jsonl"
+
+
+class Portions(Protocol):
+    """Portions of a proof by number: their scenarios, names that tell all that is run, and numbers of runs.
+
+    `number` raises KeyError or ValueError for a name that none has.
+    """
+
+    def scenario(self, number: int) -> Scenario: ...
+    def name(self, number: int) -> str: ...
+    def number(self, name: str) -> int: ...
+    def count(self, number: int) -> int: ...
 
 
 class Kept:
@@ -23,12 +35,11 @@ class Kept:
     something could not be kept, read or removed.
     """
 
-    def __init__(self, folder: Path, digests: Mapping[RecipeKey, str], proof: Proof) -> None:
+    def __init__(self, folder: Path, digests: Mapping[RecipeKey, str], proof: Portions) -> None:
         self._folder = folder
         self._files = {key: folder / f"{digest}{SUFFIX}" for key, digest in digests.items()}
         self.trouble: str | None = None
         self._proof = proof
-        self._numbers = {_name(proof, portion): number for number, portion in enumerate(proof.portions)}
 
     def known(self) -> dict[int, Proved]:
         """The portions of this proof that were proved before, by number."""
@@ -36,7 +47,7 @@ class Kept:
 
     def keep(self, proved: Proved) -> None:
         """Keep one more."""
-        name = _name(self._proof, self._proof.portions[proved.number])
+        name = self._proof.name(proved.number)
         outcomes = [plain(each) for each in proved.outcomes]
         row = {"portion": name, "outcomes": outcomes, "rows": proved.rows, "digest": proved.digest}
         scenario = self._proof.scenario(proved.number)
@@ -70,20 +81,13 @@ class Kept:
             self.trouble = f"{self._folder}: {error.strerror}"
 
     def _proved(self, row: dict[str, Any]) -> Proved:
-        number = self._numbers[row["portion"]]
+        number = self._proof.number(row["portion"])
         found = Proved(
             number=number,
             outcomes=tuple(map(outcome_from, row["outcomes"])),
             rows=tuple(row["rows"]),
             digest=row["digest"],
         )
-        if len(found.each) != len(self._proof.faults(self._proof.portions[number])):
+        if len(found.each) != self._proof.count(number):
             raise ValueError("another number of faults")
         return found
-
-
-def _name(proof: Proof, portion: Portion) -> str:
-    """The name of a portion: its task, and its faults with their times, as one hash."""
-    scenario = proof.calm[portion.scenario].scenario
-    faults = blake2b(repr(proof.faults(portion)).encode(), digest_size=16).hexdigest()
-    return f"{scenario.cell} | {scenario.recipe} | {scenario.name} | {faults}"

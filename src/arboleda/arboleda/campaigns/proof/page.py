@@ -13,6 +13,7 @@ from arboleda.web.languages import FIRST, LANGUAGES, texts
 from ..words import told
 from .calm import Calm
 from .outcome import MOST_ACTS, End
+from .pairs import PairTally
 from .proof_tally import Case, ProofTally, RecipeKey, Row
 from .pytest_file import Breach, as_tests
 
@@ -46,6 +47,7 @@ class ProofPage:
     tally: ProofTally
     breaches: Sequence[Breach]
     total: int
+    pairs: PairTally | None = None
 
 
 def page(proof: ProofPage) -> str:
@@ -92,6 +94,9 @@ def _amount(proof: ProofPage) -> Iterator[str]:
     only = f" {_each('kinds', kinds=', '.join(kinds))}" if kinds else ""
     alone = _each("alone", share=f"{proof.tally.alone:.1%}") if done else ""
     yield f"<p>{said}{only} {alone}</p>"
+    if proof.pairs is not None:
+        counts = {"done": f"{proof.pairs.runs:,}", "total": f"{proof.pairs.pairs.total:,}"}
+        yield f"<p>{_each('pairs', **counts)}</p>"
 
 
 def _calm(calm: Calm) -> str:
@@ -124,7 +129,7 @@ def _breach(breach: Breach, plant: Path | None) -> str:
     lines = "\n".join(map(escape, breach.result.lines[-40:]))
     return (
         f"<h3 class=bad>{escape(f'{breach.scenario.name}: {name}')}</h3><p>{escape(sentence)}<br>"
-        f"{escape(f'{told(breach.fault)}, {breach.instant.name}')} "
+        f"{escape(f'{breach.befell}, {breach.instant.name}')} "
         f"({_each('runs_like_it', count=breach.count)})</p><pre>{lines}</pre>"
         f"<p>{_each('test')}</p><pre>{escape(as_tests([breach], plant))}</pre>"
     )

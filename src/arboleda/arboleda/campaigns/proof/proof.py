@@ -75,10 +75,38 @@ class Proof:
         """The scenario of the portion of this number."""
         return self.calm[self.portions[number].scenario].scenario
 
+    def name(self, number: int) -> str:
+        """The name of the portion of this number: its task, and its faults with their times as one hash."""
+        faults = blake2b(repr(self.faults(self.portions[number])).encode(), digest_size=16).hexdigest()
+        scenario = self.scenario(number)
+        return f"{scenario.cell} | {scenario.recipe} | {scenario.name} | {faults}"
+
+    def number(self, name: str) -> int:
+        """The number of the portion of this name; KeyError where there is none."""
+        return self._numbers[name]
+
+    @cached_property
+    def _numbers(self) -> dict[str, int]:
+        return {self.name(number): number for number in range(len(self.portions))}
+
+    def count(self, number: int) -> int:
+        """The number of runs of the portion of this number."""
+        return len(self.faults(self.portions[number]))
+
     def faults(self, portion: Portion) -> list[Fault]:
         """The faults of a portion."""
         parts = self._parts[portion.scenario, portion.instant]
         return parts[portion.part][portion.first : portion.first + MOST]
+
+    def singles(self, row: int) -> list[tuple[Instant, Fault]]:
+        """All faults of the scenario of this number, in the order of their instants."""
+        instants = self.calm[row].instants
+        return [
+            (instant, fault)
+            for number, instant in enumerate(instants)
+            for part in self._parts[row, number]
+            for fault in part
+        ]
 
     @cached_property
     def _parts(self) -> dict[tuple[int, int], list[list[Fault]]]:
@@ -103,10 +131,11 @@ class Proof:
         portion = self.portions[seed]
         calm = self.calm[portion.scenario]
         runs = run_all(self.model, calm, self.faults(portion), tick or (lambda: None))
-        return _proved(seed, runs)
+        return proved_by(seed, runs)
 
 
-def _proved(number: int, runs: Sequence[Run]) -> Proved:
+def proved_by(number: int, runs: Sequence[Run]) -> Proved:
+    """The portion of this number, with these runs."""
     outcomes = {run.outcome: None for run in runs}
     numbers = {outcome: index for index, outcome in enumerate(outcomes)}
     digest = blake2b("".join(run.digest for run in runs).encode(), digest_size=16).hexdigest()

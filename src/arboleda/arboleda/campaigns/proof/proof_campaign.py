@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Collection, Iterator
+from collections.abc import Iterable, Iterator
 from itertools import takewhile
 
 from rich.console import Console
@@ -12,7 +12,7 @@ from rich.text import Text
 
 from arboleda.model.counting import counted
 
-from ..campaign import Campaign
+from ..campaign import Campaign, Runs
 from ..plants import notes
 from ..screen import Show, progress
 from ..seed_campaign import BROKEN, HELD, INTERRUPTED
@@ -24,6 +24,7 @@ from .junit import as_junit
 from .kept import Kept
 from .outcome import End
 from .page import ProofPage, page
+from .pairs import PairProof, PairTally
 from .proof import Proof, Proved
 from .proof_request import ProofRequest
 from .proof_tally import ProofTally
@@ -41,6 +42,7 @@ class ProofCampaign:
         self._plant = request.simulated
         self._calm: list[Calm] = []
         self._tally = ProofTally(proof=Proof(model=self._plant.model))
+        self._pairs: PairTally | None = None
         self._known = 0  # runs that were kept from before
         self._total = 0
         self._began = time.monotonic()
@@ -53,11 +55,17 @@ class ProofCampaign:
         try:
             self._run_calmly()
             self._prove(jobs)
-            status = BROKEN if self._bad_calm or self._tally.breaches() else HELD
+            if self._request.pairs:
+                self._prove_pairs(jobs)
+            status = BROKEN if self._bad_calm or self._breaks else HELD
         except KeyboardInterrupt:
             self._say("interrupted; so far:", "yellow")
         self._report(complete=status != INTERRUPTED)
         return status
+
+    @property
+    def _breaks(self) -> bool:
+        return bool(self._tally.breaches() or (self._pairs and self._pairs.breaches(frozenset())))
 
     @property
     def _bad_calm(self) -> int:
@@ -78,22 +86,48 @@ class ProofCampaign:
         kept = Kept(self._request.folder, recipe_digests(self._plant.model, self._request.files), proof)
         kept.forget(all=self._request.anew)
         self._tally = ProofTally(proof=proof, proved=kept.known())
-        self._known = self._tally.runs
         self._total = sum(len(proof.faults(each)) for each in proof.portions)
-        waiting = [number for number in range(len(proof.portions)) if number not in self._tally.proved]
+        self._run(proof, range(len(proof.portions)), self._tally, kept, total=self._total, jobs=jobs)
+
+    def _prove_pairs(self, jobs: int) -> None:
+        pairs = PairProof(proof=self._tally.proof)
+        kept = Kept(self._request.folder, recipe_digests(self._plant.model, self._request.files), pairs)
+        self._pairs = PairTally(pairs=pairs, proved=kept.known())
+        self._run(pairs, pairs.numbers(), self._pairs, kept, total=pairs.total, jobs=jobs)
+
+    def _run(
+        self,
+        proof: Runs[Proved],
+        numbers: Iterable[int],
+        tally: ProofTally | PairTally,
+        kept: Kept,
+        *,
+        total: int,
+        jobs: int,
+    ) -> None:
+        """Run the portions of these numbers that are not in the tally, as long as the budget lasts."""
+        known = tally.runs
+        self._known += known
+        waiting = (number for number in numbers if number not in tally.proved)
+        name = "proving" if tally is self._tally else "proving pairs"
         with (
-            progress(self._console, "proving", self._total) as show,
-            self._campaign(proof, self._within_budget(waiting), jobs, show) as campaign,
+            progress(self._console, name, total) as show,
+            self._campaign(proof, self._within_budget(waiting), jobs, (known, total), show) as campaign,
         ):
             for proved in campaign.results():
-                self._tally.proved[proved.number] = proved
+                tally.proved[proved.number] = proved
                 kept.keep(proved)
         if kept.trouble is not None:
             self._say(f"not all is kept for the next time: {kept.trouble}", "yellow")
 
-    def _campaign(self, proof: Proof, numbers: Iterator[int], jobs: int, show: Show) -> Campaign[Proved]:
+    def _campaign(
+        self, proof: Runs[Proved], numbers: Iterator[int], jobs: int, so_far: tuple[int, int], show: Show
+    ) -> Campaign[Proved]:
+        began, (known, total) = time.monotonic(), so_far
+
         def tick() -> None:
-            show(self._so_far(campaign.minutes), self._known + campaign.minutes)
+            seconds = max(time.monotonic() - began, 1e-3)
+            show(_progress(known, campaign.minutes, total, seconds), known + campaign.minutes)
 
         campaign: Campaign[Proved]
         if jobs == 1:
@@ -102,19 +136,11 @@ class ProofCampaign:
             campaign = Workers(proof, numbers, tick=tick, jobs=jobs)
         return campaign
 
-    def _within_budget(self, numbers: Collection[int]) -> Iterator[int]:
-        began = time.monotonic()
-        return takewhile(lambda _: time.monotonic() - began < self._request.budget_s, iter(numbers))
-
-    def _so_far(self, runs: int) -> str:
-        seconds = max(time.monotonic() - self._began, 1e-3)
-        done, rate = self._known + runs, runs / seconds
-        left = (self._total - done) / rate if rate else math.inf
-        ends = f", {left / 60:,.0f} min left for all" if math.isfinite(left) else ""
-        return f"{done:,} of {counted(self._total, 'run')}, {rate:,.0f}/s{ends}"
+    def _within_budget(self, numbers: Iterable[int]) -> Iterator[int]:
+        return takewhile(lambda _: time.monotonic() - self._began < self._request.budget_s, iter(numbers))
 
     def _report(self, *, complete: bool) -> None:
-        tally, breaches = self._tally, breaches_of(self._tally)
+        tally, breaches = self._tally, breaches_of(self._tally, self._pairs)
         for line in proof_report.calm_lines(self._calm):
             self._console.print(line, soft_wrap=True)
         for line in proof_report.unnoticed_lines(tally.unnoticed()):
@@ -126,11 +152,17 @@ class ProofCampaign:
         for breach in breaches:
             proof_report.story(self._console, breach)
         self._say(self._amount())
+        if self._pairs is not None:
+            line = proof_report.pairs_line(self._pairs, sum(each.then is not None for each in breaches))
+            self._console.print(line, soft_wrap=True)
         self._console.print(proof_report.verdict(tally, self._total, bad_calm=self._bad_calm), soft_wrap=True)
         self._write(breaches, complete=complete)
 
     def _amount(self) -> str:
-        runs, seconds = self._tally.runs, time.monotonic() - self._began
+        runs, seconds = (
+            self._tally.runs + (self._pairs.runs if self._pairs else 0),
+            time.monotonic() - self._began,
+        )
         kept = f", {self._known:,} of them kept from before" if self._known else ""
         alone = (
             f"; after {self._tally.alone:.1%} the cell got ready again without a person{self._acts}"
@@ -150,7 +182,13 @@ class ProofCampaign:
             proof_summary.write(
                 request.json,
                 proof_summary.as_json(
-                    request.plant, self._calm, self._tally, breaches, self._total, complete=complete
+                    request.plant,
+                    self._calm,
+                    self._tally,
+                    breaches,
+                    self._total,
+                    complete=complete,
+                    pairs=self._pairs,
                 ),
             )
         if request.html is not None:
@@ -161,6 +199,7 @@ class ProofCampaign:
                 tally=self._tally,
                 breaches=breaches,
                 total=self._total,
+                pairs=self._pairs,
             )
             proof_summary.write(request.html, page(shown))
         if request.junit is not None:
@@ -171,3 +210,10 @@ class ProofCampaign:
 
     def _say(self, line: str, style: str = "") -> None:
         self._console.print(Text(line, style=style), soft_wrap=True)
+
+
+def _progress(known: int, runs: int, total: int, seconds: float) -> str:
+    done, rate = known + runs, runs / seconds
+    left = (total - done) / rate if rate else math.inf
+    ends = f", {left / 60:,.0f} min left for all" if math.isfinite(left) else ""
+    return f"{done:,} of {counted(total, 'run')}, {rate:,.0f}/s{ends}"

@@ -12,9 +12,9 @@ from arboleda.model.counting import counted
 
 from .. import breach_text
 from ..setting import rules
-from ..words import told
 from .calm import Calm
 from .outcome import MOST_ACTS, End
+from .pairs import PairTally
 from .proof_tally import Case, ProofTally, Row
 from .pytest_file import Breach
 
@@ -52,7 +52,7 @@ def unnoticed_lines(found: Sequence[tuple[Case, int]]) -> Iterator[Text]:
 def unmended_lines(found: Sequence[tuple[Case, int]]) -> Iterator[Text]:
     """Faults after which what the plant advises does not get a cell ready in few acts."""
     if found:
-        yield Text(f"What {MOST_ACTS} acts that the plant advises do not mend:", "bold yellow")
+        yield Text(f"What {MOST_ACTS} acts do not mend that the plant advises:", "bold yellow")
     for case, count in found[:MOST_UNNOTICED]:
         acts = "it is never ready" if case.outcome.acts is None else f"it takes {case.outcome.acts} acts"
         times = f"{counted(count, 'run')}, e.g. {case.instant.name}"
@@ -71,7 +71,7 @@ def story(console: Console, breach: Breach) -> None:
         (f"{breach.scenario.name} breaks {name}{more}", "bold red"),
         (f"  must hold  {rules().get(name, '')}", ""),
         (f"  was seen   {sentence}", ""),
-        (f"  the fault  {told(breach.fault)}", "yellow"),
+        (f"  the fault  {breach.befell}", "yellow"),
         (f"  begins     {breach.instant.name}", "yellow"),
     ):
         console.print(Text(line, style=style), soft_wrap=True)
@@ -99,6 +99,19 @@ def _cells(row: Row) -> Iterator[str]:
     yield f"{row.alone / row.runs:.0%}"
     causes = ", ".join(cause for cause, _ in row.causes.most_common())
     yield f"{causes}{f' {MOVED}' if row.changes else ''}".strip()
+
+
+def pairs_line(pairs: PairTally, breaches: int) -> Text:
+    """The line on pairs of faults: how many of all were tried, which is never more than a sample."""
+    runs, total = pairs.runs, pairs.pairs.total
+    share = f"{runs:,} of {total:,} (a share of {runs / max(total, 1):.2g})"
+    of = (
+        f"all {total:,}, the most likely first"
+        if runs == total
+        else f"{share}, the most likely first: a sample"
+    )
+    found = f"{breaches or 'no'} {'breach' if breaches == 1 else 'breaches'} beyond those of single faults"
+    return Text(f"pairs: {of}; {found}", "bold red" if breaches else "yellow")
 
 
 def verdict(tally: ProofTally, total: int, *, bad_calm: int) -> Text:

@@ -17,7 +17,7 @@ from .single_faults import possible_kinds
 @dataclass(frozen=True, kw_only=True)
 class ProofRequest:
     """Request: the options. `budget_s`: how long runs begin, infinite for all; `anew`: nothing kept in
-    `folder` counts.
+    `folder` counts; `pairs`: what is left of the time is for two faults in one run.
     """
 
     plant: Path | None
@@ -26,6 +26,7 @@ class ProofRequest:
     budget_s: float
     folder: Path
     anew: bool = False
+    pairs: bool = False
     json: Path | None = None
     html: Path | None = None
     junit: Path | None = None

@@ -13,6 +13,7 @@ from arboleda.model.errors import ArboledaError
 
 from .calm import Calm
 from .outcome import plain
+from .pairs import PairTally
 from .proof_tally import Case, ProofTally
 from .pytest_file import Breach, as_tests, lasting
 
@@ -33,6 +34,7 @@ def as_json(
     total: int,
     *,
     complete: bool,
+    pairs: PairTally | None = None,
 ) -> str:
     """The content of the file."""
     data = {
@@ -40,6 +42,7 @@ def as_json(
         "plant": str(plant) if plant else None,
         "complete": complete,
         "runs": {"done": tally.runs, "of": total},
+        "pairs": None if pairs is None else {"done": pairs.runs, "of": pairs.pairs.total},
         "alone": round(tally.alone, 4),
         "scenarios": [_scenario(each) for each in calm],
         "table": [_row(*each) for each in tally.table().items()],
@@ -100,6 +103,7 @@ def _breach(breach: Breach, plant: Path | None) -> dict[str, Any]:
         "answers": dict(breach.scenario.answers),
         "instant": breach.instant.name,
         "fault": asdict(lasting(breach.fault, breach.run)),
+        "then": None if breach.then is None else asdict(breach.then),
         "runs": breach.count,
         "test": as_tests([breach], plant),
     }

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Container, Iterable, Iterator
 from dataclasses import dataclass, field
 
 from arboleda.simulator.faults import Fault
@@ -15,17 +15,25 @@ from .proof import Proof, Proved
 from .scenario import Scenario
 
 RecipeKey = tuple[str, str]  # cell, recipe
+Breaks = tuple[str, str, str]  # an invariant, cell, recipe
 
 
 @dataclass(frozen=True, kw_only=True)
 class Case:
-    """Case: one fault at one instant of one scenario, and its outcome."""
+    """Case: one fault at one instant of one scenario, and its outcome; of a pair `then` is the other one."""
 
     scenario: Scenario
     row: int  # of the calm run
     instant: Instant
     fault: Fault
     outcome: Outcome
+    then: Fault | None = None
+
+    @property
+    def breaks(self) -> Breaks | None:
+        """What it breaks, if anything."""
+        broken = self.outcome.broken
+        return (broken[0], self.scenario.cell, self.scenario.recipe) if broken is not None else None
 
 
 @dataclass(kw_only=True)
@@ -78,12 +86,7 @@ class ProofTally:
 
     def breaches(self) -> list[tuple[Case, int]]:
         """For each invariant that a recipe broke its earliest case, and how many there are."""
-        found: dict[tuple[str, ...], list[Case]] = {}
-        for case in self.cases():
-            if case.outcome.broken is not None:
-                key = (case.outcome.broken[0], case.scenario.cell, case.scenario.recipe)
-                found.setdefault(key, []).append(case)
-        return [(min(cases, key=_shortness), len(cases)) for cases in found.values()]
+        return shortest(self.cases())
 
     def unnoticed(self) -> list[tuple[Case, int]]:
         """For each kind of fault on each target that a task is done in spite of: a case, and how many."""
@@ -121,6 +124,15 @@ class ProofTally:
         """The share of runs after which the cell got ready again without a person."""
         alone = sum(each.alone for proved in self.proved.values() for each in proved.each)
         return alone / max(self.runs, 1)
+
+
+def shortest(cases: Iterable[Case], known: Container[Breaks] = ()) -> list[tuple[Case, int]]:
+    """For each of what cases break its earliest case, and how many there are; none of what is `known`."""
+    found: dict[Breaks, list[Case]] = {}
+    for case in cases:
+        if case.breaks is not None and case.breaks not in known:
+            found.setdefault(case.breaks, []).append(case)
+    return [(min(each, key=_shortness), len(each)) for each in found.values()]
 
 
 def _acts(case: Case) -> float:

@@ -10,6 +10,7 @@ from pathlib import Path
 from arboleda.simulator.faults import Fault
 from arboleda.simulator.run import Result
 
+from ..words import told
 from .end_state import EndState
 from .instants import Instant
 from .outcome import Run
@@ -21,7 +22,7 @@ from .stage import ASKED_AT_S, ENDS_AS_SAID
 class Breach:
     """Breach: the run of one fault again, with its timeline; `count` cases broke the same of this recipe.
 
-    `stated`: the facts with which the recipe says that it ends.
+    `then`: the other one of a pair. `stated`: the facts with which the recipe says that it ends.
     """
 
     scenario: Scenario
@@ -31,6 +32,21 @@ class Breach:
     count: int
     result: Result
     stated: EndState = field(default_factory=dict)
+    then: Fault | None = None
+
+    @property
+    def faults(self) -> list[Fault]:
+        """The faults that began, as long as they lasted."""
+        both = [self.fault] if self.then is None else [self.fault, self.then]
+        return [
+            lasting(each, self.run) for each in both if each is self.fault or each.at < self.run.mended_at
+        ]
+
+    @property
+    def befell(self) -> str:
+        """The faults in words."""
+        then = "" if self.then is None else f", then {told(self.then)} at {self.then.at:.3f} s"
+        return f"{told(self.fault)}{then}"
 
 
 def as_tests(breaches: Iterable[Breach], plant: Path | None) -> str:
@@ -56,7 +72,7 @@ def _test(breach: Breach, plant: Path | None) -> list[str]:
         f"    sim.answer_always({answers})",
         f"    sim.run({ASKED_AT_S})",
         f"    task = sim.submit({breach.scenario.task!r})",
-        f"    sim.faults([{_written(lasting(breach.fault, breach.run))}])",
+        f"    sim.faults([{', '.join(map(_written, breach.faults))}])",
         f"    sim.run({rest!r})",
         *_ends(breach),
         "    sim.rest()",

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 from arboleda.core.cell import CellRun
@@ -10,6 +10,7 @@ from arboleda.core.cell_states import CellState
 from arboleda.model.messages import TaskChanged, TaskState
 from arboleda.model.plant_model import PlantModel
 from arboleda.model.task import Order
+from arboleda.simulator.faults import Fault
 from arboleda.simulator.invariants.places import recipes_end_as_they_say
 from arboleda.simulator.judged_world import BrokenInvariant, JudgedWorld
 from arboleda.simulator.people import Attendant, FixedAnswers
@@ -109,6 +110,16 @@ class Stage:
             attended_at=attended_at or seconds,
             seconds=seconds,
         )
+
+    def befall(self, faults: Sequence[Fault]) -> None:
+        """Have the first of these faults begin now, the others at their time if the task is at work then."""
+        self.watched.begin(faults[0])
+        for fault in faults[1:]:
+            self.world.at(self.watched.start + fault.at, self._begin_another, fault)
+
+    def _begin_another(self, fault: Fault) -> None:
+        if not self.ended and not self.mended_at:
+            self.watched.begin(fault)
 
     def _begin(self, begin: Callable[[], None]) -> None:
         self._began, self._lost_from = True, self.world.now + LOST_S
