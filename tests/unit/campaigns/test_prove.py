@@ -272,6 +272,14 @@ def test_any_number_of_processes_gives_the_same(plant: Path, prove: Prove) -> No
     assert len(digests[0]) == 10
 
 
+def test_a_hold_in_the_very_step_in_which_a_command_ends_breaks_nothing(plant: Path) -> None:
+    plant.write_text(PRESS)
+    (plant.parent / "small.py").write_text(STAMP)
+    sim = Sim(plant.parent)
+    sim.plant("small.yaml")
+    assert sim.prove("stamp", "operator_hold", at_most=None) == 1.0
+
+
 def test_the_acts_are_counted_that_get_a_cell_ready_again(
     plant: Path, prove: Prove, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -87,7 +87,11 @@ class Trails:
 
 
 def _said_otherwise(cell: KnownCell, trail: Trail, commands: Commands) -> Iterator[str]:
-    """Sentences on steps under way of which a trail does not say whether their last command is done."""
+    """Sentences on steps under way of which a trail does not say whether their last command is done.
+
+    One that ended in this very step may be kept as not done: whoever asked may have been heard before that.
+    """
+    moved = [sent for sent, _ in commands.moved]
     nodes = cell.run.run.nodes
     for number, kept in trail.nodes.items():
         step, last = nodes[number], kept.get("last")
@@ -96,5 +100,7 @@ def _said_otherwise(cell: KnownCell, trail: Trail, commands: Commands) -> Iterat
         sent = commands.last.get(last["robot"])
         if sent is None or sent.command.id != step.entry.command.id:
             continue  # it gave another one since
+        if sent in moved and not last["done"]:
+            continue
         if last["done"] is not (sent.state is State.DONE):
             yield f"of {sent} it is kept that it is {'' if last['done'] else 'not '}done"
