@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from pathlib import Path
+from xml.etree import ElementTree as Xml
 
 import pytest
 
+from arboleda.campaigns.proof.badge import badge
 from arboleda.campaigns.proof.calm import calm_run
 from arboleda.campaigns.proof.end_state import differences
 from arboleda.campaigns.proof.instants import Instant, Mark, Side, instants
@@ -195,6 +197,24 @@ def test_what_cannot_be_kept_is_noted(tmp_path: Path, model: PlantModel) -> None
     kept = Kept(tmp_path / "taken", {("sis_a", "storage"): "key"}, proof)
     kept.keep(Proved(number=0, outcomes=(Outcome(end=End.DONE),), rows=(0,), digest=""))
     assert kept.trouble is not None and "taken" in kept.trouble
+
+
+@pytest.mark.parametrize(
+    ("runs", "total", "broken", "said"),
+    [
+        (4, 4, False, "held: all 4"),
+        (4, 1200, False, "held: 4 of 1,200"),
+        (4, 4, True, "broken"),
+        (0, 4, False, "nothing was run"),
+    ],
+)
+def test_a_badge_says_how_much_of_all_held(
+    model: PlantModel, runs: int, total: int, broken: bool, said: str
+) -> None:
+    proved = Proved(number=0, outcomes=(Outcome(end=End.DONE),), rows=(0,) * runs, digest="")
+    tally = ProofTally(proof=Proof(model=model), proved={0: proved})
+    drawn = Xml.fromstring(badge(tally, total, broken=broken))
+    assert drawn.get("aria-label") == f"every single fault: {said}"
 
 
 @pytest.mark.parametrize(("acts", "too_much"), [(0, False), (6, False), (7, True), (None, True)])

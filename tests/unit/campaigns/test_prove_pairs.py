@@ -97,14 +97,17 @@ def test_the_command_runs_pairs_after_all_single_faults_and_goes_on_the_next_tim
 ) -> None:
     out, state = plant.parent / "out.json", plant.parent / "state"
     words = ["--pairs", "--fault", "forgets", "--jobs", "1", "--state", str(state), "--json", str(out)]
-    page = plant.parent / "out.html"
-    monkeypatch.setattr("sys.argv", ["arboleda", "prove", str(plant), "--html", str(page), *words])
+    page, drawn = plant.parent / "out.html", plant.parent / "out.svg"
+    monkeypatch.setattr(
+        "sys.argv", ["arboleda", "prove", str(plant), "--html", str(page), "--badge", str(drawn), *words]
+    )
     for said in ("15 runs in", "15 runs, 15 of them kept from before"):
         with pytest.raises(SystemExit) as ended:
             main()
         assert ended.value.code == 0
         shown = capsys.readouterr().out
         assert said in shown and "pairs: all 10, the most likely first; no breaches beyond" in shown
+    assert "held: all 5" in drawn.read_text()
     assert "se probaron 10 de 10 pares" in page.read_text()
     assert json.loads(out.read_text())["pairs"] == {"done": 10, "of": 10}
 

@@ -60,6 +60,9 @@ JUnit = Annotated[
 Tests = Annotated[
     Path | None, typer.Option("--tests", metavar="FILE", help="Write a pytest for each invariant that broke.")
 ]
+Badge = Annotated[
+    Path | None, typer.Option("--badge", metavar="FILE", help="Write a badge as SVG, for one's own README.")
+]
 Anew = Annotated[bool, typer.Option("--anew", help="Run again what is kept from before, too.")]
 Pairs = Annotated[
     bool,
@@ -88,6 +91,7 @@ def prove(
     html: Html = None,
     junit: JUnit = None,
     tests: Tests = None,
+    badge: Badge = None,
     pairs: Pairs = False,
     anew: Anew = False,
     jobs: Jobs = None,
@@ -97,7 +101,7 @@ def prove(
     from arboleda.campaigns.proof.proof_campaign import ProofCampaign, ProofRequest
     from arboleda.campaigns.workers import processors
 
-    for file in (json, html, junit, tests):
+    for file in (json, html, junit, tests, badge):
         if file is not None:
             check_writable(file)
     if pairs and budget == ALL:
@@ -114,6 +118,7 @@ def prove(
         html=html,
         junit=junit,
         tests=tests,
+        badge=badge,
     )
     raise typer.Exit(ProofCampaign(request, screen.console()).run(jobs or processors()))
 

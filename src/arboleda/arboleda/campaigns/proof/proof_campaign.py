@@ -18,6 +18,7 @@ from ..screen import Show, progress
 from ..seed_campaign import BROKEN, HELD, INTERRUPTED
 from ..workers import Workers
 from . import proof_report, proof_summary
+from .badge import badge
 from .breaches import breaches_of
 from .calm import Calm, calm_runs
 from .junit import as_junit
@@ -204,6 +205,9 @@ class ProofCampaign:
             proof_summary.write(request.html, page(shown))
         if request.junit is not None:
             proof_summary.write(request.junit, as_junit(self._calm, self._tally, breaches))
+        if request.badge is not None:
+            broken = bool(breaches or self._bad_calm)
+            proof_summary.write(request.badge, badge(self._tally, self._total, broken=broken))
         if request.tests is not None and breaches:
             proof_summary.write(request.tests, as_tests(breaches, request.plant))
             self._say(f"{request.tests} has {counted(len(breaches), 'test')}")

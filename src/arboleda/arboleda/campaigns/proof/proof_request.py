@@ -31,6 +31,7 @@ class ProofRequest:
     html: Path | None = None
     junit: Path | None = None
     tests: Path | None = None
+    badge: Path | None = None
 
     @cached_property
     def _loaded(self) -> tuple[Plant, PlantFiles]:
