@@ -239,6 +239,17 @@ def test_the_worst_case_of_what_advice_does_not_mend_is_said(model: PlantModel) 
     assert "it takes 7 acts" in said[1] and "it is never ready" in said[2]
 
 
+def test_the_shipped_plant_calls_no_task_done_whose_part_is_lost_missed_or_was_never_there(
+    model: PlantModel,
+) -> None:
+    calm = calm_run(model, next(scenarios(model, ["storage"])))
+    proof = Proof(model=model, calm=(calm,), kinds=("no_part", "no_grip", "lost_part"))
+    begins = [number for number, each in enumerate(proof.portions) if "ra1" in proof.instant(each).what]
+    outcomes = [each for number in begins[::6] for each in proof.run(number).each]
+    assert len(outcomes) > 10 and not any(each.goes_unnoticed or each.broken for each in outcomes)
+    assert {"part_lost", "no_piece"} <= {each.cause for each in outcomes}
+
+
 def test_a_portion_is_broken_where_one_of_its_outcomes_is() -> None:
     held, broken = Outcome(end=End.DONE), Outcome(end=End.DONE, broken=("rule", "sentence"))
     assert not Proved(number=0, outcomes=(held,), rows=(0, 0), digest="").broken
