@@ -78,7 +78,7 @@ PLANTED = (
         "It is not kept that the command of a step is done, as where that ended while its cell was held.",
         edit(command_kept, '"done": entry.state is State.DONE', '"done": False'),
         weather={"operator_hold": 40.0, "operator_resume": 20.0},
-        likely=3,
+        likely=8,
     ),
     mutant(
         "no_step_is_done_twice",
