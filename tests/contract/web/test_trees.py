@@ -50,7 +50,9 @@ def test_the_trees_of_the_plant_are_given_as_they_were_read(web: httpx.Client, t
     }
 
 
-@pytest.mark.parametrize(("language", "about"), [("en", "goes to a target"), ("es", "Va a un destino")])
+@pytest.mark.parametrize(
+    ("language", "about"), [("en", "goes to a target"), ("es", "Va a un destino"), ("../es", "goes to")]
+)
 def test_the_palette_has_the_devices_with_what_their_values_can_be(
     web: httpx.Client, language: str, about: str
 ) -> None:

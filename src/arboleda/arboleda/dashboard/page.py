@@ -14,7 +14,7 @@ from nicegui import Client, app, ui
 from arboleda.store.oee_rows import OeeQuery
 from arboleda.store.task_rows import TaskQuery
 
-from . import demo, header, links, panel, reports, shell, tasks, timeline, trees
+from . import demo, header, links, panel, reports, shell, tasks, timeline, tree_editor, trees
 from .desk import Desk
 from .faces import history, oee
 from .feed import Feed
@@ -33,6 +33,7 @@ PARTS: Parts = {
     "twin": pane.build,
     "tasks": tasks.build,
     "panel": panel.build,
+    "draw": tree_editor.build,
     "links": links.build,
     "events": timeline.build,
 }

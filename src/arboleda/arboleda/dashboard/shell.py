@@ -110,7 +110,7 @@ def head(said: Words, *scripts: str) -> str:
     used = {key[3:]: text for key, text in said.flat.items() if key.startswith("js.")}
     data = json.dumps({"language": said.language, "words": used}).replace("<", "\\u003c")
     styles = "".join(
-        f'<link rel="stylesheet" href="{assets()}/{name}.css">' for name in ("page", "twin", "record")
+        f'<link rel="stylesheet" href="{assets()}/{name}.css">' for name in ("page", "twin", "record", "draw")
     )
     modules = "".join(f'<script type="module" src="{assets()}/{name}"></script>' for name in scripts)
     return f"{styles}<script>window.arboledaPage = {data};</script>{modules}"

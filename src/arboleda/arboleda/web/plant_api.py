@@ -21,7 +21,7 @@ from arboleda.views import forms, view
 from arboleda.views.oee import Oee
 
 from .draft_api import DraftApi
-from .languages import texts
+from .languages import spoken, texts
 
 PLANT = "arboleda-plant"  # header by which a client names the plant it means
 COMMAND_LINE = "arboleda"  # the User-Agent of our own command, before its version
@@ -83,7 +83,7 @@ class PlantApi(Protocol):
 
     def palette(self, cell: str, language: str) -> list[dict[str, Any]]:
         """The nodes that a tree can have in a cell; raises PayloadError where there is no such cell."""
-        return desk.palette(self.model, cell, texts(language, "nodes"))
+        return desk.palette(self.model, cell, texts(spoken([language]), "nodes"))
 
     def drawn(self, cell: str, text: str, operation: Operation | None = None) -> dict[str, Any]:
         """A file of trees as an editor shows it in a cell, after an operation on it; raises EditError where

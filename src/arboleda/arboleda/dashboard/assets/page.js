@@ -2,6 +2,7 @@
 
 import * as acts from "./acts.js";
 import * as demo from "./demo.js";
+import * as draw from "./draw.js";
 import * as form from "./form.js";
 import * as history from "./history.js";
 import * as frames from "./frames.js";
@@ -34,6 +35,7 @@ function arrive(there) {
   form.offer(cell);
   task.show(named);
   if (tab === "tasks") history.show(), oee.show();
+  if (tab === "draw") draw.show(cell);
   tree.close();
   tree.refit();
 }
@@ -79,6 +81,7 @@ function begin() {
   shell.start();
   acts.start();
   demo.start();
+  draw.start();
   form.start();
   task.start();
   history.start();

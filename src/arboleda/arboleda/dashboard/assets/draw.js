@@ -1,0 +1,141 @@
+// The editor of trees: a text that the server edits, one operation after the other, and what is shown of it.
+
+import * as acts from "./draw_acts.js";
+import * as form from "./draw_form.js";
+import * as palette from "./draw_palette.js";
+import * as rows from "./draw_rows.js";
+import { box, node, say, state, tree } from "./draw_state.js";
+import { answer, words } from "./shell.js";
+
+const NEW = '<?xml version="1.0" encoding="UTF-8"?>\n<root BTCPP_format="4" main_tree_to_execute="Main">\n  <BehaviorTree ID="Main">\n    <Sequence/>\n  </BehaviorTree>\n</root>\n';
+const RETRY_MS = 300;
+const TRIES = 10; // while the server takes no more in this second
+let line = Promise.resolve(); // one operation after the other
+
+export function start() {
+  const part = document.getElementById("draw");
+  if (!part) return;
+  acts.start(part);
+  box("cell").addEventListener("change", ({ target }) => open(target.value));
+  box("file").addEventListener("change", ({ target }) => openFile(target.value));
+  palette.start();
+  rows.start();
+  form.start();
+}
+
+// Begin with this cell, where nothing is drawn yet.
+export function show(cell) {
+  if (!document.getElementById("draw") || state.past.length || (state.now && !cell)) return;
+  const first = cell ?? box("cell").value;
+  if (first !== state.cell) open(first);
+}
+
+async function open(cell) {
+  state.cell = cell;
+  box("cell").value = cell;
+  const language = window.arboledaPage.language;
+  const [files, groups] = await Promise.all([ask("/api/trees"), ask(`/api/trees/palette?${new URLSearchParams({ cell, language })}`)]);
+  if (!files || !groups || state.cell !== cell) return;
+  state.files = files.filter(({ cells }) => cells.includes(cell));
+  state.kinds = new Map(groups.flatMap(({ kinds }) => kinds.map((kind) => [kind.name, kind])));
+  palette.fill(groups);
+  const options = state.files.map(({ recipe, file }) => new Option(file, recipe));
+  box("file").replaceChildren(...options, new Option(words.draw_new, ""));
+  await openFile(state.files[0]?.recipe ?? "");
+}
+
+async function openFile(recipe) {
+  const { cell } = state;
+  const found = state.files.find((each) => each.recipe === recipe);
+  const shown = await ask("/api/trees/check", { cell, text: found?.text ?? NEW });
+  if (!shown || state.cell !== cell) return;
+  box("file").value = recipe;
+  Object.assign(state, { file: recipe, past: [], future: [], now: shown, tree: null, path: "root" });
+  draw();
+}
+
+// Carry out what `make` returns, once all before it is done; `then` says which node is chosen after it.
+export function edit(make, then) {
+  line = line.then(async () => {
+    const operation = state.now && make();
+    if (!operation) return;
+    const { cell } = state;
+    const shown = await ask("/api/trees/edit", { cell, text: state.now.text, operation });
+    if (!shown || cell !== state.cell) return;
+    say("");
+    if (shown.text !== state.now.text) state.past.push({ ...mine(), now: state.now }), (state.future = []);
+    state.now = shown;
+    Object.assign(state, then?.(shown));
+    draw();
+  });
+  return line;
+}
+
+const mine = () => ({ tree: state.tree, path: state.path });
+
+// Back to the text before the last operation, or forward again.
+export function undo() {
+  travel(state.past, state.future);
+}
+
+export function redo() {
+  travel(state.future, state.past);
+}
+
+function travel(from, to) {
+  line = line.then(() => {
+    if (!from.length) return;
+    to.push({ ...mine(), now: state.now });
+    Object.assign(state, from.pop());
+    draw();
+  });
+}
+
+async function ask(path, body) {
+  try {
+    for (let tries = 0; ; tries++) {
+      const options = body && { method: "POST", headers: { "content-type": "application/json" }, body: JSON.stringify(body) };
+      const got = await fetch(path, options);
+      if (got.status === 429 && tries < TRIES) await new Promise((go) => setTimeout(go, RETRY_MS));
+      else if (got.ok) return await got.json();
+      else return say((await got.json()).sentence), null;
+    }
+  } catch {
+    return answer(words.not_sent, false), null;
+  }
+}
+
+// Show all of it anew; the focus stays on the node where it was in the tree.
+export function draw() {
+  if (!tree()) state.tree = (state.now.trees.find(({ main }) => main) ?? state.now.trees[0])?.name;
+  if (!node()) state.path = "root";
+  drawTrees();
+  rows.draw();
+  form.draw();
+  palette.trees();
+  const general = state.now.marks.filter(({ path }) => path === null || path === "");
+  box("general").replaceChildren(...general.map(form.markItem));
+  button("undo").disabled = !state.past.length;
+  button("redo").disabled = !state.future.length;
+}
+
+const button = (act) => document.querySelector(`[data-draw="${act}"]`);
+
+function drawTrees() {
+  const known = state.now.trees.map(({ name, main }) => {
+    const made = Object.assign(document.createElement("button"), { type: "button", className: "choice", textContent: main ? `★ ${name}` : name });
+    made.dataset.drawTree = name;
+    made.setAttribute("aria-pressed", name === state.tree);
+    return made;
+  });
+  const held = document.activeElement?.dataset.drawTree;
+  box("trees").replaceChildren(...known);
+  if (held) known.find((each) => each.dataset.drawTree === held)?.focus();
+}
+
+export function choose(path, { focus = false } = {}) {
+  state.path = path;
+  rows.mark();
+  form.draw();
+  if (focus) rows.focus();
+}

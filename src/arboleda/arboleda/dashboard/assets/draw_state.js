@@ -1,0 +1,13 @@
+// What the editor of trees shows now, and how nodes are found in it: by paths, `root`, `0`, `0.1`.
+
+export const state = { cell: null, file: "", files: [], kinds: new Map(), past: [], now: null, future: [], tree: null, path: "root", how: "into" };
+
+export const box = (id) => document.getElementById(`draw-${id}`);
+export const tree = () => state.now?.trees.find(({ name }) => name === state.tree);
+export const node = (path = state.path) => tree()?.nodes.find((each) => each.path === path);
+export const kindOf = (name) => state.kinds.get(name);
+export const say = (sentence) => (box("note").textContent = sentence ?? "");
+export const parentOf = (path) => (path === "root" ? null : path.includes(".") ? path.slice(0, path.lastIndexOf(".")) : "root");
+export const indexOf = (path) => Number(path.slice(path.lastIndexOf(".") + 1));
+export const childPath = (path, index) => (path === "root" ? `${index}` : `${path}.${index}`);
+export const childrenOf = (path) => tree().nodes.filter((each) => parentOf(each.path) === path);

@@ -1,0 +1,226 @@
+"""A tree as XML edited on the page of its plant, in a real browser: by mouse, by keys alone, by touch."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from arboleda.bt_xml.editing.tree_text import TreeText, walk
+
+from ..chromium import leave
+from ..patience import PATIENCE_MS
+from .page import connected, running
+from .test_accessible import Eye
+
+pytestmark = [pytest.mark.system, pytest.mark.requires("chromium", "playwright")]
+
+OWN_TREE = Path(__file__).parents[2] / "examples/own_tree/plant.yaml"
+TEXT = OWN_TREE.with_name("tend.xml").read_text()
+LAPTOP = {"viewport": {"width": 1366, "height": 900}, "locale": "en"}
+PHONE = {"viewport": {"width": 390, "height": 844}, "has_touch": True, "locale": "es"}
+Open = Callable[..., Any]
+
+
+@pytest.fixture(scope="module")
+def address(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
+    with running(tmp_path_factory.mktemp("state"), "--plant", str(OWN_TREE)) as found:
+        yield found
+
+
+@pytest.fixture
+def editor(browser: Any, address: str) -> Iterator[Open]:
+    """`editor()`: the editor with the tree of the plant; a script that fails fails the test."""
+    contexts: list[Any] = []
+    troubles: list[str] = []
+
+    def go(**options: Any) -> Any:
+        contexts.append(browser.new_context(**(options or LAPTOP)))
+        page = contexts[-1].new_page()
+        page.set_default_timeout(PATIENCE_MS)
+        page.on("pageerror", lambda error: troubles.append(str(error)))
+        page.goto(f"{address}/?tab=draw")
+        connected(page)
+        page.wait_for_selector("#draw-rows [data-path='7.2']")
+        return page
+
+    yield go
+    for each in contexts:
+        leave(each)
+    assert troubles == []
+
+
+def row(path: str) -> str:
+    return f"#draw-rows [data-path='{path}']"
+
+
+def labelled(page: Any, path: str, words: str) -> None:
+    """Wait until the node at a path says this."""
+    page.wait_for_selector(f"{row(path)}[aria-label*='{words}']")
+
+
+def downloaded(page: Any) -> str:
+    with page.expect_download() as download:
+        page.click("[data-draw=download]")
+    return Path(download.value.path()).read_text()
+
+
+def kinds(text: str, tree: str) -> dict[str, str]:
+    return {path: element.name for path, element in walk(TreeText(text).tree(tree))}
+
+
+def middle(page: Any, selector: str, share: float = 0.5) -> tuple[float, float]:
+    page.locator(selector).scroll_into_view_if_needed()
+    box = page.locator(selector).bounding_box()
+    return box["x"] + 40, box["y"] + box["height"] * share
+
+
+def test_a_tree_that_nobody_changed_is_downloaded_byte_for_byte(editor: Open) -> None:
+    assert downloaded(editor()) == TEXT
+
+
+def test_by_mouse_a_node_is_put_in_given_a_value_dragged_and_undone(editor: Open) -> None:
+    page = editor()
+    page.click("[data-draw-tree=Carry]")
+    page.click(row("1.0"))
+    page.fill("#draw-search", "mill_run")
+    page.click("[data-kind=mill_run]:visible")
+    page.wait_for_selector(f"{row('1.0.2')}[data-mark=mistake]")
+    page.click(row("1.0.2"))
+    assert "needs program" in page.inner_text("#draw-marks")
+    page.select_option("[data-port=program]", "1001")
+    page.wait_for_selector(f"{row('1.0.2')}:not([data-mark])")
+    page.mouse.move(*middle(page, row("1.0.2")))
+    page.mouse.down()
+    page.mouse.move(*middle(page, row("1.0.0"), 0.1), steps=5)
+    page.mouse.up()
+    labelled(page, "1.0.0", "mill_run, program=1001")
+    text = downloaded(page)
+    wanted = '        <Sequence>\n          <mill_run program="1001"/>\n          <mill_clamp on="true"/>'
+    assert text == TEXT.replace('        <Sequence>\n          <mill_clamp on="true"/>', wanted)
+    for _ in range(3):
+        page.click("[data-draw=undo]")
+    assert downloaded(page) == TEXT
+    page.click("[data-draw=redo]")
+    labelled(page, "1.0.2", "mill_run")
+
+
+def test_a_kind_of_the_palette_is_dragged_to_its_place(editor: Open) -> None:
+    page = editor()
+    page.fill("#draw-search", "mill_close")
+    page.mouse.move(*middle(page, "[data-kind=mill_close]"))
+    page.mouse.down()
+    page.mouse.move(*middle(page, row("0.0"), 0.9), steps=5)
+    page.mouse.up()
+    labelled(page, "0.1", "mill_close")
+    assert kinds(downloaded(page), "Tend")["0.1"] == "mill_close"
+
+
+def test_by_keys_alone_a_tree_is_drawn(editor: Open) -> None:
+    page = editor()
+    press = page.keyboard.press
+    page.focus(row("root"))
+    for _ in range(4):
+        press("ArrowDown")
+    press("Alt+ArrowUp")
+    labelled(page, "0", "Carry")
+    press("ArrowDown")
+    press("Alt+ArrowUp")
+    press("Alt+ArrowDown")
+    press("Alt+ArrowDown")
+    labelled(page, "2", "have the door open")
+    press("Alt+ArrowUp")
+    labelled(page, "1", "have the door open")
+    press("+")
+    page.keyboard.type("sleep")
+    press("Enter")
+    page.wait_for_selector(f"{row('1.2')}[aria-selected=true]")
+    for _ in range(20):
+        if page.evaluate("document.activeElement.dataset.path === '1.2'"):
+            break
+        press("Tab")
+    press("Enter")
+    page.keyboard.type("500")
+    press("Tab")
+    labelled(page, "1.2", "msec=500")
+    found = kinds(downloaded(page), "Tend")
+    assert [found[path] for path in ("0", "1", "1.0", "1.1", "1.2", "2")] == [
+        "SubTree", "Fallback", "mill_says", "mill_open", "Sleep", "mill_close"
+    ]  # fmt: skip
+
+
+def test_a_value_beyond_its_limits_is_marked_where_it_stands(editor: Open) -> None:
+    page = editor()
+    page.click("[data-draw-tree=Carry]")
+    page.click(row("0.0"))
+    assert page.get_attribute("[data-port=force_n]", "max") == "60"
+    page.fill("[data-port=force_n]", "99")
+    page.press("[data-port=force_n]", "Tab")
+    page.wait_for_selector("[data-port=force_n][aria-invalid]")
+    assert "must be from 0 to 60" in page.inner_text("#draw-marks")
+    page.click("[data-variable=force_n]")
+    page.fill("[data-port=force_n]", "to")
+    page.press("[data-port=force_n]", "Tab")
+    labelled(page, "0.0", "force_n={to}")
+
+
+def test_a_part_becomes_a_tree_with_a_parameter(editor: Open) -> None:
+    page = editor()
+    page.click(row("3"))
+    page.fill("#draw-name", "Milling")
+    page.click("[data-draw=extract]")
+    page.click("[data-draw-tree=Milling]")
+    page.wait_for_selector("[data-draw-tree=Milling][aria-pressed=true]")
+    page.fill("#draw-name", "program")
+    page.click("[data-draw=add_parameter]")
+    page.wait_for_selector("[data-draw-parameter=program]")
+    there = TreeText(downloaded(page))
+    assert there.node("Tend", "3").value("ID") == "Milling"
+    assert there.node("Milling", "root").name == "RetryUntilSuccessful"
+
+
+def test_by_touch_a_node_is_dragged_at_its_grip(editor: Open) -> None:
+    page = editor(**PHONE)
+    assert page.inner_text("[data-draw=undo]") == "Deshacer"
+    page.tap(f"{row('2')} .draw-label")
+    page.wait_for_selector(f"{row('2')}[aria-selected=true]")
+    touch = page.context.new_cdp_session(page)
+    page.evaluate("selector => document.querySelector(selector).scrollIntoView({block: 'center'})", row("3"))
+    grip = page.locator(f"{row('2')} .draw-grip").bounding_box()
+    to = page.locator(row("4")).bounding_box()
+    x, y = grip["x"] + grip["width"] / 2, grip["y"] + grip["height"] / 2
+    goal = to["y"] + to["height"] * 0.9
+
+    def finger(type: str, *points: tuple[float, float]) -> None:
+        touch.send(
+            "Input.dispatchTouchEvent", {"type": type, "touchPoints": [{"x": x, "y": y} for x, y in points]}
+        )
+
+    finger("touchStart", (x, y))
+    for part in range(1, 6):
+        finger("touchMove", (x + 20, y + (goal - y) * part / 5))
+    finger("touchEnd")
+    labelled(page, "4", "mill_close")
+    assert kinds(downloaded(page), "Tend")["4"] == "mill_close"
+
+
+@pytest.mark.requires("axe_playwright_python")
+@pytest.mark.parametrize("screen", [LAPTOP, PHONE], ids=["laptop", "phone"])
+def test_axe_finds_nothing_on_the_editor(editor: Open, screen: dict[str, Any]) -> None:
+    page = editor(**screen)
+    eye = Eye(page)
+    page.click(row("3"))
+    page.click("[data-draw=copy]")
+    page.click(row("4"))
+    page.select_option("[data-more]", "_skipIf")
+    page.fill("[data-port=_skipIf]", "seen ==")
+    page.press("[data-port=_skipIf]", "Tab")
+    page.wait_for_selector("[data-port=_skipIf][aria-invalid]")
+    eye.look("a node with a mistake")
+    page.click("[data-draw=remove]")
+    page.click("[data-draw-tree=Carry]")
+    page.fill("#draw-search", "go")
+    eye.look("another tree, and a kind that is looked for")
+    assert not eye.violations, "\n".join(eye.violations)
