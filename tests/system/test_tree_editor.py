@@ -166,6 +166,23 @@ def test_a_value_beyond_its_limits_is_marked_where_it_stands(editor: Open) -> No
     labelled(page, "0.0", "force_n={to}")
 
 
+def test_who_writes_on_keeps_the_place_while_the_value_before_is_taken(editor: Open) -> None:
+    page = editor()
+    page.click("[data-draw-tree=Carry]")
+    page.click(row("0.0"))
+    page.focus("[data-port=width_mm]")
+    page.evaluate("document.activeElement.select()")
+    page.keyboard.type("31")
+    page.keyboard.press("Tab")
+    labelled(page, "0.0", "width_mm=31")
+    assert page.evaluate("document.activeElement.dataset.variable") == "width_mm"
+    page.keyboard.press("Tab")
+    page.evaluate("document.activeElement.select()")
+    page.keyboard.type("41")
+    page.keyboard.press("Tab")
+    labelled(page, "0.0", "width_mm=31 force_n=41")
+
+
 def test_a_part_becomes_a_tree_with_a_parameter(editor: Open) -> None:
     page = editor()
     page.click(row("3"))

@@ -31,6 +31,7 @@ export function start() {
 
 function changed({ target }) {
   const { port } = target.dataset;
+  target.dataset.was = target.value;
   if (target.dataset.more !== undefined && target.value) return (added = target.value), draw(), box("fields").querySelector(`[data-port="${CSS.escape(target.value)}"]`)?.focus();
   if (port) set(port, target.value, target.dataset.braces !== undefined);
 }
@@ -44,15 +45,31 @@ function set(name, value, braces = false) {
 
 export function draw() {
   const chosen = node();
-  const held = box("fields").contains(document.activeElement) && document.activeElement.dataset.port;
+  const held = inHand();
   box("title").textContent = chosen ? titleOf(chosen).filter(Boolean).join(" · ") : words.draw_none;
   const kind = chosen && kindOf(chosen.kind);
   box("about").textContent = kind?.about ?? "";
   const marks = state.now.marks.filter(({ tree: of, path }) => of === state.tree && path === state.path);
   box("marks").replaceChildren(...(chosen ? marks : []).map(markItem));
   box("fields").replaceChildren(...(chosen ? fields(chosen, kind, marks) : []));
-  if (held) box("fields").querySelector(`[data-port="${CSS.escape(held)}"]`)?.focus();
+  if (held) handBack(held);
   drawParameters();
+}
+
+// The field that has the focus, and what somebody has begun to write there; the form is made anew around it.
+function inHand() {
+  const found = document.activeElement;
+  if (!box("fields").contains(found)) return null;
+  const [name, value] = ["port", "variable", "more"].map((each) => [each, found.dataset[each]]).find((each) => each[1] !== undefined) ?? [];
+  if (!name) return null;
+  const begun = found.dataset.was !== undefined && found.dataset.was !== found.value ? found.value : null;
+  return { selector: `[data-${name}="${CSS.escape(value)}"]`, begun, path: key("") };
+}
+
+function handBack({ selector, begun, path }) {
+  const found = box("fields").querySelector(selector);
+  if (begun !== null && found && path === key("")) found.value = begun;
+  found?.focus();
 }
 
 export function markItem({ sentence, mistake, line }) {
@@ -86,7 +103,7 @@ function field(port, value, marks) {
   const variable = VARIABLE.test(value ?? "") || asVariable.has(key(port.name)) || port.way === "output";
   const input = variable ? variableInput(value) : choices(port) ? choice(port, value) : plain(port, value);
   input.id = id;
-  input.dataset.port = port.name;
+  Object.assign(input.dataset, { port: port.name, was: input.value });
   if (marks.some(({ attribute }) => attribute === port.name)) input.setAttribute("aria-invalid", "true");
   line.append(label, input);
   if (port.way === "input" && (choices(port) || NUMBERS.includes(port.type))) line.append(toggle(port.name, variable));
@@ -159,5 +176,7 @@ function drawParameters() {
   const used = (tree()?.nodes ?? []).flatMap(({ attributes }) => Object.values(attributes)).filter((each) => VARIABLE.test(each));
   const known = new Set([...(tree()?.parameters ?? []).map(({ name }) => `{${name}}`), ...used]);
   list.append(...[...known].map((each) => new Option(each, each)));
+  const held = box("parameters").contains(document.activeElement);
   box("parameters").replaceChildren(...shown, list);
+  if (held) (shown[0] ?? box("name")).focus();
 }
