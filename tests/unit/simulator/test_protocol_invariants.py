@@ -782,7 +782,7 @@ def test_no_starvation__of_an_arm_that_may_still_be_told_something():
 
 
 def test_no_starvation__of_a_cell_whose_shared_arm_may_still_be_told_something(tmp_path):
-    """Seed 110 of the drawn plants: it shares no zone, and has to be seen at its home after its last command."""
+    """Seed 110 of drawn plants: it shares no zone, and has to be seen at home after its last command."""
     shared = Path(__file__).parents[2] / "scenario" / "shared_arm"
     (tmp_path / "recipes.py").write_text((shared / "recipes.py").read_text())
     (tmp_path / "plant.yaml").write_text((shared / "plant.yaml").read_text().partition("zones:")[0])
