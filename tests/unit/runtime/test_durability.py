@@ -23,6 +23,7 @@ class Disk(Store):
     def __init__(self) -> None:
         super().__init__(Path(":memory:"))
         self.syncs = 0
+        self.folders: list[str] = []  # the threads that folded the log
         self.reached, self.let_go = threading.Event(), threading.Event()
         self.let_go.set()
         self.error: ArboledaError | None = None
@@ -33,6 +34,9 @@ class Disk(Store):
         if self.error is not None:
             raise self.error
         self.syncs += 1
+
+    def fold(self) -> None:
+        self.folders.append(threading.current_thread().name)
 
 
 class People:
@@ -134,6 +138,20 @@ def test_the_thread_syncs_what_nobody_waits_for(durability: Durability, disk: Di
     durability.wake()
     assert durability.reach(1, SOON_S)
     assert disk.syncs == 1
+
+
+def test_the_thread_folds_the_log_and_who_waits_for_a_sync_does_not(
+    durability: Durability, disk: Disk
+) -> None:
+    durability.wrote(precedes_commands=True)
+    durability.let_commands_leave()
+    assert disk.folders == []
+    durability.start()
+    durability.wrote(precedes_commands=False)
+    durability.wake()
+    assert durability.reach(2, SOON_S)
+    durability.stop()
+    assert set(disk.folders) == {"durability"}
 
 
 def test_a_sync_that_fails_is_the_last_one_and_whoever_waits_hears_of_it(
