@@ -183,6 +183,25 @@ def test_who_writes_on_keeps_the_place_while_the_value_before_is_taken(editor: O
     labelled(page, "0.0", "width_mm=31 force_n=41")
 
 
+def test_what_was_drawn_and_is_in_no_file_is_not_left_unasked(editor: Open) -> None:
+    page = editor()
+    page.click(row("2"))
+    page.click("[data-draw=remove]")
+    labelled(page, "2", "RetryUntilSuccessful")
+    page.select_option("#draw-file", "")
+    page.click("dialog button:not(.primary)")
+    assert page.input_value("#draw-file") == "tend"
+    labelled(page, "2", "RetryUntilSuccessful")
+    with page.expect_event("dialog") as asked:
+        page.evaluate("setTimeout(() => location.reload())")
+    assert asked.value.type == "beforeunload"
+    asked.value.dismiss()
+    page.select_option("#draw-file", "")
+    page.click("dialog button.primary")
+    page.wait_for_function("document.querySelectorAll('.draw-row').length === 1")
+    page.wait_for_selector(f"{row('root')}[data-mark=mistake]")
+
+
 def test_a_part_becomes_a_tree_with_a_parameter(editor: Open) -> None:
     page = editor()
     page.click(row("3"))

@@ -5,6 +5,7 @@ import * as form from "./draw_form.js";
 import * as palette from "./draw_palette.js";
 import * as rows from "./draw_rows.js";
 import { box, node, say, state, tree } from "./draw_state.js";
+import * as question from "./question.js";
 import { answer, words } from "./shell.js";
 
 const NEW = '<?xml version="1.0" encoding="UTF-8"?>\n<root BTCPP_format="4" main_tree_to_execute="Main">\n  <BehaviorTree ID="Main">\n    <Sequence/>\n  </BehaviorTree>\n</root>\n';
@@ -16,8 +17,9 @@ export function start() {
   const part = document.getElementById("draw");
   if (!part) return;
   acts.start(part);
-  box("cell").addEventListener("change", ({ target }) => open(target.value));
-  box("file").addEventListener("change", ({ target }) => openFile(target.value));
+  box("cell").addEventListener("change", ({ target }) => leave(target, state.cell, open));
+  box("file").addEventListener("change", ({ target }) => leave(target, state.file, openFile));
+  window.addEventListener("beforeunload", (event) => unsaved() && event.preventDefault());
   palette.start();
   rows.start();
   form.start();
@@ -28,6 +30,15 @@ export function show(cell) {
   if (!document.getElementById("draw") || state.past.length || (state.now && !cell)) return;
   const first = cell ?? box("cell").value;
   if (first !== state.cell) open(first);
+}
+
+const unsaved = () => state.past.length > 0 && state.now.text !== state.saved;
+
+// Open what was chosen instead of a tree with changes that are in no file, if that is meant.
+async function leave(select, before, go) {
+  const chosen = select.value;
+  select.value = before;
+  if (!unsaved() || (await question.confirmed(words.draw_leave))) go(chosen);
 }
 
 async function open(cell) {
@@ -50,26 +61,27 @@ async function openFile(recipe) {
   const shown = await ask("/api/trees/check", { cell, text: found?.text ?? NEW });
   if (!shown || state.cell !== cell) return;
   box("file").value = recipe;
-  Object.assign(state, { file: recipe, past: [], future: [], now: shown, tree: null, path: "root" });
+  Object.assign(state, { file: recipe, past: [], future: [], now: shown, saved: shown.text, tree: null, path: "root" });
   draw();
 }
 
 // Carry out what `make` returns, once all before it is done; `then` says which node is chosen after it.
 export function edit(make, then) {
-  line = line.then(async () => {
-    const operation = state.now && make();
-    if (!operation) return;
-    const { cell } = state;
-    const shown = await ask("/api/trees/edit", { cell, text: state.now.text, operation });
-    if (!shown || cell !== state.cell) return;
+  return next(async () => {
+    const { cell, now } = state;
+    const operation = now && make();
+    const shown = operation && (await ask("/api/trees/edit", { cell, text: now.text, operation }));
+    if (!shown || now !== state.now) return;
     say("");
     if (shown.text !== state.now.text) state.past.push({ ...mine(), now: state.now }), (state.future = []);
     state.now = shown;
     Object.assign(state, then?.(shown));
     draw();
   });
-  return line;
 }
+
+// One that fails keeps no other from being done.
+const next = (work) => (line = line.catch(() => {}).then(work));
 
 const mine = () => ({ tree: state.tree, path: state.path });
 
@@ -83,7 +95,7 @@ export function redo() {
 }
 
 function travel(from, to) {
-  line = line.then(() => {
+  next(() => {
     if (!from.length) return;
     to.push({ ...mine(), now: state.now });
     Object.assign(state, from.pop());

@@ -144,6 +144,7 @@ function download() {
   const name = state.files.find(({ recipe }) => recipe === state.file)?.file ?? "tree.xml";
   Object.assign(document.createElement("a"), { href: url, download: name }).click();
   setTimeout(() => URL.revokeObjectURL(url), 1000);
+  state.saved = state.now.text;
 }
 
 function clicked({ target }) {

@@ -1,6 +1,6 @@
 // What the editor of trees shows now, and how nodes are found in it: by paths, `root`, `0`, `0.1`.
 
-export const state = { cell: null, file: "", files: [], kinds: new Map(), past: [], now: null, future: [], tree: null, path: "root", how: "into" };
+export const state = { cell: null, file: "", files: [], kinds: new Map(), past: [], now: null, future: [], saved: null, tree: null, path: "root", how: "into" };
 
 export const box = (id) => document.getElementById(`draw-${id}`);
 export const tree = () => state.now?.trees.find(({ name }) => name === state.tree);
