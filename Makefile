@@ -1,6 +1,6 @@
 # Everything a person types here; what each target does is in `make help`.
 .DEFAULT_GOAL := help
-.PHONY: run test pinned-test integration-test test-tools judge-test ros-test nightly campaign drawn-campaign devices-campaign crash-campaign standby-campaign kills hosts mutants cost performance firmware firmware-test firmware-robot fuzz install lint diagrams reference shots example-pictures moving-picture clean help docs
+.PHONY: run test pinned-test integration-test test-tools judge-test ros-test nightly campaign drawn-campaign devices-campaign crash-campaign standby-campaign kills hosts mutants cost performance firmware firmware-test firmware-robot fuzz install lint diagrams reference proof shots example-pictures moving-picture clean help docs
 
 export PYTHON
 export PYTHONDONTWRITEBYTECODE := # what a target here runs hundreds of times is compiled once
@@ -140,6 +140,10 @@ reference:  ## write docs/reference/api.md and verbs.md anew from docstrings and
 	@scripts/install
 	@page=$$($(BIN)/python scripts/api-reference) && printf '%s\n' "$$page" >docs/reference/api.md
 	@page=$$($(BIN)/python scripts/verb-reference) && printf '%s\n' "$$page" >docs/reference/verbs.md
+
+proof:  ## write docs/reference/proof.md anew from runs of the shipped plant and the examples; minutes
+	@scripts/install
+	@page=$$($(BIN)/python scripts/proof-table) && printf '%s\n' "$$page" >docs/reference/proof.md
 
 shots:  ## take pictures of the page, on screens of several sizes, into shots/; needs chromium
 	@scripts/install test

@@ -1,0 +1,38 @@
+"""docs/reference/proof.md is what `scripts/proof-table` finds: it has all plants, and one is run again."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from arboleda.plant_file import loader
+
+ROOT = Path(__file__).parents[2]
+ROWS = [
+    [cell.strip() for cell in line.strip("|").split("|")]
+    for line in (ROOT / "docs/reference/proof.md").read_text(encoding="utf-8").splitlines()
+    if line.startswith("| ") and not line.startswith("| plant")
+]
+AGAIN = "press_board"
+
+
+@pytest.mark.parametrize("plant", sorted({row[0] for row in ROWS}))
+def test_the_page_has_each_recipe_of_each_cell(plant: str) -> None:
+    model = loader.load(None if plant == "shipped" else ROOT / "examples" / plant / "plant.yaml")
+    recipes = [f"{cell.name}: {recipe.name}" for cell in model.cells for recipe in cell.recipes]
+    assert [row[1] for row in ROWS if row[0] == plant] == recipes
+
+
+def test_the_shipped_plant_is_there_and_nothing_breaks() -> None:
+    assert "shipped" in {row[0] for row in ROWS} and len(ROWS) > 10
+    assert {row[8] for row in ROWS if len(row) > 8} <= {"0", ""}
+
+
+def test_the_rows_of_a_plant_are_what_its_runs_say() -> None:
+    command = [sys.executable, str(ROOT / "scripts/proof-table"), AGAIN]
+    said = subprocess.run(command, capture_output=True, text=True, check=True).stdout
+    found = [[cell.strip() for cell in line.strip("|").split("|")] for line in said.splitlines()]
+    assert found == [row for row in ROWS if row[0] == AGAIN]
