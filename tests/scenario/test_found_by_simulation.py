@@ -337,6 +337,16 @@ FOUND = {
             Fault(kind="operator_stop", at=4.0, target="sis_a"),
         ),
     ),
+    "a stuck effector of which nobody reports anything was to be in the books of a task not checked": Found(
+        seed=904,
+        seconds=54,
+        faults=(
+            Fault(kind="partition", at=0.529, seconds=2.323, target="mobile_right", word="up, lost"),
+            Fault(kind="hop_partition", at=12.821, seconds=6.697, target="plant", word="to bridge, held"),
+            Fault(kind="hop_partition", at=20.467, seconds=7.959, target="plant", word="to bridge, lost"),
+            Fault(kind="stuck_effector", at=42.989, seconds=22.063, target="scara_7"),
+        ),
+    ),
     "a person who was stopped counted as not stopped once a plant had died as it cleared the cell": Found(
         seed=21,
         seconds=58,

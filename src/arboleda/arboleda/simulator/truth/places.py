@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
 from arboleda.model.messages import OperatorAnswer, TaskChanged, TaskState
-from arboleda.model.plant_model import Cell, Place, Workspace
+from arboleda.model.plant_model import Cell, Evidence, Place, Workspace
 
 from ..recorded.scopes import Scopes
 from ..world import World
@@ -17,9 +17,9 @@ class CellPlaces:
     """True number of parts at each place of one cell. A station of a rack has one or none.
 
     `at_begin` and `at_end` have those when its last task that is done began and ended; `is_doubtful` once
-    nobody could know them any more: a device has lied or lost its power, somebody took a hand's part, a hand
-    took one at a station where none was known, or two places are one to its robot. The next task begins with
-    what is in the books then.
+    nobody could know them any more: a device has lied or lost its power, its effector was stuck and nobody
+    reports that, somebody took a hand's part, a hand took one at a station where none was known, or two
+    places are one to its robot. The next task begins with what is in the books then.
     """
 
     def __init__(self, cell: Cell, robots: Mapping[str, Any]) -> None:
@@ -164,12 +164,16 @@ class PlacesTruth:
         return robot is not None and robot.body.next_change_us is not None
 
     def _is_doubtful(self, robot: RobotTruth) -> bool:
-        """True where nobody can know what a robot did: it lies, lost its power, or somebody was at it."""
+        """True where nobody can know what a robot did: it lies, lost its power, somebody was at it, or its
+        effector is stuck and nobody reports anything of that.
+        """
         lies = any(
             number > 0 and board == robot.robot.mqtt for (board, _), number in self._world.deceptions.items()
         )
         by_hand = robot.taken_away or getattr(robot, "by_hand", False) or getattr(robot, "opened", False)
-        return lies or robot.lost_power or by_hand or self._mistaken(robot)
+        stuck = getattr(robot.body, "stuck", False) and robot.robot.has_effector
+        unnoticed = stuck and robot.robot.evidence is not Evidence.IDS
+        return lies or robot.lost_power or by_hand or unnoticed or self._mistaken(robot)
 
 
 def _holds(hand: Any) -> bool:
