@@ -553,6 +553,7 @@ class Plant:
 
     def _on_shutdown(self, event: Shutdown) -> None:
         self.intake.closed = True
+        self._changes += 1  # a cell may be held by it that had told nobody anything
         for name, cell in self.cells.items():
             self._guard(name, partial(cell.close, drops_waiting=event.drops_waiting))
 

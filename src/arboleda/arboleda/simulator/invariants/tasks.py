@@ -205,13 +205,17 @@ def _unkept(look: Look) -> Iterator[str]:
 
 @invariant(Trigger.NEWS)
 def only_legal_cell_states(look: Look) -> Iterable[str]:
-    """A cell changes its state along the rows of its table, by itself or as an operator asked then."""
+    """A cell changes its state along the rows of its table, by itself, as an operator asked then, or as its
+    plant ends.
+    """
     return _at_birth(look) if look.record.born else _illegal(look)
 
 
 def _illegal(look: Look) -> Iterator[str]:
     for cell, before, after in look.record.transitions:
         by_itself = BY_ITSELF | {Cause.AWAY} if look.record.away else BY_ITSELF
+        if look.world.plant.intake.closed:  # a plant that ends in order holds what is at work
+            by_itself |= {Cause.HOLD}
         causes = by_itself.union(*(BY_VERB.get(verb, frozenset()) for verb in _verbs(look, cell)))
         if after not in _reachable(before, causes):
             yield f"{cell.name} went from {before.value} to {after.value}, and nobody asked for that"
