@@ -20,7 +20,7 @@ from arboleda.campaigns.setting import Setting
 from arboleda.plant_file import loader
 from arboleda.simulator.plants.devices import Form
 
-SECONDS = 30.0  # for which faults come; then everything has to come to rest
+SECONDS = 120.0  # for which faults come; then everything has to come to rest
 MANY_SEEDS = 10_000  # between a plant of another form and the next that is drawn instead
 NONE, MANY, CRASHES = "none", "many", "crashes"
 EXAMPLES = Path(__file__).parents[2] / "examples"

@@ -11,7 +11,7 @@ import pytest
 from ..lengths import length
 
 ROOT = Path(__file__).parents[2]
-A_FEW = ("--only", "recipes/decorators.py", "--sample", "2", "--seeds", "3", "--simulator-alone")
+A_FEW = ("--only", "recipes/decorators.py", "--sample", "2", "--seeds", "2", "--simulator-alone")
 LEAST_BY_SIMULATOR, LEAST = 0.6, 0.95
 
 
