@@ -138,8 +138,8 @@ KIND_BUGS = (
     bug(
         "kinds/joints/motion.py",
         "The slowest joint does not count for the time of a move.",
-        "return min(longest_s, max(joint.travel_s(there - here)",
-        "return min(longest_s, min(joint.travel_s(there - here)",
+        "return min(self._longest_s, max(joint.travel_s(there - here)",
+        "return min(self._longest_s, min(joint.travel_s(there - here)",
     ),
     bug(
         "kinds/person.py",

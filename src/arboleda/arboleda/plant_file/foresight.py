@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import Any
 
-from arboleda.kinds.declared import Device
 from arboleda.model.commands import Command, Motion, Switch
 from arboleda.model.facts import Value, shown
 from arboleda.model.plant_model import Cell, Interlock, Place, Pose, Workspace
@@ -132,8 +132,8 @@ class Foresight:
     def _let_in(self, robot: str, target: str | None) -> Iterator[tuple[Key, Value]]:
         """The facts that let a robot into the zones of a target, so far as nothing but verbs changes them."""
         for lock in self._locks(robot, target):
-            device = next(each for each in self.cell.robots if each.name == lock.device)
-            verbs = device.kind.verbs.values() if isinstance(device, Device) else ()
+            device: Any = next(each for each in self.cell.robots if each.name == lock.device)
+            verbs = device.kind.verbs.values() if device.verb_names else ()
             told = {name for verb in verbs for name, _ in verb.sets}
             for fact, value in lock.free_while:
                 if fact in told:

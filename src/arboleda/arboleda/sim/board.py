@@ -37,7 +37,7 @@ SILENCE, ALARM = "silencio", "alarma"  # words for the reasons why a machine giv
 
 
 class Board:
-    """Virtual board as a pure machine: calls in; `take` returns what it published since the last, in order.
+    """Virtual board as a pure machine: calls in, publications collected until `take`.
 
     It reports what its robot's declared evidence level allows, and knows command numbers at `ids` only.
     `watch`, if set, is called with every command that the board carries out.
@@ -55,7 +55,6 @@ class Board:
         self._channels = {topic(robot.mqtt, channel): channel for channel in Channel if channel in heard}
         self._now_us = now_us
         self._uplink = Uplink(robot.mqtt)
-        self.take: Callable[[], list[Publication]] = self._uplink.take
         self._said: tuple[Any, ...] | None = None  # values of the last telemetry
         self._boot(boot_id, homed=True)
 
@@ -96,6 +95,10 @@ class Board:
         if self.body.next_change_us is not None:
             due_us = min(due_us, self._next_motion_us())
         return None if due_us == math.inf else int(due_us)
+
+    def take(self) -> list[Publication]:
+        """The messages published since the last call, in order."""
+        return self._uplink.take()
 
     def connect(self, now_us: int, up: bool) -> None:
         """Note that the board's MQTT client reached or lost its broker."""
