@@ -116,19 +116,18 @@ class Port:
         events = qos.subscription_events(
             lambda policy: self._incompatible(topic, "publisher", policy), on_match
         )
-        self._node.create_subscription(kind, topic, handle, profile, event_callbacks=events, raw=raw)
+        made = self._node.create_subscription(kind, topic, handle, profile, event_callbacks=events, raw=raw)
+        _watch(made, topic, speakers, on_match)
 
     def _spoken(
         self, topic: str, handle: Callable[[Any], None], speakers: Speakers | None
     ) -> tuple[Callable[[Any], None], Callable[[Any], None] | None]:
         """The callbacks for a topic's messages, and for publishers that come or go (None without
         speakers)."""
-        guarded = self._guarded(topic, handle)
         if speakers is None:
-            return guarded, None
-        repeats = handle.repeats if isinstance(handle, statuses.StatusListener) else None
+            return self._guarded(topic, handle), None
         on_match = self._guarded(topic, partial(speakers.matched, topic))
-        return speakers.guarded(topic, guarded, repeats), on_match
+        return self._guarded(topic, speakers.guarded(topic, handle)), on_match
 
     def _listen_as_offered(
         self,
@@ -144,9 +143,11 @@ class Port:
 
         def make(profile: QoSProfile, on_policy: Callable[[str], None]) -> Subscription:
             events = qos.subscription_events(on_policy, on_match)
-            return self._node.create_subscription(
+            made = self._node.create_subscription(
                 kind, topic, guarded, profile, event_callbacks=events, raw=raw
             )
+            _watch(made, topic, speakers, on_match)
+            return made
 
         def refuse(policy: str) -> None:
             self._incompatible(topic, "publisher", policy)
@@ -205,3 +206,14 @@ class Port:
 
     def _absolute(self, topic: str) -> str:
         return self._node.resolve_topic_name(topic)
+
+
+def _watch(
+    subscription: Subscription,
+    topic: str,
+    speakers: Speakers | None,
+    on_match: Callable[[Any], None] | None,
+) -> None:
+    """Have speakers count the publishers of a subscription, where the middleware tells of them."""
+    if speakers is not None and on_match is not None and qos.TELLS_MATCHES:
+        speakers.watch(topic, qos.Matches(subscription, on_match).now)

@@ -13,6 +13,7 @@ from rclpy.qos import (
     ReliabilityPolicy,
     qos_policy_name_from_kind,
 )
+from rclpy.subscription import Subscription
 
 try:
     from rclpy.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks
@@ -62,6 +63,24 @@ def subscription_events(
     if on_match is not None and TELLS_MATCHES:
         events.matched = on_match
     return events
+
+
+class Matches:
+    """Counter of the publishers of a subscription, as the middleware counts them at this very moment."""
+
+    def __init__(self, subscription: Subscription, on_match: Callable[[Any], None]) -> None:
+        (handler,) = (each for each in subscription.event_handlers if each.callback is on_match)
+        handler.add_to_wait_set(self)  # the one way in which a handler hands out its event
+
+    def add_event(self, event: Any) -> int:
+        """Take the event, as a wait set does."""
+        self._event = event
+        return 0
+
+    def now(self) -> Any:
+        """How many publishers ever came, and how many are there: `total_count`, `current_count`."""
+        with self._event:
+            return self._event.take_event()
 
 
 def _naming(on_policy: Callable[[str], None]) -> Callable[[Any], None]:

@@ -18,7 +18,10 @@ from rclpy.node import Node
 from arboleda.adapters.broker_login import login
 from arboleda.model.errors import ArboledaError, StartError
 from arboleda.model.plant_model import Link as LinkKind
+from arboleda.model.plant_model import PlantModel
 from arboleda.plant_file.loader import load_recorded
+from arboleda.plant_file.versions import Versions
+from arboleda.recorder.preamble import Recording
 from arboleda.runtime.alarm_options import alarm_options
 from arboleda.runtime.build import App, Options, build
 from arboleda.runtime.log_file import LogFile
@@ -110,10 +113,16 @@ def _complain(sentence: str) -> None:
 def _app(link: Link, name: str) -> App:
     values = _parameters(link.node(name), name)
     plant_file = Path(values["plant"]) if values["plant"] else None
-    model, recording = load_recorded(plant_file)
-    if values["virtual"]:
-        model = model.on_boards(LinkKind.DRIVER)
-        recording = recording and replace(recording, virtual=True)
+    if plant_file is not None:
+        Versions(plant_file).go_on()
+
+    def read() -> tuple[PlantModel, Recording | None]:
+        model, recording = load_recorded(plant_file)
+        if not values["virtual"]:
+            return model, recording
+        return model.on_boards(LinkKind.DRIVER), recording and replace(recording, virtual=True)
+
+    model, recording = read()
     parts = {_PARTS[name]}
     if values["broker"] == EMBEDDED:
         parts.add(_embedded(name))
@@ -136,7 +145,7 @@ def _app(link: Link, name: str) -> App:
     if values.get("standby"):
         from arboleda.runtime.standby.process import take_over  # it shows a page, which no other start needs
 
-        return take_over(model, parts, options, LOG.info)
+        return take_over(model, parts, options, LOG.info, read)
     return build(model, parts, options)
 
 

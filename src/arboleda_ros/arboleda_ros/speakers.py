@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Callable
-from functools import partial
 from typing import Any
 
 from rclpy.node import Node
@@ -18,6 +17,8 @@ from . import qos
 from .exclusive_topics import UNNAMED, full_name
 
 LOG = logging.getLogger("arboleda.ros.speakers")
+Known = tuple[int, int, frozenset[tuple[int, ...]]]  # how many ever came, how many are there, and who
+NOBODY: Known = (0, 0, frozenset())
 _FRESH_S = 0.2  # within this time publishers are not looked up again for each message
 
 
@@ -32,45 +33,40 @@ class Speakers:
         self._clock = clock
         self._on_event = on_event
         self._speaker = Speaker(robot)
-        self._deferred = 0  # messages that wait; no later one may overtake them
+        self._matches: dict[str, Callable[[], Any]] = {}  # by topic
         self._looked: dict[str, float] = {}  # by topic, where several publish
-        # by topic: how many ever came, how many are matched, and who is there
-        self._known: dict[str, tuple[int, int, set[tuple[int, ...]]]] = {}
+        self._known: dict[str, Known] = {}  # by topic
 
-    def guarded(
-        self, topic: str, handle: Callable[[Any], None], repeats: Callable[[Any], bool] | None = None
-    ) -> Callable[[Any], None]:
-        """A handler that calls `handle` only for messages that count, after all news of publishers.
-
-        One that `repeats` the last one does not wait for those: whoever sent it, it says nothing new, and
-        a task of rclpy for each takes more calls than all the rest.
-        """
+    def guarded(self, topic: str, handle: Callable[[Any], None]) -> Callable[[Any], None]:
+        """A handler that calls `handle` only for messages that count."""
 
         def believe(message: Any) -> None:
+            self._look_for_news(topic)
             if not self._speaker.believed(self._clock()) or not qos.TELLS_MATCHES:
                 self._look_again(topic)
                 if not self._speaker.believed(self._clock()):
                     return
             handle(message)
 
-        def hear(message: Any) -> None:
-            executor = self._node.executor
-            if executor is None or (repeats is not None and not self._deferred and repeats(message)):
-                believe(message)
-            else:
-                self._deferred += 1
-                executor.create_task(partial(in_turn, message))
+        return believe
 
-        def in_turn(message: Any) -> None:
-            self._deferred -= 1
-            believe(message)
+    def watch(self, topic: str, matches: Callable[[], Any]) -> None:
+        """Count the publishers of a topic by `matches` before each message: the event that one has come, or
+        gone, may be behind that message in the executor's queue.
+        """
+        self._matches[topic] = matches
 
-        return hear
+    def _look_for_news(self, topic: str) -> None:
+        if (matches := self._matches.get(topic)) is not None:
+            counts = matches()
+            came, matched, _ = self._known.get(topic, NOBODY)
+            if (counts.total_count, counts.current_count) != (came, matched):
+                self.matched(topic, counts)
 
     def matched(self, topic: str, event: Any) -> None:
         """Note that a publisher came or went; one that has gone may have left messages in the queue."""
-        came, matched, before = self._known.get(topic, (0, 0, set()))
-        there = self._look(topic)
+        came, matched, before = self._known.get(topic, NOBODY)
+        there = self._look(topic, event.current_count)
         self._known[topic] = (event.total_count, event.current_count, there)
         stayed = max(len(there - before), event.current_count - matched)
         if event.total_count - came > stayed:
@@ -78,16 +74,20 @@ class Speakers:
 
     def _look_again(self, topic: str) -> None:
         if self._clock() >= self._looked.get(topic, 0.0) + _FRESH_S:
-            self._look(topic)
+            self._look(topic, self._known.get(topic, NOBODY)[1])
 
-    def _look(self, topic: str) -> set[tuple[int, ...]]:
-        """The ids of the present publishers of a topic, as the middleware numbers them."""
+    def _look(self, topic: str, matched: int) -> frozenset[tuple[int, ...]]:
+        """The ids of the present publishers of a topic, as the middleware numbers them.
+
+        A publisher may be among those `matched`, whose messages are heard, before the graph shows it.
+        """
         now = self._looked[topic] = self._clock()
         found = self._node.get_publishers_info_by_topic(topic)
         names = [full_name(info) for info in found]
         nodes = [None if name == UNNAMED else name for name in names]
+        nodes += [None] * (matched - len(nodes))
         self._tell(self._speaker.publishers(now, self._absolute(topic), nodes))
-        return {tuple(info.endpoint_gid) for info in found}
+        return frozenset(tuple(info.endpoint_gid) for info in found)
 
     def _tell(self, sentence: Sentence | None) -> None:
         if sentence is None:

@@ -57,13 +57,13 @@ class StatusListener:
         at = self._clock()
         self._on_report(self._again(at, data) or self._read(at, data))
 
-    def repeats(self, data: bytes) -> bool:
+    def _repeats(self, data: bytes) -> bool:
         """True for a message with the words of the last one; its number may be another."""
         return self._last is not None and data[: len(data) - self._tail] == self._words
 
     def _again(self, at: float, data: bytes) -> Report | None:
         """The last report once more, if a message has the same meaning; else None."""
-        if self._last is None or not self.repeats(data):
+        if self._last is None or not self._repeats(data):
             return None
         number = data[len(data) - self._tail : -1]
         if not self._tail:

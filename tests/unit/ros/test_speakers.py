@@ -1,8 +1,7 @@
-"""Messages of a robot's publishers: which wait for news of publishers, and which count."""
+"""Messages of a robot's publishers: which count, by what the middleware knows of publishers by then."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from types import SimpleNamespace
 from typing import Any
 
@@ -14,32 +13,44 @@ TOPIC = "ra1/status"
 
 
 class Bench:
-    """A node whose executor does its tasks when it is told to; `heard` are the messages that counted."""
+    """A node whose middleware knows of publishers at once; its executor is told by `matched`. `heard` are the
+    messages that counted."""
 
     def __init__(self) -> None:
         self.now = 0.0
-        self.tasks: list[Callable[[], None]] = []
         self.heard: list[str] = []
         self.nodes = ["/mqtt_bridge"]
+        self.ever = 1
+        self.unshown = 0
+        self.events: list[Any] = []
+        self.looks = 0
         node: Any = SimpleNamespace(
-            executor=SimpleNamespace(create_task=self.tasks.append),
-            get_publishers_info_by_topic=lambda _topic: [self._info(name) for name in self.nodes],
+            get_publishers_info_by_topic=self._publishers,
             resolve_topic_name=lambda topic: f"/{topic}",
         )
-        self.speakers = speakers.Speakers(node, "ra1", lambda: self.now, lambda _event: None)
-        self.hear = self.speakers.guarded(TOPIC, self.heard.append, lambda said: said == self.heard[-1])
-        self.heard.append("first")
+        self.speakers = speakers.Speakers(node, "ra1", lambda: self.now, self.events.append)
+        self.hear = self.speakers.guarded(TOPIC, self.heard.append)
+        self.speakers.watch(TOPIC, self._counts)
+
+    def matched(self) -> None:
+        """The executor comes to the event that publishers came or went."""
+        self.speakers.matched(TOPIC, self._counts())
+
+    def come(self, node: str, *, shown: bool = True) -> None:
+        """A publisher is matched; whether the graph shows it already."""
+        self.nodes.append(node)
+        self.ever += 1
+        self.unshown += not shown
+
+    def _counts(self) -> Any:
+        return SimpleNamespace(total_count=self.ever, current_count=len(self.nodes))
+
+    def _publishers(self, _topic: str) -> list[Any]:
+        self.looks += 1
+        return [self._info(name) for name in self.nodes[: len(self.nodes) - self.unshown]]
 
     def _info(self, name: str) -> Any:
         return SimpleNamespace(node_name=name[1:], node_namespace="/", endpoint_gid=name.encode())
-
-    def matched(self) -> None:
-        count = len(self.nodes)
-        self.speakers.matched(TOPIC, SimpleNamespace(total_count=count, current_count=count))
-
-    def do_tasks(self) -> None:
-        while self.tasks:
-            self.tasks.pop(0)()
 
 
 @pytest.fixture
@@ -49,28 +60,52 @@ def bench() -> Bench:
     return made
 
 
-def test_news_waits_for_what_is_known_of_its_publisher_and_a_repetition_does_not(bench: Bench) -> None:
+def test_a_message_of_the_one_publisher_counts_at_once_and_asks_the_graph_for_nothing(bench: Bench) -> None:
+    before = bench.looks
     bench.hear("first")
-    assert bench.heard == ["first", "first"] and not bench.tasks
     bench.hear("second")
-    assert bench.heard[-1] == "first"
-    bench.do_tasks()
-    assert bench.heard[-1] == "second"
+    assert bench.heard == ["first", "second"]
+    assert bench.looks == before
 
 
-def test_a_repetition_does_not_overtake_news(bench: Bench) -> None:
-    bench.hear("second")
+def test_a_message_does_not_count_before_what_is_known_of_its_publisher(bench: Bench) -> None:
+    bench.come("/other")
     bench.hear("first")
-    bench.do_tasks()
-    assert bench.heard == ["first", "second", "first"]
+    assert bench.heard == []
+    assert any("/other" in str(event) for event in bench.events)
+
+
+def test_a_message_of_a_publisher_that_has_taken_the_place_of_another_is_news_as_well(bench: Bench) -> None:
+    bench.nodes.clear()
+    bench.come("/other")
+    before = bench.looks
     bench.hear("first")
-    assert bench.heard[-2:] == ["first", "first"]
+    assert bench.looks > before
 
 
-def test_while_several_publish_not_even_a_repetition_counts(bench: Bench) -> None:
-    bench.nodes.append("/other")
+def test_a_publisher_that_came_and_went_unseen_leaves_nothing_that_counts(bench: Bench) -> None:
+    bench.ever += 1
+    bench.hear("first")
+    assert bench.heard == []
+
+
+def test_the_event_that_comes_after_its_message_is_no_news_any_more(bench: Bench) -> None:
+    bench.come("/other")
+    bench.hear("first")
+    said = len(bench.events)
+    bench.matched()
+    assert len(bench.events) == said
+
+
+def test_while_several_publish_no_message_counts(bench: Bench) -> None:
+    bench.come("/other")
     bench.matched()
     bench.hear("first")
     bench.hear("second")
-    bench.do_tasks()
-    assert bench.heard == ["first"]
+    assert bench.heard == []
+
+
+def test_a_publisher_that_is_matched_before_the_graph_shows_it_is_not_believed(bench: Bench) -> None:
+    bench.come("/other", shown=False)
+    bench.hear("second")
+    assert bench.heard == []
