@@ -60,6 +60,7 @@ WEATHERS: dict[str, tuple[range, str | dict[str, Any]]] = {
     ),
     "garbage": (range(1, 3), {"rates": {"foreign_garbage": 60.0}}),
     "flood": (range(1, 2), {"faults": [{"kind": "flood_of_tasks", "at": 5.0}]}),
+    "teachers": (range(1, 3), {"rates": {"teach": 8.0}}),
     "crashes": (range(1, 9), "crashes"),
     "restarts": (range(1, 3), {"rates": {"plant_crash": 3.0, "operator_stop": 3.0}}),
 }
@@ -75,6 +76,7 @@ FIRST: tuple[tuple[str, int], ...] = (
     ("no end of a halt", 13),
     ("power", 5),
     ("restarts", 1),
+    ("teachers", 1),
     *(("crashes", seed) for seed in (1, 2)),
     ("in the dark", 10),
     ("twice", 17),

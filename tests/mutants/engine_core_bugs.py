@@ -28,8 +28,8 @@ CORE_BUGS = (
     bug(
         CELL,
         "A stop leaves the queue running.",
-        "        self.queue.paused = True\n        self.become(Cause.STOP)\n",
-        "        self.become(Cause.STOP)\n",
+        "        self.queue.paused = True\n        self.end_teaching(STOPPED",
+        "        self.end_teaching(STOPPED",
     ),
     bug(
         CELL,

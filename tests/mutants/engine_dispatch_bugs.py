@@ -252,7 +252,8 @@ OF_DISPATCHER = (
     bug(
         DISPATCHER,
         "What is cancelled keeps its old deadline.",
-        "        entry.deadline = now + self.model.timing.stop_timeout_s\n        self.ledger.plan(entry)",
+        "        entry.deadline = now + self.timings[entry.cell].stop_timeout_s\n"
+        "        self.ledger.plan(entry)",
         "        self.ledger.plan(entry)",
     ),
     bug(
@@ -288,8 +289,8 @@ OF_DISPATCHER = (
     bug(
         DISPATCHER,
         "A switch of which nothing is told settles at once.",
-        "return now + self.model.timing.effector_settle_s + command.takes_s",
-        "return now + self.model.timing.effector_settle_s",
+        "return now + timing.effector_settle_s + command.takes_s",
+        "return now + timing.effector_settle_s",
     ),
     bug(
         DISPATCHER,

@@ -23,8 +23,8 @@ RECIPE_BUGS = (
     bug(
         DECORATORS,
         "The pause before another try is left out.",
-        "self.again_at = self.time.now + self.pause_s",
-        "self.again_at = self.time.now",
+        "self.again_at = self.time.now + max(self.pause_s, LEAST_S)",
+        "self.again_at = self.time.now + LEAST_S",
     ),
     bug(
         DECORATORS,

@@ -272,7 +272,7 @@ OF_CELLS = (
     bug(
         INTERLOCKS,
         "A machine is out of the way while it is on its way there.",
-        "            or any(map(each.is_ended_by, open_commands))\n",
+        "            or any(map(each.is_ended_by, may_come))\n",
         "",
     ),
     bug(

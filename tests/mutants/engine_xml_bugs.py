@@ -172,8 +172,8 @@ XML_BUGS = (
     bug(
         NODE,
         "A node that is halted does not halt those below.",
-        "        self.reset_counts()\n        self.reset_children()\n        self.status = Status.INVALID\n",
-        "        self.reset_counts()\n        self.status = Status.INVALID\n",
+        "        self.reset_counts()\n        self.reset_children()\n        self.rests_until = None\n",
+        "        self.reset_counts()\n        self.rests_until = None\n",
     ),
     bug(
         NODE,

@@ -8,5 +8,6 @@ from .leaders import LEADERS
 from .operation import OPERATION
 from .protocol import PROTOCOL
 from .restarts import RESTARTS
+from .teaching import TEACHING
 
-MUTANTS = (*BODIES, *PROTOCOL, *CELLS, *OPERATION, *RESTARTS, *LEADERS)
+MUTANTS = (*BODIES, *PROTOCOL, *CELLS, *OPERATION, *RESTARTS, *LEADERS, *TEACHING)

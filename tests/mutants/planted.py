@@ -131,7 +131,7 @@ PLANTED = (
     mutant(
         "screens_show_what_is",
         "To resume is not shown as refused.",
-        edit(view._refused, "is not None", "is not None and verb is not Verb.RESUME"),
+        edit(view._refused, "is not None", "is not None and request.verb is not Verb.RESUME"),
         weather="none",
     ),
     mutant(

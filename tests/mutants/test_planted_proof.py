@@ -1,0 +1,28 @@
+"""The bugs for `prove` are found by `check` or by a calm run, but for those that are listed."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from ..lengths import length, sample
+from .planted_proof import MOST, sighted
+from .proof_bug import PLANTS, ProofBug
+from .proof_bugs import NOT_FOUND, PROOF_BUGS
+
+FOUND = [bug for bug in PROOF_BUGS if (bug.plant, bug.about) not in NOT_FOUND]
+
+
+@pytest.mark.timeout(3600)  # as a whole it takes an hour
+@pytest.mark.parametrize("bug", sample(FOUND, every=11), ids=lambda bug: f"{bug.plant} {bug.about[:50]}")
+def test_a_bug_is_found_by_what_says_nothing_of_its_plant_without_it(tmp_path: Path, bug: ProofBug) -> None:
+    assert sighted(tmp_path, bug, length(0, whole=MOST)) is not None
+
+
+def test_there_are_many_bugs_of_each_plant_and_most_are_found() -> None:
+    known = {(bug.plant, bug.about) for bug in PROOF_BUGS}
+    assert len(known) == len(PROOF_BUGS) >= 60
+    assert {plant for plant, _ in known} == set(PLANTS)
+    assert set(NOT_FOUND) <= known
+    assert len(FOUND) / len(PROOF_BUGS) > 0.75
