@@ -7,7 +7,7 @@ in microseconds of processor time of this thread, each the median of many:
 - a step with a report of an arm that moves: only its position is new, so no tree is ticked;
 - a step with the report that ends a move: the tree is ticked until it rests, and the next command leaves;
 - one waking of the tree while it runs and nothing has changed: what we put around py_trees' tick;
-- one `view.snapshot` while the task runs.
+- one view while the task runs, as the orchestrator makes it: cells at rest are remembered from the last one.
 
 The floor is `tick_once` of py_trees, which the user of a ticked tree calls at every period, of the very same
 tree (the shipped storage recipe) in the same state: a move under way. For the report that ends a move it is
@@ -33,6 +33,7 @@ from arboleda.model.plant_model import PlantModel
 from arboleda.plant_file.loader import load
 from arboleda.recipes.storage_layout import StorageLayout
 from arboleda.views import view
+from arboleda.views.remembered import RestingCells
 
 from . import plants
 from .obedient import Yard, command_in, is_over
@@ -68,7 +69,8 @@ def _costs(model: PlantModel, calls: int) -> Iterator[tuple[str, Costs]]:
     yield "step: a report of a moving arm", (_cost_of_reports(yard, move, calls, FURTHER_RAD), tick)
     yield "step: the report that ends a move", _ends_of_moves(Yard(model), calls)
     yield "waking of a tree that waits on", (_cost(_run(yard).tick, calls), tick)
-    yield "view", (_cost(lambda: view.snapshot(yard.plant), calls), tick)
+    resting = RestingCells()
+    yield "view", (_cost(lambda: view.snapshot(yard.plant, resting.part), calls), tick)
 
 
 def _cost(act: Callable[[], object], calls: int) -> float:

@@ -16,13 +16,13 @@ def sent(cell, number):
     return cell.using("lift", lift.down(), cart.visit("platform", lift.roll_in()), lift.up())
 
 
-@recipe("kit")
+@recipe("kit", ends_with={"lift.at": "high"})
 def kit(cell, cart=Choice(1, 2, 3), tray=Target("trays")):
     """Load one cart and send its kit up."""
     return work(loaded(cell, cart, tray), sent(cell, cart), cell.device("picker").home())
 
 
-@recipe("wave")
+@recipe("wave", ends_with={"lift.at": "high"})
 def wave(cell, tray=Target("trays")):
     """Load all three carts, each while the one before it is on its way."""
     return work(

@@ -12,7 +12,7 @@ def weigh(cell, ml: Choice[5, 10, 20]):
     return work(scale.tare(), pump.dispense(ml=ml), seen, cell.choose(seen, ways))
 
 
-@recipe("incubate")
+@recipe("incubate", ends_with={"heater.lid": "open", "heater.clamped": False, "heater.celsius": 20})
 def incubate(cell, ml: Choice[5, 10], celsius: Choice[40, 60]):
     """Fill what the reader knows as a sample, and keep it warm for a while."""
     pump, heater, reader, operator = cell.devices("pump", "heater", "reader", "operator")

@@ -16,7 +16,7 @@ def sorting(cell):
     return {"good": good, "bad": bad}
 
 
-@recipe("mill")
+@recipe("mill", ends_with={"mill.door": "open", "mill.clamped": False})
 def mill_one(cell, blank=Target("pallet"), program=Choice(1001, 1002)):
     """Mill a blank and sort it by what the camera sees."""
     loader, jaw, mill, tender, camera = cell.devices("loader", "jaw", "mill", "tender", "camera")
@@ -37,7 +37,7 @@ def mill_one(cell, blank=Target("pallet"), program=Choice(1001, 1002)):
     )
 
 
-@recipe("pallet")
+@recipe("pallet", ends_with={"mill.door": "open", "mill.clamped": False})
 def pallet(cell, program=Choice(1001, 1002)):
     """Have the pallet refilled, and mill the blanks on it."""
     full = cell.device("operator").ask("Is the pallet full?", ["yes", "no blanks left"], at_most_s=3600)

@@ -15,7 +15,7 @@ from arboleda.model.messages import ENDED, TaskState, Verb
 from ..patience import PATIENCE_S
 from .conftest import Process, paths
 
-PARTS = ("cells", "twin", "tasks", "panel", "draw", "links", "events")
+PARTS = ("cells", "twin", "tasks", "panel", "make", "draw", "links", "events")
 
 
 @contextmanager

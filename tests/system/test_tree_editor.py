@@ -1,4 +1,4 @@
-"""A tree as XML edited on the page of its plant, in a real browser: by mouse, by keys alone, by touch."""
+"""A tree of the draft edited on the page, in a real browser: by mouse, by keys alone, by touch."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
+import httpx
 import pytest
 
 from arboleda.bt_xml.editing.tree_text import TreeText, walk
@@ -21,6 +22,7 @@ OWN_TREE = Path(__file__).parents[2] / "examples/own_tree/plant.yaml"
 TEXT = OWN_TREE.with_name("tend.xml").read_text()
 LAPTOP = {"viewport": {"width": 1366, "height": 900}, "locale": "en"}
 PHONE = {"viewport": {"width": 390, "height": 844}, "has_touch": True, "locale": "es"}
+EDITOR = "test-of-trees"
 Open = Callable[..., Any]
 
 
@@ -37,8 +39,10 @@ def editor(browser: Any, address: str) -> Iterator[Open]:
     troubles: list[str] = []
 
     def go(**options: Any) -> Any:
+        forget_draft(address)
         contexts.append(browser.new_context(**(options or LAPTOP)))
         page = contexts[-1].new_page()
+        page.add_init_script(f"sessionStorage.setItem('arboleda_editor', '{EDITOR}')")
         page.set_default_timeout(PATIENCE_MS)
         page.on("pageerror", lambda error: troubles.append(str(error)))
         page.goto(f"{address}/?tab=draw")
@@ -50,6 +54,18 @@ def editor(browser: Any, address: str) -> Iterator[Open]:
     for each in contexts:
         leave(each)
     assert troubles == []
+
+
+def forget_draft(address: str) -> None:
+    """Have the draft of the plant be as its files are."""
+    editor = {"editor": EDITOR}
+    httpx.post(f"{address}/api/draft/take", json=editor | {"name": "a test"}).raise_for_status()
+    httpx.post(f"{address}/api/draft/discard", json=editor).raise_for_status()
+
+
+def drafted(address: str) -> str:
+    """The tree that the draft has."""
+    return str(httpx.get(f"{address}/api/draft/trees", params={"file": "tend.xml"}).json()["text"])
 
 
 def row(path: str) -> str:
@@ -102,6 +118,7 @@ def test_by_mouse_a_node_is_put_in_given_a_value_dragged_and_undone(editor: Open
     assert text == TEXT.replace('        <Sequence>\n          <mill_clamp on="true"/>', wanted)
     for _ in range(3):
         page.click("[data-draw=undo]")
+    page.wait_for_selector("[data-draw=undo][disabled]")
     assert downloaded(page) == TEXT
     page.click("[data-draw=redo]")
     labelled(page, "1.0.2", "mill_run")
@@ -183,23 +200,39 @@ def test_who_writes_on_keeps_the_place_while_the_value_before_is_taken(editor: O
     labelled(page, "0.0", "width_mm=31 force_n=41")
 
 
-def test_what_was_drawn_and_is_in_no_file_is_not_left_unasked(editor: Open) -> None:
+def test_what_was_drawn_for_no_plant_file_is_not_left_unasked(browser: Any, tmp_path: Path) -> None:
+    with running(tmp_path / "state") as address:
+        context = browser.new_context(**LAPTOP)
+        page = context.new_page()
+        page.goto(f"{address}/?tab=draw")
+        page.wait_for_selector(f"{row('root')}[data-mark=mistake]", timeout=PATIENCE_MS)
+        page.fill("#draw-search", "Sleep")
+        page.click("[data-kind=Sleep]:visible")
+        page.wait_for_selector(row("0"), timeout=PATIENCE_MS)
+        with page.expect_event("dialog") as asked:
+            page.evaluate("setTimeout(() => location.reload())")
+        assert asked.value.type == "beforeunload"
+        asked.value.accept()
+        leave(context)
+
+
+def test_each_edit_is_a_step_of_the_draft_and_somebody_else_is_not_overwritten(
+    editor: Open, address: str
+) -> None:
     page = editor()
     page.click(row("2"))
     page.click("[data-draw=remove]")
     labelled(page, "2", "RetryUntilSuccessful")
-    page.select_option("#draw-file", "")
-    page.click("dialog button:not(.primary)")
-    assert page.input_value("#draw-file") == "tend"
-    labelled(page, "2", "RetryUntilSuccessful")
-    with page.expect_event("dialog") as asked:
-        page.evaluate("setTimeout(() => location.reload())")
-    assert asked.value.type == "beforeunload"
-    asked.value.dismiss()
-    page.select_option("#draw-file", "")
-    page.click("dialog button.primary")
-    page.wait_for_function("document.querySelectorAll('.draw-row').length === 1")
-    page.wait_for_selector(f"{row('root')}[data-mark=mistake]")
+    page.wait_for_selector("[data-draw=undo]:not([disabled])")
+    assert "<mill_close/>" not in drafted(address)
+    ben = {"editor": "test-of-ben", "name": "Ben"}
+    httpx.post(f"{address}/api/draft/take", json=ben).raise_for_status()
+    page.click(row("0"))
+    page.click("[data-draw=remove]")
+    page.wait_for_function(
+        "document.getElementById('draw-note').textContent.includes('Ben edits this draft')"
+    )
+    labelled(page, "0", "have the door open")
 
 
 def test_a_part_becomes_a_tree_with_a_parameter(editor: Open) -> None:

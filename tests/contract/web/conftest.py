@@ -74,6 +74,7 @@ class Plant:
     """Answers each text with what was prepared for it."""
 
     def __init__(self) -> None:
+        self.teach: Any = None
         self.texts: list[str] = []
         self.choices: list[str] = []
         self.seconds = 60.0

@@ -9,7 +9,31 @@ import httpx
 from arboleda.model.messages import Verb
 from arboleda.web import openapi
 
-DRAFT_STEPS = ("take", "set", "remove", "undo", "redo", "discard", "check", "keep")
+DRAFT_STEPS = (
+    "take",
+    "set",
+    "remove",
+    "undo",
+    "redo",
+    "discard",
+    "check",
+    "keep",
+    "apply",
+    "set_trees",
+    "remove_trees",
+    "own",
+)
+MAKE_PATHS = (
+    "cells",
+    "recipe",
+    "carry",
+    "palette",
+    "drawn/check",
+    "drawn/edit",
+    "runs/{what}",
+    "runs/{what}/end",
+    "runs/{what}/result",
+)
 
 
 def test_the_description_has_every_route_and_what_it_takes_and_gives(web: httpx.Client) -> None:
@@ -32,7 +56,12 @@ def test_the_description_has_every_route_and_what_it_takes_and_gives(web: httpx.
         "/api/cells/{scope}/{verb}",
         "/api/events",
         "/api/draft",
+        "/api/draft/trees",
+        "/api/versions",
+        "/api/versions/{number}/put",
         *(f"/api/draft/{step}" for step in DRAFT_STEPS),
+        *(f"/api/teach/{{cell}}{path}" for path in ("", "/jog", "/here")),
+        *(f"/api/make/{path}" for path in MAKE_PATHS),
     }
     posted = api["paths"]["/api/tasks"]["post"]
     written, form = posted["requestBody"]["content"]["application/json"]["schema"]["anyOf"]

@@ -22,6 +22,10 @@ STEPS = {
     "discard": (EDITOR, ("discard", "ana-12345")),
     "keep": (EDITOR | {"note": "why"}, ("keep", "ana-12345", "why")),
     "check": ({}, ("check",)),
+    "apply": (EDITOR | {"note": "why"}, ("apply", "ana-12345", "why")),
+    "set_trees": (EDITOR | {"file": "a.xml", "text": "<a/>"}, ("set_trees", "ana-12345", "a.xml", "<a/>")),
+    "remove_trees": (EDITOR | {"file": "a.xml"}, ("remove_trees", "ana-12345", "a.xml")),
+    "own": (EDITOR, ("own", "ana-12345")),
 }
 
 
@@ -106,3 +110,11 @@ def test_the_shipped_plant_has_no_draft(web: Any, plant: Any) -> None:
     plant.draft = None
     answer = web.get("/api/draft")
     assert answer.status_code == 404 and "arboleda new" in answer.json()["sentence"]
+
+
+def test_a_file_of_trees_is_read_and_may_be_as_large_as_one_that_is_drawn(web: Any, draft: Draft) -> None:
+    assert web.get("/api/draft/trees", params={"file": "a.xml"}).status_code == 200
+    text = "<!-- " + "x" * 200_000 + " -->"
+    body = EDITOR | {"file": "a.xml", "text": text}
+    assert web.post("/api/draft/set_trees", json=body).status_code == 200
+    assert draft.steps == [("trees", "a.xml"), ("set_trees", "ana-12345", "a.xml", text)]

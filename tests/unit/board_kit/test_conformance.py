@@ -62,7 +62,7 @@ class OnlyCodes(Board):
 
     def take(self) -> list:
         said = super().take()
-        return [replace(sent, payload=_code(sent.payload)) for sent in said]
+        return [sent._replace(payload=_code(sent.payload)) for sent in said]
 
 
 def _code(payload: bytes) -> bytes:
@@ -97,7 +97,7 @@ class Eager(Board):
     """Takes what a broker kept for a command of now."""
 
     def receive(self, now_us: int, delivery: Delivery) -> None:
-        super().receive(now_us, replace(delivery, retain=False))
+        super().receive(now_us, delivery._replace(retain=False))
 
 
 class Deaf(Board):

@@ -89,7 +89,7 @@ class Eager(Board):
     """Takes what a broker kept for an order of now."""
 
     def receive(self, now_us: int, delivery: Delivery) -> None:
-        super().receive(now_us, replace(delivery, retain=False))
+        super().receive(now_us, delivery._replace(retain=False))
 
 
 class Deaf(Board):

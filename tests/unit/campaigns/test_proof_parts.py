@@ -12,6 +12,7 @@ from arboleda.campaigns.proof.calm import calm_run
 from arboleda.campaigns.proof.end_state import differences
 from arboleda.campaigns.proof.instants import Instant, Mark, Side, instants
 from arboleda.campaigns.proof.kept import Kept
+from arboleda.campaigns.proof.moment import Moment, as_svg
 from arboleda.campaigns.proof.outcome import End, Outcome, outcome_from, plain
 from arboleda.campaigns.proof.proof import Proof, Proved
 from arboleda.campaigns.proof.proof_report import unmended_lines
@@ -259,3 +260,26 @@ def test_a_portion_is_broken_where_one_of_its_outcomes_is() -> None:
 @pytest.mark.parametrize(("budget", "seconds"), [("30s", 30.0), ("10m", 600.0), ("1.5h", 5400.0)])
 def test_a_budget_is_a_time_as_people_write_it(budget: str, seconds: float) -> None:
     assert seconds_of(budget) == seconds
+
+
+def test_the_instants_are_told_at_which_the_outcome_of_a_fault_changes(model: PlantModel) -> None:
+    calm = calm_run(model, next(scenarios(model, ["palletizing"])))
+    proof = Proof(model=model, calm=(calm,), kinds=("lost_part",))
+    places = sorted(range(len(proof.portions)), key=lambda number: proof.instant(proof.portions[number]).at)
+    outcomes = [Outcome(end=End.DONE), Outcome(end=End.HELD, cause="held"), Outcome(end=End.DONE)]
+    row = {
+        number: Proved(number=number, outcomes=(outcome,), rows=(0,), digest="")
+        for number, outcome in zip(places[:3], outcomes, strict=True)
+    }
+    (found,) = ProofTally(proof=proof, proved=row).table()["sis_a", "palletizing"].values()
+    assert found.changes
+    (turns,) = found.turns.values()
+    assert [words for _, words in turns] == ["done", "held: held", "done"]
+    assert [instant.at for instant, _ in turns] == sorted(instant.at for instant, _ in turns)
+
+
+def test_the_devices_of_a_breach_are_drawn_from_above() -> None:
+    moment = Moment(lines={"arm": [[0.0, 0.0], [0.3, 0.2]], "lamp": []}, grids=[[[1.0, 1.0]]])
+    drawn = Xml.fromstring(as_svg(moment))
+    assert [each.text for each in drawn.iter("text")] == ["arm"]
+    assert as_svg(Moment(facts={"lamp": "lit: true"})) == ""

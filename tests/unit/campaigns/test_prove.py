@@ -126,9 +126,11 @@ def test_what_holds_is_said_of_every_run(
     said = capsys.readouterr().out
     assert "HELD: all 30 runs, every single fault of 2 kinds at every instant" in said
     assert "lying_fact lamp: lamp.lit is false, not true (its board had not said so)" in said
+    assert "a question may: lamp.test()" in said
     found = summary(plant)
     assert found["runs"] == {"done": 30, "of": 30} and found["complete"]
     assert found["scenarios"][0]["ends_with"] == {"lamp.lit": True}
+    assert found["unnoticed"][0]["checks"] == [{"steps": ["lamp.test()"], "is_sure": False}]
     refuses = found["table"][0]["faults"]["refuses"]
     assert refuses["ends"] == {"done": 4, "failed": 16} and refuses["changes_with_the_moment"]
 
@@ -154,7 +156,10 @@ def test_a_recipe_that_gives_up_in_silence_is_found_and_its_test_fails_alike(
 ) -> None:
     (plant.parent / "small.py").write_text(QUIET)
     tests = plant.parent / "test_found.py"
-    assert prove("--fault", "refuses", "--tests", str(tests)) == 1
+    page = plant.parent / "out.html"
+    assert prove("--fault", "refuses", "--tests", str(tests), "--html", str(page)) == 1
+    assert "lamp: lit: false" in page.read_text()
+    assert "shine" in page.read_text().partition("The tree when it broke")[2]
     said = capsys.readouterr().out
     assert "lamp.lit is false, not true (the plant was told: a check would notice)" in said
     assert "breaks recipes_end_as_they_say" in said and "BROKEN: 1 breach" in said
@@ -304,3 +309,93 @@ def test_a_test_tells_what_breaks_a_recipe(plant: Path) -> None:
         sim.prove("shine", "refuses")
     with pytest.raises(ArboledaError, match="'rain' is not a kind of fault"):
         sim.prove("shine", "rain")
+
+
+def test_a_program_reads_progress_then_the_answer_as_lines(
+    plant: Path, prove: Prove, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (plant.parent / "small.py").write_text(QUIET)
+    assert prove("--fault", "refuses", "--json", "-") == 1
+    rows = [json.loads(line) for line in capsys.readouterr().out.splitlines()]
+    sorts = [sort for row in rows for sort in row]
+    assert sorts[-1] == "answer" and set(sorts) == {"progress", "broken", "answer"}
+    last = [row["progress"] for row in rows if "progress" in row][-1]
+    assert (last["phase"], last["done"], last["of"]) == ("proving", 20, 20)
+    broken = next(row["broken"] for row in rows if "broken" in row)
+    assert broken["task"] == "bench" and broken["kind"] == "refuses" and broken["outcome"]["broken"]
+    assert rows[-1]["answer"]["runs"] == {"done": 20, "of": 20}
+
+
+ASKS = """
+from arboleda.recipes import recipe, work
+
+
+@recipe("shine")
+def shine(cell):
+    lamp, ana = cell.devices("lamp", "ana")
+    clean = ana.ask("Is it clean?", ["yes", "no"])
+    return work(clean, cell.choose(clean, {"yes": lamp.light(on=True), "no": cell.fail("it is dirty")}))
+"""
+
+
+def test_each_answer_of_a_person_is_a_scenario(plant: Path) -> None:
+    plant.write_text(PLANT.replace("lamp: {kind: lamp}}}", "lamp: {kind: lamp}, ana: {kind: person}}}"))
+    (plant.parent / "small.py").write_text(ASKS)
+    model = Plant(declared=loader.load(plant)).model
+    found = list(calm_runs(model, scenarios(model)))
+    assert [(each.scenario.name, each.run.outcome.words) for each in found] == [
+        ("bench", "done"),
+        ("bench (ana says no)", "failed: rejected"),
+    ]
+    assert found[0].commands[0] == "ana: asking ana"
+    assert "ana: asking ana" in {each.what for each in found[0].instants}
+
+
+ONCE = PLANT.replace("light: {effect: switch,", "light: {effect: switch, needs: {lit: false},")
+
+
+def test_a_task_that_is_not_done_a_second_time_is_named(
+    plant: Path, prove: Prove, capsys: pytest.CaptureFixture[str]
+) -> None:
+    plant.write_text(ONCE)
+    assert prove("--fault", "forgets", "--json", str(plant.parent / "out.json")) == 0
+    assert "bench: once more, without any fault, it is not done: failed" in capsys.readouterr().out
+    assert "lit" in summary(plant)["scenarios"][0]["once_more"]
+
+
+def test_a_command_that_is_refused_without_any_fault_is_a_finding(
+    plant: Path, prove: Prove, capsys: pytest.CaptureFixture[str]
+) -> None:
+    plant.write_text(PRESS.replace("lift: {effect: motion,", "lift: {effect: motion, needs: {ram: up},"))
+    lenient = "cell.fallback(press.lift(), cell.wait(1))"
+    (plant.parent / "small.py").write_text(STAMP.replace("press.lift()", lenient))
+    assert prove("--fault", "reboot", "--json", str(plant.parent / "out.json")) == 1
+    assert "done without any fault: press: doing lift" in capsys.readouterr().out
+    assert "lift" in summary(plant)["scenarios"][0]["finding"]
+
+
+def test_the_step_is_named_that_would_notice_what_the_plant_had_been_told(
+    plant: Path, prove: Prove, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (plant.parent / "small.py").write_text(QUIET.replace(', ends_with={"lamp.lit": True}', ""))
+    page = plant.parent / "out.html"
+    assert prove("--fault", "refuses", "--html", str(page)) == 0
+    assert "a step notices it: lamp.becomes(lit=True)" in capsys.readouterr().out
+    assert "un paso lo nota: lamp.becomes(lit=True)" in page.read_text()
+
+
+def test_a_command_that_failed_and_is_passed_over_is_told_where_no_fact_shows_it(
+    plant: Path, prove: Prove, capsys: pytest.CaptureFixture[str]
+) -> None:
+    plant.write_text(PLANT.replace("      test:", "      dust: {effect: process, takes_s: 1}\n      test:"))
+    lenient = 'cell.fallback(cell.device("lamp").dust(), cell.wait(0.1)), cell.device("lamp").light'
+    (plant.parent / "small.py").write_text(GOOD.replace('cell.device("lamp").light', lenient))
+    assert prove("--fault", "gives_up") == 0
+    assert "lamp: doing dust has failed, and was not done later" in capsys.readouterr().out
+
+
+def test_where_nothing_was_run_it_is_not_said_that_it_held(
+    plant: Path, prove: Prove, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert prove("--fault", "refuses", "--budget", "0s") == 2
+    assert "nothing was run" in capsys.readouterr().out

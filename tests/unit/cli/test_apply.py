@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -107,8 +106,9 @@ def test_a_running_plant_is_what_is_compared_with_and_it_can_be_gone_back_to(sta
     change(started, "takes_s: 20", "takes_s: 25")
     shown = run(started, "apply", "--yes")
     assert f"compared with what the plant was started with at {AT[:10]}" in shown.output
-    assert "from 20 to 25" in shown.output and f"(process {os.getpid()}) goes on as it is" in shown.output
-    assert "version 2 is kept" in shown.output
+    assert "from 20 to 25" in shown.output and "what a device can do is agreed" in shown.output
+    assert "version 2 is kept" in shown.output and shown.exit_code == 1
+    assert "goes on as it is, and has it from its next start on" in shown.output  # it has no server here
     listed = run(started, "versions").output.splitlines()
     assert [line for line in listed if "at work" in line] == [
         listed[0]

@@ -64,6 +64,7 @@ def warned(folder: Path, body: str, more: str = "") -> list[str]:
         INTO + ASK + if_clear(OUT, OUT),
         INTO + ASK + if_clear(OPEN, NONE) + if_clear(OUT.removeprefix(OPEN), OUT),
         INTO + f"<RetryUntilSuccessful num_attempts='3'>{READ}</RetryUntilSuccessful>" + OUT,
+        f"<Timeout msec='9'><RetryUntilSuccessful num_attempts='-1'>{OPEN}</RetryUntilSuccessful></Timeout>",
         INTO + f"<TryCatch>{READ}{OPEN}</TryCatch>" + OUT,
         f"<Parallel>{OPEN}{take('rack')}</Parallel>" + put("drawer") + OUT,
         f"<Repeat num_cycles='1'>{row(INTO, OUT)}</Repeat>".replace("rack", "nest"),
@@ -96,7 +97,19 @@ def test_nothing_is_said_of_what_can_be_so(tmp_path: Path, body: str) -> None:
             take("nest") + put("bin") + "\n" + take("nest") + put("bin") + HOME,
             "3:29: lab: attempt has jaw take hold of a part at nest, where nothing can be",
         ),
+        (
+            INTO + f"\n<RetryUntilSuccessful num_attempts='-1'>{READ}</RetryUntilSuccessful>" + OUT,
+            "3:1: lab: attempt tries reader_read again without end; a task that cannot be done never ends so",
+        ),
+        (
+            f"<RetryUntilSuccessful num_attempts='1000'>{OPEN}</RetryUntilSuccessful>" + CLOSE,
+            "2:1: lab: attempt tries reader_open again 1,000 times; a task that cannot be done never ends so",
+        ),
         (take("rack") + HOME, "1:52: lab: attempt ends with a part that jaw still holds"),
+        (
+            "<jaw_open/>" + INTO + HOME,
+            "1:52: lab: attempt ends with 1 more at drawer of reader than it began with",
+        ),
         (INTO + HOME, "1:52: lab: attempt ends with 1 more at drawer of reader than it began with"),
         (
             INTO + ASK + if_clear(OUT, OUT.replace(CLOSE, "")),

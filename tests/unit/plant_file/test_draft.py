@@ -174,3 +174,13 @@ def test_files_above_the_plant_file_keep_their_places(tmp_path: Path) -> None:
     draft = draft_of(files).with_value(VISE, POSE)
     assert draft_check.check(draft.files, tmp_path / "cells/plant.yaml").problems == ()
     assert sorted(files.contents) == ["cells/plant.yaml", "tend.xml"]
+
+
+def test_a_new_file_of_trees_is_used_by_the_plant_and_undone_in_one_step(empty: Draft) -> None:
+    drawn = empty.with_recipe("pick.xml", b"<root/>")
+    assert drawn.files.contents["plant.yaml"].count(b"uses: [tend.xml, pick.xml]") == 1
+    assert drawn.undo().files == empty.files
+    assert drawn.with_recipe("pick.xml", b"<root />").files.contents["plant.yaml"].count(b"pick.xml") == 1
+    gone = drawn.without_recipe("pick.xml")
+    assert gone.files == empty.files and len(gone.past) == 2
+    assert b"uses" not in empty.without_recipe("tend.xml").files.contents["plant.yaml"]

@@ -200,6 +200,16 @@ def test_a_cell_offers_what_fits_it(tmp_path: Path) -> None:
     assert [[each.name for each in cell.recipes] for cell in plant.cells] == [["heat"], ["look"]]
 
 
+def test_what_a_recipe_ends_with_is_no_matter_of_a_cell_that_lacks_its_devices(tmp_path: Path) -> None:
+    ends = GOOD.replace('@recipe("heat")', '@recipe("heat", ends_with={"oven.lid": "open"})')
+    second = '\n@recipe("look")\ndef look(cell):\n    return cell.device("lamp").look()\n'
+    plant = load(tmp_path, ends + second, PLANT + SECOND)
+    assert {cell.name: [each.name for each in cell.recipes] for cell in plant.cells} == {
+        "bench": ["heat"],
+        "shelf": ["look"],
+    }
+
+
 def test_a_cell_that_nothing_fits_says_so(tmp_path: Path) -> None:
     (found,) = problems(tmp_path, GOOD, PLANT + SECOND)
     assert found.startswith("plant.yaml:17:3: cells.shelf: offers no recipe: none ")

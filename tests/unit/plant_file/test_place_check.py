@@ -93,3 +93,9 @@ def test_it_warns(tmp_path: Path, edit: tuple[str, str], sentence: str) -> None:
 
 def test_a_need_guards_a_place_as_a_zone_does(tmp_path: Path) -> None:
     assert warned(tmp_path, (IN_THE_OVEN, ""), ("zones:\n", NEEDS)) == ()
+
+
+def test_a_need_that_asks_nothing_of_the_robot_guards_no_place(tmp_path: Path) -> None:
+    needs = "    needs: {oven.close: {jaw.gripped: false}}\nzones:\n"
+    (warning,) = warned(tmp_path, (IN_THE_OVEN, ""), ("zones:\n", needs))
+    assert "nothing keeps left out of there" in warning

@@ -17,12 +17,14 @@ from arboleda.model.messages import (
     Fact,
     Failure,
     Interference,
+    Jog,
     KeptTask,
     LateDeparture,
     OperatorRequest,
     Reason,
     Receipt,
     Report,
+    Revision,
     Shutdown,
     TaskAnswer,
     TaskRequest,
@@ -31,6 +33,7 @@ from arboleda.model.messages import (
     Verb,
 )
 from arboleda.model.plant_model import MotionState
+from arboleda.model.revision import RevisionName
 from arboleda.model.sentence import Phrase, Sentence
 from arboleda.recorder.errors import NoRecord
 from arboleda.recorder.plain_data import EVENTS, event_from, kept_from, memory_from, message_from, plain
@@ -110,10 +113,30 @@ STRATEGIES = {
         client=st.booleans(),
         request=WORD,
     ),
+    Jog: st.builds(
+        Jog,
+        at=NUMBERS,
+        cell=TEXTS,
+        session=st.integers(),
+        number=st.integers(),
+        robot=TEXTS,
+        goal=st.none() | st.integers() | st.lists(NUMBERS, max_size=3).map(tuple),
+        word=TEXTS,
+        values=st.lists(st.tuples(TEXTS, VALUES), max_size=3).map(tuple),
+        held=st.booleans(),
+    ),
     Undelivered: st.builds(Undelivered, at=NUMBERS, id=TEXTS, robot=TEXTS, sentence=SENTENCES),
     LateDeparture: st.builds(LateDeparture, at=NUMBERS, id=TEXTS, late_s=NUMBERS),
     Interference: st.builds(Interference, at=NUMBERS, robot=TEXTS, sentence=SENTENCES),
     Shutdown: st.builds(Shutdown, at=NUMBERS, drops_waiting=st.booleans()),
+    Revision: st.builds(
+        Revision,
+        at=NUMBERS,
+        version=st.builds(RevisionName, digest=TEXTS, number=st.integers(1, 9)),
+        by=TEXTS,
+        changes=st.just(("one", "dos")),
+        request=WORD,
+    ),
 }
 
 

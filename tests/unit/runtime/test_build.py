@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import gc
+import sys
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
 from arboleda.model.errors import StartError
-from arboleda.runtime.build import PARTS, Options, build
+from arboleda.runtime.build import PARTS, TURN_S, Options, build
 from arboleda.testing import shipped
 
 
@@ -63,3 +64,12 @@ def test_a_plant_in_a_process_that_has_seen_to_that_leaves_it_so(tmp_path: Path)
     app.start()
     app.stop()
     assert gc.get_freeze_count() > 0
+
+
+def test_no_thread_keeps_pythons_lock_for_long_while_a_plant_runs(tmp_path: Path) -> None:
+    before = sys.getswitchinterval()
+    app = build(shipped(), {"orchestrator"}, Options(state_dir=tmp_path / "state", page=False))
+    app.start()
+    assert sys.getswitchinterval() == pytest.approx(TURN_S)
+    app.stop()
+    assert sys.getswitchinterval() == pytest.approx(before)

@@ -9,10 +9,11 @@ from typing import Any
 import pytest
 
 from arboleda.plant_file.draft_check import Checked
-from arboleda.plant_file.versions import Versions
+from arboleda.plant_file.versions import Version, Versions
 from arboleda.recorder.preamble import PlantFiles
 from arboleda.runtime import at_work
 from arboleda.runtime.draft_desk import DraftDesk
+from arboleda.runtime.plant_folder import PlantFolder
 from arboleda.web.draft_api import DraftRefused
 
 AT = "2026-11-25T20:00:00+00:00"
@@ -30,6 +31,15 @@ def bad(files: PlantFiles, plant_file: Path) -> Checked:
     return Checked(problems=(f"{plant_file}:2:1: no",))
 
 
+class Checker:
+    """Checks files as it is told to."""
+
+    def __init__(self, check: Callable[[PlantFiles, Path], Checked]) -> None:
+        self.check = check
+
+    def stop(self) -> None: ...
+
+
 @pytest.fixture
 def plant(tmp_path: Path) -> Path:
     (tmp_path / "plant.yaml").write_bytes(TEXT)
@@ -44,7 +54,7 @@ def open_desk(plant: Path) -> Open:
     """A desk of the plant, as each start of it has one."""
 
     def opened(check: Any = good, editor: str = ANA) -> DraftDesk:
-        desk = DraftDesk(plant, plant.parent / "state", check)
+        desk = DraftDesk(PlantFolder(plant, plant.parent / "state"), plant.parent / "state", Checker(check))
         if editor:
             desk.take(editor, editor[:3])
         return desk
@@ -159,4 +169,72 @@ def test_an_empty_draft_is_not_kept(open_desk: Open) -> None:
 
 def test_without_a_record_there_is_no_draft(tmp_path: Path) -> None:
     with pytest.raises(DraftRefused, match="record: off"):
-        DraftDesk(tmp_path / "plant.yaml", tmp_path, good).state()
+        DraftDesk(PlantFolder(tmp_path / "plant.yaml", tmp_path), tmp_path, Checker(good)).state()
+
+
+def test_trees_are_a_part_of_the_draft(open_desk: Open, plant: Path) -> None:
+    desk = open_desk()
+    with pytest.raises(DraftRefused, match="no file of trees"):
+        desk.trees("tend.xml")
+    state = desk.set_trees(ANA, "tend.xml", "<root/>")
+    used = ["uses: new, [tend.xml]", "tend.xml: new"]
+    assert (state["trees"], state["changes"]) == (["tend.xml"], used)
+    assert desk.trees("tend.xml") == {"file": "tend.xml", "text": "<root/>"}
+    assert desk.undo(ANA)["trees"] == []
+    desk.redo(ANA)
+    assert desk.remove_trees(ANA, "tend.xml")["trees"] == [] and not (plant.parent / "tend.xml").exists()
+    with pytest.raises(DraftRefused, match="no file of trees"):
+        desk.set_trees(ANA, "../tend.xml", "<root/>")
+
+
+def test_a_new_file_of_trees_is_written_over_no_other_file(open_desk: Open, plant: Path) -> None:
+    desk = open_desk()
+    (plant.parent / "mine.xml").write_text("mine")
+    with pytest.raises(DraftRefused, match="is there already, in the plant's folder"):
+        desk.set_trees(ANA, "mine.xml", "<root/>")
+    desk.add_trees(ANA, "new.xml", "<root/>")
+    with pytest.raises(DraftRefused, match=r"'new\.xml' is there already; choose another"):
+        desk.add_trees(ANA, "new.xml", "<root/>")
+
+
+def test_what_only_a_restart_takes_is_said_before_it_is_kept(open_desk: Open) -> None:
+    desk = open_desk()
+    assert desk.set(ANA, DWELL, 2)["restart"] == ()
+    assert "watch their links" in desk.set(ANA, ("timing", "stale_after_s"), 2)["restart"][0]
+
+
+def test_a_draft_is_put_to_work_as_the_version_that_it_is_kept_as(plant: Path) -> None:
+    put: list[tuple[int, str]] = []
+
+    def work_by(version: Version, found: Checked, by: str) -> dict[str, Any]:
+        put.append((version.number, by))
+        return {"version": version.number}
+
+    state = plant.parent / "state"
+    desk = DraftDesk(PlantFolder(plant, state), state, Checker(good), work_by)
+    desk.take(ANA, "ana")
+    desk.set(ANA, DWELL, 2)
+    assert desk.apply(ANA, "why") == {"version": 2} and put == [(2, "ana")]
+    assert b"dwell_s: 2" in plant.read_bytes()
+    refused = DraftDesk(PlantFolder(plant, state), state, Checker(bad), work_by)
+    refused.take(ANA, "ana")
+    refused.set(ANA, DWELL, 3)
+    assert refused.apply(ANA, "")["version"] is None and len(put) == 1
+
+
+def test_a_plant_that_comes_with_arboleda_is_made_ones_own_before_it_is_changed(tmp_path: Path) -> None:
+    at_work.keep(tmp_path, PlantFiles(plant="plant.yaml", contents={"plant.yaml": TEXT}), AT)
+    folder = PlantFolder(None, tmp_path)
+    desk = DraftDesk(folder, tmp_path, Checker(good))
+    assert desk.take(ANA, "ana")["is_ours"] is False
+    with pytest.raises(DraftRefused, match="make them your own first"):
+        desk.set(ANA, DWELL, 2)
+    with pytest.raises(DraftRefused, match="ana edits"):
+        desk.own(BEN)
+    assert desk.own(ANA)["is_ours"] is True and folder.file == tmp_path / "files" / "plant.yaml"
+    desk.set(ANA, DWELL, 2)
+    assert desk.keep(ANA, "")["version"] == 2
+    assert b"dwell_s: 2" in folder.file.read_bytes() and (tmp_path / "files" / ".arboleda").is_dir()
+    with pytest.raises(DraftRefused, match="your own already"):
+        desk.own(ANA)
+    assert "--plant" in PlantFolder(None, tmp_path).note

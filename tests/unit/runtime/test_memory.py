@@ -34,6 +34,7 @@ def test_what_was_kept_is_remembered(store: Store) -> None:
         Fact.DISPLACED: {"rm": "true"},
         Fact.BOOT: {"rm": "17"},
         Fact.STEP: {"lot-1": "{}"},
+        Fact.MANUAL: {"sis_a": "ana"},
     }
     for fact, values in kept.items():
         for name, value in values.items():

@@ -262,6 +262,7 @@ def test_every_kind_is_in_one_of_the_tables():
         "double_submit",
         "bad_task",
         "flood_of_tasks",
+        "teach",
         "foreign_garbage",
         "foreign_report",
         "foreign_stray",

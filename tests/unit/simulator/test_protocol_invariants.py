@@ -347,7 +347,7 @@ def test_no_deadline_overrun(monkeypatch, bites):
 
 
 def test_no_deadline_overrun__of_a_deadline_without_end(monkeypatch, bites):
-    monkeypatch.setattr(dispatcher.Dispatcher, "_allowed_s", lambda self, command: 1e6)
+    monkeypatch.setattr(dispatcher.Dispatcher, "_allowed_s", lambda self, command, timing: 1e6)
     watch = Watch()
     watch.task(wait_s=1)
     bites(watch)
@@ -613,7 +613,7 @@ def test_no_repeat_has_effect(monkeypatch, bites):
     receive = Board.receive
 
     def believe(self: Any, now_us: int, delivery: Any) -> None:
-        receive(self, now_us, replace(delivery, retain=False))
+        receive(self, now_us, delivery._replace(retain=False))
 
     monkeypatch.setattr(Board, "receive", believe)
     watch = Watch()
@@ -660,7 +660,7 @@ def test_nothing_retained_on_commands(monkeypatch, bites):
     monkeypatch.setattr(
         wire_board.Board,
         "_publication",
-        lambda *args, **more: replace(publication(*args, **more), retain=True),
+        lambda *args, **more: publication(*args, **more)._replace(retain=True),
     )
     watch = Watch()
     watch.task(wait_s=1)

@@ -90,6 +90,6 @@ def test_telemetry_that_came_before_is_found_if_it_is_reported(bridges: Bridges,
 
 def test_retained_telemetry_is_found_if_it_is_reported(bridges: Bridges, step: BridgeStep) -> None:
     first = next(each for each in step.events if isinstance(each, Delivery))
-    step.events = [replace(each, retain=each is first) for each in step.events]
+    step.events = [each._replace(retain=each is first) for each in step.events]
     bridges.look([step])
     assert bridges.wrong[REPORTS]

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
+from arboleda.trees.fingerprint import FOR_PEOPLE
+
 MOST = 200  # mistakes that are shown; a file with more is no file of trees
 
 
@@ -20,7 +22,7 @@ class Mark:
 class Place:
     """Place in one of several files; `file` is its name for people."""
 
-    file: str
+    file: str = field(metadata={FOR_PEOPLE: True})
     mark: Mark
 
     def __str__(self) -> str:

@@ -26,7 +26,7 @@ class FaultsFile:
     long it ran.
 
     `plant_file` is the content of the plant's file, where it was drawn, `plant_files` those beside it;
-    `standby`: it ran on two hosts.
+    `standby`: it ran on two hosts. `revises`: its files were changed while it ran.
     """
 
     climate: Any
@@ -36,6 +36,7 @@ class FaultsFile:
     plant_files: dict[str, str] = field(default_factory=dict)
     seconds: float | None = None
     standby: bool = False
+    revises: bool = False
 
 
 def read(path: Path, seed: int | None) -> FaultsFile:
@@ -47,7 +48,9 @@ def read(path: Path, seed: int | None) -> FaultsFile:
     if SUMMARY not in data:
         return FaultsFile(climate=data, plant=_plant(path, data))
     try:
-        return replace(_broken(path, data[SUMMARY], seed), standby=data.get("standby") is True)
+        broken = _broken(path, data[SUMMARY], seed)
+        standby, revises = (data.get(key) is True for key in ("standby", "revisions"))
+        return replace(broken, standby=standby, revises=revises)
     except (KeyError, TypeError):
         raise ConfigError((f"{path}: is not what `arboleda simulate --json` writes",)) from None
 

@@ -40,6 +40,12 @@ class Request:
     until_failure: bool = False
     any_of: bool = False
     standby: bool = False
+    revises: bool = False
+
+    @property
+    def changes_files(self) -> bool:
+        """True if the plant's files are changed while it runs: as asked, or as in the file of a seed."""
+        return self.revises or (self.told is not None and self.told.revises)
 
     @property
     def two_hosts(self) -> bool:
@@ -109,6 +115,7 @@ class Request:
             seconds=self.told.seconds if self.told else None,
             any_of=self.any_of,
             standby=self.two_hosts,
+            revises=self.changes_files,
         )
         try:
             for seed in self._checked:
@@ -151,6 +158,7 @@ class Request:
         plant += ["--drawn-plants"] if self.drawn_plants and drawn else []
         plant += ["--any-of"] if self.any_of else []
         plant += ["--standby"] if self.standby else []
+        plant += ["--revisions"] if self.revises else []
         return shlex.join(["arboleda", "simulate", *words, *plant, "--trace"])
 
 

@@ -16,9 +16,9 @@ WIDTH = 120  # columns where there is no terminal that has a width
 Show = Callable[[str, int], None]  # (what to say, how much is done)
 
 
-def console() -> Console:
-    """Standard output, wide enough for a table in a file too."""
-    made = Console(highlight=False)
+def console(*, quiet: bool = False) -> Console:
+    """Standard output, wide enough for a table in a file too; `quiet`: nothing is printed there."""
+    made = Console(highlight=False, quiet=quiet)
     if not made.is_terminal:
         made.width = max(made.width, WIDTH)
     return made

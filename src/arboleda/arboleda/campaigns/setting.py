@@ -32,7 +32,8 @@ class Setting:
     """`plants` says on which one a seed runs; faults are drawn at `level`, or are as `told`.
 
     A run goes on until `cycles` tasks have ended, or for `seconds` if given. With `any_of` about half of the
-    tasks are for several cells. `standby`: the plant runs on two hosts.
+    tasks are for several cells. `standby`: the plant runs on two hosts. `revises`: its files
+    are changed while it runs.
     """
 
     plants: Plants
@@ -42,6 +43,7 @@ class Setting:
     seconds: float | None = None
     any_of: bool = False
     standby: bool = False
+    revises: bool = False
 
     def plant(self, seed: int) -> PlantModel:
         """The plant of a seed as it is simulated."""
@@ -90,6 +92,7 @@ class Setting:
             script=script,
             any_of=self.any_of,
             standby=self.standby,
+            revises=self.revises,
         )
         return simulation.run(seconds=self.seconds, cycles=self.cycles)
 
@@ -105,12 +108,13 @@ class Setting:
             script=script,
             any_of=self.any_of,
             standby=self.standby,
+            revises=self.revises,
         )
         return simulation.run(seconds=seconds)
 
     def _judges(self, plant: Plant) -> tuple[Invariant, ...]:
         """Those of every plant, and of a drawn one that its recipes do what was drawn."""
-        judges, drawn = judged_by(standby=self.standby), plant.drawn
+        judges, drawn = judged_by(standby=self.standby, revises=self.revises), plant.drawn
         if drawn is None:
             return judges
         return (*judges, as_drawn(drawn.recipes, pauses=drawn.form is Form.PYTHON))
@@ -118,6 +122,6 @@ class Setting:
 
 def rules() -> dict[str, str]:
     """The sentence of each invariant, by its name."""
-    judges = (*judged_by(standby=True), as_drawn(()))
+    judges = (*judged_by(standby=True, revises=True), as_drawn(()))
     sentences = {each.name: " ".join(each.sentence.split()) for each in judges}
     return {NO_EXCEPTION: "No exception escapes a step."} | sentences

@@ -33,6 +33,7 @@ def campaign_of(request: Request) -> str:
     contents = [{name: text.hex() for name, text in each.files.contents.items()} for each in plants]
     asked = [__version__, request.first, request.count, request.cycles, request.faults, told, contents]
     asked += [request.drawn_plants, request.any_of, request.two_hosts]
+    asked += [True] if request.changes_files else []  # else the same as before there were any
     return hashlib.sha256(json.dumps(asked).encode()).hexdigest()[:16]
 
 

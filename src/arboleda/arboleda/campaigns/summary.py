@@ -38,6 +38,7 @@ def summary(request: Request, tally: Tally, shrunk: ShrunkBreach | None, *, comp
         "cycles": request.cycles,
         "level": request.faults,
         "standby": request.two_hosts,
+        "revisions": request.changes_files,
         "complete": complete,
         "totals": {
             "seeds": len(rows),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import getpass
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from datetime import datetime, timezone
 from pathlib import Path
@@ -11,20 +11,26 @@ from typing import Annotated
 
 import typer
 
-from arboleda.model.errors import ConfigError
+from arboleda.model.errors import ArboledaError, ConfigError
 from arboleda.model.outside import plain
 from arboleda.plant_file import draft_check, loader, plant_check
-from arboleda.plant_file.changes import changes
+from arboleda.plant_file.changes import Change, changes
+from arboleda.plant_file.restart import needing_restart
 from arboleda.plant_file.versions import Version, Versions, version_of, whole
 from arboleda.runtime import at_work
 from arboleda.runtime.state import Running, default_state, find_running
 
-from .plant_options import PlantFile, StateFolder
+from .plant_options import PlantFile, StateFolder, client
 
 LONGEST = 500  # characters of a line
 NOT_SHIPPED = (
     "the shipped plant cannot be changed: write one of your own with `arboleda new`, or copy its file, and"
     " name it with --plant"
+)
+NOT_TAKEN = 1
+RESTART = (
+    "the plant that runs goes on as it is, and has it from its next start on; so has the next leader of"
+    " two, as after `arboleda handover`"
 )
 Back = Annotated[
     int | None,
@@ -36,7 +42,7 @@ Yes = Annotated[bool, typer.Option("--yes", help="Do not ask.")]
 
 @dataclass(frozen=True, kw_only=True)
 class _Base:
-    """What a version is compared with, None for nothing, and the process that runs the plant."""
+    """Basis of a comparison: an earlier version, None for nothing, and the process that runs the plant."""
 
     version: Version | None
     running: Running | None
@@ -55,15 +61,17 @@ def apply(
 ) -> None:
     """Check a plant file and all that it uses, show what is another than what is at work, and put it to work.
 
-    Versions are kept in the folder .arboleda beside the plant file. A plant that runs goes on as it is; its
-    next start takes the version. Exit status: 0 kept, or nothing to keep; 1 you said no; 2 the check refuses
-    it, and nothing was changed.
+    Versions are kept in the folder .arboleda beside the plant file. A plant that runs takes the version: each
+    cell once its task has ended. What needs a restart is said before anything is done. Exit status: 0 kept,
+    or nothing to keep; 1 you said no, or the plant that runs has not taken it; 2 the check refuses it, and
+    nothing was changed.
     """
     file = _named(plant)
     kept = Versions(file)
+    kept.go_on()
     wanted = _on_disk(file) if back is None else _checked(file, kept, kept.find(back))
     base = _base(wanted.plant_name, kept, state)
-    lines = tuple(_differences(base.version, wanted))
+    lines = tuple(each.words for each in _told(base.version, wanted))
     if base.version is not None and not lines:
         if back is not None and not kept.is_in_place(wanted.version):
             _ask("Bring its files back?", yes=yes)
@@ -73,12 +81,21 @@ def apply(
     _print(f"{file}: compared with {base.name}:" if base.version else f"{file}: {base.name}")
     for line in lines:
         _print(f"  {line}")
+    if base.running is not None and (needing := needing_restart(_told(base.version, wanted))):
+        _print("this needs a restart, or a handover; until then the plant that runs goes on as it is:")
+        for line in needing:
+            _print(f"  {line}")
     _ask("Put this to work?", yes=yes)
     if back is not None:
         kept.bring_back(wanted.version)
         wanted = replace(wanted, version=version_of(loader.load_with_files(file)[1], at=_now()))
     fresh = replace(wanted.version, changes=lines, note=note or (f"version {back} again" if back else ""))
-    _print(f"version {_keep(kept, base, fresh)} is kept; {_what_next(base.running)}")
+    number = _keep(kept, base, fresh)
+    if base.running is None:
+        _print(f"version {number} is kept; the next start of the plant has it")
+        return
+    _print(f"version {number} is kept")
+    _put_to_work(number, plant, state)
 
 
 def versions(plant: PlantFile = None, state: StateFolder = None) -> None:
@@ -140,7 +157,7 @@ def _checked(file: Path, kept: Versions, version: Version) -> _Wanted:
 
 
 def _base(plant_name: str, kept: Versions, state: Path | None) -> _Base:
-    """What is at work in the plant that runs; where none does, what was kept last."""
+    """The version at work in the plant that runs; where none runs, the one that was kept last."""
     where = state or default_state(plant_name)
     running, started, last = find_running(where), at_work.known(where), kept.last()
     if running is not None and started is not None:
@@ -149,11 +166,12 @@ def _base(plant_name: str, kept: Versions, state: Path | None) -> _Base:
     return _Base(version=last or started, running=running)
 
 
-def _differences(base: Version | None, wanted: _Wanted) -> Iterator[str]:
+def _told(base: Version | None, wanted: _Wanted) -> Sequence[Change]:
+    """Changes that a version makes to what is at work, of which there may be nothing."""
     if base is None:
-        return
+        return ()
     sides = [base.files, wanted.version.files] if wanted.comes_back else [whole(base), whole(wanted.version)]
-    yield from (each.words for each in changes(*sides))
+    return changes(*sides)
 
 
 def _keep(kept: Versions, base: _Base, version: Version) -> int:
@@ -161,13 +179,28 @@ def _keep(kept: Versions, base: _Base, version: Version) -> int:
     before = base.version
     if before is not None and not before.number:
         kept.keep(replace(before, note="as the plant was started"))
+    last = kept.last()
+    if last is not None and last.digest == version.digest:  # kept before, and not at work yet
+        return last.number
     return kept.keep(replace(version, by=getpass.getuser())).number
 
 
-def _what_next(running: Running | None) -> str:
-    if running is None:
-        return "the next start of the plant has it"
-    return f"the plant that runs (process {running.pid}) goes on as it is, and has it from its next start on"
+def _put_to_work(number: int, plant: Path | None, state: Path | None) -> None:
+    """Have the plant that runs take a version, and print when each cell does; status 1 if it does not."""
+    try:
+        answer = client(plant, state).put_to_work(number, getpass.getuser())
+    except ArboledaError as error:
+        _print(f"the plant that runs goes on as it is, and has it from its next start on: {error}")
+        raise typer.Exit(NOT_TAKEN) from error
+    for line in answer["restart"]:
+        _print(f"  {line}")
+    if answer["restart"]:
+        _print(RESTART)
+        return
+    for cell, when in answer["cells"].items():
+        _print(f"  {cell} takes it {when}")
+    for task in answer["cancelled"]:
+        _print(f"  task {task} waited, and is cancelled: the plant does not take it any more")
 
 
 def _heading(version: Version, *, is_running: bool) -> Iterator[str]:

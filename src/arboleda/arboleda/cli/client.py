@@ -27,6 +27,7 @@ NEXT_S = 30.0  # for a plant that lost its leader to get the next one
 NOBODY_S = 5.0  # a standby needs less to begin leading; until then nobody leads or waits
 LOOK_S = 0.2
 FOLLOWED_S = 120.0  # a homing may take a minute
+CHECKED_S = 330.0  # a check of the plant's files has five minutes
 URGENT_S = 1.5  # a stop is answered within some ms
 STANDS_BY = "this process stands by and does nothing itself: it {it}"
 LOST_TASK = (
@@ -80,6 +81,11 @@ class PlantClient:
         body = (dict(arguments) | ({"by_hand": True} if by_hand else {})) or None
         stops = verb.row.stops
         return self._ask("POST", f"/api/{where}/{verb.value}", body, repeatable=stops, urgent=stops)
+
+    def put_to_work(self, version: int, name: str) -> dict[str, Any]:
+        """Have the plant put a kept version to work; the answer says when each cell takes it."""
+        path = f"/api/versions/{version}/put"
+        return self._ask("POST", path, {"name": name}, repeatable=True, within_s=CHECKED_S)
 
     def outcome(self, act: int) -> dict[str, Any]:
         """The row of an act once it has ended; after FOLLOWED_S as it is then."""
@@ -158,13 +164,14 @@ class PlantClient:
         *,
         repeatable: bool = False,
         urgent: bool = False,
+        within_s: float = TIMEOUT_S,
     ) -> Any:
         """`repeatable`: nothing is done twice where two processes of the plant hear it. `urgent`: a process
         here that is slow keeps it from a leader elsewhere for no longer than URGENT_S."""
         line = self._listening or self._near() or self._far()
         hurries = urgent and self._elsewhere.is_known and not isinstance(line, FarLine)
         try:
-            answer = line.ask(method, path, body, within_s=URGENT_S if hurries else TIMEOUT_S)
+            answer = line.ask(method, path, body, within_s=URGENT_S if hurries else within_s)
         except PlantSilent as error:
             other = self._instead(line, error, repeatable=repeatable or method == "GET")
             if other is None and not hurries:

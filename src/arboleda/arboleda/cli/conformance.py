@@ -87,13 +87,13 @@ def _try(robot: Robot, broker: str, credentials: Credentials | None) -> int:
         where = address(broker)
     except StartError as error:
         raise typer.BadParameter(str(error), param_hint="--broker") from error
-    said = 0
+    shown = 0
 
     def told(judge: Judge) -> None:
-        nonlocal said
-        for finding in judge.findings[said:]:
+        nonlocal shown
+        for finding in judge.findings[shown:]:
             console.print(_line(finding), soft_wrap=True)
-        said = len(judge.findings)
+        shown = len(judge.findings)
 
     trial = Trial(robot, where, credentials, told)
     trial.run()

@@ -17,7 +17,13 @@ from arboleda.playback.fork.plant_events import TASK, Pair, beside
 from arboleda.playback.fork.run import ForkRequest, ForkResult
 from arboleda.playback.fork.settings import with_settings
 from arboleda.playback.record_text import moment
-from arboleda.playback.recorded_plant import as_it_ran, loaded, model_of, with_content
+from arboleda.playback.recorded_plant import (
+    as_it_ran,
+    loaded,
+    model_of,
+    versions_of,
+    with_content,
+)
 from arboleda.recorder.preamble import Beginning, PlantFiles
 from arboleda.recorder.reader import Record
 
@@ -51,14 +57,18 @@ def asked(record: Record, options: Options) -> ForkRequest:
     if at_ns is None:
         raise ConfigError(("a fork needs --fork-at TIME, or --task ID: from when that task begins",))
     recipe = _with_recipe(beginning.files, options.recipe) if options.recipe else None
-    recorded = model_of(beginning)
+    recorded, versions = model_of(beginning), versions_of(record)
+    model = _changed(beginning, options) if changed else recorded
+    if changed:  # what was put to work later must not undo what is tried
+        versions = dict.fromkeys(versions, model)
     return ForkRequest(
         at_ns=at_ns,
-        model=_changed(beginning, options) if changed else recorded,
+        model=model,
         recorded=recorded,
         builders=None if recipe is None else builders_of(as_it_ran(beginning, loaded(recipe))),
         healthy=options.healthy,
         until_ns=options.until_ns,
+        versions=versions,
     )
 
 

@@ -26,6 +26,7 @@ from arboleda.model.outside import plain
 from arboleda.model.plant_model import Link, PlantModel
 from arboleda.plant_file import advance_check, loader, plant_check, tree_file
 from arboleda.plant_file.urdf import robot_urdf
+from arboleda.plant_file.versions import Versions
 from arboleda.recorder.errors import NoRecord
 from arboleda.recorder.preamble import Recording
 from arboleda.runtime.alarm_options import alarm_options
@@ -495,6 +496,8 @@ def common(
 
 def _model(plant: Path | None, tasks: list[str]) -> tuple[PlantModel, Recording | None]:
     """The plant and the limits of its record, with every task text checked before anything starts."""
+    if plant is not None:
+        Versions(plant).go_on()
     model, recording = loader.load_recorded(plant)
     problems = []
     for task in tasks:
@@ -613,10 +616,11 @@ def _run(
         raise typer.BadParameter("--rate is for virtual boards; the others have the speed they have")
     if boards is not Boards.VIRTUAL and options.demo:
         raise typer.BadParameter("--demo has boards fail, so it is for virtual ones alone")
-    if boards in (Boards.VIRTUAL, Boards.LINUX):
-        recording = options.recording and replace(options.recording, virtual=True)
-        options = replace(options, notes=(*options.notes, *_virtual(model)), recording=recording)
-        model = model.on_boards(Link.DRIVER)
+    is_virtual = boards in (Boards.VIRTUAL, Boards.LINUX)
+    if is_virtual:
+        options = replace(options, notes=(*options.notes, *_virtual(model)))
+        model, recording = _on_boards(model, options.recording)
+        options = replace(options, recording=recording)
     left_out = {"broker"} if options.broker else set()
     left_out |= {"devices"} if boards is Boards.REAL else set()
     left_out |= set() if model.has_boards else OF_BOARDS
@@ -631,13 +635,23 @@ def _run(
     )
     parts, console = set(PARTS) - left_out, Console(highlight=False)
     if standby:
+
+        def again() -> tuple[PlantModel, Recording | None]:
+            read = loader.load_recorded(options.plant_file)
+            return _on_boards(*read) if is_virtual else read
+
         try:
-            app = take_over(model, parts, options, lambda line: console.print(Text(line, style="dim")))
+            app = take_over(model, parts, options, lambda line: console.print(Text(line, style="dim")), again)
         except KeyboardInterrupt:
             raise typer.Exit from None
     else:
         app = build(model, parts, options)
     raise typer.Exit(session.Session(app, tasks, console, stay=stay, patience_s=patience_s).run())
+
+
+def _on_boards(model: PlantModel, recording: Recording | None) -> tuple[PlantModel, Recording | None]:
+    """The same plant with virtual boards in place of its drivers."""
+    return model.on_boards(Link.DRIVER), recording and replace(recording, virtual=True)
 
 
 def _ros(model: PlantModel, wanted: bool | None, *, lan: bool) -> tuple[Any, tuple[str, ...]]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import re
+import sys
 from pathlib import Path
 from typing import Annotated
 
@@ -27,7 +28,7 @@ Then each kind of fault begins before and after each event of that run, and in t
 one run each. Steps' beginnings come first, so that a short budget is spent well.
 
 Exit status: 0 every invariant held, 1 one was broken, or a task failed where nothing had
-gone wrong, 2 bad input, 130 Ctrl-C."""
+gone wrong, 2 bad input or nothing was run, 130 Ctrl-C."""
 BUDGETS = re.compile(r"(\d+(?:\.\d+)?)(s|m|h)")
 SECONDS = {"s": 1.0, "m": 60.0, "h": 3600.0}
 ALL = "all"
@@ -49,7 +50,14 @@ Budget = Annotated[
         metavar="TIME", help="Begin no more runs after so long: 30s, 10m, 2h; all: until everything is run."
     ),
 ]
-Json = Annotated[Path | None, typer.Option("--json", metavar="FILE", help="Write the whole answer.")]
+Json = Annotated[
+    Path | None,
+    typer.Option(
+        "--json",
+        metavar="FILE",
+        help="Write the whole answer; -: print progress, then the answer, as lines of JSON and nothing else.",
+    ),
+]
 Html = Annotated[
     Path | None,
     typer.Option("--html", metavar="FILE", help="Write the answer as one page, in English and Spanish."),
@@ -99,8 +107,11 @@ def prove(
 ) -> None:
     from arboleda.campaigns import screen  # the simulator takes a while to load
     from arboleda.campaigns.proof.proof_campaign import ProofCampaign, ProofRequest
+    from arboleda.campaigns.proof.proof_lines import STANDARD_OUTPUT, ProofLines
     from arboleda.campaigns.workers import processors
 
+    is_read_along = json is not None and str(json) == STANDARD_OUTPUT
+    json = None if is_read_along else json
     for file in (json, html, junit, tests, badge):
         if file is not None:
             check_writable(file)
@@ -120,7 +131,9 @@ def prove(
         tests=tests,
         badge=badge,
     )
-    raise typer.Exit(ProofCampaign(request, screen.console()).run(jobs or processors()))
+    lines = ProofLines(sys.stdout if is_read_along else None)
+    console = screen.console(quiet=is_read_along)
+    raise typer.Exit(ProofCampaign(request, console, lines).run(jobs or processors()))
 
 
 def seconds_of(budget: str) -> float:

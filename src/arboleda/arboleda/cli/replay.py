@@ -18,7 +18,7 @@ from arboleda.model.messages import ENDED
 from arboleda.model.outside import plain
 from arboleda.model.plant_model import PlantModel
 from arboleda.playback.record_text import moment, sentence_of
-from arboleda.playback.recorded_plant import model_of
+from arboleda.playback.recorded_plant import model_of, versions_of
 from arboleda.recorder.errors import NoRecord
 from arboleda.recorder.preamble import Beginning
 
@@ -226,7 +226,8 @@ def _run(record: Record, model: PlantModel, chosen: Chosen) -> ReplayedStep | No
     last: ReplayedStep | None = None
     pace = Pace(chosen.speed)
     known = False
-    for last in replayed(plant_of(record.first.beginning, model), _until(record, chosen.until_ns)):
+    plant = plant_of(record.first.beginning, model, versions_of(record))
+    for last in replayed(plant, _until(record, chosen.until_ns)):
         pace.wait(last.recorded.now)
         rows = [row for row in changes(last.recorded.said) if chosen.task in (None, row["task"])]
         for row in rows:

@@ -44,6 +44,7 @@ STATES = {
     MotionState.NO_LINK: "no link",
 }
 STATE_WIDTH = 9  # letters of a task's state at the beginning of its line
+STANDING = {"idle": "", "execute": "cyan", **dict.fromkeys(("manual", "paused", "blocked"), "yellow")}
 STYLES = {
     TaskState.QUEUED: "dim",
     TaskState.RUNNING: "cyan",
@@ -242,7 +243,7 @@ def _row(cell: dict[str, Any], robots: dict[str, dict[str, Any]], *, told: bool)
     """The row of a cell; with `told`, the positions of its robots, too."""
     task = cell["task"]
     standing = view.standing(cell)
-    style = {"idle": "", "execute": "cyan", "paused": "yellow", "blocked": "yellow"}.get(standing, "red")
+    style = STANDING.get(standing, "red")
     tasks = [task["text"].removeprefix(f"{cell['name']} ")] if task else []
     tasks += [f"+{len(cell['queue'])}"] if cell["queue"] else []
     words = (cell["name"], view.standing_said(cell), " ".join(tasks), cell["step"] or "")
@@ -301,7 +302,7 @@ def _why(cell: dict[str, Any]) -> str | None:
 
 
 def _to_do_by_hand(cell: dict[str, Any]) -> str | None:
-    """What a person is advised to do first at a cell that takes tasks all the same."""
+    """The first advice to a person at a cell that takes tasks all the same."""
     first = next(iter(cell["advice"]), None)
     return f"{cell['name']}: {first['said']}" if first is not None and first["hand"] else None
 

@@ -48,6 +48,7 @@ def unit(*, plant: str, command: Sequence[str], state: Path, user: str | None) -
         "[Service]",
         "Type=notify",
         f"ExecStart={' '.join(map(_quoted, command))}",
+        "ExecReload=/bin/kill -HUP $MAINPID",
         f"User={user}" if whole else "",
         f"WorkingDirectory={_escaped(str(state))}",
         f"EnvironmentFile=-{_escaped(str(state / 'environment'))}",

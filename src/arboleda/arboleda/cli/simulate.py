@@ -22,6 +22,7 @@ arboleda simulate                            {SEEDS} seeds on two plants
 arboleda simulate --plant my_plant.yaml      your plant
 arboleda simulate --drawn-plants             a plant of its own for each seed
 arboleda simulate --standby                  on two hosts, of which one stands by
+arboleda simulate --revisions                whose files are changed while they run
 arboleda simulate --until-failure            seed after seed until something breaks
 arboleda simulate --seed 4711 --trace        one seed, line by line, the same every time
 arboleda simulate --seed 4711 --record seed.mcap  and look at it: arboleda replay seed.mcap --page
@@ -78,6 +79,13 @@ Standby = Annotated[
         " killed, frozen or cut off, clocks that drift, planned changes.",
     ),
 ]
+Revised = Annotated[
+    bool,
+    typer.Option(
+        "--revisions",
+        help="Have engineers change the plant's files while it runs: targets, times, retries, recipes.",
+    ),
+]
 UntilFailure = Annotated[bool, typer.Option("--until-failure", help="End at the first broken invariant.")]
 Json = Annotated[
     Path | None, typer.Option("--json", metavar="FILE", help="Write what came of every seed to this file.")
@@ -127,6 +135,7 @@ def simulate(
     faults: Faults = LEVEL,
     any_of: AnyOf = False,
     standby: Standby = False,
+    revisions: Revised = False,
     until_failure: UntilFailure = False,
     json: Json = None,
     record: Record = None,
@@ -150,6 +159,8 @@ def simulate(
         raise typer.BadParameter("--trace and --record are for one seed; choose it with --seed")
     if drawn_plants and plant is not None:
         raise typer.BadParameter("--drawn-plants and --plant exclude each other")
+    if standby and revisions:
+        raise typer.BadParameter("--standby and --revisions exclude each other")
     if standby and faults == CRASHES:
         raise typer.BadParameter("--standby has deaths of its own: leave out --faults crashes")
     request = Request(
@@ -162,6 +173,7 @@ def simulate(
         until_failure=until_failure,
         any_of=any_of,
         standby=standby,
+        revises=revisions,
     )
     if worker and (not store or alone or until_failure or jobs is not None):
         raise typer.BadParameter(

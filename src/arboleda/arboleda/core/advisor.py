@@ -44,7 +44,7 @@ class Advisor:
         """
         run = self._cells[cell]
         lead = LEADS.get(run.state)
-        if lead is None or run.closed:
+        if lead is None or run.closed or run.teaching is not None:
             return ()
         found: dict[Advice, None] = dict.fromkeys(lead(self, run, asked | {cell}))
         return tuple(found)
@@ -181,7 +181,7 @@ class Advisor:
         yield Advice(do=Verb.HOME, scope=robot, why=why, by_hand=True)
 
     def _freeing(self, run: CellRun, zones: Mapping[str, str], asked: frozenset[str]) -> Iterator[Advice]:
-        """What has others give zones back: what their cells need first; between two that wait for each other,
+        """Acts by which others give zones back, first those of their cells; of two that wait for each other,
         and for a robot that is not heard, somebody may answer for a zone being empty.
         """
         for holder in sorted(set(zones.values())):

@@ -13,8 +13,9 @@ from arboleda.dispatch.dispatcher import BROKEN_OFF
 from arboleda.dispatch.ledger import State
 from arboleda.model.commands import Motion
 from arboleda.model.messages import Failure, Reason, TaskState, Verb
-from arboleda.model.plant_model import Cell
+from arboleda.model.plant_model import Cell, Timing
 from arboleda.model.recipe import Build
+from arboleda.model.revision import RevisionName
 from arboleda.model.sentence import Phrase, Sentence
 from arboleda.model.task import Task
 from arboleda.trees import steps
@@ -29,6 +30,7 @@ from .advice import Advice
 from .cell_states import TABLE, Cause, CellState, after
 from .readiness import Readiness
 from .task_queue import TaskQueue
+from .teaching import TAUGHT, Teaching
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -43,6 +45,16 @@ class GoesOn:
     since: dict[str, Moment]
     by: float
     paused: bool
+
+
+@dataclass(frozen=True, kw_only=True)
+class NextVersion:
+    """Another version of a cell, which it takes once it rests between two tasks; `taken` is told then."""
+
+    version: RevisionName
+    cell: Cell
+    timing: Timing
+    taken: Callable[[NextVersion], None]
 
 
 class CellRun:
@@ -70,8 +82,12 @@ class CellRun:
         self.stranded: Sentence | None = None  # why no step of a held task can go on from there
         self.place_trouble: Sentence | None = None  # for which the last task failed
         self.in_vain: set[tuple[Verb, str]] = set()  # what was done to get on, and failed, since it worked
+        self.teaching: Teaching | None = None  # its manual mode, while somebody teaches it
+        self.teaching_over: Callable[[CellRun, Teaching, Sentence], None] = lambda run, teaching, why: None
         self.dirty = False
         self.closed = False
+        self.following: NextVersion | None = None  # while it has not taken it
+        self.version: RevisionName | None = None  # the one that it took while the plant ran
         self._goes_on: GoesOn | None = None  # how it gets out of a hold by itself, after an absence
         self._changed = changed
         self._cancelling = False
@@ -88,7 +104,10 @@ class CellRun:
     def due(self) -> float | None:
         """The time at which the cell is to be looked at although nothing happens, s of the plant's time."""
         walk = self.keeping.walk
-        return self.context.time.next_deadline if walk is None else walk.due
+        due = self.context.time.next_deadline if walk is None else walk.due
+        if self.teaching is None:
+            return due
+        return self.teaching.due if due is None else min(due, self.teaching.due)
 
     @property
     def envelope(self) -> Sequence[str]:
@@ -100,7 +119,14 @@ class CellRun:
         """Why an idle cell would not start a task; None where it would, or is not idle."""
         if self.state is not CellState.IDLE:
             return None
+        if self.teaching is not None:
+            return self.taught
         return self.readiness.objection() or (self.queue.why_paused if self.queue.paused else None)
+
+    @property
+    def taught(self) -> Sentence | None:
+        """The person who teaches it, and how that ends; None while nobody does."""
+        return None if self.teaching is None else TAUGHT(cell=self.cell.name, teacher=self.teaching.teacher)
 
     @property
     def waits_for_grip(self) -> bool:
@@ -123,15 +149,57 @@ class CellRun:
         self.dirty = self.context.time.woken() or woken or self.dirty
         if self.state is CellState.EXECUTE and not self.dirty:
             return False
-        did = self._transit()
+        did = self.teaching is not None and self._taught_on(self.teaching)
+        did |= self._transit()
         if self.dirty and self.run.tree is not None and self.state is CellState.EXECUTE:
             self._look(self.run.tick())
+            did = True
+        if self.following is not None and self.is_between_tasks:
+            self._revise(self.following)
             did = True
         if self.queue and self.state is CellState.IDLE and not self.closed and self.not_ready is None:
             self._start(self.queue.popleft())
             did = True
         self.dirty = False
         return did
+
+    def teach(self, teaching: Teaching) -> None:
+        """Begin its manual mode: its queue pauses, and no task starts before the end of that."""
+        self.queue.paused = True
+        for robot in filter(self.context.devices.has, self.cell.zone_users):
+            self.context.zones.claim_free(robot)
+        self.teaching, self.dirty = teaching, True
+
+    def end_teaching(self, why: Sentence) -> None:
+        """End its manual mode; what moves is halted."""
+        teaching, self.teaching = self.teaching, None
+        if teaching is not None:
+            teaching.end()
+            self.teaching_over(self, teaching, why)
+            self.dirty = True
+
+    def _taught_on(self, teaching: Teaching) -> bool:
+        """Go on with what its teacher holds; whether anything was done."""
+        if teaching.is_forgotten:
+            self.end_teaching(NOT_TOUCHED(seconds=self.cell.teach.ends_after_s))
+            return True
+        return teaching.look()
+
+    @property
+    def is_between_tasks(self) -> bool:
+        """True where it can take another version: nobody teaches it, no task, tree or command is open."""
+        if self.teaching is not None or self.task is not None or self.run.tree is not None:
+            return False
+        return self.state in BETWEEN_TASKS and not self.context.commands.open()
+
+    def _revise(self, following: NextVersion) -> None:
+        self.following, self.version = None, following.version
+        self.cell = following.cell
+        self.context.revise(following.cell, following.timing)
+        self.queue.revise(following.cell)
+        self.readiness.revise(following.cell)
+        self.keeping.revise()
+        following.taken(following)
 
     def walk_back(self, task: Task, kept: str) -> None:
         """Hold a task that was at work when an earlier start ended, until a person says how it goes on."""
@@ -164,6 +232,7 @@ class CellRun:
     def stop(self) -> None:
         """The operator's stop (software): the task has failed; the robots are latched by the caller."""
         self.queue.paused = True
+        self.end_teaching(STOPPED(cell=self.cell.name))
         self.become(Cause.STOP)
         self.context.time.go_on()
         self.trouble = None
@@ -253,6 +322,7 @@ class CellRun:
         `drops_waiting`: there is no next start for the tasks of this one; they end.
         """
         self.closed = True
+        self.end_teaching(ASKED_TO_END())
         asked = Failure(reason=Reason.INTERRUPTED, sentence=ASKED_TO_END())
         if self.task is None or (drops_waiting and not self.task.is_kept):
             self.interrupt(asked)
@@ -273,6 +343,7 @@ class CellRun:
     def break_down(self, failure: Failure) -> None:
         """Something of the cell raised: its task has failed, and it is held unless it is stopped."""
         self.context.time.go_on()
+        self.end_teaching(failure.sentence)
         self.interrupt(failure)
         if (self.state, Cause.STUCK) in TABLE:
             self._stuck(failure)
@@ -304,7 +375,9 @@ class CellRun:
         return True
 
     def _found_unsettled(self) -> bool:
-        """Leave `idle` where a part may hang in the effector."""
+        """Leave `idle` where a part may hang in the effector; while it is taught that is as it should be."""
+        if self.teaching is not None:
+            return False
         unsettled = self.readiness.part_in_hand()
         if unsettled is None or self.context.commands.open():
             return False
@@ -491,6 +564,8 @@ class CellRun:
         self._changed(task)
 
 
+NOT_TOUCHED = Phrase("teach.not_touched", "nobody touched it for {seconds:g} s")
+BETWEEN_TASKS = (CellState.IDLE, CellState.STOPPED, CellState.ABORTED)
 STOPPED = Phrase("cell.stopped", "{cell} was stopped by the operator")
 ABANDONED = Phrase("task.abandoned", "abandoned by the operator")
 ASKED_TO_END = Phrase("task.plant_ends", "the plant was asked to end")

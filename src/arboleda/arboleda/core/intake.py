@@ -15,6 +15,7 @@ from . import text
 ENDING = Phrase("task.plant_ending", "the plant is ending; no new task is taken")
 ID_TAKEN = Phrase("task.id_taken", "#{id} is already the id of '{text}'; use another id")
 GONE = Phrase("task.gone", "the plant as it is now does not take it: {why}")
+OTHER_WORK = Phrase("task.other_work", "'{text}' would now be other work, by {recipe}")
 CUT_OFF = Phrase(
     "task.cut_off",
     "the plant ended while this was at work; nobody knows how far it came, so it is not done again",
@@ -66,10 +67,17 @@ class Intake:
                 task = Task.of(kept, text.parse(kept.text, self.model))
             except TextError as error:
                 if kept.state is TaskState.QUEUED:
-                    task.fail(Failure(reason=Reason.PRECONDITION, sentence=GONE(why=error.sentence)))
+                    task.fail(gone(error.sentence))
                     task.become(TaskState.CANCELLED, now)
         self.remember(task)
         return task
+
+    def read_again(self, order: Order) -> Order:
+        """The same order to the plant as it is now; TextError where its text means nothing, or other work."""
+        found = text.parse(order.text, self.model)
+        if found.recipe != order.recipe or [*found.values] != [*order.values]:
+            raise TextError(OTHER_WORK(text=order.text, recipe=found.recipe))
+        return found
 
     def recall(self, kept: KeptTask) -> None:
         """A task that has ended so long ago that only its keeper knew it."""
@@ -85,3 +93,8 @@ class Intake:
         if len(self.tasks) > HISTORY:
             ended = (known.id for known in self.tasks.values() if known.ended_at is not None)
             self.tasks.pop(next(ended, ""), None)
+
+
+def gone(why: Sentence) -> Failure:
+    """The failure of a task that waited for what the plant does not offer any more."""
+    return Failure(reason=Reason.PRECONDITION, sentence=GONE(why=why))

@@ -12,7 +12,7 @@ from arboleda.dispatch.ledger import Entry, State
 from arboleda.dispatch.zones import NONE, Zones
 from arboleda.model.commands import Question
 from arboleda.model.errors import ArboledaError, IllegalTransition
-from arboleda.model.messages import Failure, Journal, OperatorRequest, Outcome, Reason, TaskState, Verb
+from arboleda.model.messages import Fact, Failure, Journal, OperatorRequest, Outcome, Reason, TaskState, Verb
 from arboleda.model.outside import quoted
 from arboleda.model.plant_model import Evidence, Link, PlantModel
 from arboleda.model.recipe import known
@@ -26,6 +26,7 @@ from .cell import NOT_YET, CellRun
 from .cell_states import Cause, CellState
 from .intake import Intake
 from .readiness import STILL_DOING
+from .teaching import NOT_TAUGHT, OTHER_TEACHES, ZONE_OF_OTHER, Teaching
 
 
 class Refused(ArboledaError):
@@ -129,9 +130,16 @@ QUESTION_OVER = Phrase(
     "refusal.question_over", "question {question} to {person} is over; nobody asks {person} anything now"
 )
 NO_ARGUMENT = Phrase("refusal.no_argument", "{verb} takes no argument {argument}")
+NOT_AT_REST = Phrase(
+    "refusal.not_at_rest",
+    "{cell} is {state}; only a cell that is idle, or held without a task, can be taught",
+)
+NO_TEACHER = Phrase("refusal.no_teacher", "say who teaches {cell}, in 1 to {most} letters")
+TEACHING_ENDED = Phrase("teach.ended", "teaching of {cell} by {teacher} ended: {why}")
 NO_RUNNING_TASK = Phrase("refusal.no_running_task", "{cell} has no running task")
 
 BROKE = Phrase("act.broke", "{cell} failed on an internal error meanwhile; the log has its details")
+LONGEST_NAME = 40
 SHOWN = 10  # tasks that a sentence names
 
 
@@ -156,6 +164,8 @@ class Operator:
         self._scopes = scopes(dispatcher.model)
         cells_of = dispatcher.model.cells_of.items()
         self._alone = {name: cells[found[0].name] for name, found in cells_of if len(found) == 1}
+        for cell in cells.values():
+            cell.teaching_over = self._teaching_over
         self.acts = Acts()
         self._sent: list[Entry] = []  # the commands of the act that is being done
         self._defects: list[Sentence] = []  # what broke in it
@@ -232,7 +242,7 @@ class Operator:
         return None
 
     def _planned(self, request: OperatorRequest, scope: str) -> Callable[[], None]:
-        """What does the request, everything that speaks against it looked at; Refused says what does."""
+        """The function that carries out the request; Refused where something speaks against it."""
         if request.arguments:
             _require_its_own(request)
         procedure = TABLE[request.verb]
@@ -501,7 +511,7 @@ class Operator:
             self._dispatcher.wake([name])
 
     def _planned_homing(self, request: OperatorRequest, scope: str) -> Callable[[], None]:
-        """What is only drawn, and what has no homing, is left out; asked for alone, it is refused."""
+        """Robots that are only drawn, or have no homing, are left out; one of them alone is refused."""
         robots, by_hand = self._robots(scope), request.by_hand
         if scope in self._cells and self._cells[scope].cell.shared:
             robots = self._here(scope, robots)
@@ -559,11 +569,66 @@ class Operator:
                         return MAY_CROSS(arm=name, zone=zone, holder=holder)
         return None
 
+    def _planned_teaching(self, request: OperatorRequest, scope: str) -> Callable[[], None]:
+        """Of one cell that rests, by one person, while nobody else is where its robots may get."""
+        cells = self._cells_in(request.verb, scope)
+        teacher = str(request.argument("teacher") or "").strip()
+        cell = cells[0]
+        if len(cells) > 1 or scope not in self._cells:
+            raise Refused(NO_SCOPE(scope=quoted(scope), known=(*self._cells,)))
+        if not 0 < len(teacher) <= LONGEST_NAME or not teacher.isprintable():
+            raise Refused(NO_TEACHER(cell=scope, most=LONGEST_NAME))
+        if (refusal := self._not_teachable(cell)) is not None:
+            raise Refused(refusal)
+        return partial(self._teach, cell, teacher)
+
+    def _not_teachable(self, cell: CellRun) -> Sentence | None:
+        name, rests = cell.cell.name, cell.state in AT_REST and cell.task is None
+        if cell.teaching is not None:
+            return OTHER_TEACHES(cell=name, teacher=cell.teaching.teacher)
+        if cell.closed:
+            return reasons.ENDING()
+        if not rests:
+            return NOT_AT_REST(cell=name, state=cell.state.said)
+        if (busy := cell.readiness.busy()) is not None:
+            return busy
+        for robot in (each for each in cell.cell.reached if each.goes and each.name in cell.cell.own):
+            obstacle = self._dispatcher.beliefs[robot.name].unreachable()
+            if obstacle is not None:
+                return obstacle.sentence
+            if self._dispatcher.beliefs[robot.name].moves:
+                return NOT_STILL(robots=(robot.name,))
+        return self._zone_of_other(cell)
+
+    def _zone_of_other(self, cell: CellRun) -> Sentence | None:
+        """Refusal where a robot of another cell is, or may be, where robots of this one may get."""
+        for robot in filter(cell.context.devices.has, cell.cell.zone_users):
+            for zone, holder in cell.context.zones.taken_by_others(robot).items():
+                if holder not in cell.cell.own and not cell.context.zones.is_for_task(zone):
+                    return ZONE_OF_OTHER(robot=robot, zone=zone, holder=holder)
+        return None
+
+    def _teach(self, cell: CellRun, teacher: str) -> None:
+        cell.context.zones.forsake()
+        self._dispatcher.memory.remember(Fact.MANUAL, cell.cell.name, teacher)
+        cell.teach(Teaching(cell.context, session=self.acts.next_number, teacher=teacher))
+
+    def _teaching_over(self, cell: CellRun, teaching: Teaching, why: Sentence) -> None:
+        """Forget who taught a cell; what no operator has asked for is journalled here."""
+        name = cell.cell.name
+        self._dispatcher.memory.remember(Fact.MANUAL, name, None)
+        if why is not BY_VERB:
+            sentence = TEACHING_ENDED(cell=name, teacher=teaching.teacher, why=why)
+            entry = Journal(verb=Verb.AUTOMATIC, scope=name, cell=name, sentence=sentence)
+            self._dispatcher.outbox.append(entry)
+
     def _not_homeable(self, name: str, *, by_hand: bool) -> Sentence | None:
         cell = self._alone.get(name) or self.in_charge(name)
         belief = self._dispatcher.beliefs[name]
-        if refusal := _in(CellState.IDLE, CellState.HELD)(self, cell, set()):
+        if refusal := _at_rest(self, cell, set()):
             return refusal
+        if cell.teaching is not None and not by_hand:
+            return cell.taught
         if name in cell.cell.shared and (stopped := cell.context.devices.not_reset(name)) is not None:
             return stopped.sentence
         if name not in self._reached:
@@ -634,6 +699,8 @@ class Operator:
         cell.become(Cause.READY)
 
     def _not_resumable(self, cell: CellRun, robots: set[str]) -> Sentence | None:
+        if cell.teaching is not None:
+            return cell.taught
         if cell.state is CellState.IDLE:
             return None if cell.queue.paused else QUEUE_RUNS(cell=cell.cell.name)
         if cell.state is not CellState.HELD:
@@ -645,6 +712,8 @@ class Operator:
     def _not_releasable(self, cell: CellRun, robots: set[str]) -> Sentence | None:
         if cell.state in AT_WORK:
             return HOLD_FIRST(cell=cell.cell.name, state=cell.state.said)
+        if cell.teaching is not None:
+            return cell.taught
         able = self._holders(cell, robots)
         if not able:
             first = next(each.name for each in cell.cell.robots if each.name in robots)
@@ -677,7 +746,7 @@ def scope_of(request: OperatorRequest) -> str:
 
 
 def arguments_of(request: OperatorRequest) -> Arguments:
-    """What a request is told beside its scope, in the letters of what is told of it."""
+    """The arguments of a request, in the letters in which they are shown."""
     return tuple((name, each.lower() if isinstance(each, str) else each) for name, each in request.arguments)
 
 
@@ -718,14 +787,19 @@ def _always(operator: Operator, cell: CellRun, robots: set[str]) -> Sentence | N
 
 
 def _in(*states: CellState) -> Callable[[Operator, CellRun, set[str]], Sentence | None]:
+    first, *others = (state.said for state in states)
+    allowed = reduce(lambda said, other: OR(first=said, second=other), others, first)
+
     def check(operator: Operator, cell: CellRun, robots: set[str]) -> Sentence | None:
         if cell.state in states:
             return None
-        first, *others = (state.said for state in states)
-        allowed = reduce(lambda said, other: OR(first=said, second=other), others, first)
         return OTHER_STATE(cell=cell.cell.name, state=cell.state.said, allowed=allowed)
 
     return check
+
+
+_held, _at_rest = _in(CellState.HELD), _in(CellState.IDLE, CellState.HELD)
+_begun = _in(CellState.EXECUTE, CellState.HELD)
 
 
 def _not_resettable(operator: Operator, cell: CellRun, robots: set[str]) -> Sentence | None:
@@ -743,7 +817,9 @@ def _not_holdable(operator: Operator, cell: CellRun, robots: set[str]) -> Senten
 
 
 def _not_retryable(operator: Operator, cell: CellRun, robots: set[str]) -> Sentence | None:
-    refusal = _in(CellState.HELD)(operator, cell, robots)
+    if cell.teaching is not None:
+        return cell.taught
+    refusal = _held(operator, cell, robots)
     if refusal is None and cell.stranded:
         return reasons.of_hold(cell)
     if refusal is None and cell.task is not None and cell.trouble is None:
@@ -756,8 +832,14 @@ def _not_yet(cell: CellRun) -> Sentence | None:
     return None if cell.awaits is None else NOT_YET(cell=cell.cell.name, why=cell.awaits)
 
 
+def _not_taught(operator: Operator, cell: CellRun, robots: set[str]) -> Sentence | None:
+    return NOT_TAUGHT(cell=cell.cell.name) if cell.teaching is None else None
+
+
 def _not_abandonable(operator: Operator, cell: CellRun, robots: set[str]) -> Sentence | None:
-    refusal = _in(CellState.HELD)(operator, cell, robots)
+    if cell.teaching is not None:
+        return cell.taught
+    refusal = _held(operator, cell, robots)
     if refusal is None and cell.task is None and (holding := cell.context.parts.holding):
         return _release_first(holding)
     return refusal
@@ -786,14 +868,17 @@ def _release_first(holding: list[str]) -> Sentence:
 def _not_cancellable(operator: Operator, cell: CellRun, robots: set[str]) -> Sentence | None:
     if cell.task is None:
         return NO_RUNNING_TASK(cell=cell.cell.name)
-    return _in(CellState.EXECUTE, CellState.HELD)(operator, cell, robots)
+    return _begun(operator, cell, robots)
 
 
+BY_VERB = Phrase("teach.by_verb", "by the operator")()
 BY_OPERATOR = Phrase("task.cancelled_by_operator", "cancelled by the operator")
 BY_CLIENT = Phrase("task.cancelled_by_client", "cancelled by the client")
+PUT_TO_WORK = Phrase("act.put_to_work", "version {number} was put to work by {by}: {changes}")
 ACTS_TOLD = {
     phrase.key: phrase
     for phrase in (
+        PUT_TO_WORK,
         *DO.values(),
         *ENDED.values(),
         DECLARED_HOMED,
@@ -802,6 +887,7 @@ ACTS_TOLD = {
         DID,
         DID_BY_HAND,
         DID_BY_CLIENT,
+        TEACHING_ENDED,
     )
 }
 """All that is said of what operators did, by key."""
@@ -828,7 +914,7 @@ def _nothing(operator: Operator, cell: CellRun, robots: set[str]) -> None:
 
 @dataclass(frozen=True, kw_only=True)
 class Procedure:
-    """What the plant does at a verb: in each cell that `check` has nothing against, `do`.
+    """Procedure of a verb: in each cell that `check` has nothing against, `do`.
 
     `first` is done in all cells before `do` in any: no robot's stop waits for what ends in other cells. A
     cell in a state of `must_all` that cannot follow keeps the verb from all the scope; others are left out.
@@ -871,4 +957,8 @@ TABLE: dict[Verb, Procedure] = {
     Verb.UNLOAD: Procedure(plan=Operator._planned_unloading),
     Verb.LOAD: Procedure(plan=Operator._planned_loading),
     Verb.ANSWER: Procedure(plan=Operator._planned_answer),
+    Verb.TEACH: Procedure(plan=Operator._planned_teaching),
+    Verb.AUTOMATIC: Procedure(
+        check=_not_taught, do=lambda operator, cell, robots: cell.end_teaching(BY_VERB)
+    ),
 }

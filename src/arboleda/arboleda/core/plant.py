@@ -17,12 +17,14 @@ from arboleda.model.commands import Command, Stop
 from arboleda.model.errors import ArboledaError, IllegalTransition, QueueFull, TextError
 from arboleda.model.messages import (
     Absence,
+    CellRevised,
     Event,
     Fact,
     Failure,
     Heartbeat,
     Interference,
     InternalError,
+    Jog,
     Journal,
     KeptTask,
     LateDeparture,
@@ -32,6 +34,8 @@ from arboleda.model.messages import (
     Reason,
     Remember,
     Report,
+    Revision,
+    RevisionAnswer,
     Shutdown,
     TaskChanged,
     TaskRequest,
@@ -39,9 +43,10 @@ from arboleda.model.messages import (
     Undelivered,
     outlives_power,
 )
-from arboleda.model.outside import plain
+from arboleda.model.outside import plain, quoted
 from arboleda.model.plant_model import Cell, PlantModel
 from arboleda.model.recipe import Builders
+from arboleda.model.revision import Versions, obstacle, revised
 from arboleda.model.sentence import OWN, Phrase, Sentence
 from arboleda.model.task import Order, Task
 from arboleda.trees.context import Context
@@ -50,21 +55,25 @@ from . import reasons
 from .acts import OperatorAct
 from .advice import Advice
 from .advisor import Advisor
-from .cell import CellRun
+from .cell import CellRun, NextVersion
 from .cell_states import CellState
 from .choosing import PastTimes, Prospect, best, prospect
-from .intake import CUT_OFF, Intake
-from .operator import Operator, Refused
+from .intake import CUT_OFF, Intake, gone
+from .operator import NO_SCOPE, PUT_TO_WORK, Operator, Refused
+from .teaching import NOT_TAUGHT, OTHER_TEACHES, Teaching
 
 HEARTBEAT_S = 0.25
 DEFECT = Phrase("plant.defect", "this failed on an internal error; the log has its details")
 BROKE_IN_STEP = Phrase("cell.broke_in_step", "{cell}: {kind} in a step: {error}")
 AWAY = Phrase("plant.away", "the plant was away for {seconds:.1f} s")
+UNKNOWN_VERSION = Phrase("revision.unknown", "the plant has no version {number}")
+NOT_WHILE_IT_RUNS = Phrase("revision.refused", "a plant that runs cannot take version {number}: {why}")
 OWN_CYCLE = Phrase("cell.own_cycle", "{arm} is in its own cycle; its plant file refuses a trigger then")
 # A plant steps at least as often as it beats. Boards stop by themselves after 1 s without a beat, so whoever
 # was away for longer finds robots that stand, however long the plant file lets them be silent.
 SHORTEST_ABSENCE_S, LONGEST_STALL_S = 1.0, 1.5
 Request = TaskRequest | OperatorRequest
+CHANGES_TOLD = 20  # in the journal; the version has all of them
 SETTLES_IN = 3  # reports that say the same: by then it shows that a robot stands still
 ROUND_BOUND = 100  # rounds over the cells in one step; more means cells that never leave each other in peace
 
@@ -74,10 +83,10 @@ class Plant:
 
     `memory` is what earlier starts had to keep: latches, effectors, zones that may be occupied; `kept` are
     their tasks in the order of acceptance: those that have not ended, and the last that have. `recipes` stand
-    in for those of the cells. `next_deadline` is when `step` is due again without any event, s; a plant that
-    is stepped more than `away_after_s` after its last step was away. `revisions`: by cell, a number that
-    changes whenever anything that is told of it may have, but for times, the rate of reports, and what it
-    shares.
+    in for those of the cells; `versions` can be put to work while it runs, and whoever runs it may add to
+    them. `next_deadline` is when `step` is due again without any event, s; a plant that is stepped more than
+    `away_after_s` after its last step was away. `revisions`: by cell, a number that changes whenever anything
+    that is told of it may have, but for times, the rate of reports, and what it shares.
     """
 
     def __init__(
@@ -89,9 +98,11 @@ class Plant:
         memory: Memory | None = None,
         kept: Iterable[KeptTask] = (),
         recipes: Builders | None = None,
+        versions: Versions | None = None,
     ) -> None:
         memory = memory or {}
         self._builders = recipes or {}
+        self.versions = {**(versions or {})}
         self.model = model
         self.epoch = epoch
         self.now = now
@@ -126,6 +137,7 @@ class Plant:
         self._next_beat = now
         self._steps = False
         self._take_back(kept)
+        self._end_taught_before()
         self.away_after_s = min(max(model.timing.stale_after_s, SHORTEST_ABSENCE_S), LONGEST_STALL_S)
         self.next_deadline = now
 
@@ -146,7 +158,9 @@ class Plant:
             else:
                 for name in self._touched:  # whoever asks finds judged what was heard before
                     self._guard(name, self.cells[name].look_back)
-                if not isinstance(event, TaskRequest):  # that is the business of the cell which takes it
+                if not isinstance(
+                    event, TaskRequest | Jog
+                ):  # that is the business of the cell which takes it
                     self._touched.update(self.cells)
                     self._revised.update(self.cells)
                 self._told_errors.clear()
@@ -209,6 +223,17 @@ class Plant:
         """Why a request of an operator would be refused now; None where it would be done."""
         return self._operator.refusal(request)
 
+    def jog_refusal(self, jog: Jog) -> Sentence | None:
+        """Why nothing would move, were this button pressed now; None where something would."""
+        run = self.cells.get(jog.cell)
+        if run is None:
+            return NO_SCOPE(scope=quoted(jog.cell), known=(*self.cells,))
+        if run.teaching is None:
+            return NOT_TAUGHT(cell=jog.cell)
+        if run.teaching.session != jog.session:
+            return OTHER_TEACHES(cell=jog.cell, teacher=run.teaching.teacher)
+        return run.teaching.refusal(jog)
+
     def prospects(self, text: str) -> list[Prospect]:
         """The promise of each cell that a task text names; TextError or QueueFull where there is none."""
         return self._prospects(self.intake.orders(text))
@@ -259,6 +284,15 @@ class Plant:
             self.dispatcher.memory.remember(Fact.STEP, id, None)
         held = (run for run in self.cells.values() if run.task is not None)
         self._to_home -= {robot.name for run in held for robot in run.cell.robots}
+
+    def _end_taught_before(self) -> None:
+        """A cell that was being taught when an earlier start ended begins nothing by itself: somebody may
+        stand beside it.
+        """
+        for name in sorted(self.dispatcher.memory.names(Fact.MANUAL)):
+            self.dispatcher.memory.remember(Fact.MANUAL, name, None)
+            if name in self.cells:
+                self.cells[name].queue.paused = True
 
     def _was_stopped(self, cell: Cell, stopped: set[str]) -> bool:
         """True for a cell that had been stopped: one of its own robots was, or what it shares, by itself."""
@@ -325,7 +359,10 @@ class Plant:
             changed, ledger.changed = ledger.changed, set()
             touched |= changed
             in_order = sorted(touched, key=self._order.__getitem__)
-            did = {name for name in in_order if self._advanced(name, woken=name in changed)}
+            did = set[str]()
+            for name in in_order:
+                if self._advanced(name, woken=name in changed):
+                    did.add(name)
             self._revised |= changed | did
             self._plan(touched)
             if did:
@@ -363,10 +400,12 @@ class Plant:
         first = before
         while first < len(outbox) and not _waits(outbox[first], run.task):
             first += 1
-        later = outbox[first:]
-        outbox[first:] = [each for each in later if _is_fact(each)]
+        facts, others = list[Command | Notice](), list[Command | Notice]()
+        for each in outbox[first:]:
+            (facts if _is_fact(each) else others).append(each)
+        outbox[first:] = facts
         self.dispatcher.memory.remember(Fact.STEP, run.task.id, text)
-        outbox += [each for each in later if not _is_fact(each)]
+        outbox += others
 
     def _guard(self, cell: str, act: Callable[[], None]) -> None:
         """Do something that belongs to one cell; what it raises holds that cell, and nothing else."""
@@ -427,11 +466,12 @@ class Plant:
         self._watch_shared()
 
     def _watch_shared(self) -> None:
-        """What an idle cell still holds of shared devices goes back; those that are silent stay with it."""
+        """Give back the shared devices that an idle cell still holds; it keeps those that are silent."""
         for device in self.model.shared:
             holder = self.cells.get(self.zones.holder(device) or "")
             if holder is not None:
-                ended = holder.state is CellState.IDLE  # a cell that is held or stopped keeps what it has
+                # a cell that is held, stopped or taught keeps what it has
+                ended = holder.state is CellState.IDLE and holder.teaching is None
                 self._guard(holder.cell.name, partial(holder.context.devices.keep, device, ended=ended))
 
     def _watch_zones_of(self, cell: CellRun, robot: str) -> None:
@@ -439,7 +479,9 @@ class Plant:
         belief = self.dispatcher.beliefs[robot]
         if not belief.online or belief.unhomed:
             self.zones.quarantine(robot)
-        elif cell.tree is None or cell.stranded:  # no step of it needs them any more
+        elif cell.teaching is None and (
+            cell.tree is None or cell.stranded
+        ):  # no step of it needs them any more
             cell.context.zones.leave(robot)
 
     def _beat(self) -> None:
@@ -474,7 +516,8 @@ class Plant:
         self._revised.update(run.cell.name for run in self._runs[robot])
         if not belief.answered or belief.homed is None:
             return
-        if self._operator.in_charge(robot).state not in (CellState.IDLE, CellState.HELD):
+        run = self._operator.in_charge(robot)
+        if run.state not in (CellState.IDLE, CellState.HELD) or run.teaching is not None:
             return
         if belief.unhomed and self._operator.not_free_for_homing({robot}):
             return
@@ -551,6 +594,73 @@ class Plant:
         )
         self.dispatcher.outbox.append(answer)
 
+    def _on_jog(self, jog: Jog) -> None:
+        """Take what a teacher holds; what is of no teaching, or of an earlier one, is nothing."""
+        run = self.cells.get(jog.cell)
+        if run is None or run.teaching is None or run.teaching.session != jog.session:
+            return
+        self._guard(jog.cell, partial(self._take_jog, run, run.teaching, jog))
+
+    def _take_jog(self, run: CellRun, teaching: Teaching, jog: Jog) -> None:
+        self._touched.add(jog.cell)
+        if teaching.take(jog):
+            self._changes += 1
+            self._revised.add(jog.cell)
+
+    def _on_revision(self, event: Revision) -> None:
+        """Have each cell take another version once it rests; what waits is held against it at once."""
+        self._changes += 1
+        version, number = event.version, event.version.number
+        model = self.versions.get(version.digest)
+        if model is None:
+            self._refuse_revision(event, UNKNOWN_VERSION(number=number))
+            return
+        if (why := obstacle(self.model, model)) is not None:
+            self._refuse_revision(event, NOT_WHILE_IT_RUNS(number=number, why=why))
+            return
+        cells = tuple(map(revised, self.model.cells, model.cells))
+        self.dispatcher.outbox.append(_put_to_work(event))
+        self.intake.model = replace(model, cells=cells)
+        cancelled = [id for run in self.cells.values() for id in self._without_unfit(run)]
+        for run, cell in zip(self.cells.values(), cells, strict=True):
+            run.following = NextVersion(
+                version=version, cell=cell, timing=model.timing, taken=self._revised_cell
+            )
+        self._use(replace(self.intake.model, cells=self.model.cells))
+        busy = [(name, run) for name, run in self.cells.items() if not run.is_between_tasks]
+        waits = tuple((name, run.task.id if run.task else "") for name, run in busy)
+        self.dispatcher.outbox.append(
+            RevisionAnswer(version=version, waits=waits, cancelled=tuple(cancelled), request=event.request)
+        )
+
+    def _refuse_revision(self, event: Revision, why: Sentence) -> None:
+        self.dispatcher.outbox.append(
+            RevisionAnswer(version=event.version, refusal=why, request=event.request)
+        )
+
+    def _without_unfit(self, run: CellRun) -> list[str]:
+        """Read again what waits in a cell; the ids of those that are no tasks any more, which end."""
+        unfit = []
+        for task in [*run.queue]:
+            try:
+                task.order = self.intake.read_again(task.order)
+            except TextError as error:
+                unfit.append(task.id)
+                run.drop(task, gone(error.sentence))
+        return unfit
+
+    def _revised_cell(self, taken: NextVersion) -> None:
+        """Go by another version of a cell, which it has taken now."""
+        name = taken.cell.name
+        cells = tuple(taken.cell if cell.name == name else cell for cell in self.model.cells)
+        self._use(replace(self.model, cells=cells))
+        self._revised.add(name)
+        self._changes += 1
+        self.dispatcher.outbox.append(CellRevised(cell=name, version=taken.version))
+
+    def _use(self, model: PlantModel) -> None:
+        self.model = self.dispatcher.model = model
+
     def _on_shutdown(self, event: Shutdown) -> None:
         self.intake.closed = True
         self._changes += 1  # a cell may be held by it that had told nobody anything
@@ -567,6 +677,16 @@ def _requests_last(events: Iterable[Event], now: float) -> list[Event]:
     requests = [each for each in found if isinstance(each, Request)]
     heard = [each for each in found if not isinstance(each, Request)]
     return [*heard, *(replace(request, at=now) for request in requests)]
+
+
+def _put_to_work(event: Revision) -> Journal:
+    """The entry of the journal about a version that is put to work."""
+    told = tuple(map(plain, event.changes[:CHANGES_TOLD]))
+    left = len(event.changes) - len(told)
+    changes = (*told, *((f"... ({left})",) if left else ())) or ("-",)
+    by = plain(event.by) or "-"
+    sentence = PUT_TO_WORK(number=event.version.number, by=by, changes=changes)
+    return Journal(verb=None, scope="", cell=None, sentence=sentence)
 
 
 def _waits(message: Command | Notice, task: Task) -> bool:
@@ -596,7 +716,9 @@ def _refused(request: TaskRequest, sentence: Sentence, *, for_now: bool = False)
 HANDLERS: dict[type, Callable[[Plant, Any], None]] = {
     TaskRequest: Plant._on_task_request,
     OperatorRequest: Plant._on_operator_request,
+    Jog: Plant._on_jog,
     Undelivered: Plant._on_undelivered,
     Interference: Plant._on_interference,
     Shutdown: Plant._on_shutdown,
+    Revision: Plant._on_revision,
 }

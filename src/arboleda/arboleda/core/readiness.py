@@ -28,6 +28,10 @@ class Readiness:
         self._cell = cell
         self._context = context
 
+    def revise(self, cell: Cell) -> None:
+        """Go by another version of the cell from now on."""
+        self._cell = cell
+
     def objection(self) -> Sentence | None:
         """The first thing that keeps an idle cell from starting a task; None where it is ready."""
         if busy := self.busy():

@@ -32,6 +32,10 @@ class TaskQueue(deque[Task]):
         self.left_over = False
         self._cell = cell
 
+    def revise(self, cell: Cell) -> None:
+        """Go by another version of the cell from now on; what waits stays, be it more than its limit."""
+        self._cell = cell
+
     @property
     def is_full(self) -> bool:
         """True where no further task has room."""

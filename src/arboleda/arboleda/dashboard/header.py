@@ -27,14 +27,17 @@ def build(layout: Layout, words: Words, parts: list[str], role: str | None) -> N
 
 def of_record(layout: Layout, words: Words, parts: list[str], role: str | None, *, beside: bool) -> None:
     """Draw the header of a record, which has no stop; `beside` a running plant it links back to that."""
+    tried = bool(layout.get("tried"))
     with tag("header", classes="top"):
         with tag("div", classes="brand"):
-            tag("h1", layout["plant"])
+            tag("h1", words("make.of_draft", plant=layout["plant"]) if tried else layout["plant"])
             rows("counts", [""], classes="counts")
             live("p", "sum", classes="sum")
         _tabs(words, parts)
         if beside:
-            way(words("record.leave"), {"at": None, "task": None, "record": None}, classes="act record-leave")
+            leave, back = ("make.back", {"tab": "make"}) if tried else ("record.leave", {})
+            to = {"at": None, "task": None, "record": None, **back}
+            way(words(leave), to, classes="act record-leave")
         _tools(words, role, sounds=False)
         tag("p", words("record.reading"), id="connection", role="status", data_lost=words("record.lost"))
         tag("div", id="answer", role="status", aria_live="polite")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from . import panel
+from . import panel, versions
 from .cell_filter import cell_filter
 from .page_api import Layout
 from .tags import live, rows, tag
@@ -19,6 +19,12 @@ def build(layout: Layout, words: Words) -> None:
                 live("p", key, classes="fact")
         cell_filter("links", layout, words)
         rows("links", [words(f"column.{name}") for name in COLUMNS], classes="links")
+
+
+def with_versions(layout: Layout, words: Words) -> None:
+    """Draw the links, and the versions of the plant's files below them."""
+    build(layout, words)
+    versions.build(words)
 
 
 def of_record(layout: Layout, words: Words) -> None:

@@ -3,27 +3,42 @@
 from __future__ import annotations
 
 import time
-from functools import cache
 from typing import Annotated
 
 from fastapi import FastAPI, Query, Request
 from fastapi.concurrency import run_in_threadpool
-from fastapi.responses import JSONResponse
+from fastapi.responses import JSONResponse, Response
 from nicegui import Client, app, ui
 
 from arboleda.store.oee_rows import OeeQuery
 from arboleda.store.task_rows import TaskQuery
+from arboleda.web.auth import Role
 
-from . import demo, header, links, panel, reports, shell, tasks, timeline, tree_editor, trees
+from . import (
+    demo,
+    header,
+    links,
+    make,
+    panel,
+    proof,
+    reports,
+    shell,
+    tasks,
+    teach_panel,
+    timeline,
+    tree_editor,
+    trees,
+)
 from .desk import Desk
-from .faces import history, oee
+from .faces import history, oee, versions
 from .feed import Feed
 from .frames import Background
-from .page_api import PageApi
+from .page_api import Layout, PageApi
 from .past import page as past_page
 from .past.frame_queue import BESIDE_S, FrameQueue
+from .past.side import PastSide
 from .past.stills import Stills
-from .shell import Parts, language_of, role_shown
+from .shell import Parts, is_operator, language_of, role_shown
 from .twin import pane, window
 from .twin.show import Show
 from .wording import words
@@ -33,10 +48,14 @@ PARTS: Parts = {
     "twin": pane.build,
     "tasks": tasks.build,
     "panel": panel.build,
+    "teach": teach_panel.build,
+    "make": make.build,
     "draw": tree_editor.build,
-    "links": links.build,
+    "links": links.with_versions,
     "events": timeline.build,
 }
+FROM_CARDS = ("teach",)
+"""Parts that no tab of the header leads to, but the card of a cell."""
 Asked = Annotated[str, Query(alias="words", max_length=100)]
 Hours = Annotated[float, Query(gt=0, le=1000)]
 Most = Annotated[int, Query(ge=1, le=200)]
@@ -46,33 +65,65 @@ def mount(server: FastAPI, plant: PageApi) -> None:
     """Put the page at `/` of this app; StartError where this process shows a page already."""
     feed, show = Feed(plant), Show(plant)
     stills, turns = Stills(), FrameQueue(BESIDE_S)
-    layout = plant.layout()
+    tried = Tried(plant)
+    shown: dict[tuple[str, str | None], tuple[Layout, str]] = {}
 
-    @cache
-    def made(language: str, role: str | None) -> str:
-        said = words(language)
+    def made(layout: Layout, language: str, role: str | None) -> str:
+        """The HTML, made anew once a version has changed what the plant is."""
+        known = shown.get((language, role))
+        if known is None or known[0] is not layout:
+            known = shown[language, role] = layout, drawn(layout, language, role)
+        return known[1]
 
-        def top(parts: list[str]) -> None:
-            header.build(layout, said, parts, role)
+    def drawn(layout: Layout, language: str, role: str | None) -> str:
+        said, parts = words(language), parts_for(role)
+
+        def top(names: list[str]) -> None:
+            header.build(layout, said, [name for name in names if name not in FROM_CARDS], role)
             if layout.get("demo"):
                 demo.build(said)
 
-        return shell.body(layout, said, PARTS, header=top)
+        return shell.body(layout, said, parts, header=top)
 
     def build(request: Request, client: Client) -> None:
+        if past_page.is_of_draft(request) and is_operator(request):
+            past_page.open_page(client, *tried.last(), turns, request, beside=True)
+            return
         if past_page.asked(request):
             past_page.open_page(client, plant, stills, turns, request, beside=True)
             return
-        said = words(language_of(request))
+        said, layout = words(language_of(request)), plant.layout()
         window.open_window(client, show)
         open_page(client, Desk(client, plant, feed, said), feed)
-        shell.fill(layout, said, PARTS, script="page.js", made=made(said.language, role_shown(request)))
+        html = made(layout, said.language, role_shown(request))
+        shell.fill(layout, said, PARTS, script="page.js", made=html)
 
-    window.serve(server, plant, show, stills)
+    window.serve(server, plant, show, stills, tried=tried.last)
     _serve_tasks(server, plant, feed)
     reports.serve(server, plant)
-    shell.serve(server, layout, build)
+    proof.serve(server, plant)
+    shell.serve(server, plant.layout(), build)
     _keep_running(feed, show)
+
+
+def parts_for(role: str | None) -> Parts:
+    """The parts of the page of a role: only operators make something."""
+    return {name: part for name, part in PARTS.items() if name != "make" or role != Role.VIEWER.value}
+
+
+class Tried:
+    """Tried: the last tryout of the draft, with the twin of its own at moments of it."""
+
+    def __init__(self, plant: PageApi) -> None:
+        self._plant = plant
+        self._known: tuple[PastSide, Stills] | None = None
+
+    def last(self) -> tuple[PastSide, Stills]:
+        """The tryout and its drawings; an ArboledaError says that there is none."""
+        side = self._plant.tried()
+        if self._known is None or self._known[0] is not side:
+            self._known = side, Stills()
+        return self._known
 
 
 def _serve_tasks(server: FastAPI, plant: PageApi, feed: Feed) -> None:
@@ -94,6 +145,14 @@ def _serve_tasks(server: FastAPI, plant: PageApi, feed: Feed) -> None:
         rows = await run_in_threadpool(plant.oee, query)
         return JSONResponse(oee.face(rows, words(language_of(request))))
 
+    async def versions_kept(request: Request) -> Response:
+        desk = plant.versions
+        listed = None if desk is None else await run_in_threadpool(desk.listed)
+        if listed is None:
+            return Response(status_code=404)
+        return JSONResponse(versions.face(listed, words(language_of(request))))
+
+    server.add_api_route("/versions.json", versions_kept, include_in_schema=False)
     server.add_api_route("/oee.json", figures, include_in_schema=False)
     server.add_api_route("/task.json", one_task, include_in_schema=False)
     server.add_api_route("/history.json", kept, include_in_schema=False)

@@ -8,7 +8,7 @@ from arboleda.web.plant_api import PlantApi
 
 if TYPE_CHECKING:  # without a record, the libraries that read one are not needed
     from .past.past import Past
-    from .past.side import Start
+    from .past.side import PastSide, Start
 
 
 Layout = dict[str, Any]
@@ -38,6 +38,12 @@ class PageApi(PlantApi, Protocol):
     def report(self, task: str) -> str | None:
         """The report on a failed task, as one HTML file; None: it is being written now, ask again. It waits
         for the disk; an ArboledaError says why there is none."""
+
+    def tried(self) -> PastSide:
+        """The last tryout of the draft; an ArboledaError says that there is none. It reads files."""
+
+    def proof(self) -> str | None:
+        """The page on the last proof of the draft, as one HTML file; None if there is none."""
 
     def links(self) -> Links:
         """`broker` {address, connected} or None, `ros` {notes} or None, `refused` {robot: {count, last}},

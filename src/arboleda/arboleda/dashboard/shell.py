@@ -13,6 +13,7 @@ from nicegui import Client, app, ui
 
 from arboleda.model.errors import StartError
 from arboleda.web.api import refuse
+from arboleda.web.auth import Role
 from arboleda.web.languages import spoken
 
 from . import trees
@@ -22,6 +23,7 @@ from .tags import markup, tag
 from .wording import Words
 
 RECONNECT_S = 30.0
+STYLES = ("page", "twin", "record", "draw", "teach", "make")
 LANGUAGE_COOKIE = "arboleda_language"
 Parts = dict[str, Callable[[Layout, Words], None]]
 _here: list[FastAPI] = []
@@ -69,6 +71,11 @@ def role_shown(request: Request) -> str | None:
     return None if door is None or door.open else request.scope["arboleda.role"].value
 
 
+def is_operator(request: Request) -> bool:
+    """True if whoever asks may do what operators may."""
+    return bool(request.scope["arboleda.role"] is Role.OPERATOR)
+
+
 def fill(layout: Layout, said: Words, parts: Parts, *, script: str, made: str) -> None:
     """Fill the page of one browser with what was `made` of its parts; `script` is its entry."""
     shown = parts_of(parts, layout)
@@ -109,9 +116,7 @@ def head(said: Words, *scripts: str) -> str:
     """The page's head: its styles, its scripts, and the few words that these use themselves."""
     used = {key[3:]: text for key, text in said.flat.items() if key.startswith("js.")}
     data = json.dumps({"language": said.language, "words": used}).replace("<", "\\u003c")
-    styles = "".join(
-        f'<link rel="stylesheet" href="{assets()}/{name}.css">' for name in ("page", "twin", "record", "draw")
-    )
+    styles = "".join(f'<link rel="stylesheet" href="{assets()}/{name}.css">' for name in STYLES)
     modules = "".join(f'<script type="module" src="{assets()}/{name}"></script>' for name in scripts)
     return f"{styles}<script>window.arboledaPage = {data};</script>{modules}"
 

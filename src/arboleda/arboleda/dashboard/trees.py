@@ -104,6 +104,7 @@ def tree_box(layout: dict[str, Any], words: Words) -> None:
         with tag("div", classes="tree-tools"):
             live("span", f"{cell}.feedback", classes="feedback")
             _offer(cell, classes="act offer")
+            _teach(cell, words)
             zooms(words)
         with tag("div", classes="empty"):
             tag("p", words("cells.no_tree"))
@@ -111,11 +112,16 @@ def tree_box(layout: dict[str, Any], words: Words) -> None:
                 welcome = words("cells.welcome", text=recipe["example"], form=recipe["form"])
                 tag("p", welcome, classes="example")
             _offer(cell, classes="act primary offer")
+            _teach(cell, words)
         tag("div", classes="tree", data_tree=cell, role="tree", aria_label=words("cells.tree", cell=cell))
 
 
 def _offer(cell: str, classes: str) -> None:
     link(None, tab="tasks", cell=cell, classes=classes, data_live=f"{cell}.offer")
+
+
+def _teach(cell: str, words: Words) -> None:
+    link(words("teach.open"), tab="teach", cell=cell, classes="act to-teach")
 
 
 def zooms(words: Words) -> None:

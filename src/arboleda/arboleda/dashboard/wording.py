@@ -27,7 +27,7 @@ class Words:
         return self.flat[key].format(**values) if values else self.flat[key]
 
     def asks(self, name: str) -> list[str]:
-        """What a person must confirm before this verb, one question after the other."""
+        """The questions that a person must answer before this verb, one after the other."""
         return [self.flat[key] for key in (f"asks.{name}", f"asks.{name}_again") if key in self.flat]
 
     def of(self, group: str, word: str) -> str:

@@ -23,7 +23,7 @@ from arboleda.model.commands import (
 from arboleda.model.facts import shown
 from arboleda.model.grips import Grip
 from arboleda.model.messages import Fact, Failure, Notice, Reason, Report
-from arboleda.model.plant_model import Evidence, Link, MotionState, PlantModel, Pose, Workspace
+from arboleda.model.plant_model import Evidence, Link, MotionState, PlantModel, Pose, Timing, Workspace
 from arboleda.model.sentence import BOTH, Phrase, Sentence
 
 from . import evidence
@@ -33,7 +33,7 @@ from .evidence import Before, Verdict
 from .fact_memory import FactMemory, Memory
 from .interference import MOST, NEVER_GIVEN, Interferences
 from .ledger import Entry, Feed, Ledger, State
-from .underway import UnderWay, Unnamed
+from .underway import UnderWay, Unfinished, Unnamed
 
 Make = Callable[..., Command]  # called with id=<the new command's id>
 Guard = Callable[[str, Callable[[], None]], None]  # runs what belongs to the cell of that name
@@ -91,6 +91,8 @@ class Dispatcher:
         self.ledger = Ledger()
         self.outbox: list[Command | Notice] = []
         self.memory = FactMemory(memory, self.outbox)
+        # by cell: a cell takes those of another version when it is at rest
+        self.timings = {cell.name: model.timing for cell in model.cells}
         self.version = 0  # changes whenever something other than a position changed
         stale_after_s = model.timing.stale_after_s
         self.beliefs = {name: Belief(robot, stale_after_s, epoch) for name, robot in model.robots.items()}
@@ -108,6 +110,7 @@ class Dispatcher:
         self.cleared = {name for name in self.beliefs if stopped.get(name) == CLEARED}
         self.reached: dict[str, Position] = {}  # the goal of each robot's last motion, once it is done
         self.under_way = UnderWay(model)
+        self.unfinished = Unfinished(model)
         self.unnamed = Unnamed(model)
         self.unheard_clears: set[str] = set()  # robots whose stop was cleared while they were offline
         self.last_sent: dict[str, Entry] = {}  # each robot's last command, a stop or halt left out
@@ -141,7 +144,7 @@ class Dispatcher:
         By hand, on an operator's word, an effector is opened even while its arm is stopped.
         """
         command = make(id=self._new_id())
-        deadline = now + self._allowed_s(command)
+        deadline = now + self._allowed_s(command, self.timings[cell])
         entry = Entry(command, cell=cell, doing=doing, sent_at=now, deadline=deadline)
         obstacle = self._obstacle_to(command, by_hand=by_hand, was=True) or barrier(command)
         if obstacle is not None:
@@ -153,7 +156,7 @@ class Dispatcher:
             return entry
         entry.origin = self.beliefs[command.robot].position
         entry.before = self.beliefs[command.robot].receipt
-        entry.settles_at = self._settles_at(command, now, deadline)
+        entry.settles_at = self._settles_at(entry, now)
         self.ledger.open(entry)
         self.last_sent[command.robot] = entry
         if entry.is_work:
@@ -164,6 +167,11 @@ class Dispatcher:
             self._forget_place(command.robot)
         self._leave(command)
         return entry
+
+    def objection(self, make: Make, *, barrier: Barrier = _unbarred) -> Failure | None:
+        """The reason for which a command would not leave now."""
+        command = make(id="")
+        return self._obstacle_to(command, by_hand=False) or barrier(command)
 
     def left_late(self, id: str, late_s: float) -> None:
         """Count the time in which a command settles from when it left, be it past its deadline."""
@@ -183,7 +191,7 @@ class Dispatcher:
             return
         entry.settles_at = None if entry.halts else entry.settles_at
         entry.cancelled_after = self.beliefs[entry.command.robot].moment(now)
-        entry.deadline = now + self.model.timing.stop_timeout_s
+        entry.deadline = now + self.timings[entry.cell].stop_timeout_s
         self.ledger.plan(entry)
         if entry.halts and entry.command.robot not in self.latched:
             self._stop(entry.command.robot, StopMode.HALT)
@@ -366,6 +374,11 @@ class Dispatcher:
                 self._book(entry, verdict, now)
         if self.unnamed.ids.get(name):
             self.unnamed.hear(report)
+        if name in self.unfinished.by_device:
+            is_well = belief.state is not MotionState.FAULT
+            if self.unfinished.hear(report, now, is_well=is_well):
+                self.version += 1
+                self.ledger.changed |= self._cells_of[name]
         if name in self.under_way.ids or name in self.unheard_clears:
             self.under_way.hear(report, now)
             if belief.online:
@@ -525,9 +538,9 @@ class Dispatcher:
             return False
         return any(sets.get(name, value) != value for name, value in work.command.needs)
 
-    def _allowed_s(self, command: Command) -> float:
+    def _allowed_s(self, command: Command, timing: Timing) -> float:
         """The time that a command may take: its own, or by its distance, then not below `timeout_s`."""
-        timing, robot = self.model.timing, self.model.robots[command.robot]
+        robot = self.model.robots[command.robot]
         if command.at_most_s is not None:
             return command.at_most_s
         if not isinstance(command, Work):
@@ -537,23 +550,24 @@ class Dispatcher:
         travel_s = robot.motion.travel_s(here, way) if way else HOMING_S
         return max(robot.timeout_s, travel_s * timing.deadline_factor + timing.deadline_floor_s)
 
-    def _settles_at(self, command: Command, now: float, deadline: float) -> float | None:
+    def _settles_at(self, entry: Entry, now: float) -> float | None:
         """The time at which a command without an answer counts as done; None where the robot must report.
 
         So does a switch of which nothing is reported, after the time that it takes; and a move, by a robot
         that tells no position, to where its last move ended: it may have nothing to say, and has
         `stop_timeout_s` to say that it moves.
         """
+        command, timing = entry.command, self.timings[entry.cell]
         belief = self.beliefs[command.robot]
         evidence_level = belief.robot.evidence
         if evidence_level is Evidence.STATE and self._is_there(command):
-            return min(now + self.model.timing.stop_timeout_s, deadline)
+            return min(now + timing.stop_timeout_s, entry.deadline)
         if not isinstance(command, Switch) or evidence_level is Evidence.IDS:
             return None
         told = command.sets and all(belief.fact(name) is not None for name, _ in command.sets)
         if evidence_level is Evidence.JOINTS and told:
             return None
-        return now + self.model.timing.effector_settle_s + command.takes_s
+        return now + timing.effector_settle_s + command.takes_s
 
     def _is_there(self, command: Command) -> bool:
         """True for a motion that ends where the robot's last one, which was done, has left it."""
@@ -574,6 +588,9 @@ class Dispatcher:
         elif verdict.feed is Feed.REJECTED:
             self._reject(entry.command.robot, verdict.failure)
         failed = entry.state is State.FAILED and verdict.feed is not Feed.REJECTED
+        if failed and not entry.is_work and not _is_boot(verdict):
+            allowed_s = self._allowed_s(entry.command, self.timings[entry.cell])
+            self.unfinished.failed(entry.command, allowed_s, now)
         if failed and entry.halts and verdict.failure and verdict.failure.reason not in KNOWN_STILL:
             self._stop(entry.command.robot, StopMode.HALT)
 
@@ -584,6 +601,8 @@ class Dispatcher:
         self.beliefs[robot].barred |= stopped and not self.model.robots[robot].has_stop
 
     def _done(self, command: Command) -> None:
+        if command.robot in self.unfinished.by_device:
+            self.unfinished.done(command)
         if isinstance(command, Switch) and command.grips is not None:
             self.effectors.set(command.robot, Grip.ON if command.grips else Grip.OFF)
         elif isinstance(command, Motion) and command.way:
@@ -606,6 +625,10 @@ class Dispatcher:
 def was_broken_off(entry: Entry) -> bool:
     """True for a command that failed by something from outside, or was halted: not by its device."""
     return entry.failure is None or entry.failure.reason in BROKEN_OFF
+
+
+def _is_boot(verdict: Verdict) -> bool:
+    return verdict.failure is not None and verdict.failure.reason is Reason.REBOOTED
 
 
 def _lets_go(command: Command) -> bool:

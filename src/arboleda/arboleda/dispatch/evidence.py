@@ -67,7 +67,7 @@ SHORT_OF_TARGET = Phrase("command.short_of_target", "{robot}: stopped before its
 
 @dataclass(frozen=True, kw_only=True)
 class Verdict:
-    """What a report proves: a feed for the ledger, its cause where it is a failure, the answer to a query."""
+    """Verdict of a report: a feed for the ledger, its cause where it is a failure, the answer to a query."""
 
     feed: Feed
     failure: Failure | None = None
@@ -75,7 +75,7 @@ class Verdict:
 
 
 class Before(NamedTuple):
-    """What was believed just before the report under judgement."""
+    """Belief just before the report under judgement."""
 
     epoch: int | None
     boot_id: int | None
@@ -114,7 +114,7 @@ def _look(entry: Entry, belief: Belief, report: Report) -> None:
 
 
 def _rests(entry: Entry, report: Report) -> bool:
-    """Whether a robot says that it is at rest; one that is stopped says so once its work is finished."""
+    """True where a robot says that it is at rest; one that is stopped says so once its work is finished."""
     finished = entry.finishes and report.state is MotionState.STOP_LATCHED
     return finished or report.state is MotionState.STOPPED
 
@@ -136,13 +136,13 @@ def _tells(report: Report, facts: Facts) -> bool:
 
 
 def _at_end(entry: Entry, belief: Belief) -> bool:
-    """Whether what it told last is the goal; a way that comes by there before was seen driven to its end."""
+    """True where its last report shows the goal; a way that passes there before was driven to its end."""
     driven = len(entry.way) <= 1 or entry.seen.passed == len(entry.way) - 1
     return driven and reached(entry, belief)
 
 
 def reached(entry: Entry, belief: Belief) -> bool:
-    """Whether what is believed is the goal of a command that has one: its position, and what it sets."""
+    """True where the belief is the goal of a command that has one: its position, and what it sets."""
     if entry.sets and any(belief.fact(name) != value for name, value in entry.sets):
         return False
     if not entry.way:
@@ -202,7 +202,7 @@ def _reboot(entry: Entry, before: Before, belief: Belief, report: Report) -> Ver
 
 
 def displaced(before: Before, belief: Belief, report: Report) -> bool:
-    """Whether a robot that cannot say so must have lost its position: a new boot, or a jump."""
+    """True where a robot that cannot say so must have lost its position: a new boot, or a jump."""
     if belief.robot.says_homed:
         return False
     jumped = belief.robot.evidence is Evidence.JOINTS and _jumped(before, belief, report)
@@ -210,12 +210,12 @@ def displaced(before: Before, belief: Belief, report: Report) -> bool:
 
 
 def tells_boots_only(robot: Robot) -> bool:
-    """Whether nothing but the number of its boot tells that a robot must have lost its position."""
+    """True where nothing but the number of its boot tells that a robot must have lost its position."""
     return robot.evidence is Evidence.IDS and not robot.says_homed
 
 
 def strayed(before: Before, belief: Belief, report: Report, goal: Position) -> bool:
-    """Whether who had reached `goal` is elsewhere after a silence, as after a boot unseen."""
+    """True where a robot that had reached `goal` is elsewhere after a silence, as after a boot unseen."""
     robot, place = belief.robot, belief.position_in(report)
     if before.online or place is None or robot.evidence is not Evidence.JOINTS or robot.reference is None:
         return False
@@ -223,7 +223,7 @@ def strayed(before: Before, belief: Belief, report: Report, goal: Position) -> b
 
 
 def rebooted(before: Before, belief: Belief, report: Report) -> bool:
-    """Whether the boot id changed; at `joints` it is a count of the bridge, which starts anew with it."""
+    """True where the boot id changed; at `joints` it is a count of the bridge, which starts anew with it."""
     if before.boot_id == report.boot_id or None in (before.boot_id, report.boot_id):
         return False
     evidence = belief.robot.evidence
@@ -231,7 +231,7 @@ def rebooted(before: Before, belief: Belief, report: Report) -> bool:
 
 
 def _jumped(before: Before, belief: Belief, report: Report) -> bool:
-    """Whether the robot moved further between two reports than its limits allow."""
+    """True where the robot moved further between two reports than its limits allow."""
     place = belief.position_in(report)
     if before.position is None or place is None:
         return False
@@ -281,7 +281,7 @@ def _work_by_ids(entry: Entry, belief: Belief, report: Report) -> Verdict | None
 
 
 def _elsewhere(entry: Entry, belief: Belief) -> bool:
-    """Whether a command that has a goal has not led there."""
+    """True where a command that has a goal has not led there."""
     return (entry.way != () or entry.sets != ()) and not reached(entry, belief)
 
 
@@ -303,7 +303,7 @@ def _move_by_joints(entry: Entry, belief: Belief, report: Report) -> Verdict | N
 
 
 def _stays_on_goal(entry: Entry, belief: Belief, at: float, *, since: float) -> bool:
-    """Whether one that says stopped, and its goal `since`, has come to rest there.
+    """True where a robot that says stopped, and its goal `since`, has come to rest there.
 
     Who goes from node to node may have left the last one that it told: where it was not on the node on which
     its way was thought to begin, it comes by its goal and goes on. So a node counts that was told so long
@@ -329,7 +329,7 @@ def _stays_short(entry: Entry, belief: Belief, at: float) -> bool:
 
 
 def _process_by_facts(entry: Entry, belief: Belief, report: Report) -> Verdict | None:
-    """What a process sets may have been so before it began: it has to be seen at work, and at its end."""
+    """Judge a process by facts, which may be older than it: it has to be seen at work and at its end."""
     seen = entry.seen
     if seen.moving and seen.stopped_since is not None:
         if not entry.sets or seen.on_goal_since is not None:

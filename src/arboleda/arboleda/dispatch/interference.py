@@ -45,12 +45,12 @@ class Interferences:
         self.noticed.append(Noticed(number=self._count, at=at, robot=robot, sentence=sentence))
 
     def lately_obeyed(self, robot: str, now: float) -> Sentence | None:
-        """What a robot did LATELY_S ago or later that somebody else commanded."""
+        """The last command of somebody else that a robot carried out, if it is not older than LATELY_S."""
         at, sentence = self._obeyed.get(robot, (0.0, None))
         return sentence if now <= at + LATELY_S else None
 
     def rise(self, report: Report) -> tuple[bool, bool]:
-        """Whether a report tells of newly refused, and of newly obeyed ones since its bridge's start."""
+        """True for newly refused, and for newly obeyed commands, by a report since its bridge began."""
         if report.foreign is None:
             return False, False
         told = (report.epoch, report.foreign_refused or 0, report.foreign_obeyed or 0)

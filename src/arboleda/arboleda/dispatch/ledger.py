@@ -29,7 +29,7 @@ class State(str, Enum):
 
 
 class Feed(str, Enum):
-    """What can happen to a command; HALTED is an end by halt or stop."""
+    """Event of a command's life; HALTED is an end by halt or stop."""
 
     ACCEPTED = "accepted"
     REJECTED = "rejected"
@@ -63,7 +63,7 @@ TABLE: dict[tuple[State, Feed], State] = {
 
 
 class Seen:
-    """What reports have shown since a command was sent."""
+    """Observations since a command was sent, from reports."""
 
     def __init__(self) -> None:
         self.moving = False

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from arboleda.model.commands import Command, Work
+from collections.abc import Callable
+
+from arboleda.model.commands import Command, Switch, Work
 from arboleda.model.messages import Report
 from arboleda.model.plant_model import Evidence, PlantModel, Robot
 
@@ -13,7 +15,7 @@ KEPT = 64  # commands per arm; whatever settles a later one settles those before
 
 
 class Unnamed:
-    """How many commands left for each board that numbers them, and were not named by it yet.
+    """Count of commands that left for each board that numbers them, and were not named by it yet.
 
     What proves that a command is done need not name it: a switch may already be as it was told. `ids` are
     theirs by robot, oldest first.
@@ -83,9 +85,49 @@ class UnderWay:
             self.ids.pop(command.robot, None)
 
     def is_overdue(self, robot: str, now: float) -> bool:
-        """Whether one of them must have been lost."""
+        """True where one of them must have been lost."""
         waits = robot in self.ids and robot in self._naming
         return waits and now >= self._heard_since.get(robot, now) + PATIENCE_S
+
+
+class Unfinished:
+    """Switches that have failed at devices which zones depend on, and that may still come to their end.
+
+    A switch is no longer one of them once its device names it as ended, has done another one of the same
+    facts, or was heard without a fault for as long as a switch like that may take. A boot leaves none.
+    `by_device` has them, each with the time that it may take.
+    """
+
+    def __init__(self, model: PlantModel) -> None:
+        self._devices = frozenset(name for cell in model.cells for name in cell.interlocked)
+        self.by_device: dict[str, list[tuple[Switch, float]]] = {}
+        self._well_since: dict[str, float] = {}
+
+    def failed(self, command: Command, allowed_s: float, now: float) -> None:
+        """A command has failed, whatever its device goes on with."""
+        if command.robot in self._devices and isinstance(command, Switch):
+            self.by_device.setdefault(command.robot, []).append((command, allowed_s))
+            self._well_since[command.robot] = now
+
+    def done(self, command: Command) -> None:
+        """A command is done: it has taken the place of those that set the same."""
+        facts = {name for name, _ in command.sets}
+        self._keep(command.robot, lambda switch, _: facts.isdisjoint(name for name, _ in switch.sets))
+
+    def hear(self, report: Report, now: float, *, is_well: bool) -> bool:
+        """A robot reports, well or with a fault; True where less of it is unfinished now."""
+        before = self.by_device[report.robot]
+        if not is_well:
+            self._well_since[report.robot] = now
+        well_s = now - self._well_since[report.robot]
+        ended = (report.done, report.failed, report.rejected)
+        self._keep(report.robot, lambda switch, allowed_s: well_s < allowed_s and switch.id not in ended)
+        return len(self.by_device.get(report.robot, ())) < len(before)
+
+    def _keep(self, device: str, stays: Callable[[Switch, float], bool]) -> None:
+        left = [each for each in self.by_device.pop(device, ()) if stays(*each)]
+        if left:
+            self.by_device[device] = left
 
 
 def _settle(ids: list[str], report: Report) -> None:

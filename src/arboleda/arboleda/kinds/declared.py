@@ -353,6 +353,9 @@ class Device(Robot):
     def works(self) -> bool:
         return any(verb.effect in (Effect.MOTION, Effect.PROCESS) for verb in self.kind.verbs.values())
 
+    def verb_command(self, verb: str, values: Facts, *, id: str) -> Command:
+        return self.kind.command(id=id, robot=self.name, verb=verb, values=dict(values))
+
     def let_go(self, *, id: str) -> Command:
         """The command that makes the device let go of a part; raises UseError if its kind has none."""
         for verb in self.kind.verbs.values():

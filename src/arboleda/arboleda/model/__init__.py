@@ -1,1 +1,1 @@
-"""What a plant consists of, and what crosses the border of its engine: data without behaviour of its own."""
+"""Model: the parts of a plant, and the data that cross the border of its engine."""

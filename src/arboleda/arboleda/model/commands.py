@@ -1,4 +1,4 @@
-"""What robots are told to do: the bases that the engine goes by, and the commands that every robot knows."""
+"""Commands to robots: the bases that the engine goes by, and the commands that every robot knows."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class StopMode(int, Enum):
 
 
 class OnStop(str, Enum):
-    """What a machine does with its work when it is stopped, or when nobody waits for the work any more."""
+    """Behaviour of a machine at work when it is stopped, or when nobody waits for the work any more."""
 
     HALT = "halt"
     FINISH = "finish"
@@ -31,7 +31,7 @@ class OnStop(str, Enum):
 
 @dataclass(frozen=True, kw_only=True)
 class Command:
-    """What a robot is told to do; its base says what the engine must know of it, whatever it is in detail."""
+    """Command to a robot; its base says what the engine must know of it, whatever it is in detail."""
 
     id: str
     robot: str
@@ -46,7 +46,7 @@ class Command:
 
     @property
     def given(self) -> dict[str, object]:
-        """What it was made with, by name, as screens show it."""
+        """The values that it was made with, by name, as screens show them."""
         return {each.name: getattr(self, each.name) for each in fields(self) if each.name not in LABELS}
 
     @property
@@ -61,12 +61,12 @@ class Command:
 
     @property
     def works_on_part(self) -> bool:
-        """Whether there has to be a part at its device for it."""
+        """True where there has to be a part at its device for it."""
         return False
 
     @property
     def at_most_s(self) -> float | None:
-        """How long it may take, s; None where the robot and its way say that."""
+        """The longest time that it may take, s; None where the robot and its way say that."""
         return None
 
 
@@ -75,7 +75,7 @@ class Work(Command):
 
     @property
     def on_stop(self) -> OnStop:
-        """What becomes of it when its step is left, or its cell is held or stopped."""
+        """Its end when its step is left, or its cell is held or stopped."""
         return OnStop.HALT
 
 
@@ -128,7 +128,7 @@ class Question(Query):
 
     @property
     def text(self) -> str:
-        """What is asked."""
+        """The question in words."""
         raise NotImplementedError
 
     @property
@@ -150,5 +150,5 @@ class Home(Motion):
 
 
 def needs_clear(command: Command) -> bool:
-    """Whether a stop latch forbids the command: all work, and every switch but one that lets go of a part."""
+    """True where a stop latch forbids it: all work, and every switch but one that lets go of a part."""
     return isinstance(command, Work) or (isinstance(command, Switch) and command.grips is not False)

@@ -1,4 +1,4 @@
-"""What a device reports of itself beside its state and its position: named values."""
+"""Facts: the named values that a device reports beside its state and its position."""
 
 from __future__ import annotations
 

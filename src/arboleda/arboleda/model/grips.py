@@ -1,4 +1,4 @@
-"""What each effector may hold: what was commanded, and what the board reports where it does."""
+"""Grips: the state of each effector, from what was commanded and from what its board reports."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class Grips:
         return self._grips[holder]
 
     def set(self, holder: str, grip: Grip) -> bool:
-        """Whether that was new."""
+        """Set the grip of a holder; True where that is new."""
         changed = self._grips[holder] is not grip
         self._grips[holder] = grip
         if grip is not Grip.SWITCHING:
@@ -41,7 +41,7 @@ class Grips:
         return changed
 
     def holding(self, holder: str) -> bool:
-        """Whether a part may hang there."""
+        """True where a part may hang there."""
         return self._grips[holder] is not Grip.OFF
 
     def open(self, holder: str, id: str) -> None:

@@ -1,4 +1,4 @@
-"""What crosses the core's border beside commands: notices out, events in."""
+"""Messages across the core's border beside commands: notices out, events in."""
 
 from __future__ import annotations
 
@@ -9,9 +9,11 @@ from functools import cached_property
 from operator import attrgetter
 from typing import NamedTuple
 
+from .commands import Position
 from .facts import Facts, Value
 from .grips import Grip
 from .plant_model import MotionState
+from .revision import RevisionName
 from .sentence import NOTHING, Sentence
 from .verbs import Arguments
 from .verbs import Verb as Verb  # of whose requests and answers this module tells
@@ -64,7 +66,7 @@ ENDED = frozenset({TaskState.DONE, TaskState.FAILED, TaskState.CANCELLED})  # of
 
 @dataclass(frozen=True, kw_only=True)
 class TaskAnswer:
-    """What a device or a person answered to a task; `asked` is the question, or the verb and its values."""
+    """Answer of a device or a person to a task; `asked` is the question, or the verb and its values."""
 
     by: str
     asked: str
@@ -73,7 +75,7 @@ class TaskAnswer:
 
 @dataclass(frozen=True, kw_only=True)
 class Course:
-    """How a task went that was done: how many s it took, and after how many each of its steps began last, by
+    """Course of a task that was done: the s it took, and after how many each of its steps began last, by
     the step's name and its number among those of that name. While it was held no time passed.
     """
 
@@ -100,7 +102,7 @@ class Check(str, Enum):
 
 @dataclass(frozen=True, kw_only=True)
 class KeptTask:
-    """What was kept of a task that an earlier start accepted; times in s of this start's clock.
+    """Task of an earlier start, as it was kept; times in s of this start's clock.
 
     `recipe` is "" where nobody knows; `choice` says why it is done in its cell, where several were allowed.
     `course` is known of tasks that were done from their beginning in one start of the plant.
@@ -155,7 +157,7 @@ class TaskChanged:
 
 
 class Outcome(str, Enum):
-    """What has become of an operator's act."""
+    """Outcome of an operator's act."""
 
     SENT = "sent"  # a stop: whether robots stand shows in what they report
     UNDER_WAY = "under_way"  # devices were told to do it, and have not ended
@@ -166,7 +168,7 @@ class Outcome(str, Enum):
 
 @dataclass(frozen=True, kw_only=True)
 class OperatorAnswer:
-    """What became of an operator's request; `refusal` says why nothing was done, None where it was.
+    """Answer to an operator's request; `refusal` says why nothing was done, None where it was.
 
     `act` is the number under which its `outcome`, and why so, is told on where that is still to come.
     """
@@ -182,7 +184,7 @@ class OperatorAnswer:
 
 
 class Fact(str, Enum):
-    """What must survive a restart of the plant."""
+    """Fact that must survive a restart of the plant."""
 
     LATCH = "latch"  # robot -> "on", or "cleared" until its cell is reset
     EFFECTOR = "effector"  # arm -> "on", "off" or "switching"
@@ -194,6 +196,7 @@ class Fact(str, Enum):
     )
     DISPLACED = "displaced"  # robot that cannot say so -> "true" while its position means nothing
     BOOT = "boot"  # such a robot -> the boot in which it was heard last
+    MANUAL = "manual"  # cell -> who teaches it, until its end has been told
     STEP = "step"  # running task -> where its tree stands, as `trees/trail.py` writes it
 
 
@@ -210,10 +213,11 @@ class Remember:
 class Journal:
     """One act of an operator, kept for good; `cell` is the one it was for, None where it was for more.
 
-    An act of devices has two of them: `outcome` is in that of its end.
+    An act of devices has two of them: `outcome` is in that of its end. A version that is put to work is an
+    act without a verb.
     """
 
-    verb: Verb
+    verb: Verb | None
     scope: str
     cell: str | None
     sentence: Sentence
@@ -225,7 +229,7 @@ LETS_GO = Grip.OFF.value
 
 
 def outlives_power(kept: Remember | Journal | TaskChanged) -> bool:
-    """Whether a power cut must not undo that this was kept; all that was kept survives a process that dies.
+    """True where not even a power cut may undo it; all that was kept survives a process that dies.
 
     What is lost may only make the plant more careful than it need be: that an effector has let go, that a
     zone is free again, that a robot was put right, the last steps of a task.
@@ -236,7 +240,7 @@ def outlives_power(kept: Remember | Journal | TaskChanged) -> bool:
         return False
     if kept.fact is Fact.EFFECTOR:
         return kept.value != LETS_GO  # what has gripped and counts as switching lets go in a recovery
-    return kept.value is not None or kept.fact not in (Fact.QUARANTINE, Fact.DISPLACED)
+    return kept.value is not None or kept.fact not in (Fact.QUARANTINE, Fact.DISPLACED, Fact.MANUAL)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -257,7 +261,41 @@ class Absence:
     seconds: float
 
 
-Notice = Heartbeat | SystemStart | TaskChanged | OperatorAnswer | Remember | Journal | InternalError | Absence
+@dataclass(frozen=True, kw_only=True)
+class RevisionAnswer:
+    """What became of a request to put a version to work; `refusal` says why nothing was, None where it was.
+
+    `waits` has the cells that take it later, each with the task that has to end before, "" where something
+    else has to; all others have it. `cancelled` are tasks that waited and that it does not offer any more.
+    """
+
+    version: RevisionName
+    refusal: Sentence | None = None
+    waits: tuple[tuple[str, str], ...] = ()
+    cancelled: tuple[str, ...] = ()
+    request: str | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class CellRevised:
+    """A cell has taken a version: from now on its tasks begin by that."""
+
+    cell: str
+    version: RevisionName
+
+
+Notice = (
+    Heartbeat
+    | SystemStart
+    | TaskChanged
+    | OperatorAnswer
+    | Remember
+    | Journal
+    | InternalError
+    | Absence
+    | RevisionAnswer
+    | CellRevised
+)
 
 
 class Receipt(NamedTuple):
@@ -270,7 +308,7 @@ class Receipt(NamedTuple):
 
 @dataclass(frozen=True, kw_only=True)
 class Report:
-    """What a robot said, in SI units; None means it did not say.
+    """Report of a robot, in SI units; None stands for what it does not report.
 
     `epoch` names the bridge's start, `plant` the start of the plant whose heartbeat the bridge hears,
     `boot_id` the board's; `accepted`, `done` and `rejected` are
@@ -311,7 +349,7 @@ class Report:
     number: int | None = None
 
     def fact(self, name: str) -> Value | None:
-        """What it says of a fact; None where it says nothing."""
+        """The reported value of a fact; None where there is none."""
         if name in BUILT_IN:
             value: Value | None = getattr(self, name)
             return value
@@ -415,8 +453,52 @@ class OperatorRequest:
     arguments: Arguments = field(default=(), repr=False)
 
     def argument(self, name: str) -> int | str | None:
-        """What it is told by this name; None where it is told nothing."""
+        """The argument of this name; None where there is none."""
         return next((value for known, value in self.arguments if known == name), None)
 
 
-Event = Report | TaskRequest | OperatorRequest | Undelivered | LateDeparture | Interference | Shutdown
+@dataclass(frozen=True, kw_only=True)
+class Jog:
+    """Who teaches a cell holds a button, or lets go of it: `session` is the number of the act that began the
+    teaching, `number` counts the presses in it.
+
+    Its robot goes towards `goal`, or carries out the verb `word` with its values. A goal may be another one
+    while the button is held. What is held has to be said again and again: see `HOLD_S` in `core/teaching.py`.
+    """
+
+    at: float
+    cell: str
+    session: int
+    number: int
+    robot: str
+    goal: Position | None = None
+    word: str = ""
+    values: Facts = ()
+    held: bool = True
+
+
+@dataclass(frozen=True, kw_only=True)
+class Revision:
+    """Somebody puts another version of the plant to work, which the plant knows by its digest.
+
+    `by` is who does, `changes` what it changes in words, a line each: they are for people who read of it.
+    """
+
+    at: float
+    version: RevisionName
+    by: str = ""
+    changes: tuple[str, ...] = ()
+    request: str | None = None
+
+
+Event = (
+    Jog
+    | Report
+    | TaskRequest
+    | OperatorRequest
+    | Undelivered
+    | LateDeparture
+    | Interference
+    | Shutdown
+    | Revision
+)

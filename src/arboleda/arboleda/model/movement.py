@@ -14,20 +14,30 @@ class Movement:
         """The positions by which it gets from `start`, where that is known, to `goal`, which is the last."""
         return (goal,)
 
+    def beyond(self, position: Position) -> str | None:
+        """The first thing of a position that is beyond its limits, in words; None where all is within."""
+        return None
+
+    def stride(self, here: Position, goal: Position, *, turn: float, slide: float) -> tuple[Position, ...]:
+        """The way to the next short goal on the way to a goal, at most as fast as `turn` rad/s and `slide`
+        m/s.
+        """
+        return self.route(here, goal)[:2]
+
     def travel_s(self, start: Position | None, way: Sequence[Position]) -> float:
         """Time of a motion along `way`; from an unknown start the longest possible one."""
         raise NotImplementedError
 
     def can_have_moved(self, before: Position, after: Position, elapsed_s: float) -> bool:
-        """Whether its limits allow it to come from one position to the other in that time."""
+        """True where its limits allow it to come from one position to the other in that time."""
         return True
 
     def stands_at(self, position: Position, goal: Position) -> bool:
-        """Whether a reported position is that goal."""
+        """True where a reported position is that goal."""
         return position == goal
 
     def confuses(self, position: Position, other: Position) -> bool:
-        """Whether it may stop at the one and count as standing at the other."""
+        """True where it may stop at the one and count as standing at the other."""
         return position == other
 
     def held_at(self, position: Position) -> Position:

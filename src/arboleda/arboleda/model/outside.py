@@ -39,7 +39,7 @@ def quoted(value: object, most: int = 40) -> str:
 
 
 def said_by(error: BaseException, most: int = LINE) -> str:
-    """What an error says, on one line; its name where it says nothing.
+    """The text of an error, on one line; its name where it has none.
 
     >>> said_by(ValueError("no port")), said_by(TimeoutError())
     ('no port', 'TimeoutError')
@@ -48,7 +48,7 @@ def said_by(error: BaseException, most: int = LINE) -> str:
 
 
 def among(word: str, known: Iterable[str]) -> str:
-    """What there is instead of a wrong word, and the nearest of it.
+    """The words that are allowed instead of a wrong one, and the nearest of them.
 
     >>> among("opne", ["open", "close"]), among("opne", [])
     ('there are open, close; did you mean open?', 'there are none')

@@ -1,7 +1,8 @@
-"""What a plant is: frozen values in SI units (rad, m, s), built once from the plant file."""
+"""Model of a plant: frozen values in SI units (rad, m, s), built once from the plant file."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Collection, Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from enum import Enum
@@ -9,6 +10,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 from .commands import Command, Position
+from .errors import ArboledaError
 from .facts import Facts, Value
 from .movement import Movement
 from .recipe import Recipe
@@ -26,7 +28,7 @@ PieceCheck = bool | Literal["auto"]
 
 
 class Evidence(str, Enum):
-    """How much a robot can prove about its motion."""
+    """Evidence that a robot can give of its motion."""
 
     IDS = "ids"
     JOINTS = "joints"
@@ -34,7 +36,7 @@ class Evidence(str, Enum):
 
 
 class Link(str, Enum):
-    """How a robot is reached: MQTT through the bridge, directly on ROS 2 topics, or not: it is only drawn.
+    """Link to a robot: MQTT through the bridge, ROS 2 topics, or none where it is only drawn.
 
     By DRIVER it is reached by a driver of somebody's own. Who is reached by SCREEN is a person, who answers
     on the page, on the command line, over HTTP or ROS 2.
@@ -48,14 +50,14 @@ class Link(str, Enum):
 
 
 class ForeignCommands(str, Enum):
-    """What a bridge that hears its plant does with commands of other nodes; stops it always obeys."""
+    """Treatment of commands of other nodes by a bridge that hears its plant; stops it always obeys."""
 
     REFUSE = "refuse"
     OBEY = "obey"
 
 
 class MqttVersion(str, Enum):
-    """Which MQTT a plant speaks."""
+    """Version of MQTT that a plant speaks."""
 
     V3_1_1 = "3.1.1"
     V5 = "5"
@@ -83,7 +85,7 @@ class DriverUse:
 
 @dataclass(frozen=True, kw_only=True)
 class Robot:
-    """What every robot declares: its names, its link and what it can prove."""
+    """Declaration of a robot: its names, its link and what it can prove."""
 
     name: str
     mqtt: str
@@ -100,7 +102,7 @@ class Robot:
 
     @property
     def kind_name(self) -> str:
-        """What its kind is called."""
+        """The name of its kind."""
         raise NotImplementedError
 
     @property
@@ -115,12 +117,12 @@ class Robot:
 
     @property
     def goes(self) -> bool:
-        """Whether it goes from place to place."""
+        """True where it goes from place to place."""
         return self.position_key is not None
 
     @property
     def verb_names(self) -> tuple[str, ...]:
-        """What it can be told besides where to go and what to hold, by name."""
+        """The names of its verbs, besides those for going and holding."""
         return ()
 
     @property
@@ -144,17 +146,17 @@ class Robot:
 
     @property
     def is_asked(self) -> bool:
-        """Whether it is somebody who answers on the plant's own screens."""
+        """True for a person, who answers on the plant's own screens."""
         return self.link is Link.SCREEN
 
     @property
     def has_effector(self) -> bool:
-        """Whether what it holds parts with is called its effector; of any other device the fact is named."""
+        """True where it holds parts with an effector; of any other device the fact has a name."""
         return self.held_fact == "effector"
 
     @property
     def joint_names(self) -> tuple[str, ...]:
-        """What its joints are called on ROS 2; empty where it says no position."""
+        """The names of its joints on ROS 2; empty where it reports no position."""
         return ()
 
     @property
@@ -177,17 +179,17 @@ class Robot:
 
     @property
     def works(self) -> bool:
-        """Whether it can be given work; what only answers or switches always stands still."""
+        """True where it can be given work; a device that only answers or switches always stands still."""
         return True
 
     @property
     def homes(self) -> bool:
-        """Whether it can lose its position, and run a homing routine or be put at its reference."""
+        """True where it can lose its position, and run a homing routine or be put at its reference."""
         return True
 
     @property
     def reference(self) -> Position | None:
-        """Where its position is counted from; None where it counts nothing that a boot could lose."""
+        """The origin of its position; None where it counts nothing that a boot could lose."""
         return None
 
     @cached_property
@@ -198,6 +200,10 @@ class Robot:
     def go(self, *, id: str, way: Sequence[Position]) -> Command:
         """The command that brings it along `way` to its last position."""
         raise NotImplementedError
+
+    def verb_command(self, verb: str, values: Facts, *, id: str) -> Command:
+        """The command of one of its verbs; ArboledaError for a verb or a value that it does not have."""
+        raise ArboledaError(f"{self.name} has no verb {verb}")
 
     def grip(self, *, id: str) -> Command:
         """The command that takes hold of a part."""
@@ -213,7 +219,7 @@ class Robot:
 
     @property
     def says_homed(self) -> bool:
-        """Whether it knows itself if it is homed; a board that assumes so after every boot does not.
+        """True where it knows itself if it is homed; a board that assumes so after every boot does not.
 
         What has no homing never loses a position, and so never has to say it.
         """
@@ -286,7 +292,7 @@ class Handover:
 
 @dataclass(frozen=True, kw_only=True)
 class Retry:
-    """How often a failed step is tried again, where that can help, and the pause before each, s."""
+    """Retries of a failed step, where that can help: how many, and the pause before each, s."""
 
     times: int = 0
     backoff_s: float = 1.0
@@ -343,7 +349,7 @@ class Workspace:
 
     @property
     def hand(self) -> Robot:
-        """What holds the parts that it carries."""
+        """The device that holds the parts which it carries."""
         return self.tool or self.robot
 
     @cached_property
@@ -374,7 +380,7 @@ class Interlock:
     held_while: frozenset[str] = frozenset()
 
     def is_ended_by(self, command: Command) -> bool:
-        """Whether a command may make the device occupy the zone."""
+        """True where a command may make the device occupy the zone."""
         free = dict(self.free_while)
         return command.word in self.held_while or any(
             free.get(name, value) != value for name, value in command.sets
@@ -397,7 +403,7 @@ class Place:
 
     @cached_property
     def by_people(self) -> bool:
-        """Whether people keep it as tasks need it."""
+        """True where people keep it as tasks need it."""
         return self.supply or self.output
 
 
@@ -414,6 +420,15 @@ class Need:
     other: str
     fact: str
     value: Value
+
+
+@dataclass(frozen=True, kw_only=True)
+class Teach:
+    """Manual mode of a cell: its low speed in rad/s and m/s, after how many s without a touch it ends."""
+
+    turn: float = math.radians(10.0)
+    slide: float = 0.025
+    ends_after_s: float = 300.0
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -438,6 +453,7 @@ class Cell:
     arrays: tuple[tuple[str, tuple[str, ...]], ...] = ()  # groups of targets by name, in order
     grids: tuple[tuple[str, int, int], ...] = ()  # of those that are made of corners: rows and columns
     shared: tuple[str, ...] = ()  # the names of those devices that other cells have, too
+    teach: Teach = Teach()
 
     @cached_property
     def roles(self) -> dict[str, Robot]:
@@ -632,7 +648,7 @@ class PlantModel:
 
     @cached_property
     def has_boards(self) -> bool:
-        """Whether a robot is reached over MQTT; without one, nobody needs a broker."""
+        """True where a robot is reached over MQTT; without one, nobody needs a broker."""
         return any(robot.link is Link.MQTT for robot in self.robots.values())
 
     @cached_property

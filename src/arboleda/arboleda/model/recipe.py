@@ -1,4 +1,4 @@
-"""What a recipe is: its name, its typed parameters, and what makes its tree."""
+"""Recipe: a name, typed parameters, and the function that makes its tree."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def spelling(word: str) -> str:
 
 
 def same_word(cell: Cell, word: str) -> object:
-    """What a word means that means itself."""
+    """The meaning of a word that stands for itself."""
     return word
 
 
@@ -108,11 +108,11 @@ class Recipe:
     source: str = field(default="", compare=False)
 
     def end_of(self, values: Mapping[str, object]) -> dict[str, Value]:
-        """What is so once a task with these values is done, by place or "role.fact"."""
+        """The state once a task with these values is done, by place or "role.fact"."""
         return {str(values.get(what, what)): value for what, value in self.ends_with}
 
     def form(self) -> str:
-        """How a task of it is written."""
+        """The form in which a task of it is written."""
         cell = "<cell>" if self.alone is None else f"<{self.alone} or cell>"
         words = [*([] if self.is_default else [self.name]), *(f"<{each.name}>" for each in self.parameters)]
         return " ".join([cell, *words])

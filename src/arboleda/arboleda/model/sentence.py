@@ -1,4 +1,4 @@
-"""What the plant says, as data: a key with values, of which each language makes its own sentence.
+"""Sentence of the plant as data: a key with values, from which each language makes its own text.
 
 Nobody finds out anything by reading a text; who needs to know looks at the key and at the values.
 """
@@ -94,7 +94,7 @@ class Sentence:
 
 
 def as_sentence(said: Sentence | str | BaseException) -> Sentence:
-    """What somebody said in words of their own as a sentence; an error's where it has one."""
+    """A sentence of somebody's own words; that of an error where it has one."""
     if isinstance(said, BaseException):
         said = said.args[0] if len(said.args) == 1 and isinstance(said.args[0], Sentence) else str(said)
     return said if isinstance(said, Sentence) else OWN(text=said)

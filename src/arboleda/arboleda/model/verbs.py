@@ -63,6 +63,7 @@ ANSWER = Argument(name="answer", type=str, needed=True)
 STATION = Argument(name="station", type=int)
 PLACE = Argument(name="place", type=str, pattern="[A-Za-z][A-Za-z0-9_]*")
 PARTS = Argument(name="parts", type=int)
+TEACHER = Argument(name="teacher", type=str, needed=True)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -72,6 +73,7 @@ class Row:
     `stops`: it is the stop, which leaves before all else, may be asked for twice and is refused for no known
     name. `of_all_who_share`: for a device that cells share it is a matter of all of them. `by_hand`: a person
     may have done it, and only declares that. `moves`: it may set robots in motion; `drops`: parts may fall.
+    `mode`: it begins or ends the manual mode of a cell; whether it would be refused is no part of every view.
     """
 
     scopes: tuple[Scope, ...]
@@ -83,6 +85,7 @@ class Row:
     by_hand: bool = False
     moves: bool = False
     drops: bool = False
+    mode: bool = False
 
 
 _NO_ROW = Row(scopes=())
@@ -93,7 +96,7 @@ _DEVICES = (Scope.CELL, Scope.ROBOT)
 
 
 class Verb(str, Enum):
-    """What an operator can ask for: the same words on every screen, each with its row."""
+    """Verb of operators: the same words on every screen, each with its row."""
 
     STOP = "stop", Row(scopes=_EVERYWHERE, role=Role.VIEWER, stops=True, of_all_who_share=True)
     CLEAR = "clear", Row(scopes=_EVERYWHERE, of_all_who_share=True)
@@ -109,6 +112,8 @@ class Verb(str, Enum):
     UNLOAD = "unload", Row(scopes=_CELLS, arguments=(PLACE, STATION))
     LOAD = "load", Row(scopes=_ONE_CELL, arguments=(replace(PLACE, needed=True), PARTS))
     ANSWER = "answer", Row(scopes=(Scope.PERSON,), arguments=(QUESTION, ANSWER))
+    TEACH = "teach", Row(scopes=_ONE_CELL, arguments=(TEACHER,), mode=True)
+    AUTOMATIC = "automatic", Row(scopes=_ONE_CELL, mode=True)
 
     _value_: str
     row: Row
@@ -122,20 +127,19 @@ class Verb(str, Enum):
 
     @property
     def arguments(self) -> tuple[Argument, ...]:
-        """What it is told beside its scope, in the order of a person's words."""
+        """Its arguments beside the scope, in the order of a person's words."""
         return self.row.arguments
 
     @property
     def needs_arguments(self) -> bool:
-        """Whether it means nothing with a scope alone."""
+        """True where it means nothing with a scope alone."""
         return any(argument.needed for argument in self.row.arguments)
 
 
 def refusable(scope: Scope) -> tuple[Verb, ...]:
     """The verbs for which a scope of this kind can be a wrong moment, whatever they are told beside it."""
-    return tuple(
-        verb for verb in Verb if scope in verb.row.scopes and not verb.row.stops and not verb.needs_arguments
-    )
+    alone = (verb for verb in Verb if not verb.needs_arguments and not verb.row.mode)
+    return tuple(verb for verb in alone if scope in verb.row.scopes and not verb.row.stops)
 
 
 def as_text(verb: Verb, scope: str, arguments: Arguments) -> str:
@@ -168,7 +172,7 @@ def from_text(verb: Verb, text: str) -> tuple[str, Arguments]:
 
 
 def _first(argument: Argument, words: str) -> tuple[str, str]:
-    """What of the words is this argument, and the rest: one word in its form, or all of them."""
+    """The words of this argument, and the rest: one word in its form, or all of them."""
     if not argument.pattern:
         return words, ""
     first, _, rest = words.partition(" ")

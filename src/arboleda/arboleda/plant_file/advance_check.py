@@ -8,6 +8,11 @@ from dataclasses import dataclass, field
 from py_trees.behaviour import Behaviour
 
 from arboleda.bt_xml.recipe import TreeRecipe
+from arboleda.bt_xml.running.controls import Parallel, ParallelAll, Reactive, WhileDoElse
+from arboleda.bt_xml.running.decorators import Loop, Timed
+from arboleda.bt_xml.running.memory import Scope
+from arboleda.bt_xml.running.node import Result
+from arboleda.bt_xml.running.scripts import ScriptError
 from arboleda.core.plant import Plant
 from arboleda.model.plant_model import Cell, PlantModel
 from arboleda.model.recipe import Recipe
@@ -26,6 +31,8 @@ from .step_rules import RULES as STEP_RULES
 from .walkthrough import Rule, Walkthrough
 
 MOST_TRIES, LONGEST_S = 100, 3600.0  # of a retry, and the time of its pauses
+ENDLESS = "tries {step} again {how_often}; a task that cannot be done never ends so"
+LIMITS = (AtMost, Timed, Reactive, Parallel, ParallelAll, WhileDoElse)
 RULES: Mapping[type[Behaviour], Rule] = {**STEP_RULES, **NODE_RULES}
 
 
@@ -85,7 +92,8 @@ class CellCheck:
 
     def _check(self, recipe: Recipe, order: Order) -> None:
         tree = recipe.build(order, self.context)
-        self._say(recipe, _endless(tree))
+        for place, sentence in _endless(tree):
+            self._say(recipe, [sentence], place)
         walk, ends = self._followed(tree)
         for place, sentence in walk.findings:
             self._say(recipe, [sentence], place)
@@ -125,17 +133,31 @@ def _is_own(recipe: Recipe) -> bool:
     return _place(recipe) is not None
 
 
-def _endless(tree: Behaviour) -> Iterator[str]:
-    """The retries that go on for longer than people wait, and that nothing ends before."""
+def _endless(tree: Behaviour) -> Iterator[tuple[str | None, str]]:
+    """The retries that go on for longer than people wait, and that nothing ends before; of a tree as XML with
+    their places.
+    """
     for node in tree.iterate():
-        if not isinstance(node, Again) or _is_limited(node):
-            continue
-        if node.times > MOST_TRIES or node.times * node.pause_s > LONGEST_S:
-            tries = f"{node.times:,} times, {node.pause_s:g} s apart"
-            yield f"tries {node.decorated.name} again {tries}; a task that cannot be done never ends so"
+        if isinstance(node, Again) and not _is_limited(node):
+            if node.times > MOST_TRIES or node.times * node.pause_s > LONGEST_S:
+                how_often = f"{node.times:,} times, {node.pause_s:g} s apart"
+                yield None, ENDLESS.format(step=node.decorated.name, how_often=how_often)
+        elif isinstance(node, Loop) and node.goes_on is Result.FAILURE and not _is_limited(node):
+            times = _written_rounds(node)
+            if times is not None and (times < 0 or times > MOST_TRIES):
+                how_often = f"{times:,} times" if times > 0 else "without end"
+                yield str(node.place), ENDLESS.format(step=node.child.name, how_often=how_often)
+
+
+def _written_rounds(loop: Loop) -> int | None:
+    """The rounds of a loop that stand in its file; None where a variable says them."""
+    try:
+        return loop.most(Scope())
+    except ScriptError:
+        return None
 
 
 def _is_limited(node: Behaviour) -> bool:
-    """True for a step in one that ends it after some time."""
+    """True for a step in one that ends it after some time, or once something is so."""
     around = node.parent
-    return around is not None and (isinstance(around, AtMost) or _is_limited(around))
+    return around is not None and (isinstance(around, LIMITS) or _is_limited(around))

@@ -67,7 +67,7 @@ class Change:
 
 
 def changes(before: PlantFiles, after: PlantFiles) -> tuple[Change, ...]:
-    """What is another in `after`: values of the plant file in its order, then trees, then other files.
+    """The changes in `after`: values of the plant file in its order, then trees, then other files.
 
     A plant file of which layout or comments alone differ is as it was.
     """

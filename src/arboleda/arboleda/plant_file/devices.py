@@ -19,7 +19,7 @@ from .python_uses import KindInPython, PythonUses
 from .registry import COME_WITH_IT, RESERVED
 from .robot_kind import RobotKind
 from .robots import check_absence
-from .shapes import NAME_RULE, DeviceCellShape, DeviceShape, RetryShape, is_name
+from .shapes import NAME_RULE, DeviceCellShape, DeviceShape, RetryShape, TeachShape, is_name
 
 CELLS: Place = ("cells",)
 EVIDENCE = {"facts": Evidence.JOINTS}  # what joints are to an arm
@@ -90,6 +90,7 @@ def device_cell(document: Document, place: Place, kinds: Kinds, common: Mapping[
         document.problem((*place, key), what, at=(*place, key))
     shape = None if both else document.read(DeviceCellShape, place)
     retry = document.read(RetryShape, (*place, "retry")) if document.has((*place, "retry")) else RetryShape()
+    teach = document.read(TeachShape, (*place, "teach")) if document.has((*place, "teach")) else TeachShape()
     names = document.keys((*place, "devices"))
     sharing = shared.named(document, place)
     found = {
@@ -100,7 +101,7 @@ def device_cell(document: Document, place: Place, kinds: Kinds, common: Mapping[
     }
     members = {role: device for role, device in found.items() if device is not None}
     tools = _tools(document, (*place, "devices"), members, sharing)
-    if shape is None or retry is None or len(members) < len(found):
+    if shape is None or retry is None or teach is None or len(members) < len(found):
         return None
     spaces = targets.workspaces(document, place, members, tools)
     if spaces is None or (spaces := handovers.with_paths(document, place, members, spaces)) is None:
@@ -126,6 +127,7 @@ def device_cell(document: Document, place: Place, kinds: Kinds, common: Mapping[
         piece_check=shape.piece_check,
         zone_wait_s=shape.zone_wait_s,
         retry=Retry(**retry.model_dump()),
+        teach=teach.teach,
     )
 
 

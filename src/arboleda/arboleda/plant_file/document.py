@@ -42,12 +42,14 @@ BOUNDS = {
 class Document(Problems):
     """Document: a file by the name people know it by; ConfigError at once if nothing in it can be read.
 
-    `folder` has the files that it names; None for a content that lies in no folder.
+    `folder` has the files that it names; None for a content that lies in no folder. With `runs` a plant of
+    this process runs by it: Python that was imported is not run again.
     """
 
-    def __init__(self, name: str, raw: bytes, folder: Path | None = None) -> None:
+    def __init__(self, name: str, raw: bytes, folder: Path | None = None, *, runs: bool = False) -> None:
         super().__init__(name)
         self.folder = folder
+        self.runs = runs
         self.files: dict[Path, bytes] = {}  # those of them that were read
         try:
             self._root, faults = parse(raw)

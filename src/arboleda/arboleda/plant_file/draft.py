@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import posixpath
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import PurePosixPath
@@ -54,6 +55,26 @@ class Draft:
             raise EditRefused(f"a plant has at most {MOST_FILES} files of trees")
         return self._with(name, content)
 
+    def with_recipe(self, name: str, content: bytes) -> Draft:
+        """The same in one step with `uses`, which names the file if the plant does not use it yet."""
+        drawn = self.with_trees(name, content)
+        known, word = _uses(self._plant_text), self._used_as(name)
+        if word in known:
+            return drawn
+        place, value = ((USES, len(known)), word) if known else ((USES,), [word])
+        return self._step(
+            {**drawn.files.contents, self.files.plant: with_value(self._plant_text, place, value)}
+        )
+
+    def without_recipe(self, name: str) -> Draft:
+        """The draft without a file of trees, in one step with `uses`."""
+        contents = self.without_trees(name).files.contents
+        known, word = _uses(self._plant_text), self._used_as(name)
+        if word not in known:
+            return self._step(contents)
+        place: Place = (USES, known.index(word)) if len(known) > 1 else (USES,)
+        return self._step({**contents, self.files.plant: without(self._plant_text, place)})
+
     def without_trees(self, name: str) -> Draft:
         """The draft without a file of trees; one that is at work stays in its folder, unused."""
         _check_name(name)
@@ -79,6 +100,10 @@ class Draft:
     def changes(self) -> tuple[Change, ...]:
         """The differences from what is at work."""
         return changes(self.base, self.files)
+
+    def _used_as(self, name: str) -> str:
+        """The word for a file in `uses`, which counts from the folder of the plant file."""
+        return posixpath.relpath(name, PurePosixPath(self.files.plant).parent)
 
     @property
     def _plant_text(self) -> bytes:
@@ -111,7 +136,7 @@ def draft_of(files: PlantFiles) -> Draft:
 
 
 def _uses(text: bytes) -> list[str]:
-    """What a plant file uses; text that is no list of words is for `check` to refuse, and uses nothing."""
+    """The files that a plant file uses; none where its text is no list, which `check` refuses."""
     value = parse(text)[0].value
     found = value.get(USES) if isinstance(value, dict) else None
     return [each for each in found if isinstance(each, str)] if isinstance(found, list) else []

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -28,26 +29,50 @@ class Checked:
     warnings: tuple[str, ...] = ()
 
 
+@dataclass(frozen=True, kw_only=True)
+class Shade:
+    """Shade: a folder as that of a plant file, with other files in it; `plant_file` is the one to read there.
+
+    `named` has the folders that lines name, and those that they mean.
+    """
+
+    plant_file: Path
+    named: Mapping[str, str]
+
+    def renamed(self, line: str) -> str:
+        """The line with the paths of the real files."""
+        for made, real in self.named.items():
+            line = line.replace(f"{made}{os.sep}", "" if real == os.curdir else f"{real}{os.sep}")
+        return line
+
+
+@contextmanager
+def shaded(files: PlantFiles, plant_file: Path) -> Iterator[Shade]:
+    """A shade of the folder of `plant_file` with these files, as long as it is open."""
+    root = root_of(files, plant_file)
+    with TemporaryDirectory(prefix="arboleda-") as made:
+        shadow = Path(made) / "plant"
+        _shade(shadow, root.absolute(), files.contents)
+        there = shadow / files.plant
+        yield Shade(
+            plant_file=there, named={str(there.parent): str(plant_file.parent), str(shadow): str(root)}
+        )
+
+
 def check(files: PlantFiles, plant_file: Path) -> Checked:
     """The verdict on `files` as if they were in the folder of `plant_file`, where all others are.
 
     Lines name the files by where they would be. Nothing is written there; recipes in Python run as in
     `arboleda check`, in a process of its own.
     """
-    root = root_of(files, plant_file)
-    with TemporaryDirectory(prefix="arboleda-") as made:
-        shadow = Path(made) / "plant"
-        _shade(shadow, root.absolute(), files.contents)
-        shaded = shadow / files.plant
-        named = {str(shaded.parent): str(plant_file.parent), str(shadow): str(root)}
+    with shaded(files, plant_file) as shade:
         try:
-            plant, read = loader.load_with_files(shaded)
+            plant, read = loader.load_with_files(shade.plant_file)
             warnings = plant_check.warnings(plant)
         except ConfigError as error:
-            return Checked(problems=tuple(_renamed(each, named) for each in error.problems))
+            return Checked(problems=tuple(map(shade.renamed, error.problems)))
         same = read.plant == files.plant  # else it uses files by absolute paths, which have other names here
-        lines = tuple(_renamed(each, named) for each in warnings)
-        return Checked(plant=plant, read=read if same else None, warnings=lines)
+        return Checked(plant=plant, read=read if same else None, warnings=tuple(map(shade.renamed, warnings)))
 
 
 def root_of(files: PlantFiles, plant_file: Path) -> Path:
@@ -70,10 +95,3 @@ def _shade(shadow: Path, folder: Path, contents: Mapping[str, bytes]) -> None:
         inside = [name for name in contents if name.startswith(f"{head}/")]
         inner = {name.partition("/")[2]: contents[name] for name in inside}
         _shade(shadow / head, folder / head, inner)
-
-
-def _renamed(line: str, named: Mapping[str, str]) -> str:
-    """The line with the paths of the real files."""
-    for made, real in named.items():
-        line = line.replace(f"{made}{os.sep}", "" if real == os.curdir else f"{real}{os.sep}")
-    return line

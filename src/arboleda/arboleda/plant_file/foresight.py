@@ -36,7 +36,7 @@ class Scene:
 
     @property
     def mark(self) -> frozenset[tuple[Key, Value]]:
-        """What tells it from others."""
+        """The key that tells it from others."""
         return frozenset(self.known.items())
 
 
@@ -70,19 +70,19 @@ class Foresight:
         return {space.robot.name for space in self.hands.values()}
 
     def begin(self) -> Scene:
-        """When a task begins: hands hold nothing, and no part has come or gone."""
+        """The scene at the begin of a task: hands hold nothing, and no part has come or gone."""
         numbers = {(target, what): 0 for target in self.places for what in OF_PLACES}
         return Scene(known={**numbers, **{(hand, HELD): False for hand in self.hands}})
 
     def touched(self, command: Command) -> set[Key]:
-        """What a command may change."""
+        """The facts and places that a command may change."""
         keys = {(command.robot, what) for what in (HELD, TAKEN, AT, OVER, *dict(command.sets))}
         if isinstance(command, Switch) and command.grips is not None:
             keys |= {(target, what) for target in self.places for what in OF_PLACES}
         return keys
 
     def objections(self, command: Command, scene: Scene) -> Iterator[str]:
-        """What is wrong with a command in a scene, for certain."""
+        """The mistakes of a command in a scene that are certain."""
         yield from self._unmet(command, scene)
         if isinstance(command, Switch) and command.grips is not None and command.robot in self.hands:
             yield from self._by_hand(command, scene)
@@ -113,10 +113,12 @@ class Foresight:
         if command.robot not in self.hands:
             return scene
         here, held = self._here(command.robot, scene), scene.get(command.robot, HELD)
+        if held == command.grips:
+            return scene
         if held is None or here is None:
             doubtful = self.places if here is None else {str(here)}
             return scene.without({(target, what) for target in doubtful for what in OF_PLACES})
-        if here not in self.places or held == command.grips:
+        if here not in self.places:
             return scene
         return self._moved(scene, str(here), -1 if command.grips else +1)
 
@@ -204,7 +206,7 @@ class Foresight:
         return next(name for name, pose in space.targets.items() if pose == space.home)
 
     def _can(self, scene: Scene, place: Place, parts: int) -> bool:
-        """Whether there is any number of parts to begin with by which a place can give or take one."""
+        """True where there is any number of parts to begin with by which a place can give or take one."""
         after = self._moved(scene, place.target, parts)
         first = place.holds if place.supply else 0 if place.output else None
         lowest, highest = (0, place.holds) if first is None else (first, first)

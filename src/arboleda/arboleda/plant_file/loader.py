@@ -64,9 +64,13 @@ def load_recorded(path: Path | None = None) -> tuple[PlantModel, Recording | Non
     return plant, Recording(files=_files(document), limits=_limits(document) or Limits(), reports=reports)
 
 
-def load_with_files(path: Path | None = None) -> tuple[PlantModel, PlantFiles]:
-    """The same plant, and all files that were read for it."""
-    plant, document, _ = _parsed(*_content(path), recipes=True)
+def load_with_files(path: Path | None = None, *, runs: bool = False) -> tuple[PlantModel, PlantFiles]:
+    """The same plant, and all files that were read for it.
+
+    With `runs` it is for a plant that runs in this process: Python that it has imported is not run again, and
+    is a problem where it is another now.
+    """
+    plant, document, _ = _parsed(*_content(path), recipes=True, runs=runs)
     return plant, _files(document)
 
 
@@ -88,8 +92,8 @@ class _Parsed(NamedTuple):
     missed: Misses
 
 
-def _parsed(name: str, content: bytes, folder: Path | None, *, recipes: bool) -> _Parsed:
-    document = Document(name, content, folder)
+def _parsed(name: str, content: bytes, folder: Path | None, *, recipes: bool, runs: bool = False) -> _Parsed:
+    document = Document(name, content, folder, runs=runs)
     document.files[(folder or Path()) / Path(name).name] = content
     missed: Misses = {}
     if recipes:

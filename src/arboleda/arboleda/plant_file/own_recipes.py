@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 import importlib
 import inspect
+import os
 import re
 import sys
 from collections.abc import Iterator, Mapping, Sequence
@@ -39,6 +40,8 @@ SECTION: Place = ("uses",)
 NODE = re.compile("[A-Za-z_][A-Za-z0-9_]*", re.ASCII)
 CATEGORIES = tuple(each.value for each in Category)
 ENDING, TREES = ".py", ".xml"
+USES = "arboleda_uses_"  # before the names of modules that are files of plants
+READ = "__arboleda_read__"  # of a module: the files that were read for it, with their contents
 LARGEST = 256 * 1024  # bytes of a file
 TAKEN = tuple(each.name for each in RECIPES)
 LINKS = tuple(each.value for each in Link)
@@ -93,16 +96,47 @@ def _file(document: Document, place: Place, word: str, used: PythonUses, watch: 
     used.files |= {str(each): str(Path(known_as).parent / each.name) for each in _beside(path)}
     used.files[str(path)] = known_as
     document.files[path] = source
+    if document.runs:
+        return _as_imported(document, place, path)
     watch(Spot(file=known_as), "importing this")
+    read = {path: source}
     try:
-        with _importing(path.parent, document.files):
+        with _importing(path.parent, read):
             module = _run(path, source, used.lost)
+        setattr(module, READ, read)
     except (Exception, SystemExit) as error:  # noqa: BLE001 - it is user code: whatever it raises is told
         spot = used.where(error, Spot(file=known_as))
         used.keep(document, spot.problem(f"cannot be imported: {said(error)}"))
         return None
+    document.files |= read
     _check_twice(document, known_as, source)
     return module
+
+
+def _as_imported(document: Document, place: Place, path: Path) -> ModuleType | None:
+    """The module that this process has of a file, or of one that it is a copy of.
+
+    None, with the problem kept, where that is another now.
+    """
+    for module in [each for name, each in sys.modules.items() if name.startswith(USES)]:
+        read: dict[Path, bytes] = getattr(module, READ, {})
+        here = {path.parent / os.path.relpath(each, Path(str(module.__file__)).parent): each for each in read}
+        if path in here and all(_content(each) == read[there] for each, there in here.items()):
+            document.files |= {each: read[there] for each, there in here.items()}
+            return module
+    document.problem(place, "was changed since it was imported, and Python is not imported again")
+    return None
+
+
+def _content(path: Path) -> bytes | None:
+    try:
+        return path.read_bytes()
+    except OSError:
+        return None
+
+
+def _module_name(path: Path) -> str:
+    return f"{USES}{sha256(str(path).encode()).hexdigest()[:12]}_{path.stem}"
 
 
 def _trees(document: Document, place: Place, word: str, used: PythonUses) -> None:
@@ -175,7 +209,7 @@ def _run(path: Path, source: bytes, lost: LostSteps | None) -> ModuleType:
     """
     tree = ast.parse(source, str(path))
     code = compile(tree if lost is None else noting(tree), str(path), "exec", dont_inherit=True)
-    module = ModuleType(f"arboleda_uses_{sha256(str(path).encode()).hexdigest()[:12]}_{path.stem}")
+    module = ModuleType(_module_name(path))
     module.__file__ = str(path)
     if lost is not None:
         setattr(module, KEEP, lost.note)
@@ -199,7 +233,7 @@ def _importing(folder: Path, files: dict[Path, bytes]) -> Iterator[None]:
             sys.path.remove(str(folder))
         for name in set(sys.modules) - before:
             file = getattr(sys.modules[name], "__file__", None)
-            if file is not None and folder in Path(file).parents and not name.startswith("arboleda_uses_"):
+            if file is not None and folder in Path(file).parents and not name.startswith(USES):
                 with suppress(OSError):  # whoever imports may have deleted it since
                     files[Path(file)] = Path(file).read_bytes()
                 del sys.modules[name]

@@ -35,7 +35,7 @@ class Branches:
         return Scene(known=found).put(self._sums())
 
     def _changed(self, walk: Walkthrough, branch: Behaviour, ends: Sequence[Scene]) -> set[Key]:
-        """What a branch may change; of places only those at which some of its ends is another one."""
+        """The facts and places that a branch may change; of places only those at which some end differs."""
         keys, places = walk.touched(branch), walk.foresight.places if ends else ()
         same = {
             target

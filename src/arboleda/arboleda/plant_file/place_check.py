@@ -54,8 +54,7 @@ def _is_guarded(cell: Cell, place: Place) -> bool:
     zones = {each.zone for each in cell.interlocks if each.device == place.device}
     poses = [space.targets[place.target] for space in cell.spaces if place.target in space.targets]
     robots = {name for space in cell.spaces for name in (space.robot.name, space.hand.name)}
-    pairs = [(each.device, each.other) for each in cell.needs]
-    needed = any(place.device in pair and not robots.isdisjoint(pair) for pair in pairs)
+    needed = any(each.device in robots and each.other == place.device for each in cell.needs)
     return needed or all(pose.zones & zones for pose in poses)
 
 
@@ -88,7 +87,7 @@ def _split(plant: PlantModel, cell: Cell) -> Iterator[str]:
 
 
 def _tool(plant: PlantModel, space: Workspace, target: str) -> Sequence[float]:
-    """Where the tool of an arm is at a target, in plan."""
+    """The position of an arm's tool at a target, in plan."""
     base = space.robot.base
     frame = kinematics.floor((base.x, base.y, base.yaw))
     body = bodies.read(robot_urdf(plant, space.robot.name))

@@ -10,5 +10,5 @@ CHECKS = (loader, layout_check, meeting_points, grid_check, place_check, need_ch
 
 
 def warnings(plant: PlantModel) -> tuple[str, ...]:
-    """What all checks warn of, one sentence each."""
+    """The warnings of all checks, one sentence each."""
     return tuple(sentence for check in CHECKS for sentence in check.warnings(plant))

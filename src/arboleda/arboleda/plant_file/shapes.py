@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from typing import Annotated, Any, Literal
 
@@ -10,7 +11,7 @@ from pydantic_core import PydanticCustomError
 
 from arboleda.kinds.declared import Effect
 from arboleda.model.commands import OnStop
-from arboleda.model.plant_model import Cell, Evidence, PlantModel, Retry, Timing
+from arboleda.model.plant_model import Cell, Evidence, PlantModel, Retry, Teach, Timing
 from arboleda.recorder.preamble import Limits
 
 from .robot_models import Number, Pair, Positive, Shape, Triple
@@ -132,6 +133,7 @@ class CellShape(Shape):
     on_absence: OnAbsence = "hold"
     drive_to_start: bool = True
     retry: Any = None
+    teach: Any = None
     piece_check: Annotated[Any, AfterValidator(_piece_check)] = Cell.piece_check
     zone_wait_s: Duration = Cell.zone_wait_s
 
@@ -146,6 +148,7 @@ class DeviceCellShape(Shape):
     on_restart: OnRestart = "hold"
     on_absence: OnAbsence = "hold"
     retry: Any = None
+    teach: Any = None
     targets: Any = None
     groups: Any = None
     paths: Any = None
@@ -224,6 +227,22 @@ class RetryShape(Shape):
 
     times: Annotated[int, Field(ge=0, le=10)] = Retry.times
     backoff_s: Wait = Retry.backoff_s
+
+
+class TeachShape(Shape):
+    """`teach:`, the manual mode of a cell; the defaults are those of core.model.Teach, its limits what people
+    can follow with their eyes.
+    """
+
+    deg_s: Annotated[float, Field(gt=0, le=30, allow_inf_nan=False)] = 10.0
+    mm_s: Annotated[float, Field(gt=0, le=250, allow_inf_nan=False)] = 25.0
+    ends_after_s: Annotated[float, Field(ge=10, le=3600, allow_inf_nan=False)] = Teach.ends_after_s
+
+    @property
+    def teach(self) -> Teach:
+        """The same in SI units."""
+        turn, slide = math.radians(self.deg_s), self.mm_s / 1000
+        return Teach(turn=turn, slide=slide, ends_after_s=self.ends_after_s)
 
 
 class RobotShape(Shape):

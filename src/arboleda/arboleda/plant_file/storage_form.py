@@ -24,7 +24,7 @@ from .pickups import Pickups, default_pickup, pickups
 from .poses import PoseReader
 from .robot_models import ArmModel
 from .robots import arm, arm_model, check_absence, mobile
-from .shapes import CellShape, PoseShape, PositionShape, RetryShape
+from .shapes import CellShape, PoseShape, PositionShape, RetryShape, TeachShape
 
 SECTIONS = ("paths", "stations", "palletizing")  # they may stand at the top of the file, for all such cells
 
@@ -49,9 +49,10 @@ def storage_cell(document: Document, place: Place) -> Cell | None:
     routes = paths(document, _section(document, place, "paths"))
     poses = _poses(document, place, kind, routes)
     retry = document.read(RetryShape, (*place, "retry")) if document.has((*place, "retry")) else RetryShape()
+    teach = document.read(TeachShape, (*place, "teach")) if document.has((*place, "teach")) else TeachShape()
     if the_mobile and routes:
         check_nodes_show(document, (*place, MOBILE), routes, the_mobile)
-    if not (shape and retry and the_arm and the_mobile and routes and poses):
+    if not (shape and retry and teach and the_arm and the_mobile and routes and poses):
         return None
     check_absence(document, place, shape.on_absence, (the_arm, the_mobile))
     return Cell(
@@ -66,6 +67,7 @@ def storage_cell(document: Document, place: Place) -> Cell | None:
         goes_on_after_absence=shape.on_absence == "go_on",
         drive_to_start=shape.drive_to_start,
         retry=Retry(**retry.model_dump()),
+        teach=teach.teach,
         piece_check=shape.piece_check,
         zone_wait_s=shape.zone_wait_s,
     )

@@ -18,6 +18,7 @@ from .draft_check import root_of
 from .tree_file import ENDING
 
 FOLDER, FACTS, CONTENTS = ".arboleda", "version.json", "files"
+MARK = "bringing_back"  # a file with the number of the version whose files are being written
 FORMAT = 1
 DIGITS = 4  # of the name of a version's folder
 
@@ -98,9 +99,26 @@ class Versions:
         return numbered
 
     def bring_back(self, version: Version) -> None:
-        """Write its plant file and trees where they were; StartError if the disk refuses."""
+        """Write plant file and trees of a kept version where they were; StartError if the disk refuses.
+
+        What is cut off in the middle is done by `go_on`: who starts next finds all of it.
+        """
+        mark = self._folder / MARK
+        if len(version.files.contents) > 1:
+            _replace(mark, str(version.number).encode())
         for name, content in version.files.contents.items():
             _replace(self._path(version, name), content)
+        mark.unlink(missing_ok=True)
+
+    def go_on(self) -> Version | None:
+        """Write the rest of a version that was cut off in the middle of `bring_back`; None if none was."""
+        try:
+            number = int((self._folder / MARK).read_text("ascii"))
+        except (OSError, ValueError):  # a name that cannot be a folder has no versions either
+            return None
+        version = self.find(number)
+        self.bring_back(version)
+        return version
 
     def is_in_place(self, version: Version) -> bool:
         """True where plant file and trees are those of this version now."""

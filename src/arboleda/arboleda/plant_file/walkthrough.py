@@ -31,7 +31,7 @@ class Outcome:
 
     @property
     def passed(self) -> tuple[Scene, ...]:
-        """Where the next step of a sequence begins."""
+        """The scene in which the next step of a sequence begins."""
         return self.done + self.skipped
 
     def plus(
@@ -106,7 +106,7 @@ class Walkthrough:
         return few([scene.without(keys) for scene in scenes])
 
     def touched(self, node: Behaviour) -> set[Key]:
-        """What a part of a tree may change."""
+        """The facts and places that a part of a tree may change."""
         if node not in self.known_touched:
             self.known_touched[node] = set(self._touched(node))
         return self.known_touched[node]

@@ -15,7 +15,7 @@ Key = str | int
 
 
 class Style(Enum):
-    """How a value is written: on lines of its own, in brackets, as one word or text, or as `*name`."""
+    """Style of a value: on lines of its own, in brackets, as one word or text, or as `*name`."""
 
     BLOCK = "block"
     FLOW = "flow"
@@ -36,7 +36,7 @@ class Span:
     keys: dict[Key, tuple[int, int]] = field(default_factory=dict)
 
     def entry_start(self, key: Key) -> int:
-        """Where an entry begins: at its key, or where it has none at its value."""
+        """The begin of an entry: its key, or its value where it has no key."""
         return self.keys[key][0] if key in self.keys else self.entries[key].start
 
 

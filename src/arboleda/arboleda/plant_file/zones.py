@@ -161,7 +161,7 @@ def _of_devices(
     robots: Mapping[str, Robot],
     read: Callable[[Document, Place, Any], tuple[T, ...]],
 ) -> dict[str, tuple[T, ...]]:
-    """What is said of each device in a mapping by their names; problems of wrong names are kept."""
+    """The values of a mapping by the names of devices; problems of wrong names are kept."""
     found = {}
     devices = {name: robot for name, robot in robots.items() if robot.verb_names}
     for name in document.keys(place):

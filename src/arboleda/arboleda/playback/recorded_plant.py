@@ -12,6 +12,8 @@ from arboleda.model.plant_model import Link, PlantModel
 from arboleda.plant_file import loader
 from arboleda.recorder.errors import NoRecord
 from arboleda.recorder.preamble import Beginning, PlantFiles
+from arboleda.recorder.reader import Record
+from arboleda.recorder.version_files import versions_in
 from arboleda.runtime.rate import at_rate
 
 
@@ -30,6 +32,18 @@ def as_it_ran(beginning: Beginning, model: PlantModel) -> PlantModel:
     if beginning.simulated:
         return model.on_boards(*ELSEWHERE)
     return at_rate(model.on_boards(Link.DRIVER) if beginning.virtual else model, beginning.rate)
+
+
+def versions_of(record: Record) -> dict[str, PlantModel]:
+    """The versions that the plant of a record took while it ran, by digest; NoRecord."""
+    beginning = record.first.beginning
+    try:
+        found = versions_in(record.paths).items()
+        return {digest: as_it_ran(beginning, loaded(files)) for digest, files in found}
+    except ConfigError as error:
+        raise NoRecord(
+            f"A version of the plant in the record cannot be read by this version:\n{error}"
+        ) from error
 
 
 def with_content(files: PlantFiles, name: str, content: bytes) -> PlantFiles:

@@ -1,4 +1,4 @@
-"""What recipes of one's own are written with: `@recipe` makes one of a function, `@node` and `@function` make
+"""Recipes of one's own: `@recipe` makes one of a function, `@node` and `@function` make
 nodes for trees that are written as XML.
 """
 

@@ -101,8 +101,9 @@ def recipe(
 
         @wraps(function)
         def build(order: Order, context: Context) -> Step:
+            built = _build(name, title, function, order, context)  # first: a cell may lack its devices
             check_end(name, {str(order.values.get(what, what)): value for what, value in end}, context.cell)
-            return _build(name, title, function, order, context)
+            return built
 
         known = tuple(each for each in read.values() if each is not None)
         first_line = (inspect.getdoc(function) or "").partition("\n")[0]

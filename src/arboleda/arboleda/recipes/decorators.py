@@ -5,6 +5,7 @@ They are woken by the plant's events and times; the decorators of py_trees ask a
 
 from __future__ import annotations
 
+import math
 from collections.abc import Collection, Iterator, Mapping
 from typing import Any
 
@@ -28,6 +29,8 @@ RESCUE = Phrase("step.rescue", "rescue: {step}")
 INVERT = Phrase("step.invert", "invert {step}")
 TOO_LATE = Phrase("recipe.too_late", "{step} did not end within {seconds:g} s")
 RESCUE_FAILED = Phrase("recipe.rescue_failed", "{cause}; and the rescue failed: {second}")
+LEAST_S = 0.01
+"""Pause before the next round of what has taken no time: one step of the plant ticks a tree only so often."""
 NO_RESCUE = frozenset({Reason.STOPPED, Reason.CANCELLED, Reason.INTERRUPTED, Reason.INTERNAL})
 """Reasons of a failure after which nothing of the task may go on."""
 NOT_FAILED = Phrase("recipe.not_failed", "{step} was to fail, and did not")
@@ -82,7 +85,7 @@ class Again(Around):
             return status
         self.tries += 1
         self.failures.forgive()
-        self.again_at = self.time.now + self.pause_s
+        self.again_at = self.time.now + max(self.pause_s, LEAST_S)
         self.time.wake_at(self.again_at)
         return Status.RUNNING
 
@@ -95,9 +98,11 @@ class Times(Around):
         self.time = time
         self.times = times
         self.done = 0
+        self.begun_at = self.next_at = -math.inf
 
     def initialise(self) -> None:
         self.done = 0
+        self.begun_at, self.next_at = self.time.now, -math.inf
 
     def kept(self) -> Mapping[str, Any] | None:
         return {"done": self.done} if self.status is Status.RUNNING else None
@@ -105,13 +110,22 @@ class Times(Around):
     def restore(self, state: Mapping[str, Any]) -> None:
         self.done = state["done"]
 
+    def tick(self) -> Iterator[Behaviour]:
+        if self.status is Status.RUNNING and self.time.now < self.next_at:
+            yield self
+            return
+        yield from super().tick()
+
     def update(self) -> Status:
         if self.decorated.status is not Status.SUCCESS:
             return self.decorated.status
         self.done += 1
         if self.done >= self.times:
             return Status.SUCCESS
-        self.time.wake_at(self.time.now)
+        now = self.time.now
+        self.next_at = now if self.begun_at < now else now + LEAST_S
+        self.begun_at = self.next_at
+        self.time.wake_at(self.next_at)
         return Status.RUNNING
 
 

@@ -1,4 +1,4 @@
-"""What is wrong with a recipe."""
+"""Errors of recipes."""
 
 from __future__ import annotations
 

@@ -54,7 +54,7 @@ class Ask(Act):
 
     @property
     def answer(self) -> Value | None:
-        """What was answered."""
+        """The answer; None where there is none yet."""
         return self._answer if self.entry is None else self.entry.answer
 
     def kept(self) -> Mapping[str, Any] | None:
@@ -325,7 +325,7 @@ class RobotHandle(Handle):
 
 
 def handle(device: Robot, context: Context) -> Any:
-    """What a recipe tells this device with."""
+    """The handle by which a recipe uses this device."""
     if device.name in context.cell.reach:
         return RobotHandle(device, context)
     own = nearest(HANDLES, type(device))

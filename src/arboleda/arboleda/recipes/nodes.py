@@ -76,7 +76,7 @@ class WrittenNode:
         return step
 
     def calculate(self, values: Mapping[str, Value]) -> Mapping[str, Value] | None:
-        """What it gives, called with these values; None where it fails. RecipeError for anything else, and
+        """Its result with these values; None where it fails. RecipeError for anything else, and
         for whatever the function raises.
         """
         try:

@@ -1,4 +1,4 @@
-"""What the parameters of a recipe can be: one of some values, a number, a target or a path of the cell.
+"""Types of a recipe's parameters: one of some values, a number, a target or a path of the cell.
 
     def load(cell, dose: Choice[5, 10], force: Number[1, 40], blank=Target("pallet")): ...
 

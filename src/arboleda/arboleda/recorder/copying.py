@@ -13,7 +13,7 @@ from mcap.records import Attachment
 from mcap.writer import Writer
 
 from .errors import NoRecord
-from .files import DIGEST, attach, put, write_beginning
+from .files import DIGEST, VERSION, attach, put, write_beginning
 from .reader import PartReader, Record
 from .steps import TOPIC
 
@@ -51,7 +51,7 @@ def _opened(writer: Writer, reader: PartReader, known: Container[str]) -> Iterat
 
 def _attach(writer: Writer, piece: Attachment) -> None:
     """Copy an attachment, unless each file begins with it: then the copy has it already."""
-    if piece.name.startswith(DIGEST):
+    if piece.name.startswith((DIGEST, VERSION)):
         attach(writer, piece.name, piece.media_type, piece.data, piece.log_time)
 
 

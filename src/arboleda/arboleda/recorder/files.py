@@ -22,6 +22,7 @@ METADATA, BEGINNING, OF_PLANT = "arboleda", "beginning.json", "plant/"
 PROFILE = "ros2"
 # Without this, readers of bags expect QoS in words; we write the numbers, which all versions read.
 OF_BAG = ("rosbag2", {"serialized_metadata": ""})
+VERSION = "version/"  # of the plant, put to work while it ran
 DIGEST = "events/"  # of the time line, what an attachment has of it
 LIBRARY = f"arboleda {__version__}"
 CHUNK_BYTES = 1024 * 1024  # more than comes between two flushes: the larger, the smaller they become

@@ -27,16 +27,19 @@ class Motion:
 
     def __init__(self) -> None:
         self._known: dict[str, Row] = {}
+        self._restless: set[str] = set()  # robots whose rows may be others than at the last look at news
 
     def seen(self, robot: Row) -> None:
         """Take over the twin's positions of a robot."""
         self._known[robot["name"]] = {key: robot[key] for key in ("q", "node", "heard_at", "position_at")}
+        self._restless.add(robot["name"])
 
     def hear(self, report: Report) -> None:
         """Take over a report of a robot, once it is in the twin."""
         known = self._known.get(report.robot)
         if known is None:
             return
+        self._restless.add(report.robot)
         if report.state is not MotionState.NO_LINK:
             known["heard_at"] = report.at
         for key in ("q", "node"):
@@ -47,6 +50,14 @@ class Motion:
         """The key and row of each robot in the twin."""
         for name, known in self._known.items():
             yield key_of(name), _row(known, now)
+
+    def news(self, now: float) -> Iterator[tuple[str, Row]]:
+        """The same of those robots only that reported since the last news, or had a fresh time then."""
+        for name in [each for each in self._known if each in self._restless]:
+            row = _row(self._known[name], now)
+            if not row["fresh"]:
+                self._restless.discard(name)
+            yield key_of(name), row
 
 
 def _row(known: Row, now: float) -> Row:

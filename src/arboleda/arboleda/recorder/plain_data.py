@@ -17,6 +17,7 @@ from arboleda.model.messages import (
     Fact,
     Failure,
     Interference,
+    Jog,
     Journal,
     KeptTask,
     LateDeparture,
@@ -25,6 +26,7 @@ from arboleda.model.messages import (
     Reason,
     Receipt,
     Report,
+    Revision,
     Shutdown,
     TaskAnswer,
     TaskRequest,
@@ -33,6 +35,7 @@ from arboleda.model.messages import (
     Verb,
 )
 from arboleda.model.plant_model import MotionState
+from arboleda.model.revision import RevisionName
 from arboleda.model.sentence import Phrase, Sentence, Value
 from arboleda.model.verbs import from_text
 
@@ -45,7 +48,17 @@ NOT_FINITE = ("nan", "inf", "-inf")
 SENTENCE = {"key", "english", "values"}
 EVENTS: dict[str, type[Any]] = {
     each.__name__: each
-    for each in (Report, TaskRequest, OperatorRequest, Undelivered, LateDeparture, Interference, Shutdown)
+    for each in (
+        Report,
+        TaskRequest,
+        OperatorRequest,
+        Jog,
+        Undelivered,
+        LateDeparture,
+        Interference,
+        Shutdown,
+        Revision,
+    )
 }
 
 
@@ -80,7 +93,7 @@ def _told_apart(request: OperatorRequest) -> OperatorRequest:
 
 def message_from(data: Any) -> Any:
     """The message as this version records it: arguments of a verb apart from its scope."""
-    if data.get(TYPE) not in ABOUT_VERBS or "arguments" in data:
+    if data.get(TYPE) not in ABOUT_VERBS or "arguments" in data or data.get("verb") is None:
         return data
     scope, arguments = from_text(Verb(data["verb"]), data["scope"])
     return data | {"scope": scope, "arguments": plain(arguments)} if arguments else data
@@ -165,7 +178,7 @@ WRITERS: dict[type, Callable[[Any], Any]] = {
 
 
 def _writer(kind: type) -> Callable[[Any], Any]:
-    """What makes plain data of the values of a class, by its nature; found once for each class."""
+    """The function that makes plain data of a class's values, by its nature; found once for each class."""
     found = _found(kind)
     WRITERS[kind] = found
     return found
@@ -241,6 +254,11 @@ def _receipt(data: Any) -> Receipt:
     return Receipt(*data)
 
 
+def _version(data: Any) -> RevisionName:
+    version: RevisionName = _made(RevisionName, data)
+    return version
+
+
 def _failure(data: Any) -> Failure:
     failure: Failure = _made(Failure, data)
     return failure
@@ -269,10 +287,13 @@ READERS: dict[type, dict[str, Reader]] = {
     Report: {"state": MotionState, "receipt": _receipt, "lost": sentence_from, "foreign": sentence_from},
     TaskRequest: {"kept": _kept},
     OperatorRequest: {"verb": Verb},
+    Jog: {},
     Undelivered: {"sentence": sentence_from},
     LateDeparture: {},
     Interference: {"sentence": sentence_from},
     Shutdown: {},
+    Revision: {"version": _version},
+    RevisionName: {},
     KeptTask: {
         "state": TaskState,
         "failure": _failure,

@@ -11,8 +11,10 @@ from typing import Any
 
 from arboleda.core.plant import Plant
 
+from .preamble import PlantFiles
 from .state import state_of
 from .steps import Step
+from .version_files import VersionFiles
 from .view_log import ViewSnapshot
 from .writing import Writing
 
@@ -35,7 +37,7 @@ class Recorder:
         self.trouble = ""
         self._writing = writing
         self._unix_ns = unix_ns
-        self._waiting: deque[Step | ViewSnapshot] = deque()
+        self._waiting: deque[Step | ViewSnapshot | VersionFiles] = deque()
         self._turn = 0
         self._seen_in = self._seen_out = 0  # snapshots put in, and taken out
         self._see_after = 0.0
@@ -64,13 +66,18 @@ class Recorder:
             return
         self._wait(step)
 
+    def knows(self, digest: str, files: PlantFiles) -> None:
+        """Take in the files of a version, before any step that is told of it; from any thread."""
+        if not self._over:
+            self._wait(VersionFiles(digest=digest, files=files, unix_ns=self._unix_ns()))
+
     def saw(self, snapshot: dict[str, Any], drawn: dict[str, Any]) -> None:
         """Take in a snapshot and the twin's positions in the plant's thread; never raises."""
         if not self._over:
             self._seen_in += 1
             self._wait(ViewSnapshot(self._unix_ns(), snapshot, drawn))
 
-    def _wait(self, item: Step | ViewSnapshot) -> None:
+    def _wait(self, item: Step | ViewSnapshot | VersionFiles) -> None:
         if len(self._waiting) < MOST_WAITING:
             self._waiting.append(item)
         else:
@@ -104,9 +111,9 @@ class Recorder:
         if not self._over:
             self._writing.tend()
 
-    def _put(self, item: Step | ViewSnapshot) -> Iterator[None]:
+    def _put(self, item: Step | ViewSnapshot | VersionFiles) -> Iterator[None]:
         """Write a step, or a snapshot if snapshots have not used up their share of the time; else skip it."""
-        if isinstance(item, Step):
+        if not isinstance(item, ViewSnapshot):
             yield from self._writing.put(item)
             return
         self._seen_out += 1

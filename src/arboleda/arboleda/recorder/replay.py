@@ -8,6 +8,7 @@ from typing import Any
 
 from arboleda.core.plant import Plant
 from arboleda.model.plant_model import PlantModel
+from arboleda.model.revision import Versions
 
 from .plain_data import TYPE
 from .preamble import Beginning
@@ -33,10 +34,15 @@ class ReplayedStep:
     difference: Difference | None = None
 
 
-def plant_of(beginning: Beginning, model: PlantModel) -> Plant:
-    """The plant as it was at the beginning of a record."""
+def plant_of(beginning: Beginning, model: PlantModel, versions: Versions | None = None) -> Plant:
+    """The plant as it was at the beginning of a record; `versions` are those that it took while it ran."""
     return Plant(
-        model, epoch=beginning.epoch, now=beginning.now, memory=beginning.memory, kept=beginning.kept
+        model,
+        epoch=beginning.epoch,
+        now=beginning.now,
+        memory=beginning.memory,
+        kept=beginning.kept,
+        versions=versions,
     )
 
 

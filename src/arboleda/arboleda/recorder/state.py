@@ -7,6 +7,7 @@ from typing import Any
 
 from arboleda.core.cell import CellRun
 from arboleda.core.plant import Plant
+from arboleda.core.teaching import Teaching
 from arboleda.dispatch.belief import Belief
 from arboleda.dispatch.ledger import Entry
 
@@ -68,8 +69,16 @@ def _cell(plant: Plant, run: CellRun) -> State:
         "commands": tuple([_opened(entry) for entry in _entries(plant, run)]),
         "devices": {robot.name: _device(plant.dispatcher.beliefs[robot.name]) for robot in robots},
         "latched": tuple([robot.name for robot in robots if robot.name in plant.dispatcher.latched]),
+        **_taught(run.teaching),
         "holds": tuple([(robot.name, zone) for robot in robots for zone in _zones(plant, robot.name)]),
     }
+
+
+def _taught(teaching: Teaching | None) -> State:
+    """The manual mode of a cell, while there is one; records of before it know of none."""
+    if teaching is None:
+        return {}
+    return {"taught": (teaching.session, teaching.teacher, teaching.held, teaching.due, teaching.trouble)}
 
 
 def _entries(plant: Plant, run: CellRun) -> list[Entry]:

@@ -60,7 +60,7 @@ class ViewLog:
                 self._motion.hear(event)
         if self._rows and not 0.0 <= step.now - self._looked_at < LOOK_S:
             self._looked_at = step.now
-            yield from self._news(step.unix_ns, step.now, self._motion.rows(step.now))
+            yield from self._news(step.unix_ns, step.now, self._motion.news(step.now))
 
     def saw(self, seen: ViewSnapshot) -> Iterator[Message | None]:
         """The messages for the changes in a snapshot."""

@@ -12,6 +12,7 @@ from .channels import OURS, Channel
 from .files import DIGEST, PartFile, part_bytes, part_path, prune
 from .preamble import Beginning, Limits
 from .steps import TOPIC, Step, as_json
+from .version_files import VersionFiles
 from .view_log import Message, ViewLog, ViewSnapshot
 
 FLUSH_S = 1.0  # at most this is lost with a killed process or power
@@ -71,8 +72,12 @@ class Writing:
             for message in filter(None, log.whole()):
                 self._part.put(*message)
 
-    def put(self, item: Step | ViewSnapshot) -> Iterator[None]:
+    def put(self, item: Step | ViewSnapshot | VersionFiles) -> Iterator[None]:
         """Write the messages of a step or snapshot; in pieces, between which others may work."""
+        if isinstance(item, VersionFiles):
+            if self._part is not None:
+                self._part.attach(item.name, item.unix_ns, item.data())
+            return
         for message in self._messages(item):
             if message is not None and self._part is not None:
                 self._part.put(*message)

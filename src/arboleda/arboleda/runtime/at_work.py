@@ -1,4 +1,4 @@
-"""Files that the last start of a plant was made of, kept in its state directory beside what it remembers."""
+"""Files that are at work: those of a plant's last start, or put to work since, in its state directory."""
 
 from __future__ import annotations
 
@@ -9,19 +9,23 @@ from arboleda.plant_file import versions
 from arboleda.plant_file.versions import Version, version_of
 from arboleda.recorder.preamble import PlantFiles
 
-FOLDER = "at_work"
+FOLDER, FRESH = "at_work", "at_work.new"  # the second for a moment only, in which the first may be gone
 
 
 def keep(state: Path, files: PlantFiles | None, at: str) -> None:
-    """Keep what a start is made of, `at` in UTC, and nothing if that is not known; StartError if the disk
+    """Keep what is at work, `at` in UTC, and nothing if that is not known; StartError if the disk
     refuses."""
-    folder = state / FOLDER
-    shutil.rmtree(folder, ignore_errors=True)
+    folder, fresh = state / FOLDER, state / FRESH
+    shutil.rmtree(fresh, ignore_errors=True)
     if files is not None:
         # A start waits for no disk here: what a power cut takes, the next start writes again.
-        versions.write(folder, version_of(files, at=at), syncs=False)
+        versions.write(fresh, version_of(files, at=at), syncs=False)
+    shutil.rmtree(folder, ignore_errors=True)
+    if files is not None:
+        fresh.rename(folder)
 
 
 def known(state: Path) -> Version | None:
-    """What the last start of a plant was made of; None if none was kept."""
-    return versions.read(state / FOLDER) if (state / FOLDER).is_dir() else None
+    """The version at work in a plant, or the last one; None if none was kept."""
+    there = next((each for each in (state / FOLDER, state / FRESH) if each.is_dir()), None)
+    return None if there is None else versions.read(there)

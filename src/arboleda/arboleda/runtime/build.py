@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import gc
 import json
 import logging
 import os
+import sys
 import threading
 import time
 from collections.abc import Callable, Collection
@@ -24,6 +24,7 @@ from arboleda.model.errors import ArboledaError, StartError
 from arboleda.model.messages import TaskChanged
 from arboleda.model.plant_model import Link, MqttVersion, PlantModel
 from arboleda.model.sentence import OWN, Sentence, from_data
+from arboleda.plant_file.draft_process import CheckProcess
 from arboleda.recorder.preamble import Beginning, Recording
 from arboleda.store.plant_memory import JournalEntry, PlantMemory, Superseded
 from arboleda.web.names import other_address
@@ -33,6 +34,7 @@ from .alarm_options import AlarmOptions
 from .demo import Demo
 from .draft_desk import DraftDesk
 from .log_queue import Output
+from .make.bench import MakeBench
 from .parts.alarms import alarms_part
 from .parts.bridge import BridgePart
 from .parts.broker import OtherBroker, OwnBroker
@@ -40,7 +42,9 @@ from .parts.cell_times import CellTimes
 from .parts.demo import DemoPart
 from .parts.devices import DevicesPart
 from .parts.drivers import DriversPart
+from .parts.garbage import Garbage
 from .parts.groot2 import Groot2Options, Groot2Part
+from .parts.hang_up import HangUpPart
 from .parts.linux_boards import LinuxBoards, on_linux
 from .parts.local_plant import LocalPlant
 from .parts.memory_pace import MemoryPace
@@ -50,12 +54,14 @@ from .parts.periodic import Periodic
 from .parts.reports import NO_RECORD, NoReport, ReportsPart
 from .parts.router import PlantPort, Router
 from .parts.systemd import systemd_part
+from .plant_folder import PlantFolder
 from .rate import at_rate
 from .standby.handover import CellResumption, hold_all
 from .standby.leader import way_to
 from .standby.lease import LeasePart
 from .state import StateDir, default_state
 from .stores import history_of, memory_of
+from .version_desk import VersionDesk
 from .waiting import until
 from .web_options import WebOptions
 
@@ -67,6 +73,8 @@ if TYPE_CHECKING:  # its libraries are needed only where this part is
 
 PARTS = ("broker", "devices", "bridge", "orchestrator", "web")
 OF_BOARDS = frozenset({"broker", "devices", "bridge"})  # of no use where no robot is reached over MQTT
+# A thread that has to wait for Python's lock gets it so late; a stop over HTTP waits for it a dozen times.
+TURN_S = 0.0005
 LOG = logging.getLogger(__name__)
 
 
@@ -131,12 +139,18 @@ class App:
         self._firmware = options.firmware
         self._log_name = options.log_name
         self._notes = options.notes
-        self._draft = None if options.plant_file is None else DraftDesk(options.plant_file, state)
+        self._draft: DraftDesk | None = None
+        self._versions: VersionDesk | None = None
+        self._make: MakeBench | None = None
+        self._folder = PlantFolder(options.plant_file, state)
+        if options.recording is not None and "orchestrator" in parts:
+            self._open_desks(state, options, virtual=options.recording.virtual)
         self._over = threading.Event()
         self._callbacks: list[Callable[[], None]] = []
         self._trouble: ArboledaError | None = None
         self._started: list[Part] = []
-        self._freezes = False
+        self._garbage = Garbage()
+        self._turn_s = sys.getswitchinterval()
         self._parts: list[Part] = [self._broker]
         try:
             if "orchestrator" in parts:
@@ -153,6 +167,7 @@ class App:
     def notes(self) -> list[str]:
         """The lines that a person should read about this start."""
         notes = [*self._notes, *(self._link.notes if self._link else ())]
+        notes += [self._folder.note] if self._folder.note else []
         if self.model.has_boards:
             notes.append(f"MQTT broker: {self._broker.address}")
         if self._web is not None:
@@ -177,11 +192,8 @@ class App:
 
     def start(self) -> None:
         """Start every part in order; where one cannot, nothing is left running."""
-        # A full collection would look at every library again: 50 ms in which no thread of Python runs.
-        if not gc.get_freeze_count():  # else whoever runs this has seen to it
-            gc.collect()
-            gc.freeze()
-            self._freezes = True
+        sys.setswitchinterval(TURN_S)
+        self._garbage.start(has_steps=self.orchestrator is not None)
         try:
             for part in self._parts:
                 self._started.append(part)
@@ -212,8 +224,8 @@ class App:
             self.orchestrator.halt()  # parts that end before it may take their time
         while self._started:
             self._started.pop().stop()
-        if self._freezes:
-            gc.unfreeze()
+        self._garbage.stop()
+        sys.setswitchinterval(self._turn_s)
         self._let_go()
 
     def listen(self, *listeners: Callable[[TaskChanged], None]) -> None:
@@ -241,6 +253,20 @@ class App:
         if self._demo is not None:
             self._demo.end()
 
+    def _open_desks(self, state: Path, options: Options, *, virtual: bool) -> None:
+        """Open the desks of its files: of their draft, and of their versions."""
+
+        def as_it_runs(model: PlantModel) -> PlantModel:
+            return at_rate(model.on_boards(Link.DRIVER) if virtual else model, options.rate)
+
+        process = CheckProcess()
+        versions = VersionDesk(
+            self._folder, state, lambda: self.plant, as_it_runs=as_it_runs, check=process.check
+        )
+        self._draft = DraftDesk(self._folder, state, process, work_by=versions.work_by)
+        self._versions = versions
+        self._make = MakeBench(self._folder, state, self._draft)
+
     def _keep_files(self, recording: Recording | None) -> None:
         """Keep what this start is made of, for `arboleda apply`; without a record that is not known."""
         now = datetime.now(timezone.utc).isoformat(timespec="seconds")
@@ -252,7 +278,6 @@ class App:
         from .parts.web import WebPart
 
         sources = page.Sources(
-            model=self.model,
             links=self.links,
             positions=self.plant.positions,
             past_acts=lambda: self._past_acts,
@@ -260,6 +285,8 @@ class App:
             recorded=None if options.recording is None else self._state.path,
             report=self.report,
             draft=self._draft,
+            versions=self._versions,
+            make=self._make,
         )
         paged = page.PagePlant(self.plant, self._history, sources) if options.page else None
         metrics = self._metrics = Metrics(self.plant.snapshot, self.links)
@@ -277,7 +304,7 @@ class App:
     @cached_property
     def local(self) -> LocalPlant:
         """PlantApi of the plant of this process; ArboledaError where it has none."""
-        return LocalPlant(self.plant, self._history, self._draft)
+        return LocalPlant(self.plant, self._history, self._draft, self._versions, self._make)
 
     @property
     def plant(self) -> Orchestrator:
@@ -356,6 +383,7 @@ class App:
                 drops_waiting=not self._keeps_waiting,
             )
             self.orchestrator.diagnoses.append(self._pace.diagnosis)
+            self.orchestrator.observers.append(self._garbage.stepped)
             self._parts += self._recorder(epoch, self.orchestrator, options)
             self._parts.append(Periodic("place", self._looks(), self._crash))  # also while the plant ends
             times = CellTimes(self._store, self.model.history_days)
@@ -372,7 +400,7 @@ class App:
             self.watch(self._web.plant.saw)
             self._count()
             self._parts.append(self._web)
-            self._parts += [self._draft] if self._draft else []  # ends before what has it asked
+            self._parts += [each for each in (self._draft, self._make) if each]
         if self._groot2 is not None:
             self.watch(self._groot2.saw)
             self._parts.append(self._groot2)
@@ -385,6 +413,7 @@ class App:
             self._parts.append(CellResumption(self.plant, self._store.going, epoch))
         self._join(bridge, drivers, self._link)
         if self.orchestrator is not None:
+            self._parts += [HangUpPart(self._versions.put_files)] if self._versions else []
             systemd = systemd_part(os.environ, lambda: self.plant.stepped_at)
             self._parts += [systemd] if systemd else []
 

@@ -8,16 +8,17 @@ import threading
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from datetime import datetime, timezone
-from pathlib import Path
-from typing import Any
+from pathlib import Path, PurePosixPath
+from typing import Any, Protocol
 
 from arboleda.model.errors import ArboledaError
-from arboleda.model.outside import plain
+from arboleda.model.outside import plain, quoted
 from arboleda.plant_file import versions
 from arboleda.plant_file.changes import changes
 from arboleda.plant_file.draft import Draft, draft_of
 from arboleda.plant_file.draft_check import Checked, root_of
-from arboleda.plant_file.draft_process import CheckProcess
+from arboleda.plant_file.restart import needing_restart
+from arboleda.plant_file.tree_file import ENDING
 from arboleda.plant_file.versions import Version, Versions, version_of
 from arboleda.plant_file.yaml_edit import EditRefused
 from arboleda.plant_file.yaml_marks import parse
@@ -25,6 +26,7 @@ from arboleda.recorder.preamble import PlantFiles
 from arboleda.web.draft_api import DraftApi, DraftRefused, Place, State
 
 from . import at_work
+from .plant_folder import NOT_OURS, PlantFolder
 
 LOG = logging.getLogger("arboleda.operators")
 FOLDER, OPENED, MEANT = "draft", "opened", "meant"
@@ -32,9 +34,21 @@ UNKNOWN = "this plant does not keep what it was started with (record: off), so t
 NOBODY = "nobody edits this draft; begin to edit it first"
 OTHER = "{name} edits this draft since {since}; take it over to edit it"
 MOVED = "{files}: changed by hand since this draft was begun; discard the draft, or bring the file back"
+THERE = "{file} is there already, in the plant's folder, and the plant does not use it; choose another name"
+KNOWN = "{file} is there already; choose another name"
 NOTHING = "the draft changes nothing"
+NO_PLANT = "no plant runs in this process that could take it"
+NO_TREES = "{file} is no file of trees of this plant"
+OURS = "these files are your own already, and can be changed"
 MEANWHILE = "the draft was changed while it was checked; try again"
-Check = Callable[[PlantFiles, Path], Checked]
+WorkBy = Callable[[Version, Checked, str], State]
+
+
+class Checker(Protocol):
+    """Process that checks files as if they were in a folder, until `stop`."""
+
+    def check(self, files: PlantFiles, plant_file: Path) -> Checked: ...
+    def stop(self) -> None: ...
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -47,14 +61,17 @@ class Editor:
 
 
 class DraftDesk(DraftApi):
-    """DraftDesk: one draft and one editor, for threads of a server; `check` stands in for the process of its
-    own in which drafts are checked."""
+    """DraftDesk: one draft and one editor, for threads of a server; `process`
+    checks drafts. `work_by` puts a version to work whose files are in their place.
+    """
 
-    def __init__(self, plant_file: Path, state: Path, check: Check | None = None) -> None:
-        self._plant_file = plant_file
+    def __init__(
+        self, folder: PlantFolder, state: Path, process: Checker, work_by: WorkBy | None = None
+    ) -> None:
+        self._folder = folder
         self._state = state
-        self._process = CheckProcess()
-        self._check = check or self._process.check
+        self._process = process
+        self._work_by = work_by
         self._turns = threading.Lock()
         self._editor: Editor | None = None
         self._draft: Draft | None = None
@@ -99,17 +116,77 @@ class DraftDesk(DraftApi):
     def check(self) -> State:
         with self._turns:
             files = self._opened().files
-        found = self._check(files, self._plant_file)
+        found = self._process.check(files, self._folder.ours)
         return {"problems": found.problems, "warnings": found.warnings}
 
     def keep(self, editor: str, note: str) -> State:
+        found, version = self._checked_and_kept(editor, note)
+        number = None if version is None else version.number
+        return {"version": number, "problems": found.problems, "warnings": found.warnings}
+
+    def apply(self, editor: str, note: str) -> State:
+        if self._work_by is None:
+            raise DraftRefused(NO_PLANT)
+        found, version = self._checked_and_kept(editor, note)
+        if version is None:
+            told: State = {"version": None, "cells": {}, "cancelled": (), "restart": ()}
+            return told | {"problems": found.problems, "warnings": found.warnings}
+        return self._work_by(version, found, version.by)
+
+    def trees(self, file: str) -> State:
+        with self._turns:
+            contents = self._opened().files.contents
+        if file not in contents or not file.endswith(ENDING):
+            raise DraftRefused(NO_TREES.format(file=quoted(file)))
+        return {"file": file, "text": contents[file].decode("utf-8", "replace")}
+
+    def set_trees(self, editor: str, file: str, text: str) -> State:
+        def step(draft: Draft) -> Draft:
+            name = file if file in draft.files.contents else self._new_name(draft, file)
+            return draft.with_recipe(name, text.encode("utf-8", "replace"))
+
+        return self._step(editor, step)
+
+    def add_trees(self, editor: str, file: str, text: str) -> State:
+        """The same as `set_trees` for a file that the draft does not have; DraftRefused if it has it."""
+
+        def step(draft: Draft) -> Draft:
+            name = self._new_name(draft, file)
+            if name in draft.files.contents:
+                raise EditRefused(KNOWN.format(file=quoted(file)))
+            return draft.with_recipe(name, text.encode())
+
+        return self._step(editor, step)
+
+    @property
+    def files(self) -> tuple[PlantFiles, PlantFiles]:
+        """The files that the draft began with, and those of the draft."""
+        with self._turns:
+            draft = self._opened()
+        return draft.base, draft.files
+
+    def remove_trees(self, editor: str, file: str) -> State:
+        return self._step(editor, lambda draft: draft.without_recipe(file))
+
+    def own(self, editor: str) -> State:
+        with self._turns:
+            self._must_edit(editor, owns=False)
+            if self._folder.is_ours:
+                raise DraftRefused(OURS)
+            file = self._folder.own(self._started())
+            LOG.info("the plant's files are copied to %s", plain(str(file.parent)))
+            self._close()
+            return self._shown()
+
+    def _checked_and_kept(self, editor: str, note: str) -> tuple[Checked, Version | None]:
+        """The verdict on the draft, and the version that it is now; None where there are problems."""
         with self._turns:
             self._must_edit(editor)
             draft = self._opened()
             self._must_fit(draft)
-        found = self._check(draft.files, self._plant_file)
+        found = self._process.check(draft.files, self._folder.ours)
         if found.problems:
-            return {"version": None, "problems": found.problems, "warnings": found.warnings}
+            return found, None
         with self._turns:
             self._must_edit(editor)
             if self._draft is not draft:
@@ -118,7 +195,7 @@ class DraftDesk(DraftApi):
             version = self._kept(draft, found.read, note)
             self._close()
         LOG.info("version %d of the plant is kept, by %s", version.number, plain(version.by))
-        return {"version": version.number, "problems": (), "warnings": found.warnings}
+        return found, version
 
     def _step(self, editor: str, step: Callable[[Draft], Draft]) -> State:
         with self._turns:
@@ -130,11 +207,21 @@ class DraftDesk(DraftApi):
             self._save(MEANT, self._draft.files)
             return self._shown()
 
-    def _must_edit(self, editor: str) -> None:
+    def _new_name(self, draft: Draft, file: str) -> str:
+        """The path of a new file beside the plant file; EditRefused where one lies there, of another use."""
+        name = str(PurePosixPath(draft.files.plant).parent / file)
+        known = draft.files.contents.keys() | draft.base.contents.keys()
+        if name not in known and (root_of(draft.files, self._folder.ours) / name).exists():
+            raise EditRefused(THERE.format(file=quoted(file)))
+        return name
+
+    def _must_edit(self, editor: str, *, owns: bool = True) -> None:
         if self._editor is None:
             raise DraftRefused(NOBODY)
         if self._editor.id != editor:
             raise DraftRefused(OTHER.format(name=plain(self._editor.name), since=self._editor.since))
+        if owns and not self._folder.is_ours:
+            raise DraftRefused(NOT_OURS)
 
     def _must_fit(self, draft: Draft) -> None:
         """Raise DraftRefused where there is nothing to keep, or what somebody else wrote would be lost."""
@@ -147,7 +234,7 @@ class DraftDesk(DraftApi):
     def _kept(self, draft: Draft, read: PlantFiles | None, note: str) -> Version:
         """The version that the files are now; before it, if none has that, what was at work."""
         by = self._editor.name if self._editor else ""
-        kept, started = Versions(self._plant_file), self._started()
+        kept, started = Versions(self._folder.ours), self._started()
         if kept.last() is None:
             kept.keep(replace(started, note="as the plant was started"))
         fresh = version_of(read or draft.files, at=_now(), by=by, note=note)
@@ -160,14 +247,18 @@ class DraftDesk(DraftApi):
     def _shown(self) -> State:
         draft, editor = self._opened(), self._editor
         root, _ = parse(draft.files.contents[draft.files.plant])
+        contents = draft.files.contents
         return {
-            "file": self._plant_file.name,
+            "file": draft.files.plant.rpartition("/")[2],
             "editor": None if editor is None else {"name": editor.name, "since": editor.since},
             "changes": [each.words for each in draft.changes],
             "waiting": [each.words for each in changes(self._started().files, self._on_disk())],
             "undo": len(draft.past),
             "redo": len(draft.future),
             "values": root.value,
+            "trees": sorted(name for name in contents if name.endswith(ENDING)),
+            "restart": needing_restart(draft.changes),
+            "is_ours": self._folder.is_ours,
         }
 
     def _opened(self) -> Draft:
@@ -200,11 +291,13 @@ class DraftDesk(DraftApi):
 
     def _on_disk(self) -> PlantFiles:
         """Plant file and trees as they are now."""
-        files = self._started().files
-        root = root_of(files, self._plant_file)
+        files, plant_file = self._started().files, self._folder.file
+        if plant_file is None:
+            return files
+        root = root_of(files, plant_file)
         try:
             contents = {
-                name: (self._plant_file if name == files.plant else root / name).read_bytes()
+                name: (plant_file if name == files.plant else root / name).read_bytes()
                 for name in files.contents
             }
         except OSError as error:

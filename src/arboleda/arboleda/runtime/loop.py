@@ -74,7 +74,8 @@ class Loop(Generic[Event, Message]):
         self._on_step = on_step
         self._wait = wait
         self._inbox: deque[Event] = deque()
-        self._awake = threading.Condition()
+        self._inbox_lock = threading.RLock()  # entered without a call, which a condition is not
+        self._awake = threading.Condition(self._inbox_lock)
         self._ending = False
         self._inbox_due = math.inf
         self._sleeps_until = math.inf
@@ -100,7 +101,7 @@ class Loop(Generic[Event, Message]):
         The next step takes it, within `within_s` at the latest.
         """
         due = self._clock() + within_s if within_s else -math.inf
-        with self._awake:
+        with self._inbox_lock:
             if self._ending:
                 return
             self._inbox.append(event)
@@ -142,7 +143,7 @@ class Loop(Generic[Event, Message]):
     def turn(self) -> None:
         """One step with everything that waits; `start` calls it, tests may."""
         self.busy = True
-        with self._awake:
+        with self._inbox_lock:
             events = tuple(self._inbox)
             self._inbox.clear()
             self._inbox_due, self._step_by = math.inf, None
@@ -178,7 +179,7 @@ class Loop(Generic[Event, Message]):
 
     def _sleep(self) -> bool:
         """Sleep until there is something to step; False at the end."""
-        with self._awake:
+        with self._inbox_lock:
             while not self._ending:
                 deadline = self._sleeps_until = self._deadline()
                 timeout = None if deadline == math.inf else deadline - self._clock()

@@ -24,7 +24,7 @@ REFUSALS = frozenset({Reason.REJECTED, Reason.PRECONDITION})
 
 
 class FindingKind(str, Enum):
-    """What was found; its words are those of the summary."""
+    """Kind of a finding; its words are those of the summary."""
 
     TASK = "task failed"
     COMMAND = "command refused"

@@ -17,10 +17,12 @@ from .invariants.motion import MOTION
 from .invariants.oee import OEE
 from .invariants.places import PLACES
 from .invariants.proofs import PROOFS
+from .invariants.revisions import REVISIONS
 from .invariants.screens import SCREENS
 from .invariants.starts import STARTS
 from .invariants.stop import STOP
 from .invariants.tasks import TASKS
+from .invariants.teaching import TEACHING
 from .invariants.verbs import VERBS
 from .invariants.wire import WIRE
 from .invariants.zones import ZONES
@@ -53,10 +55,12 @@ INVARIANTS: tuple[Invariant, ...] = (
     *OVER_ALL_STARTS,
     *DEVICES,
     *PLACES,
+    *TEACHING,
 )
 """What must hold of every plant."""
 
 
-def judged_by(*, standby: bool = False) -> tuple[Invariant, ...]:
-    """The invariants for a run: where there are two hosts, what must hold of those, too."""
-    return (*INVARIANTS, *HOSTS) if standby else INVARIANTS
+def judged_by(*, standby: bool = False, revises: bool = False) -> tuple[Invariant, ...]:
+    """The invariants for a run: where there are two hosts, or versions, what must hold of those, too."""
+    beside = (*(HOSTS if standby else ()), *(REVISIONS if revises else ()))
+    return (*INVARIANTS, *beside) if beside else INVARIANTS

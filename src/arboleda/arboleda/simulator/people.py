@@ -150,7 +150,7 @@ class Customers:
 
     def _takes(self, text: str) -> bool:
         try:
-            task_text.parse(text, self._world.model)
+            task_text.parse(text, self._world.offers)
         except TextError:
             return False
         return True

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from functools import cache
 from typing import Any
 
@@ -15,6 +15,7 @@ from arboleda.kinds.joints import MoveJoints
 from arboleda.model.by_class import nearest
 from arboleda.model.commands import Command, Home, Stop, StopMode, Work
 from arboleda.model.messages import (
+    CellRevised,
     Fact,
     InternalError,
     OperatorAnswer,
@@ -26,7 +27,7 @@ from arboleda.model.messages import (
     TaskState,
     Verb,
 )
-from arboleda.model.plant_model import Link
+from arboleda.model.plant_model import Link, Timing
 from arboleda.trees.leaves import Act
 
 from .recorded.acts import Acts
@@ -44,6 +45,7 @@ from .recorded.scopes import Scopes
 from .recorded.starts import Starts, Step, turn_of
 from .recorded.stops import EarlyStops
 from .recorded.tasks import Tasks
+from .recorded.teachers import Teachers
 from .recorded.time_line import TimeLine
 from .recorded.times import Times
 from .recorded.trails import Trails
@@ -80,7 +82,7 @@ class Record:
         self.scopes = Scopes(model)
         stale_after_s = model.timing.stale_after_s
         self.robots = {name: KnownRobot(robot, stale_after_s) for name, robot in model.robots.items()}
-        self.cells = {cell.name: KnownCell(cell) for cell in model.cells}
+        self.cells = {cell.name: KnownCell(cell, model.timing) for cell in model.cells}
         self.commands = Commands()
         self.proofs = Proofs()
         self.bridges = Bridges(model)
@@ -88,9 +90,10 @@ class Record:
         storage = {name: known for name, known in self.cells.items() if stores(known.cell)}
         self._storage = tuple(storage.values())
         self._people = [robot.name for robot in model.robots.values() if robot.link is Link.SCREEN]
-        self.works = Works(storage, self.robots, model.timing.dwell_s)
+        self.works = Works(storage, self.robots)
         self.asked = EarlierState()
         self.acts = Acts()
+        self.teachers = Teachers()
         world.before_asking.append(lambda: self.asked.look(self._cells, self.tasks, world))
         self.courses = Courses()
         self.courses.look(world.plant, born=True)
@@ -147,6 +150,8 @@ class Record:
     def look(self) -> None:
         """Take in what happened in this step; called before any invariant."""
         moment, plant = self.world.moment, self.world.plant
+        if self.world.versions:
+            self._revise(moment.sent)
         if self._has_news:
             self._clear_news()
         if self.starts.wrong or self.starts.twice:
@@ -206,6 +211,22 @@ class Record:
         self._checked[what] = value
         return True
 
+    def timing_of(self, sent: SentCommand) -> Timing:
+        """The times by which a command was given: no cell takes others while one of its own is open."""
+        entry = sent.entry
+        known = self.cells[self.world.model.cell_of[sent.robot].name if entry is None else entry.cell]
+        return known.timing if sent.at == self.stepped_at else known.timing_before
+
+    def _revise(self, sent: Iterable[object]) -> None:
+        """Know of each cell the version that it works by, and of all that the last start has."""
+        revised = {each.cell: each.version.digest for each in sent if isinstance(each, CellRevised)}
+        for name, known in self.cells.items():
+            known.timing_before = known.timing
+            if name in revised:
+                known.revise(self.world.model.cell(name), self.world.versions[revised[name]].timing)
+            elif self._is_new(self.world.plant):
+                known.revise(self.world.model.cell(name), self.world.model.timing)
+
     def _begin(self, plant: Plant) -> None:
         """Begin with a plant that starts: it knows nothing but what it had to keep."""
         self._plant, self._start = plant, self.world.starts
@@ -218,6 +239,7 @@ class Record:
         self.works.restart(self.tasks.running, undone=cuts != self._cuts)
         self.starts.restart(undone=cuts != self._cuts)
         self.time_line.begin()
+        self.teachers.restart()
         found = self.world.found.facts
         displaced, boots = found.get(Fact.DISPLACED, {}), found.get(Fact.BOOT, {})
         for name, robot in self.robots.items():
@@ -283,6 +305,8 @@ class Record:
             self._hear(bool(moment.asked))
         if moment.asked:
             self._ask(moment.asked)
+        if moment.asked or self.teachers.taught or self.teachers.was:
+            self.teachers.look(moment.asked, moment.sent)
         self.kept = self._kept
         for message in moment.sent:
             take = taker(type(message))

@@ -16,6 +16,7 @@ from .findings import Finding
 from .invariants import Invariant
 from .judged_world import BrokenInvariant, JudgedWorld
 from .people import Attendant, Customers, answer_anything
+from .revisions import Revisions
 from .scripted_people import Script, ScriptedPeople
 from .split_reports import come_apart
 
@@ -50,7 +51,7 @@ class Simulation:
     `plan` gives the faults of each minute; the same model, seed and plan give the same `digest`. With a
     `script` people do what it says and no tasks are drawn: the run ends after it, once its tasks have ended.
     With `any_of` customers name several cells for about half of their tasks.
-    `standby`: a second host waits to lead.
+    `standby`: a second host waits to lead. `revises`: engineers put other versions of the plant to work.
     """
 
     def __init__(
@@ -67,6 +68,7 @@ class Simulation:
         script: Script | None = None,
         any_of: bool = False,
         standby: bool = False,
+        revises: bool = False,
     ) -> None:
         self.watched = JudgedWorld(
             model,
@@ -82,6 +84,7 @@ class Simulation:
         self._plan = plan
         come_apart(self.world, seed)
         answer_anything(self.world, seed)
+        self._engineers = Revisions(self.world, seed) if revises else None
         self._script = script
         self._people = self._customers(seed, any_of=any_of) if script is None else self._told(script, seed)
 
@@ -101,6 +104,8 @@ class Simulation:
             while not self._enough(cycles, seconds):
                 self._minute(self.result.minutes, math.inf if seconds is None else seconds)
             self._people.go()
+            if self._engineers is not None:
+                self._engineers.go()
             self.watched.come_to_rest()
         except BrokenInvariant as broken:
             self.result.broken = broken

@@ -85,7 +85,7 @@ def _two_instants(world: World, robot: Robot, dice: Dice) -> None:
         said.append((world.now, publication.payload))
         while len(said) > 1 and said[1][0] <= world.now - PERIOD_S:
             said.popleft()
-        return replace(publication, payload=mixed(said, world.now))
+        return publication._replace(payload=mixed(said, world.now))
 
     world.mixers[robot.mqtt] = mix
 

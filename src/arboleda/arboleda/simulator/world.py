@@ -16,12 +16,15 @@ from arboleda.core.plant import Plant
 from arboleda.model.commands import Command
 from arboleda.model.facts import Facts
 from arboleda.model.messages import (
+    CellRevised,
     Event,
     Fact,
     Heartbeat,
     OperatorAnswer,
     OperatorRequest,
     Report,
+    Revision,
+    RevisionAnswer,
     Shutdown,
     TaskChanged,
     TaskRequest,
@@ -30,6 +33,7 @@ from arboleda.model.messages import (
 )
 from arboleda.model.plant_model import PlantModel
 from arboleda.model.recipe import Builders
+from arboleda.model.revision import RevisionName, revised
 from arboleda.model.sentence import as_sentence
 from arboleda.model.verbs import Arguments
 from arboleda.sim.arm import ArmBody
@@ -189,6 +193,8 @@ class World:
         self.hosts: Hosts | None = None  # where a second host waits
         self.gate: Gate | None = None  # asked before a message leaves for the bridge; raises DiskFull
         self.model = model
+        self.versions: dict[str, PlantModel] = {}  # that were put to work, by their digests
+        self.offers = model  # what a new task is one of
         self.now = now
         self.moment = Moment()
         self.watchers = list(watchers)
@@ -669,6 +675,10 @@ class World:
         if self.gate is not None and isinstance(message, Command | Heartbeat):
             self.gate(message)
         self.moment.sent.append(message)
+        if isinstance(message, RevisionAnswer) and message.refusal is None:
+            self.offers = self.plant.versions[message.version.digest]
+        elif isinstance(message, CellRevised):
+            self._follow(message.cell, self.plant.versions[message.version.digest])
         if isinstance(message, Command | Heartbeat) and self.writes:
             self.at(self._writes_until, self._say_late, (self.plant, message))
             if late := late_departure(message, self.plant, self._writes_until):
@@ -677,6 +687,19 @@ class World:
             self._say(message)
         if leaves:
             self._burn(Side.AFTER)
+
+    def put_to_work(self, model: PlantModel) -> None:
+        """Have the plant take another version, of which each cell says when it does."""
+        number = len(self.versions) + 1
+        version = RevisionName(digest=str(number), number=number)
+        self.versions[version.digest] = self.plant.versions[version.digest] = model
+        self.tell(Revision(at=self.now, version=version))
+
+    def _follow(self, cell: str, version: PlantModel) -> None:
+        """Know of a cell what it works by from now on."""
+        cells = {each.name: each for each in self.model.cells}
+        cells[cell] = revised(cells[cell], version.cell(cell))
+        self.model = replace(self.model, cells=tuple(cells.values()))
 
     def _burn(self, side: Side) -> None:
         """Count one commit, or one message that leaves; the plant dies here if its fuse has burnt down."""
@@ -774,6 +797,7 @@ class World:
 
     def _new_plant(self, epoch: int | None = None) -> Plant:
         self.found = self.disk.found()
+        self.model = self.offers
         make = self._make_plant or Plant
         return make(
             self.model,

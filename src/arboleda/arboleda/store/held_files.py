@@ -7,6 +7,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
+ABSENT = (FileNotFoundError, NotADirectoryError)
 GONE, OTHER = "was deleted or moved away", "was replaced by another file"
 
 
@@ -35,16 +36,19 @@ class HeldFiles:
     def loss(self) -> Loss | None:
         """The first file that is not in its place; None if all are there."""
         for path, opened in self._held.items():
-            now = _identity(path)
-            if now != opened:
-                return Loss(path=Path(path), fate=GONE if now is None else OTHER)
+            try:  # here and not in a function: it is asked before each command
+                found = os.stat(path)
+            except ABSENT:
+                return Loss(path=Path(path), fate=GONE)
+            if (found.st_dev, found.st_ino) != opened:
+                return Loss(path=Path(path), fate=OTHER)
         return None
 
 
 def _identity(path: str) -> tuple[int, int] | None:
-    """Device and inode of the file at a path; None without one. The next write shows any other error."""
+    """Device and inode of the file at a path; None without one."""
     try:
         found = os.stat(path)
-    except (FileNotFoundError, NotADirectoryError):
+    except ABSENT:
         return None
     return found.st_dev, found.st_ino

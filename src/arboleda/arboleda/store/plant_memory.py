@@ -30,6 +30,7 @@ from .task_rows import (
     unchecked_written,
 )
 
+PUT_TO_WORK = "put_to_work"  # in the journal in place of a verb
 PRUNED = 20  # ended tasks forgotten with each new end: more than come in, and quickly done
 Statement = tuple[str, tuple[object, ...]]  # with its values, each in the place of a `?`
 Memory = TypeVar("Memory", bound="PlantMemory")
@@ -181,7 +182,8 @@ class PlantMemory(ABC):
     def journal(self, entry: Journal, unix_s: float) -> None:
         """Commit one act of an operator."""
         said = json.dumps(entry.sentence.data(), ensure_ascii=False)
-        row = (unix_s, entry.verb.value, entry.scope, str(entry.sentence), entry.cell, said)
+        word = PUT_TO_WORK if entry.verb is None else entry.verb.value
+        row = (unix_s, word, entry.scope, str(entry.sentence), entry.cell, said)
         insert = "INSERT INTO journal (unix_s, verb, scope, sentence, cell, said) VALUES (?, ?, ?, ?, ?, ?)"
         self._write((insert, row), durable=outlives_power(entry))
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Iterable
-from dataclasses import replace
 from typing import Any, cast
 
 from arboleda.sim.arm import ArmBody
@@ -48,7 +47,7 @@ def altered(topic: str, change: Change) -> Carry:
         if publication.topic != topic:
             return [publication]
         fields = change(json.loads(publication.payload))
-        return [replace(publication, payload=json.dumps(fields, separators=(",", ":")).encode())]
+        return [publication._replace(payload=json.dumps(fields, separators=(",", ":")).encode())]
 
     return carry
 
@@ -71,7 +70,7 @@ def garbled(topic: str, payload: bytes, is_hit: Callable[[int], bool] = lambda n
         if publication.topic != topic:
             return [publication]
         count += 1
-        return [replace(publication, payload=payload) if is_hit(count) else publication]
+        return [publication._replace(payload=payload) if is_hit(count) else publication]
 
     return carry
 

@@ -43,7 +43,7 @@ def _proof(model: PlantModel, recipe: str, kinds: tuple[str, ...]) -> Proof:
     for each in calm:
         if not each.is_sound:
             broken = each.run.outcome.broken
-            why = ": ".join(broken) if broken else f"{each.run.outcome.words}: {each.why}"
+            why = ": ".join(broken) if broken else f"{each.run.outcome.words}: {each.finding or each.why}"
             raise AssertionError(f"{each.scenario.name}: without any fault {why}")
     return Proof(model=model, calm=calm, kinds=kinds)
 

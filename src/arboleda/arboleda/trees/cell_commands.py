@@ -45,6 +45,10 @@ class CellCommands:
             self.used.add(entry.command.robot)
         return entry
 
+    def objection(self, make: Make) -> Failure | None:
+        """The reason for which a command would not leave now."""
+        return self._dispatcher.objection(make, barrier=self._objection)
+
     def cancel(self, entry: Entry) -> None:
         """Halt an open command."""
         self._dispatcher.cancel(entry, self._time.plant_now)

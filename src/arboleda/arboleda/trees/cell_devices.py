@@ -26,6 +26,10 @@ class CellDevices:
         self._dispatcher = dispatcher
         self._zones = zones
 
+    def revise(self, cell: Cell) -> None:
+        """Go by another version of the cell from now on."""
+        self._cell = cell
+
     def has(self, robot: str) -> bool:
         """True for a device that is the cell's now: its own, or a shared one that it holds."""
         return robot in self._cell.own or (robot in self._cell.shared and self.holds(robot))

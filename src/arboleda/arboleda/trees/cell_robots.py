@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 from arboleda.dispatch.belief import Belief, Moment
 from arboleda.dispatch.dispatcher import Dispatcher
 from arboleda.model.commands import Position
@@ -26,6 +28,10 @@ class CellRobots:
         self._dispatcher = dispatcher
         self._time = time
         self._devices = devices
+
+    def revise(self, cell: Cell) -> None:
+        """Go by another version of the cell from now on."""
+        self._cell = cell
 
     def belief(self, robot: str) -> Belief:
         """The evidence that a robot has given."""
@@ -100,15 +106,16 @@ class CellRobots:
         belief = self._dispatcher.beliefs[robot]
         return belief.robot.evidence is Evidence.IDS and (belief.robot.says_homed or belief.says_unhomed)
 
-    @property
-    def numbered(self) -> list[str]:
-        """The robots of the cell whose boards number their commands, and have been heard."""
-        beliefs = [self._dispatcher.beliefs[robot.name] for robot in self._cell.reached]
-        return [each.robot.name for each in beliefs if each.numbers_commands]
-
-    def known(self, robot: str) -> Known:
-        """The robot's report of its commands, in the form in which it is kept."""
-        return Known.of(self._dispatcher.beliefs[robot], self._dispatcher.unnamed.of(robot))
+    def known(self, names: Iterable[str]) -> dict[str, Known]:
+        """The reports of commands, in the form in which they are kept: those of these robots, and of those of
+        the cell whose boards number their commands, and have been heard.
+        """
+        beliefs, unnamed = self._dispatcher.beliefs, self._dispatcher.unnamed
+        kept = set(names)
+        for robot in self._cell.reached:
+            if beliefs[robot.name].numbers_commands:
+                kept.add(robot.name)
+        return {name: Known.of(beliefs[name], unnamed.of(name)) for name in sorted(kept)}
 
     def moments(self) -> dict[str, Moment]:
         """Now, as each robot of the cell tells the time, for `moving_since`."""

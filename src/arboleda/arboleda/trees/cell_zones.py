@@ -59,6 +59,10 @@ class CellZones:
         self._at_work = at_work
         self._occupied: dict[str, frozenset[str]] = {}  # by interlocked device, as it was seen last
 
+    def revise(self, cell: Cell) -> None:
+        """Go by another version of the cell from now on."""
+        self._cell = cell
+
     def held_by(self, robot: str) -> frozenset[str]:
         """The zones that a robot, or a machine, holds."""
         return self._zones.held_by(robot)
@@ -84,6 +88,29 @@ class CellZones:
     def claim(self, robot: str) -> None:
         """Take every zone a robot may get into, for a way from an unknown place; all must be free."""
         self._claim(robot, self._cell.workspaces[robot].zones)
+
+    def claim_free(self, robot: str) -> None:
+        """Take of the zones that a robot may get into those that nobody holds."""
+        zones = self._cell.workspaces[robot].zones
+        self._claim(robot, frozenset(zone for zone in zones if self._zones.holder(zone) is None))
+
+    def taken_by_others(self, robot: str) -> dict[str, str]:
+        """The zones that a robot may get into and somebody else keeps, each with its holder.
+
+        A robot of this cell that is seen outside of them keeps none.
+        """
+        space = self._cell.workspaces.get(robot)
+        found = {} if space is None else self.awaited(robot, sorted(space.zones))
+        return {zone: holder for zone, holder in found.items() if not self._is_outside(holder)}
+
+    def make_room(self, robot: str) -> None:
+        """Have a robot hold every zone that it may get into, also those that others of the cell have left."""
+        space = self._cell.workspaces.get(robot)
+        if space is None or not space.zones:
+            return
+        for holder in {*self.awaited(robot, space.zones).values()}:
+            self.leave(holder)
+        self._claim(robot, space.zones)
 
     def leave(self, robot: str) -> bool:
         """Stop waiting for zones, and give back those that the robot is seen outside of; True once it holds
@@ -223,6 +250,11 @@ class CellZones:
         if space is None:
             return self.interlocks.left_by(robot, held)
         return held if self._dispatcher.place(space) is not None else frozenset()
+
+    def _is_outside(self, robot: str) -> bool:
+        """True for a robot of this cell that is seen outside of all zones."""
+        space = self._cell.workspaces.get(robot)
+        return space is not None and self._dispatcher.place(space) is not None
 
     def _claim(self, robot: str, zones: frozenset[str]) -> None:
         self._zones.claim(robot, zones)

@@ -42,7 +42,7 @@ class Context:
         at_work: Callable[[str], bool],
     ) -> None:
         self.cell = cell
-        self.timing: Timing = dispatcher.model.timing
+        self.timing: Timing = dispatcher.timings[cell.name]
         self.time = CellTime(clock)
         self.devices = CellDevices(cell, dispatcher, zones)
         self.robots = CellRobots(cell, dispatcher, self.time, self.devices)
@@ -55,7 +55,16 @@ class Context:
         self.failures = Failures(self.parts)
         self.handling = Handling(dispatcher.beliefs)
         self.answers: list[TaskAnswer] = []
+        self._dispatcher = dispatcher
         self._outbox = dispatcher.outbox
+
+    def revise(self, cell: Cell, timing: Timing) -> None:
+        """Go by another version of the cell from now on; only where no tree runs and no command is open."""
+        self.cell, self.timing = cell, timing
+        for facet in (self.devices, self.robots, self.parts, self.zones, self.places):
+            facet.revise(cell)
+        self.sensors.revise(timing)
+        self._dispatcher.timings[cell.name] = timing
 
     def start_afresh(self) -> None:
         """Forget what the last tree waited for and why it failed."""

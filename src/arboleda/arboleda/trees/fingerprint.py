@@ -61,7 +61,8 @@ OF_NODES = frozenset(
         "done",
     ]
 )
-NO_MATTER = frozenset({"recipes", "queue_limit", "goes_on", "goes_on_after_absence"})  # of a cell
+FOR_PEOPLE = "for_people"  # in the metadata of a field that says where something was read, such as a path
+NO_MATTER = frozenset({"recipes", "queue_limit", "goes_on", "goes_on_after_absence", "teach"})  # of a cell
 
 
 def joined(*words: str) -> str:
@@ -146,7 +147,7 @@ class Spelling:
 
 @cache
 def _parts_of(kind: type) -> Parts | None:
-    """What makes the parts of the values of a class; None where a value is a word."""
+    """The function that takes a class's values apart; None where a value is a word."""
     if issubclass(kind, (Enum, *PLAIN)):
         return None
     if issubclass(kind, Sentence):
@@ -163,7 +164,8 @@ def _of_fields(names: tuple[str, ...], value: Any) -> list[Any]:
 def _fields(kind: type) -> tuple[str, ...]:
     """The names of the fields of a dataclass that matter."""
     passed_over = NO_MATTER if issubclass(kind, Cell) else frozenset[str]()
-    return tuple(each.name for each in fields(kind) if each.name not in passed_over)
+    found = (each for each in fields(kind) if not each.metadata.get(FOR_PEOPLE))
+    return tuple(each.name for each in found if each.name not in passed_over)
 
 
 def _of_sentence(value: Sentence) -> tuple[Any, ...]:

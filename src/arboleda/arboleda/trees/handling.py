@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Set
 
 from arboleda.dispatch.belief import Belief
 from arboleda.model.messages import Check
@@ -17,23 +17,19 @@ class Handling:
     def __init__(self, beliefs: Mapping[str, Belief]) -> None:
         self.taken: dict[str, int | None] = {}
         self._beliefs = beliefs
-        self._unchecked: set[Check] = set()
-
-    @property
-    def unchecked(self) -> tuple[Check, ...]:
-        """The checks that no device has confirmed so far, in the order of the work."""
-        return tuple(check for check in Check if check in self._unchecked) if self._unchecked else ()
+        self.unchecked: tuple[Check, ...] = ()  # what no device has confirmed, in the order of the work
 
     def begin(self, taken: Mapping[str, int | None] | None = None, unchecked: Iterable[Check] = ()) -> None:
         """A task begins, or goes on with what an earlier start has kept of it."""
         earlier = taken or {}
         numbered = {name for name, each in self._beliefs.items() if each.robot.evidence is Evidence.IDS}
         self.taken = {hand: boot if hand in numbered else UNKNOWN for hand, boot in earlier.items()}
-        self._unchecked = set(unchecked)
+        self.unchecked = _in_order(set(unchecked))
 
     def miss(self, check: Check) -> None:
         """Nobody can confirm this part of the work."""
-        self._unchecked.add(check)
+        if check not in self.unchecked:
+            self.unchecked = _in_order({*self.unchecked, check})
 
     def senses_pieces(self, robot: str) -> bool:
         """True where a robot's board reports if a piece is at its effector."""
@@ -51,3 +47,7 @@ class Handling:
                 self.miss(Check.GRIP)
         elif hand in self.taken and (self.taken.pop(hand) != belief.boot_id or holds is not False):
             self.miss(Check.RELEASE)
+
+
+def _in_order(checks: Set[Check]) -> tuple[Check, ...]:
+    return tuple(check for check in Check if check in checks)

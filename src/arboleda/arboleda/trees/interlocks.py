@@ -19,19 +19,20 @@ class Interlocks:
 
     def occupied_by(self, device: str) -> frozenset[str]:
         """The zones that a device may be in the way of: it does not report the contrary, or has a command
-        that leads there.
+        that leads there, or one that has failed and may still be carried out.
 
         What moves without a command of this plant may be on its way there.
         """
         belief = self._dispatcher.beliefs[device]
-        open_commands = [entry.command for entry in self._dispatcher.ledger.of_robot(device)]
+        may_come = [entry.command for entry in self._dispatcher.ledger.of_robot(device)]
+        may_come += [switch for switch, _ in self._dispatcher.unfinished.by_device.get(device, ())]
         return frozenset(
             each.zone
             for each in self._cell.interlocks_of(device)
             if not belief.online
             or (belief.state is MotionState.MOVING and self._dispatcher.work_of(device) is None)
             or any(belief.fact(name) != value for name, value in each.free_while)
-            or any(map(each.is_ended_by, open_commands))
+            or any(map(each.is_ended_by, may_come))
         )
 
     def left_by(self, device: str, held: frozenset[str]) -> frozenset[str]:

@@ -52,6 +52,10 @@ class Keeping:
         self._cells: dict[str, tuple[str, fingerprint.Seen, str]] = {}
         self._kept_of: tuple[object, ...] = ()  # what the trail was made of that was kept last
 
+    def revise(self) -> None:
+        """Go by another version of the cell from the next task on."""
+        self._cells.clear()
+
     @property
     def envelope(self) -> Sequence[str]:
         """The effectors that the task may tell to switch before this is durable."""
@@ -120,8 +124,11 @@ class Keeping:
         """The place of the task in its tree, to be kept; None where that is kept already."""
         if self.walk is not None:
             return self._stranded(self.walk, stranded)
-        entries = [act.entry for act in self._run.acts if act.entry is not None]
-        numbers = [entry.number for entry in entries if isinstance(entry.command, Process)]
+        numbers = [
+            act.entry.number
+            for act in self._run.acts
+            if act.entry is not None and isinstance(act.entry.command, Process)
+        ]
         state = (self._run.rested, holds, cancels, stranded, numbers)
         if state == self._kept_of:
             return None
@@ -138,7 +145,7 @@ class Keeping:
     def _trail(self, failure: Failure | None, *, cancels: bool, stranded: Sentence | None) -> Trail:
         context, recovers = self._context, self._run.recovering
         nodes = [] if recovers else self._run.nodes
-        names = context.commands.used.union(self._begun.planned.positions, context.robots.numbered)
+        names = context.commands.used.union(self._begun.planned.positions)
         return Trail(
             begun=self._begun,
             statuses=trail.statuses(nodes),
@@ -147,8 +154,8 @@ class Keeping:
             back={robot: pose.name for robot, pose in context.parts.back.items()},
             origins=sorted(context.parts.origins),
             used=sorted(context.commands.used),
-            known={} if recovers else {name: context.robots.known(name) for name in sorted(names)},
-            grips={} if recovers else {name: context.parts.grip(name).value for name in context.cell.holders},
+            known={} if recovers else context.robots.known(names),
+            grips={} if recovers else context.parts.grips,
             zones={name: sorted(context.zones.held_by(name)) for name in context.cell.interlocked},
             failure=(failure or context.failures.first) if recovers else None,
             recovers=recovers,

@@ -46,6 +46,12 @@ class Parts:
         self._robots = robots
         self._sensors = sensors
 
+    def revise(self, cell: Cell) -> None:
+        """Go by another version of the cell from now on; what came from a pose goes back to where that is."""
+        self._cell = cell
+        poses = {robot: cell.reach[robot].by_name.get(pose.name) for robot, pose in self.back.items()}
+        self.back = {robot: pose for robot, pose in poses.items() if pose is not None}
+
     def begin(self) -> None:
         """Open the books for another tree."""
         self.carrier, self.delivers = None, True
@@ -89,6 +95,12 @@ class Parts:
     def grip(self, robot: str) -> Grip:
         """The known state of a robot's effector."""
         return self._effectors.grips[robot]
+
+    @property
+    def grips(self) -> dict[str, Grip]:
+        """The known state of each effector of the cell."""
+        grips = self._effectors.grips
+        return {name: grips[name] for name in self._cell.holders}
 
     @property
     def holding(self) -> list[str]:

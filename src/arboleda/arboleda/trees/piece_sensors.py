@@ -19,6 +19,10 @@ class PieceSensors:
         self._debounce_s = timing.piece_debounce_s
         self._time = time
 
+    def revise(self, timing: Timing) -> None:
+        """Go by other times from now on."""
+        self._debounce_s = timing.piece_debounce_s
+
     def read(self, robot: str, since: float) -> bool | None:
         """The debounced report of a robot's piece sensor, fresh since then; None while there is none."""
         belief, paused_s = self._beliefs[robot], self._time.paused_s

@@ -113,6 +113,11 @@ class Places:
             elif hand in words:  # the plant ended before it told the hand
                 self._move(held.back(None), +1)
 
+    def revise(self, cell: Cell) -> None:
+        """Go by another version of the cell from now on, which has the same places."""
+        self._cell = cell
+        self._hands = {space.hand.name: space for space in cell.spaces if space.hand.held_fact}
+
     def parts(self, target: str) -> int:
         """The number of parts at a place."""
         return self._parts[target]

@@ -176,8 +176,11 @@ def statuses(nodes: Iterable[Behaviour]) -> str:
 
 def kept_of(nodes: Iterable[tuple[int, Keeps]]) -> dict[int, Mapping[str, Any]]:
     """The state that is kept of nodes beside their status, by number."""
-    asked = [each for each in nodes if each[1].status is Status.RUNNING or not each[1].ends_unkept]
-    return {number: state for number, node in asked if (state := node.kept())}
+    kept: dict[int, Mapping[str, Any]] = {}
+    for number, node in nodes:
+        if (node.status is Status.RUNNING or not node.ends_unkept) and (state := node.kept()):
+            kept[number] = state
+    return kept
 
 
 def put_back(nodes: Sequence[Behaviour], trail: Trail) -> list[Keeps]:

@@ -43,7 +43,7 @@ class TreeRun:
     @property
     def recovering(self) -> bool:
         """True while the recovery runs."""
-        return any(node.status is Status.RUNNING for node in self._recoveries)
+        return Status.RUNNING in [node.status for node in self._recoveries]
 
     def begin(self, make: Callable[[], Behaviour]) -> Status:
         """Build a tree and tick it until it rests: RUNNING, SUCCESS or FAILURE."""

@@ -35,16 +35,27 @@ class RestingCells:
         self._known: dict[str, Remembered] = {}
 
     def part(self, plant: Plant, cell: CellRun) -> CellPart:
-        """The part of a cell as of the plant's last step."""
-        name = cell.cell.name
-        known, revision = self._known.get(name), plant.revisions[name]
-        if known is not None and known.revision == revision:
-            return _aged(known, plant.now)
-        part = cell_part(plant, cell)
+        """The part of a cell as of the plant's last step; in one piece, as each cell of a view needs it."""
+        known = self._known.get(cell.cell.name)
+        if known is None or known.revision != plant.revisions[cell.cell.name]:
+            return self._made_anew(plant, cell)
+        robots, now = [], plant.now
+        for row, belief, last in known.robots:
+            aged, heard_at, command = row.copy(), belief.heard_at, row["command"]
+            aged["age_s"] = None if heard_at is None else now - heard_at
+            aged["telemetry_hz"] = belief.rate_hz if belief.online else None
+            if last is not None and command is not None:
+                aged["command"] = {**command, "age_s": now - last.sent_at}
+            robots.append(aged)
+        return CellPart(known.part.cell, robots, known.part.tasks)
+
+    def _made_anew(self, plant: Plant, cell: CellRun) -> CellPart:
+        """The part of a cell as it is now, remembered where it rests."""
+        name, part = cell.cell.name, cell_part(plant, cell)
         self._known.pop(name, None)
         if _rests(plant, cell):
             robots = [_with_sources(plant, row) for row in part.robots]
-            self._known[name] = Remembered(revision=revision, part=part, robots=robots)
+            self._known[name] = Remembered(revision=plant.revisions[name], part=part, robots=robots)
         return part
 
 
@@ -61,18 +72,3 @@ def _rests(plant: Plant, cell: CellRun) -> bool:
         return False
     begun = any(task.started_at is not None for task in cell.queue)
     return not begun and not any(plant.dispatcher.ledger.of_robot(robot.name) for robot in cell.cell.robots)
-
-
-def _aged(known: Remembered, now: float) -> CellPart:
-    """A part with its times as of now."""
-    robots = []
-    for row, belief, last in known.robots:
-        heard_at, command = belief.heard_at, row["command"]
-        aged: dict[str, Any] = {
-            "age_s": None if heard_at is None else now - heard_at,
-            "telemetry_hz": belief.rate_hz if belief.online else None,
-        }
-        if last is not None and command is not None:
-            aged["command"] = {**command, "age_s": now - last.sent_at}
-        robots.append({**row, **aged})
-    return CellPart(cell=known.part.cell, robots=robots, tasks=known.part.tasks)

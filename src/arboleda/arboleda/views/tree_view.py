@@ -10,7 +10,6 @@ from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
 from arboleda.model.commands import Command
-from arboleda.model.sentence import NOTHING, Sentence
 from arboleda.trees.leaves import (
     Act,
     Announce,
@@ -61,22 +60,25 @@ def _steps(frame: Behaviour, *, done: bool) -> list[bool]:
 
 
 def _add(node: Behaviour, path: str, now: float, found: list[dict[str, Any]]) -> None:
-    since_s, deadline_s = _times(node, now) if node.status is Status.RUNNING else UNKNOWN
-    sign, feedback = kind(node), _feedback(node)
+    status: Status = node.status
+    since_s, deadline_s = _times(node, now) if status is Status.RUNNING else UNKNOWN
+    sign, told = _KIND_OF.get(type(node)) or kind(node), getattr(node, "told", None)
+    feedback = node.feedback_message if told is None else told or ""
+    failure = feedback if feedback and status is Status.FAILURE else getattr(node, "last_failure", None)
     found.append(
         {
             "path": path or "root",
             "name": title_of(node),
             "phase": node.name if node.name in PHASES else None,
             "kind": sign,
-            "frame": is_frame(node),
-            "status": WORDS[node.status],
+            "frame": getattr(node, "frame", False),
+            "status": WORDS[status],
             "feedback": feedback,
             "description": _description(node) if sign == OWN else "",
-            "parameters": _parameters(node, sign),
+            "parameters": TOLD.get(sign, _own_parameters)(node),
             "since_s": since_s,
             "deadline_s": deadline_s,
-            "failure": _failure(node, feedback),
+            "failure": failure,
         }
     )
     for number, child in enumerate(node.children):
@@ -115,16 +117,14 @@ def _description(node: Behaviour) -> str:
     return lines[0].strip() if lines else ""
 
 
-def _parameters(node: Behaviour, sign: str) -> dict[str, Any]:
-    """The parameters of a node of this kind; of a command only those that it was sent with."""
-    told = TOLD.get(sign)
-    if told is not None:
-        return told(node)
+def _own_parameters(node: Any) -> dict[str, Any]:
+    """The parameters that a node of the user's own has, if it names any."""
     own = getattr(node, "parameters", None)
     return {str(key): str(value) for key, value in own.items()} if isinstance(own, dict) else {}
 
 
 def _of_command(node: Any) -> dict[str, Any]:
+    """The parameters of a command: only those that it was sent with."""
     if node.entry is None:
         return {}
     command: Command = node.entry.command
@@ -161,16 +161,3 @@ def _command_times(node: Act, now: float) -> Times:
     if node.entry is None or not node.entry.open:
         return UNKNOWN
     return now - node.entry.sent_at, node.entry.deadline - now
-
-
-def _feedback(node: Behaviour) -> Sentence | str:
-    """The feedback of a node; "" if it gives none."""
-    told: Sentence = getattr(node, "told", NOTHING)
-    return node.feedback_message if told is NOTHING else told or node.feedback_message
-
-
-def _failure(node: Behaviour, feedback: Sentence | str) -> Sentence | str | None:
-    """The sentence of the node's last failure."""
-    if node.status is Status.FAILURE and feedback:
-        return feedback
-    return getattr(node, "last_failure", None)

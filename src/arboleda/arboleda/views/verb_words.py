@@ -188,6 +188,25 @@ ABOUT: dict[Verb, VerbWords] = {
         does="answers what a running task asks a person; the task goes on with it",
         refused="where that person is asked nothing, and for an answer that was not offered",
     ),
+    Verb.TEACH: VerbWords(
+        label="Teach",
+        page="Begins the manual mode of a cell for one person: its queue pauses, no task starts, and nothing "
+        "moves but what that person holds.",
+        arguments={"teacher": "The name of who teaches, which all screens show."},
+        brief="Begin to teach a cell by hand, as in `sis_a ana`; its queue pauses.",
+        does="begins the manual mode of a cell for one person: its queue pauses, no task starts, its zones "
+        "are held, and nothing moves but what that person holds; it ends by `automatic`, by a stop, or when "
+        "nobody touches it for some minutes",
+        refused="while a task runs or is held, something still moves, somebody else teaches, a robot is not "
+        "heard, or a robot of another cell is where one of this cell may get",
+    ),
+    Verb.AUTOMATIC: VerbWords(
+        label="End teaching",
+        page="Ends the manual mode of a cell; what moves is halted. Its queue stays paused until resume.",
+        brief="End the teaching of a cell; its queue stays paused until resume.",
+        does="ends the manual mode of a cell: what moves is halted, the queue stays paused until `resume`",
+        refused="for a cell that nobody teaches",
+    ),
 }
 
 
@@ -201,14 +220,14 @@ SCOPES = {
 
 
 def scope_words(verb: Verb) -> tuple[str, ...]:
-    """What a verb can be for, in words."""
+    """The scopes of a verb, in words."""
     robot = "an arm" if verb.row.devices is Devices.HOLDERS else "a robot"
     words = {**SCOPES, Scope.ROBOT: robot}
     return tuple(words[scope] for scope in verb.row.scopes)
 
 
 def argument_names(verb: Verb) -> tuple[str, ...]:
-    """What a verb is told beside its scope, over HTTP."""
+    """The arguments of a verb beside its scope, over HTTP."""
     return (*(["by_hand"] if verb.row.by_hand else []), *(each.name for each in verb.arguments))
 
 

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Generator, Iterable, Iterator
-from dataclasses import dataclass
-from typing import Any
+from functools import lru_cache, partial
+from typing import Any, NamedTuple
 
 from arboleda.core import reasons
 from arboleda.core.acts import OperatorAct
@@ -36,11 +36,11 @@ def _rows(scope: Scope) -> tuple[Row, ...]:
 
 
 OF_ROBOTS, OF_CELLS = _rows(Scope.ROBOT), _rows(Scope.CELL)
+MANUAL = "manual"
 RECENT = 20  # ended tasks that a snapshot shows
 
 
-@dataclass(frozen=True, kw_only=True)
-class CellPart:
+class CellPart(NamedTuple):
     """The part of a view that is about one cell: its row, those of its robots, those of its open tasks."""
 
     cell: dict[str, Any]
@@ -248,6 +248,22 @@ def _cell(plant: Plant, cell: CellRun) -> dict[str, Any]:
         "refused": _refused(plant, cell.cell.name, OF_CELLS),
         "tree": tree_view.rows(cell.tree, now) if cell.tree else [],
         "places": _places(cell) if cell.cell.counted else [],
+        "teaching": None if cell.teaching is None else teaching(plant, cell),
+    }
+
+
+def teaching(plant: Plant, cell: CellRun) -> dict[str, Any] | None:
+    """The manual mode of a cell: who teaches it, what moves, and why the last press came to nothing."""
+    if cell.teaching is None:
+        return None
+    held = cell.teaching.held
+    return {
+        "session": cell.teaching.session,
+        "teacher": cell.teaching.teacher,
+        "seconds": plant.now - cell.teaching.since,
+        "robot": None if held is None else held.robot,
+        "number": None if held is None else held.number,
+        "trouble": cell.teaching.trouble,
     }
 
 
@@ -303,15 +319,25 @@ def _advice(advice: Advice) -> dict[str, Any]:
 def _refused(plant: Plant, scope: str, rows: tuple[Row, ...]) -> dict[str, Sentence]:
     """The verbs that would be refused, with the reasons; those by hand as `home_by_hand` and so on."""
     found = {}
-    for name, verb, by_hand in rows:
-        request = OperatorRequest(at=plant.now, verb=verb, scope=scope, by_hand=by_hand)
+    for name, request in _requests(scope, rows):
         if (why := plant.refusal(request)) is not None:
             found[name] = why
     return found
 
 
+@lru_cache(maxsize=4096)  # the same in every view: a plant has a few hundred scopes
+def _requests(scope: str, rows: tuple[Row, ...]) -> list[tuple[str, OperatorRequest]]:
+    """The request that each row would be, for its refusal, which does not depend on when it is asked."""
+    ask = partial(OperatorRequest, at=0.0, scope=scope)
+    return [(name, ask(verb=verb, by_hand=by_hand)) for name, verb, by_hand in rows]
+
+
 def standing(cell: dict[str, Any]) -> str:
-    """The state of a cell in a snapshot; an idle one that cannot begin is `blocked` or `paused`."""
+    """The state of a cell in a snapshot; one that is taught is in `manual` mode, an idle one that cannot
+    begin `blocked` or `paused`.
+    """
+    if cell.get("teaching"):  # older records have none
+        return MANUAL
     if cell["state"] != CellState.IDLE or cell["not_ready"] is None:
         return str(cell["state"])
     only_paused = [each["do"] for each in cell["advice"]] == [Verb.RESUME]

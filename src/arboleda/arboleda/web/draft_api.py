@@ -24,7 +24,7 @@ class DraftApi(Protocol):
 
     @abstractmethod
     def state(self) -> State:
-        """Who edits, what differs from the files, what of these waits for the next start, the values."""
+        """The draft: its editor, the changes to the files, those that wait for the next start, the values."""
 
     @abstractmethod
     def take(self, editor: str, name: str) -> State:
@@ -58,3 +58,25 @@ class DraftApi(Protocol):
     def keep(self, editor: str, note: str) -> State:
         """Check the draft, write it into the files and keep a version: its `version`, or the `problems` for
         which nothing was changed. It waits for seconds."""
+
+    @abstractmethod
+    def apply(self, editor: str, note: str) -> State:
+        """The same, and put the version to work: the `cells` and when each takes it, and what of it needs a
+        `restart`."""
+
+    @abstractmethod
+    def trees(self, file: str) -> State:
+        """A file of trees as the draft has it: `file` and `text`."""
+
+    @abstractmethod
+    def set_trees(self, editor: str, file: str, text: str) -> State:
+        """Give a file of trees another text, or add one."""
+
+    @abstractmethod
+    def remove_trees(self, editor: str, file: str) -> State:
+        """Take a file of trees out of the draft."""
+
+    @abstractmethod
+    def own(self, editor: str) -> State:
+        """Copy files that nobody can change, as those that come with Arboleda, to a folder of one's own, and
+        go on there."""

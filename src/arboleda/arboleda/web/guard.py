@@ -180,7 +180,7 @@ class Guard:
         self._sockets = Sockets(app, most=sockets)
         self._reads, self._changes = Buckets(limits.READ), Buckets(limits.CHANGE)
         self._files, self._opens = Buckets(limits.PAGE), Buckets(limits.OPEN)
-        self._guesses = Buckets(limits.GUESS)
+        self._guesses, self._holds = Buckets(limits.GUESS), Buckets(limits.HOLD)
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         if scope["type"] == "lifespan":
@@ -281,6 +281,8 @@ class Guard:
             raise HttpError(429, "Too many requests; wait a second.", retry_after="1")
 
     def _rate(self, asked: RequestHead) -> Buckets:
+        if asked.holds:
+            return self._holds
         if not asked.reads:
             return self._changes
         if asked.opens_page:

@@ -18,6 +18,7 @@ READ = (50.0, 400)  # per second, at once
 PAGE = (300.0, 6000)  # one page is a hundred small files, and twenty browsers may sit behind one address
 OPEN = (2.0, 40)  # a page itself, the largest of all answers
 CHANGE = (10.0, 50)
+HOLD = (40.0, 80)  # a button of a teacher, said again every 50 ms
 GUESS = (0.1, 5)
 MESSAGE = (50.0, 200)
 

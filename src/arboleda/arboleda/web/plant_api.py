@@ -22,6 +22,9 @@ from arboleda.views.oee import Oee
 
 from .draft_api import DraftApi
 from .languages import spoken, texts
+from .make_api import MakeApi
+from .teach_api import TeachApi
+from .versions_api import VersionsApi
 
 PLANT = "arboleda-plant"  # header by which a client names the plant it means
 COMMAND_LINE = "arboleda"  # the User-Agent of our own command, before its version
@@ -38,7 +41,7 @@ class PlantApi(Protocol):
     @property
     @abstractmethod
     def model(self) -> PlantModel:
-        """What the plant consists of, which never changes."""
+        """The model of the plant now; each cell as it works."""
 
     @abstractmethod
     def read(self, look: Callable[[Plant], Found]) -> Found:
@@ -63,6 +66,21 @@ class PlantApi(Protocol):
     @property
     def draft(self) -> DraftApi | None:
         """The draft of its files; None where it has no plant file that could be changed."""
+        return None
+
+    @property
+    def teach(self) -> TeachApi | None:
+        """The teaching of its cells; None where that is not done from here."""
+        return None
+
+    @property
+    def make(self) -> MakeApi | None:
+        """Its draft as a plant; None where it has no draft."""
+        return None
+
+    @property
+    def versions(self) -> VersionsApi | None:
+        """The versions of its files; None where it has no plant file that could be changed."""
         return None
 
     @abstractmethod

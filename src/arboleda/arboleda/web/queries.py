@@ -1,4 +1,4 @@
-"""Query parameters of a route: read as a model, and described for the API."""
+"""Query parameters and bodies of routes: read as a model, and described for the API."""
 
 from __future__ import annotations
 
@@ -37,3 +37,19 @@ def described(model: type[BaseModel]) -> dict[str, Any]:
     return {
         "parameters": [{"name": name, "in": "query", "schema": each} for name, each in properties.items()]
     }
+
+
+def read_body(body: bytes, model: type[Query]) -> Query:
+    """A body as `model`; raises PayloadError, which names the first wrong key."""
+    try:
+        return model.model_validate_json(body)
+    except ValidationError as error:
+        found = error.errors(include_url=False, include_context=False, include_input=False)[0]
+        name = quoted(".".join(map(str, found["loc"])) or "the body", 80)
+        raise PayloadError(f"{name}: {found['msg'].lower()}; /api/docs says what is allowed.") from None
+
+
+def described_body(model: type[BaseModel]) -> dict[str, Any]:
+    """The OpenAPI description of a body as `model`."""
+    schema = model.model_json_schema(ref_template="#/components/schemas/{model}")
+    return {"requestBody": {"content": {"application/json": {"schema": schema}}, "required": True}}

@@ -12,8 +12,10 @@ from starlette.types import Message, Scope, Send
 from .names import is_loopback
 
 API, LOGIN, LOGOUT, METRICS = "/api/", "/login", "/logout", "/metrics"
-TREES = "/api/trees/"
+DRAFT_TREES = "/api/draft/set_trees"
+TREES = ("/api/trees/", "/api/make/drawn/")
 STOP = re.compile(r"/api/(plant|cells/[^/]+|plants(/[^/]+)?)/stop")
+JOG = re.compile(r"/api/teach/[^/]+/jog")
 READS = {"GET", "HEAD"}
 ONLY_ONE = {"host", "origin", "authorization", "cookie", "content-length", "transfer-encoding"}
 FORWARDED = {"forwarded", "via", "x-forwarded-for", "x-forwarded-host", "x-forwarded-proto", "x-real-ip"}
@@ -84,7 +86,12 @@ class RequestHead:
     @property
     def has_tree(self) -> bool:
         """True if the body is a file of trees."""
-        return not self.socket and self.path.startswith(TREES)
+        return not self.socket and (self.path.startswith(TREES) or self.path == DRAFT_TREES)
+
+    @property
+    def holds(self) -> bool:
+        """True if a button of a teacher is held, or let go of."""
+        return not self.socket and self.scope["method"] == "POST" and bool(JOG.fullmatch(self.path))
 
     @property
     def opens_page(self) -> bool:

@@ -253,6 +253,17 @@ class Place(ResponseModel):
     station: int | None = Field(description="Its number in the rack of a cell that stores.")
 
 
+class Teaching(ResponseModel):
+    """Manual mode of a cell: nothing moves in it but what its teacher holds."""
+
+    session: int = Field(description="The act by which it began.")
+    teacher: str
+    seconds: float = Field(description="Since it began.")
+    robot: str | None = Field(description="The device that moves.")
+    number: int | None = Field(description="The press that is held.")
+    trouble: str | None = Field(description="Why the last press came to nothing, or ended too early.")
+
+
 class Cell(ResponseModel):
     """Cells of storage also have the names of their `arm` and `mobile` under these keys."""
 
@@ -271,6 +282,7 @@ class Cell(ResponseModel):
     refused: dict[str, str] = Field(description="The verbs that would be refused for it now, and why.")
     tree: list[dict[str, Any]] = Field(description="The behavior tree, depth first.")
     places: list[Place] = Field(description="Where parts lie in it.")
+    teaching: Teaching | None = Field(description="Its manual mode, while somebody teaches it.")
 
 
 class Asking(ResponseModel):

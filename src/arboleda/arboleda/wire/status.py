@@ -31,6 +31,7 @@ NUMBER = "number"  # the last key of a status, but for those on commands of othe
 NUMBER_DIGITS = len(str(UINT32))
 _FLOAT = re.compile(r"-?\d+(\.\d+)?([eE][-+]?\d+)?", re.ASCII)
 _ID = re.compile(r"[A-Za-z0-9_.-]{1,64}", re.ASCII)
+_COUNT = re.compile(r"\d{1,10}", re.ASCII)
 _LONGEST = 300  # characters of a sentence
 _MOST_DATA = 2000  # characters of what a sentence is made of
 FOREIGN, FOREIGN_SAID = "foreign", "foreign_said"
@@ -149,7 +150,7 @@ def _foreign(values: Mapping[str, str]) -> Sentence | None:
 
 
 def _count(key: str, text: str) -> int:
-    if not re.fullmatch(r"\d{1,10}", text, re.ASCII) or int(text) > UINT32:
+    if not _COUNT.fullmatch(text) or int(text) > UINT32:
         raise PayloadError(f"{key} is {quoted(text)}; an integer of 0 to {UINT32} is needed")
     return int(text)
 

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 
-@dataclass(frozen=True, kw_only=True)
-class Publication:
-    """Message to publish."""
+class Publication(NamedTuple):
+    """Message to publish. It and `Delivery` are tuples, which are made fastest: each telemetry needs both."""
 
     topic: str
     payload: bytes
@@ -15,8 +15,7 @@ class Publication:
     retain: bool = False
 
 
-@dataclass(frozen=True, kw_only=True)
-class Delivery:
+class Delivery(NamedTuple):
     """Message that a subscription received; `retain` as the broker flagged it."""
 
     at: float

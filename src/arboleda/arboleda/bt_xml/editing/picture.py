@@ -54,7 +54,7 @@ def _node(path: str, element: Element, kinds: Mapping[str, Kind]) -> Row:
 
 
 def _holds(element: Element, known: Kind | None) -> tuple[int, int]:
-    """How many nodes may stand in a node; of an unknown one as many as its category may have."""
+    """Most nodes that may stand in a node; of an unknown one as many as its category may have."""
     if known is not None:
         return known.fewest, known.most
     if is_subtree(element):

@@ -239,7 +239,8 @@ class Parallel(Node):
             return SKIPPED
         if any(child.status is Status.RUNNING for child in self.below):
             return RUNNING
-        return self.again(after_s=PAUSE_S)  # those that were skipped are asked again
+        self.time.wake_at(self.time.now + PAUSE_S)  # those that were skipped are asked again
+        return RUNNING
 
     def _old(self, name: str, default: str) -> str:
         """The value of the port by its name in version 3, or the default."""

@@ -73,6 +73,7 @@ class Node(Keeps, Behaviour):
         self.after: Mapping[str, Script] = {}
         self.forget_failures: Callable[[], None] | None = None
         self.place: Place | None = None
+        self.rests_until: float | None = None
         self.writes: tuple[tuple[Scope, str], ...] = ()
         for child in children:
             self.children.append(child)
@@ -94,7 +95,8 @@ class Node(Keeps, Behaviour):
         """Tick the node, with its conditions and scripts."""
         result = self._by_condition()
         if result is None:
-            result = self.work()
+            rests = self.rests_until is not None and self.time.now < self.rests_until
+            result = RUNNING if rests else self.work()
         if self.forget_failures is not None and result is not RUNNING:
             if result is SUCCESS:
                 self.forget_failures()
@@ -115,6 +117,7 @@ class Node(Keeps, Behaviour):
         """Return to the state before the node began."""
         self.reset_counts()
         self.reset_children()
+        self.rests_until = None
         self.status = Status.INVALID
 
     def reset(self) -> None:
@@ -124,7 +127,10 @@ class Node(Keeps, Behaviour):
         self.status = Status.INVALID
 
     def again(self, *, after_s: float = TICK_S) -> Result:
-        """Returns RUNNING, and asks for another tick after `after_s`."""
+        """Returns RUNNING, and asks for another tick after `after_s`; until the next tick of the original's
+        own loops it does nothing, however often the plant ticks in one step.
+        """
+        self.rests_until = self.time.now + TICK_S
         self.time.wake_at(self.time.now + after_s)
         return RUNNING
 

@@ -5,11 +5,13 @@ from __future__ import annotations
 from arboleda.simulator.judged_world import BrokenInvariant
 from arboleda.simulator.run import Result
 
-from .forks import run_one
+from .forks import run_on
+from .moment import Witness
 from .pairs import PairTally
 from .proof import Proof
 from .proof_tally import Case, ProofTally
 from .pytest_file import Breach
+from .stage import Stage
 
 
 def breaches_of(tally: ProofTally, pairs: PairTally | None = None) -> list[Breach]:
@@ -25,7 +27,10 @@ def breaches_of(tally: ProofTally, pairs: PairTally | None = None) -> list[Breac
 def _again(proof: Proof, case: Case, count: int) -> Breach:
     """The run of a case once more, with its timeline."""
     faults = [case.fault] if case.then is None else [case.fault, case.then]
-    run, stage = run_one(proof.model, proof.calm[case.row], *faults, keep=True)
+    calm = proof.calm[case.row]
+    stage = Stage(proof.model, calm.scenario, keep=True)
+    witness = Witness(stage)
+    run = run_on(stage, calm, *faults)
     result = Result(seed=0, faults=faults, lines=stage.watched.trace.lines, seconds=run.seconds)
     result.broken = BrokenInvariant(*run.outcome.broken) if run.outcome.broken else None
     return Breach(
@@ -37,4 +42,5 @@ def _again(proof: Proof, case: Case, count: int) -> Breach:
         count=count,
         result=result,
         stated=stage.stated,
+        moment=witness.moment,
     )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Hashable, Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from arboleda.dispatch.ledger import Entry
 from arboleda.kinds.declared import QueryCall
@@ -18,7 +18,7 @@ from .end_state import EndState
 from .instants import Instant, Mark, instants
 from .outcome import End, Run
 from .scenario import Scenario
-from .stage import ASKED_AT_S, Stage
+from .stage import ASKED_AT_S, Stage, entry_name
 
 FAR = 10**9  # commits: as many as no run has
 MOST_SCENARIOS = 64  # of one recipe, with all answers
@@ -28,6 +28,8 @@ MOST_SCENARIOS = 64  # of one recipe, with all answers
 class Calm:
     """Calm run of a scenario: what came of it, its instants, its commands, what was so when it was done.
 
+    `finding` is what went wrong although nothing had: a command that was refused, a task that failed and was
+    not to. `again` is what came of the same task a second time, empty where that was done.
     `asked` are those who were asked something, with the answers that they did not give.
     """
 
@@ -39,13 +41,15 @@ class Calm:
     state: EndState
     lasts_s: float
     asked: tuple[tuple[str, tuple[Value, ...]], ...]
+    finding: str = ""
+    again: str = ""
 
     @property
     def is_sound(self) -> bool:
-        """True if its task ends, by an answer even badly, and nothing is broken."""
+        """True if its task ends as it is written, by an answer even badly, and nothing is broken or found."""
         end = self.run.outcome.end
         as_written = end is End.FAILED and bool(self.scenario.answers)
-        return self.run.outcome.broken is None and (end is End.DONE or as_written)
+        return self.run.outcome.broken is None and not self.finding and (end is End.DONE or as_written)
 
 
 class _Marks:
@@ -69,10 +73,13 @@ class _Marks:
         begins = False
         for message in moment.sent:
             begins |= self._begins(message)
+        for entry in self._stage.asked:
+            begins = True
+            self._ask(entry)
         ended = [each for each in truth.books.ended if each.entry.cell == self._stage.cell.name]
         told = any(isinstance(each, TaskChanged | OperatorAnswer) for each in moment.sent)
         if begins or ended or told or moment.asked or moment.executed or commits:
-            what = f"the end of {_name(ended[0].entry)}" if ended and not begins else self._what
+            what = f"the end of {entry_name(ended[0].entry)}" if ended and not begins else self._what
             at = self._stage.watched.seconds
             self.rows.append(Mark(at=at, what=what, begins=begins, commits=commits))
         self._ended = self._stage.ended
@@ -81,12 +88,16 @@ class _Marks:
         entry = self._stage.world.plant.dispatcher.ledger.entries.get(getattr(message, "id", ""))
         if not isinstance(message, Command) or entry is None:
             return False
-        self._what = _name(entry)
-        if isinstance(message, Question):
-            self.asked[message.robot] = tuple(message.answers)
-        elif isinstance(message, QueryCall):
-            self.asked[message.robot] = message.told.answers
+        self._ask(entry)
         return True
+
+    def _ask(self, entry: Entry) -> None:
+        """Take down a step that begins, and what can be answered where it asks something."""
+        self._what, command = entry_name(entry), entry.command
+        if isinstance(command, Question):
+            self.asked[command.robot] = tuple(command.answers)
+        elif isinstance(command, QueryCall):
+            self.asked[command.robot] = command.told.answers
 
 
 def calm_run(model: PlantModel, scenario: Scenario) -> Calm:
@@ -94,15 +105,17 @@ def calm_run(model: PlantModel, scenario: Scenario) -> Calm:
     stage = Stage(model, scenario)
     marks = _Marks(stage)
     run = stage.play(ASKED_AT_S, lambda: None, expected={}, commands=None, lasts_s=0.0)
+    finding = next((f"{each.step}: {each.sentence}" for each in stage.watched.findings.found), "")
     rows = [Mark(at=ASKED_AT_S, what="the request", begins=True, commits=0), *marks.rows]
     given = dict(scenario.answers)
     asked = {
         who: tuple(each for each in words if each != given.get(who, words[0]))
         for who, words in marks.asked.items()
     }
-    return Calm(
+    calm = Calm(
         scenario=scenario,
         run=run,
+        finding=finding,
         why="" if stage.told is None else str(stage.told.sentence),
         instants=tuple(instants(rows)),
         commands=tuple(stage.commands),
@@ -110,6 +123,7 @@ def calm_run(model: PlantModel, scenario: Scenario) -> Calm:
         lasts_s=rows[-1].at - ASKED_AT_S,
         asked=tuple(asked.items()),
     )
+    return replace(calm, again=stage.again(calm.lasts_s)) if run.outcome.end is End.DONE else calm
 
 
 def calm_runs(model: PlantModel, scenarios: Iterable[Scenario]) -> Iterator[Calm]:
@@ -119,15 +133,12 @@ def calm_runs(model: PlantModel, scenarios: Iterable[Scenario]) -> Iterator[Calm
         waiting, tried = deque([first]), {first.answers}
         while waiting and len(known) < MOST_SCENARIOS:
             calm = calm_run(model, waiting.popleft())
-            if calm.commands in known:
+            ending = calm.commands, calm.run.outcome.end
+            if ending in known:
                 continue
-            known.add(calm.commands)
+            known.add(ending)
             yield calm
             for who, words in calm.asked:
                 others = [calm.scenario.with_answer(who, word) for word in words]
                 waiting += [each for each in others if each.answers not in tried]
                 tried |= {each.answers for each in others}
-
-
-def _name(entry: Entry) -> str:
-    return f"{entry.command.robot}: {entry.doing}"

@@ -35,15 +35,19 @@ def run_groups(
         return _forked(model, calm, groups, tick)
     runs = []
     for faults in groups:
-        runs.append(run_one(model, calm, *faults)[0])
+        runs.append(run_one(model, calm, *faults))
         tick()
     return runs
 
 
-def run_one(model: PlantModel, calm: Calm, *faults: Fault, keep: bool = False) -> tuple[Run, Stage]:
-    """One run from its beginning, and its stage; `keep`: with its timeline."""
-    stage = Stage(model, calm.scenario, keep=keep)
-    return _play(stage, calm, faults, lambda: stage.befall(faults)), stage
+def run_one(model: PlantModel, calm: Calm, *faults: Fault) -> Run:
+    """One run from its beginning."""
+    return run_on(Stage(model, calm.scenario), calm, *faults)
+
+
+def run_on(stage: Stage, calm: Calm, *faults: Fault) -> Run:
+    """One run from its beginning, on a stage on which nothing has happened."""
+    return _play(stage, calm, faults, lambda: stage.befall(faults))
 
 
 def _play(stage: Stage, calm: Calm, faults: Faults, begin: Callable[[], None]) -> Run:

@@ -8,10 +8,15 @@ from html import escape
 from pathlib import Path
 from typing import Any
 
+from arboleda.dashboard.wording import Words, words
+from arboleda.drawing.words import outline
 from arboleda.web.languages import FIRST, LANGUAGES, texts
 
 from ..words import told
 from .calm import Calm
+from .checks import Check, checks
+from .instants import Instant
+from .moment import Moment, as_svg
 from .outcome import MOST_ACTS, End
 from .pairs import PairTally
 from .proof_tally import Case, ProofTally, RecipeKey, Row
@@ -72,7 +77,8 @@ def _parts(proof: ProofPage) -> Iterator[str]:
     yield f"<h1>{_each('title', plant=proof.name)}</h1>"
     yield from _amount(proof)
     yield f"<h2>{_each('unnoticed')}</h2><p class=quiet>{_each('unnoticed_note')}</p>"
-    found = "".join(_unnoticed(*each) for each in proof.tally.unnoticed())
+    unnoticed = proof.tally.unnoticed()
+    found = "".join(_unnoticed(case, count, checks(proof.tally.proof, case)) for case, count in unnoticed)
     nothing = f"<li>{_each('nothing')}</li>"
     yield f"<ul>{found or nothing}</ul>"
     unmended = "".join(_unmended(*each) for each in proof.tally.unmended())
@@ -103,18 +109,23 @@ def _calm(calm: Calm) -> str:
     name, outcome = escape(calm.scenario.name), calm.run.outcome
     if outcome.broken is not None:
         return f"<li class=bad>{name}: {escape(': '.join(outcome.broken))}</li>"
-    if outcome.end is End.DONE:
-        return f"<li>{name}: {_each('calm_good')}</li>"
+    if outcome.end is End.DONE and calm.is_sound:
+        again = f"; {_each('calm_again')} {escape(calm.again)}" if calm.again else ""
+        return f"<li>{name}: {_each('calm_good')}{again}</li>"
     if outcome.end is End.UNFINISHED:
         return f"<li>{name}: {_each('calm_waits')}</li>"
     style = "quiet" if calm.is_sound else "bad"
-    return f"<li class={style}>{name}: {escape(f'{outcome.words}: {calm.why}')}</li>"
+    return f"<li class={style}>{name}: {escape(f'{outcome.words}: {calm.finding or calm.why}')}</li>"
 
 
-def _unnoticed(case: Case, count: int) -> str:
+def _unnoticed(case: Case, count: int, found: Sequence[Check]) -> str:
     what = escape("; ".join(case.outcome.untrue))
     befell = escape(f"{case.scenario.name}: {told(case.fault)}, {case.instant.name}")
-    return f"<li>{what}<br><span class=quiet>{befell} ({_each('runs_like_it', count=count)})</span></li>"
+    keys = ("check_sure" if each.is_sure else "check_may" for each in found)
+    steps = (_each(key, steps=", ".join(each.steps)) for key, each in zip(keys, found, strict=True))
+    check = "; ".join(steps) or _each("check_none")
+    like = _each("runs_like_it", count=count)
+    return f"<li>{what}<br>{check}<br><span class=quiet>{befell} ({like})</span></li>"
 
 
 def _unmended(case: Case, count: int) -> str:
@@ -130,15 +141,36 @@ def _breach(breach: Breach, plant: Path | None) -> str:
     return (
         f"<h3 class=bad>{escape(f'{breach.scenario.name}: {name}')}</h3><p>{escape(sentence)}<br>"
         f"{escape(f'{breach.befell}, {breach.instant.name}')} "
-        f"({_each('runs_like_it', count=breach.count)})</p><pre>{lines}</pre>"
+        f"({_each('runs_like_it', count=breach.count)})</p><pre>{lines}</pre>{_moment(breach.moment)}"
         f"<p>{_each('test')}</p><pre>{escape(as_tests([breach], plant))}</pre>"
     )
+
+
+def _moment(moment: Moment) -> str:
+    """The tree when it broke, in every language, then the devices as they truly were."""
+    trees = (f"<pre lang={each}>{escape(_outline(moment, words(each)))}</pre>" for each in LANGUAGES)
+    tree = f"<h4>{_each('tree')}</h4>{''.join(trees)}" if moment.tree else ""
+    facts = "".join(f"<li>{escape(name)}: {escape(true)}</li>" for name, true in moment.facts.items() if true)
+    return f"{tree}<h4>{_each('twin')}</h4>{as_svg(moment)}<ul>{facts}</ul>"
+
+
+def _outline(moment: Moment, language: Words) -> str:
+    shown = ("name", "feedback")
+    rows = [{**row, **{key: language.say(row[key] or "") for key in shown}} for row in moment.tree]
+    return outline(rows, statuses=True)
 
 
 def _table(key: RecipeKey, rows: dict[str, Row]) -> str:
     heads = "".join(f"<th>{_each(head)}</th>" for head in HEADS)
     body = "".join(f"<tr>{''.join(_cells(kind, row))}</tr>" for kind, row in rows.items())
-    return f"<h2>{escape(': '.join(key))}</h2><table><tr>{heads}</tr>{body}</table>"
+    turns = "".join(_turns(kind, *each) for kind, row in rows.items() for each in row.turns.items())
+    more = f"<details><summary>{_each('turns')}</summary><ul>{turns}</ul></details>" if turns else ""
+    return f"<h2>{escape(': '.join(key))}</h2><table><tr>{heads}</tr>{body}</table>{more}"
+
+
+def _turns(kind: str, target: str, turns: Sequence[tuple[Instant, str]]) -> str:
+    steps = "".join(f"<li>{escape(f'{instant.name}: {words}')}</li>" for instant, words in turns)
+    return f"<li>{escape(f'{kind} {target}')}<ol>{steps}</ol></li>"
 
 
 def _cells(kind: str, row: Row) -> Iterator[str]:

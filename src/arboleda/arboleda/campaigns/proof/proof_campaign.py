@@ -27,19 +27,23 @@ from .outcome import End
 from .page import ProofPage, page
 from .pairs import PairProof, PairTally
 from .proof import Proof, Proved
+from .proof_lines import ProofLines
 from .proof_request import ProofRequest
 from .proof_tally import ProofTally
 from .pytest_file import Breach, as_tests
 from .recipe_digest import recipe_digests
 from .scenario import scenarios
 
+NOTHING_RUN = 2  # exit status: of nothing it cannot be said that it held
+
 
 class ProofCampaign:
     """ProofCampaign: proves a plant in a terminal, and writes what is asked for."""
 
-    def __init__(self, request: ProofRequest, console: Console) -> None:
+    def __init__(self, request: ProofRequest, console: Console, lines: ProofLines | None = None) -> None:
         self._request = request
         self._console = console
+        self._lines = lines or ProofLines(None)
         self._plant = request.simulated
         self._calm: list[Calm] = []
         self._tally = ProofTally(proof=Proof(model=self._plant.model))
@@ -58,7 +62,8 @@ class ProofCampaign:
             self._prove(jobs)
             if self._request.pairs:
                 self._prove_pairs(jobs)
-            status = BROKEN if self._bad_calm or self._breaks else HELD
+            held = HELD if self._tally.runs else NOTHING_RUN
+            status = BROKEN if self._bad_calm or self._breaks else held
         except KeyboardInterrupt:
             self._say("interrupted; so far:", "yellow")
         self._report(complete=status != INTERRUPTED)
@@ -76,10 +81,12 @@ class ProofCampaign:
 
     def _run_calmly(self) -> None:
         found = scenarios(self._plant.model, self._request.recipes)
-        with progress(self._console, "running without faults", None) as show:
+        doing = "running without faults"
+        with progress(self._console, doing, None) as show, self._lines.progress(doing) as tell:
             for calm in calm_runs(self._plant.model, found):
                 self._calm.append(calm)
                 show(counted(len(self._calm), "task"), len(self._calm))
+                tell(len(self._calm), None)
 
     def _prove(self, jobs: int) -> None:
         sound = tuple(each for each in self._calm if each.is_sound)
@@ -113,11 +120,16 @@ class ProofCampaign:
         name = "proving" if tally is self._tally else "proving pairs"
         with (
             progress(self._console, name, total) as show,
+            self._lines.progress(name) as tell,
             self._campaign(proof, self._within_budget(waiting), jobs, (known, total), show) as campaign,
         ):
+            tell(known, total)
             for proved in campaign.results():
                 tally.proved[proved.number] = proved
                 kept.keep(proved)
+                tell(tally.runs, total)
+                if isinstance(proof, Proof):
+                    self._lines.broken(proof, proved)
         if kept.trouble is not None:
             self._say(f"not all is kept for the next time: {kept.trouble}", "yellow")
 
@@ -144,7 +156,7 @@ class ProofCampaign:
         tally, breaches = self._tally, breaches_of(self._tally, self._pairs)
         for line in proof_report.calm_lines(self._calm):
             self._console.print(line, soft_wrap=True)
-        for line in proof_report.unnoticed_lines(tally.unnoticed()):
+        for line in proof_report.unnoticed_lines(tally):
             self._console.print(line, soft_wrap=True)
         for line in proof_report.unmended_lines(tally.unmended()):
             self._console.print(line, soft_wrap=True)
@@ -179,19 +191,18 @@ class ProofCampaign:
 
     def _write(self, breaches: list[Breach], *, complete: bool) -> None:
         request = self._request
+        answer = proof_summary.summary(
+            request.plant,
+            self._calm,
+            self._tally,
+            breaches,
+            self._total,
+            complete=complete,
+            pairs=self._pairs,
+        )
+        self._lines.answer(answer)
         if request.json is not None:
-            proof_summary.write(
-                request.json,
-                proof_summary.as_json(
-                    request.plant,
-                    self._calm,
-                    self._tally,
-                    breaches,
-                    self._total,
-                    complete=complete,
-                    pairs=self._pairs,
-                ),
-            )
+            proof_summary.write(request.json, proof_summary.as_json(answer))
         if request.html is not None:
             shown = ProofPage(
                 name=self._plant.name,

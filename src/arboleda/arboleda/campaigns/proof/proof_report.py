@@ -13,6 +13,7 @@ from arboleda.model.counting import counted
 from .. import breach_text
 from ..setting import rules
 from .calm import Calm
+from .checks import Check, checks
 from .outcome import MOST_ACTS, End
 from .pairs import PairTally
 from .proof_tally import Case, ProofTally, Row
@@ -33,11 +34,19 @@ def calm_lines(calm: Sequence[Calm]) -> Iterator[Text]:
             sentence = f"{name}: alone it never ends, it waits for what others do: nothing is proved of it"
             yield Text(f"{sentence}{each.why and f' ({each.why})'}", "yellow")
         else:
-            yield Text(f"{name}: {outcome.words} without any fault: {each.why}", "red")
+            why = each.finding or each.why
+            yield Text(f"{name}: {outcome.words} without any fault: {why}", "red")
+    for each in (each for each in calm if each.again):
+        yield Text(
+            f"{each.scenario.name}: once more, without any fault, it is not done: {each.again}", "yellow"
+        )
 
 
-def unnoticed_lines(found: Sequence[tuple[Case, int]]) -> Iterator[Text]:
-    """Faults that nobody notices: the task is done, and not all is as it is without them."""
+def unnoticed_lines(tally: ProofTally) -> Iterator[Text]:
+    """Faults that nobody notices: the task is done, and not all is as it is without them; then the check that
+    would notice each.
+    """
+    found = tally.unnoticed()
     if found:
         yield Text("What nobody notices: the task is done, and this is not so:", "bold yellow")
     for case, count in found[:MOST_UNNOTICED]:
@@ -45,8 +54,18 @@ def unnoticed_lines(found: Sequence[tuple[Case, int]]) -> Iterator[Text]:
         times = f"{counted(count, 'run')}, e.g. {case.instant.name}"
         befell = f"{case.fault.kind} {case.fault.target}"
         yield Text(f"  {case.scenario.task}: {befell}: {what} ({times})", "yellow")
+        yield Text(f"    {_check_words(checks(tally.proof, case))}", "dim")
     if len(found) > MOST_UNNOTICED:
         yield Text(f"  and {len(found) - MOST_UNNOTICED} more; --json has all", "yellow")
+
+
+def _check_words(found: Sequence[Check]) -> str:
+    if not found:
+        return "nothing that the cell has would notice it"
+    sure = [step for each in found if each.is_sure for step in each.steps]
+    may = [step for each in found if not each.is_sure for step in each.steps]
+    words = [f"a step notices it: {', '.join(sure)}"] if sure else []
+    return "; ".join([*words, *([f"a question may: {', '.join(may)}"] if may else [])])
 
 
 def unmended_lines(found: Sequence[tuple[Case, int]]) -> Iterator[Text]:

@@ -12,6 +12,7 @@ from arboleda import __version__
 from arboleda.model.errors import ArboledaError
 
 from .calm import Calm
+from .checks import checks
 from .outcome import plain
 from .pairs import PairTally
 from .proof_tally import Case, ProofTally
@@ -26,7 +27,12 @@ def write(path: Path, content: str) -> None:
         raise ArboledaError(f"{path}: cannot be written: {error.strerror}") from None
 
 
-def as_json(
+def as_json(content: dict[str, Any]) -> str:
+    """The answer as the content of a file."""
+    return json.dumps(content, indent=1, ensure_ascii=False) + "\n"
+
+
+def summary(
     plant: Path | None,
     calm: Sequence[Calm],
     tally: ProofTally,
@@ -35,9 +41,9 @@ def as_json(
     *,
     complete: bool,
     pairs: PairTally | None = None,
-) -> str:
-    """The content of the file."""
-    data = {
+) -> dict[str, Any]:
+    """The whole answer."""
+    return {
         "arboleda": __version__,
         "plant": str(plant) if plant else None,
         "complete": complete,
@@ -46,12 +52,14 @@ def as_json(
         "alone": round(tally.alone, 4),
         "scenarios": [_scenario(each) for each in calm],
         "table": [_row(*each) for each in tally.table().items()],
-        "unnoticed": [{**_case(case), "runs": count} for case, count in tally.unnoticed()],
+        "unnoticed": [
+            {**_case(case), "runs": count, "checks": [asdict(each) for each in checks(tally.proof, case)]}
+            for case, count in tally.unnoticed()
+        ],
         "unmended": [{**_case(case), "runs": count} for case, count in tally.unmended()],
         "breaches": [_breach(each, plant) for each in breaches],
         "digests": [proved.digest for _, proved in sorted(tally.proved.items())],
     }
-    return json.dumps(data, indent=1, ensure_ascii=False) + "\n"
 
 
 def _scenario(calm: Calm) -> dict[str, Any]:
@@ -63,6 +71,8 @@ def _scenario(calm: Calm) -> dict[str, Any]:
         "answers": dict(scenario.answers),
         "stands_for": scenario.alike,
         "without_faults": plain(calm.run.outcome),
+        "finding": calm.finding,
+        "once_more": calm.again,
         "ends_with": dict(calm.state),
         "instants": len(calm.instants),
     }
@@ -78,6 +88,10 @@ def _row(key: tuple[str, str], rows: dict[str, Any]) -> dict[str, Any]:
             "unnoticed": row.unnoticed,
             "broken": row.broken,
             "changes_with_the_moment": row.changes,
+            "turns": [
+                {"target": target, "at": [[instant.name, words] for instant, words in turns]}
+                for target, turns in row.turns.items()
+            ],
         }
         for kind, row in rows.items()
     }

@@ -31,9 +31,19 @@ class Case:
 
     @property
     def breaks(self) -> Breaks | None:
-        """What it breaks, if anything."""
+        """The rule that it breaks; None where it breaks none."""
         broken = self.outcome.broken
         return (broken[0], self.scenario.cell, self.scenario.recipe) if broken is not None else None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Form:
+    """Form of a fault in a scenario: all but its moment, which of some kinds is the number of a commit."""
+
+    target: str
+    word: str
+    seconds: float
+    scenario: str
 
 
 @dataclass(kw_only=True)
@@ -46,12 +56,24 @@ class Row:
     causes: Counter[str] = field(default_factory=Counter)
     unnoticed: int = 0
     broken: int = 0
-    by_form: dict[tuple[str, str, float], set[str]] = field(default_factory=dict)
+    by_form: dict[Form, list[tuple[Instant, float, str]]] = field(default_factory=dict)
 
     @property
     def changes(self) -> bool:
         """True if the end of one and the same fault changes with the moment."""
-        return any(len(ends) > 1 for ends in self.by_form.values())
+        return any(len({words for *_, words in ends}) > 1 for ends in self.by_form.values())
+
+    @property
+    def turns(self) -> dict[str, list[tuple[Instant, str]]]:
+        """For each target the form that changes most often: its outcome at first, then each other one with
+        the first instant that has it.
+        """
+        found: dict[str, list[tuple[Instant, str]]] = {}
+        for form, ends in self.by_form.items():
+            turns = _turns(ends)
+            if len(turns) > max(1, len(found.get(form.target, ()))):
+                found[form.target] = turns
+        return found
 
 
 @dataclass(kw_only=True)
@@ -153,4 +175,18 @@ def _add(row: Row, case: Case) -> None:
         row.causes[outcome.cause] += 1
     row.unnoticed += outcome.goes_unnoticed
     row.broken += outcome.broken is not None
-    row.by_form.setdefault((fault.target, fault.word, fault.seconds), set()).add(outcome.words)
+    form = Form(
+        target=fault.target,
+        word=fault.word,
+        seconds=fault.seconds,
+        scenario=case.scenario.name,
+    )
+    row.by_form.setdefault(form, []).append((case.instant, fault.amount, outcome.words))
+
+
+def _turns(ends: Iterable[tuple[Instant, float, str]]) -> list[tuple[Instant, str]]:
+    found: list[tuple[Instant, str]] = []
+    for instant, _, words in sorted(ends, key=lambda each: (each[0].at, each[1])):
+        if not found or found[-1][1] != words:
+            found.append((instant, words))
+    return found

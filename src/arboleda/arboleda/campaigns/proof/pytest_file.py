@@ -13,6 +13,7 @@ from arboleda.simulator.run import Result
 from ..words import told
 from .end_state import EndState
 from .instants import Instant
+from .moment import Moment
 from .outcome import Run
 from .scenario import Scenario
 from .stage import ASKED_AT_S, ENDS_AS_SAID
@@ -22,7 +23,8 @@ from .stage import ASKED_AT_S, ENDS_AS_SAID
 class Breach:
     """Breach: the run of one fault again, with its timeline; `count` cases broke the same of this recipe.
 
-    `then`: the other one of a pair. `stated`: the facts with which the recipe says that it ends.
+    `then`: the other one of a pair. `stated`: the facts with which the recipe says that it ends. `moment`:
+    the tree and the devices when it broke.
     """
 
     scenario: Scenario
@@ -33,6 +35,7 @@ class Breach:
     result: Result
     stated: EndState = field(default_factory=dict)
     then: Fault | None = None
+    moment: Moment = field(default_factory=Moment)
 
     @property
     def faults(self) -> list[Fault]:

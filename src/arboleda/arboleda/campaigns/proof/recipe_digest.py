@@ -54,7 +54,7 @@ def _visible(files: PlantFiles, seen: PlantModel, recipe: str) -> Iterator[str]:
 
 
 def _of_cells(content: bytes, cells: set[str]) -> str:
-    """What a plant file says without the cells that are not among these."""
+    """The content of a plant file without the cells that are not among these."""
     data: Any = yaml.safe_load(content)
     declared = data.get("cells") if isinstance(data, Mapping) else None
     if not isinstance(declared, Mapping):

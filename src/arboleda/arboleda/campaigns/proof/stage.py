@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 
 from arboleda.core.cell import CellRun
 from arboleda.core.cell_states import CellState
+from arboleda.core.plant import Plant
+from arboleda.dispatch.ledger import Entry
 from arboleda.model.messages import TaskChanged, TaskState
-from arboleda.model.plant_model import PlantModel
+from arboleda.model.plant_model import Link, PlantModel
 from arboleda.model.task import Order
 from arboleda.simulator.faults import Fault
 from arboleda.simulator.invariants.places import recipes_end_as_they_say
@@ -23,7 +25,7 @@ from .scenario import Scenario, alone
 
 ASKED_AT_S = 2.0  # when somebody asks for the task: everybody is connected by then
 ENDS_AS_SAID = recipes_end_as_they_say.name  # which the simulator asks of calm runs, and of places
-REQUEST = "test-1"  # as the first one of a test
+REQUEST, AGAIN = "test-1", "test-2"  # as the first ones of a test
 PATIENCE_S = 300.0  # beyond what the task takes without a fault
 LOST_S = 30.0  # after which a request that nobody has answered is lost
 MENDED_IN_S = 0.000_5  # after a task has ended, so that a test that names the time does the same
@@ -46,21 +48,32 @@ class Stage:
     """Stage: a task in its plant; `play` has something begin at its time, and returns what came of it.
 
     `state` is what was so when the task was done, `stated` what its recipe says of that; `commands` are those
-    that its cell has given by then.
+    that its cell has given by then. `asked` are the persons who were asked something in the last step.
     """
 
-    def __init__(self, model: PlantModel, scenario: Scenario, *, keep: bool = False) -> None:
-        self.watched = JudgedWorld(alone(model, scenario.cell), keep=keep)
+    def __init__(
+        self,
+        model: PlantModel,
+        scenario: Scenario,
+        *,
+        keep: bool = False,
+        make_plant: Callable[..., Plant] | None = None,
+    ) -> None:
+        self.watched = JudgedWorld(alone(model, scenario.cell), keep=keep, make_plant=make_plant)
         self.world = self.watched.world
         self.cell = model.cell(scenario.cell)
         self.state: EndState = {}
         self.stated: EndState = {}
         self.heard: EndState = {}  # of that, by then, by the plant
         self.commands: list[str] = []
+        self.asked: list[Entry] = []
+        self._people = [robot.name for robot in self.cell.robots if robot.link is Link.SCREEN]
+        self._ended: dict[bool, set[str]] = {True: set(), False: set()}  # commands that were done, and not
+        self._questions: set[str] = set()  # by id, of all that persons were asked so far
         self.told: TaskChanged | None = None  # the last word on the task
         self.mended_at = 0.0  # when the fault was ended, s
         self._began, self._lost_from = False, 0.0
-        self._task = scenario.task
+        self._task, self._request = scenario.task, REQUEST
         self._attendant: Attendant | None = None
         self._acts: int | None = None  # of the attendant, when the cell was ready first
         self._order: Order | None = None  # what the plant made of it
@@ -90,7 +103,7 @@ class Stage:
         outcome, attended_at = Outcome(end=End.UNFINISHED, alone=False), 0.0
         try:
             self.world.advance(ASKED_AT_S)
-            self.world.request_task(self._task, REQUEST)
+            self.world.request_task(self._task, self._request)
             self.world.settle()
             self.world.at(self.watched.start + at, lambda _: self._begin(begin))
             self._work(lasts_s + PATIENCE_S)
@@ -110,6 +123,20 @@ class Stage:
             attended_at=attended_at or seconds,
             seconds=seconds,
         )
+
+    def again(self, lasts_s: float) -> str:
+        """Failure of the same task once more, after a calm run of `lasts_s`: empty where it is done."""
+        self.told, self._request = None, AGAIN
+        try:
+            self.world.request_task(self._task, self._request)
+            self.world.settle()
+            self.world.advance(lasts_s + PATIENCE_S, lambda: self.ended or self._is_stuck)
+        except BrokenInvariant as broken:
+            return f"breaks {broken}"
+        told = self.told
+        if told is None or told.state is TaskState.DONE:
+            return "" if told else "nobody takes it"
+        return f"{told.state.value}: {told.sentence}"
 
     def befall(self, faults: Sequence[Fault]) -> None:
         """Have the first of these faults begin now, the others at their time if the task is at work then."""
@@ -156,8 +183,17 @@ class Stage:
         if end is End.DONE and commands is not None and tuple(self.commands) != commands:
             end = End.RECOVERED
         untrue = differences(expected, self.state, self.heard) if end in IS_DONE else ()
+        untrue += tuple(self._left_out(commands or ())) if end in IS_DONE else ()
         broken = self._false_end() if end in IS_DONE else None
         return Outcome(end=end, cause=cause, alone=self._is_ready(), untrue=untrue, broken=broken)
+
+    def _left_out(self, commands: Sequence[str]) -> Iterator[str]:
+        """Sentences on commands of the run without a fault that failed and were not done later; of a plant
+        that died nobody knows them all.
+        """
+        if self.world.starts == 1:
+            failed = self._ended[False] - self._ended[True]
+            yield from (f"{each} has failed, and was not done later" for each in commands if each in failed)
 
     def _false_end(self) -> tuple[str, str] | None:
         """The breach of a task that is done, and not as its recipe says; none where a board has lied."""
@@ -176,16 +212,29 @@ class Stage:
         return replace(outcome, broken=(broken.invariant, broken.sentence))
 
     def _look(self) -> None:
+        for ended in self.watched.truth.books.ended:
+            if ended.entry.cell == self.cell.name and not self.ended:
+                self._ended[ended.done].add(entry_name(ended.entry))
         entries = self.world.plant.dispatcher.ledger.entries
         for message in self.world.moment.sent:
             if isinstance(message, TaskChanged):
                 self._follow(message)
             elif (entry := entries.get(getattr(message, "id", ""))) and entry.cell == self.cell.name:
-                self.commands.append(f"{entry.command.robot}: {entry.doing}")
+                self.commands.append(entry_name(entry))
+        self.asked = list(self._fresh_questions())
+        self.commands += map(entry_name, self.asked)
         if self.world.starts > 1 and self.told is not None and not self.ended and self.world.is_on(PLANT):
             self._look_up(self.told)
         if self._attendant is not None and self._acts is None and self._is_ready():
             self._acts = self._attendant.acts
+
+    def _fresh_questions(self) -> Iterator[Entry]:
+        """The questions that persons see since this step: those are sent to nobody else."""
+        for name in self._people:
+            entry = self.world.plant.dispatcher.question(name)
+            if entry is not None and entry.cell == self.cell.name and entry.command.id not in self._questions:
+                self._questions.add(entry.command.id)
+                yield entry
 
     def _look_up(self, told: TaskChanged) -> None:
         """Take the end of the task from what was kept, as a plant that died says no word on it any more."""
@@ -195,7 +244,7 @@ class Stage:
             self._follow(replace(told, state=kept.state, reason=reason))
 
     def _follow(self, told: TaskChanged) -> None:
-        mine = told.request == REQUEST or (self.told is not None and told.task == self.told.task)
+        mine = told.request == self._request or (self.told is not None and told.task == self.told.task)
         if not mine or self.ended:
             return
         self.told = told
@@ -205,6 +254,11 @@ class Stage:
             self.state = end_state(self.watched, self.cell)
             self.heard = heard_facts(self.watched, self.cell)
             self.stated = stated(self.cell, order.recipe, order.values)
+
+
+def entry_name(entry: Entry) -> str:
+    """The name of a command, for people: its robot and what that does then."""
+    return f"{entry.command.robot}: {entry.doing}"
 
 
 _FAILED = (TaskState.FAILED, TaskState.CANCELLED, TaskState.REFUSED)

@@ -5,6 +5,7 @@ import * as form from "./draw_form.js";
 import * as palette from "./draw_palette.js";
 import * as rows from "./draw_rows.js";
 import { box, node, say, state, tree } from "./draw_state.js";
+import * as make from "./make_state.js";
 import * as question from "./question.js";
 import { answer, words } from "./shell.js";
 
@@ -12,6 +13,7 @@ const NEW = '<?xml version="1.0" encoding="UTF-8"?>\n<root BTCPP_format="4" main
 const RETRY_MS = 300;
 const TRIES = 10; // while the server takes no more in this second
 let line = Promise.resolve(); // one operation after the other
+let behind = false; // whether the draft has gone a step back or forward that is not shown yet
 
 export function start() {
   const part = document.getElementById("draw");
@@ -23,16 +25,28 @@ export function start() {
   palette.start();
   rows.start();
   form.start();
+  make.onDraft(() => state.now && !behind && buttons());
 }
+
+// Where the plant has a draft, its trees are drawn: each edit is a step of it. Else a file is made of what is drawn.
+const ofDraft = () => make.there() && make.draft.state?.is_ours === true;
+const nameOf = (file) => file.replace(/^.*\//, "").replace(/\.xml$/, "");
+const treeFiles = async () => (ofDraft() ? make.draft.state?.trees.map((file) => ({ recipe: nameOf(file), file })) : ask("/api/trees"));
+const way = (path) => (ofDraft() ? `/api/make/${path}` : `/api/trees/${path.replace("drawn/", "")}`);
 
 // Begin with this cell, where nothing is drawn yet.
 export function show(cell) {
-  if (!document.getElementById("draw") || state.past.length || (state.now && !cell)) return;
-  const first = cell ?? box("cell").value;
-  if (first !== state.cell) open(first);
+  if (!document.getElementById("draw") || state.past.length || (state.now && !cell && !ofDraft())) return;
+  const first = cell ?? (state.cell || box("cell").value);
+  if (first !== state.cell || ofDraft()) open(first);
 }
 
-const unsaved = () => state.past.length > 0 && state.now.text !== state.saved;
+// Begin with a recipe of the draft.
+export function showRecipe(recipe) {
+  state.file = recipe;
+}
+
+const unsaved = () => !ofDraft() && state.past.length > 0 && state.now.text !== state.saved;
 
 // Open what was chosen instead of a tree with changes that are in no file, if that is meant.
 async function leave(select, before, go) {
@@ -45,23 +59,26 @@ async function open(cell) {
   state.cell = cell;
   box("cell").value = cell;
   const language = window.arboledaPage.language;
-  const [files, groups] = await Promise.all([ask("/api/trees"), ask(`/api/trees/palette?${new URLSearchParams({ cell, language })}`)]);
+  if (make.there()) await make.look();
+  const [files, groups] = await Promise.all([treeFiles(), ask(`${way("palette")}?${new URLSearchParams({ cell, language })}`)]);
   if (!files || !groups || state.cell !== cell) return;
-  state.files = files.filter(({ cells }) => cells.includes(cell));
+  state.files = files.filter(({ cells }) => !cells || cells.includes(cell));
   state.kinds = new Map(groups.flatMap(({ kinds }) => kinds.map((kind) => [kind.name, kind])));
   palette.fill(groups);
   const options = state.files.map(({ recipe, file }) => new Option(file, recipe));
-  box("file").replaceChildren(...options, new Option(words.draw_new, ""));
-  await openFile(state.files[0]?.recipe ?? "");
+  box("file").replaceChildren(...options, ...(ofDraft() && options.length ? [] : [new Option(words.draw_new, "")]));
+  const same = ofDraft() && state.files.find(({ recipe }) => recipe === state.file);
+  await openFile((same || state.files[0])?.recipe ?? "", same ? mine() : {});
 }
 
-async function openFile(recipe) {
+async function openFile(recipe, place = {}) {
   const { cell } = state;
   const found = state.files.find((each) => each.recipe === recipe);
-  const shown = await ask("/api/trees/check", { cell, text: found?.text ?? NEW });
+  const text = found && (ofDraft() ? (await ask(`/api/draft/trees?${new URLSearchParams({ file: found.file })}`))?.text : found.text);
+  const shown = await ask(way("drawn/check"), { cell, text: text ?? NEW });
   if (!shown || state.cell !== cell) return;
   box("file").value = recipe;
-  Object.assign(state, { file: recipe, past: [], future: [], now: shown, saved: shown.text, tree: null, path: "root" });
+  Object.assign(state, { file: recipe, past: [], future: [], now: shown, saved: shown.text, tree: null, path: "root", ...place });
   draw();
 }
 
@@ -70,14 +87,29 @@ export function edit(make, then) {
   return next(async () => {
     const { cell, now } = state;
     const operation = now && make();
-    const shown = operation && (await ask("/api/trees/edit", { cell, text: now.text, operation }));
+    const shown = operation && (await ask(way("drawn/edit"), { cell, text: now.text, operation }));
     if (!shown || now !== state.now) return;
     say("");
-    if (shown.text !== state.now.text) state.past.push({ ...mine(), now: state.now }), (state.future = []);
+    const changed = shown.text !== state.now.text;
+    if (changed && !ofDraft()) state.past.push({ ...mine(), now: state.now }), (state.future = []);
     state.now = shown;
     Object.assign(state, then?.(shown));
     draw();
+    if (changed && ofDraft()) await keep(shown.text);
   });
+}
+
+// Have the draft keep the text; where it does not, because somebody else edits, what it has is shown again.
+async function keep(text) {
+  const file = state.files.find(({ recipe }) => recipe === state.file)?.file;
+  if (!file) return say(words.draw_no_recipe);
+  if (!(await make.step("set_trees", { file, text }))) await reload();
+}
+
+// Show the tree that the draft has now.
+async function reload() {
+  state.files = (await treeFiles()) ?? [];
+  await openFile(state.file, mine());
 }
 
 // One that fails keeps no other from being done.
@@ -87,12 +119,26 @@ const mine = () => ({ tree: state.tree, path: state.path });
 
 // Back to the text before the last operation, or forward again.
 export function undo() {
-  travel(state.past, state.future);
+  if (ofDraft()) inDraft("undo");
+  else travel(state.past, state.future);
 }
 
 export function redo() {
-  travel(state.future, state.past);
+  if (ofDraft()) inDraft("redo");
+  else travel(state.future, state.past);
 }
+
+// The buttons follow the tree that is shown, not the draft, which is a step ahead until that is read again.
+const inDraft = (way) =>
+  next(async () => {
+    behind = true;
+    try {
+      if (await make.step(way)) await reload();
+    } finally {
+      behind = false;
+      buttons();
+    }
+  });
 
 function travel(from, to) {
   next(() => {
@@ -127,8 +173,13 @@ export function draw() {
   palette.trees();
   const general = state.now.marks.filter(({ path }) => path === null || path === "");
   box("general").replaceChildren(...general.map(form.markItem));
-  button("undo").disabled = !state.past.length;
-  button("redo").disabled = !state.future.length;
+  buttons();
+}
+
+function buttons() {
+  const known = make.draft.state;
+  button("undo").disabled = ofDraft() ? !known?.undo : !state.past.length;
+  button("redo").disabled = ofDraft() ? !known?.redo : !state.future.length;
 }
 
 const button = (act) => document.querySelector(`[data-draw="${act}"]`);

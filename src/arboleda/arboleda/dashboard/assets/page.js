@@ -7,13 +7,16 @@ import * as form from "./form.js";
 import * as history from "./history.js";
 import * as frames from "./frames.js";
 import { onChange, value } from "./live.js";
+import * as make from "./make.js";
 import * as oee from "./oee.js";
 import * as place from "./place.js";
 import * as question from "./question.js";
 import * as shell from "./shell.js";
 import * as sound from "./sound.js";
 import * as task from "./task.js";
+import * as teach from "./teach.js";
 import * as tree from "./tree.js";
+import * as versions from "./versions.js";
 
 const { all } = shell;
 
@@ -36,6 +39,10 @@ function arrive(there) {
   task.show(named);
   if (tab === "tasks") history.show(), oee.show();
   if (tab === "draw") draw.show(cell);
+  if (tab === "teach") teach.show(cell);
+  else teach.leave();
+  make.show(tab === "make");
+  if (tab === "links") versions.show();
   tree.close();
   tree.refit();
 }
@@ -82,11 +89,14 @@ function begin() {
   acts.start();
   demo.start();
   draw.start();
+  make.start();
   form.start();
   task.start();
+  teach.start();
   history.start();
   oee.start();
   tree.start();
+  versions.start();
   onChange(suggest);
   onChange(shell.alarm);
   sound.start();

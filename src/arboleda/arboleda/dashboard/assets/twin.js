@@ -66,7 +66,7 @@ async function make() {
 }
 
 async function fetchScene() {
-  const answer = await fetch("/twin/scene.json");
+  const answer = await fetch(`/twin/scene.json${new URLSearchParams(location.search).get("record") === "draft" ? "?record=draft" : ""}`);
   const said = await answer.json();
   if (!answer.ok) throw new Error(words().twin_failed.replace("{why}", said.sentence));
   return said;

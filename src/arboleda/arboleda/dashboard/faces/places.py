@@ -39,7 +39,7 @@ def _of(words: Words, cell: Row) -> Face:
 
 
 def _useful(parts: int, holds: int) -> list[Verb]:
-    """What a person may have done there."""
+    """The acts of a person that are of use there."""
     return [*([Verb.LOAD] if parts < holds else []), *([Verb.UNLOAD] if parts else [])]
 
 

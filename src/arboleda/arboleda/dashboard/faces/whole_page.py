@@ -30,10 +30,11 @@ WORST = (
     "holding",
     "blocked",
     "paused",
+    "manual",
     "execute",
     "idle",
 )
-WELL = ("execute", "idle")
+WELL = ("execute", "idle", "manual")
 Row = dict[str, Any]
 
 

@@ -18,6 +18,7 @@ from .stills import Stills
 from .visitor import Arrival, Visitor
 
 KEY, OF_TASK, START = "at", "task", "record"  # keys of the page's address
+DRAFT = "draft"  # in the place of a start
 EPOCH = re.compile(r"[0-9]{1,10}", re.ASCII)
 PARTS: Parts = {
     "cells": trees.build,
@@ -31,6 +32,11 @@ PARTS: Parts = {
 def asked(request: Request) -> bool:
     """True if the address is one of a record."""
     return KEY in request.query_params
+
+
+def is_of_draft(request: Request) -> bool:
+    """True if the address is one of the last tryout of the draft."""
+    return asked(request) and request.query_params.get(START) == DRAFT
 
 
 def mount(server: FastAPI, side: PastSide) -> None:

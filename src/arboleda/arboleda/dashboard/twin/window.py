@@ -4,20 +4,22 @@ from __future__ import annotations
 
 import json
 import threading
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any, Protocol
 
-from fastapi import FastAPI, Response
+from fastapi import FastAPI, Request, Response
 from nicegui import Client, ui
 from nicegui.events import GenericEventArguments
 
 from arboleda.model.errors import ArboledaError
+from arboleda.web.auth import require
 
 from . import bodies
 from .show import Show
 from .twin import Twin
 
 SCENE = "/twin/scene.json"
+OF_DRAFT, MAY = "draft", "looking at what was tried of a draft"
 EVENT = "arboleda-twin"
 LOOK, LEAVE, DRAWN = "look", "leave", "drawn"
 
@@ -74,10 +76,22 @@ class TwinOpening(Protocol):
     def open(self, twin: Twin) -> None: ...
 
 
-def serve(server: FastAPI, plant: DrawablePlant, *shows: TwinOpening) -> None:
-    """Answer the browser's `SCENE`, and open the shows once the first browser asks."""
+Tried = Callable[[], tuple[DrawablePlant, TwinOpening]]
+
+
+def serve(server: FastAPI, plant: DrawablePlant, *shows: TwinOpening, tried: Tried | None = None) -> None:
+    """Answer the browser's `SCENE`, and open the shows once the first browser asks; `tried` has the plant of
+    the draft as it was simulated last, and what shows that."""
     store = _Store(plant, shows)
-    server.add_api_route(SCENE, store.answer, include_in_schema=False)
+
+    def answer(request: Request, record: str = "") -> Response:
+        if tried is None or record != OF_DRAFT:
+            return store.answer()
+        require(request.scope["arboleda.role"], MAY)
+        drawn, show = tried()
+        return _Store(drawn, (show,)).answer()
+
+    server.add_api_route(SCENE, answer, include_in_schema=False)
 
 
 class _Store:

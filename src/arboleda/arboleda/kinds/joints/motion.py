@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 from arboleda.model.commands import Position
+from arboleda.model.counting import counted
 from arboleda.model.movement import Movement
 
 from .joint import Joint
 
 ROUNDING = 1e-9  # rad or m, far below a motor step
+STRIDE_S = 0.1  # of a short goal: a robot that is told no other one stands still after that
 KEPT = 64  # goals of a robot, as its motors can hold them
 
 
@@ -58,6 +61,24 @@ class JointMotion(Movement):
         rows = zip(self.quantised(position), self.quantised(other), self.tolerances, strict=True)
         return all(abs(a - b) <= 2 * within + ROUNDING for a, b, within in rows)
 
+    def beyond(self, position: Position) -> str | None:
+        if not isinstance(position, tuple) or len(position) != len(self.joints):
+            return f"it has {counted(len(self.joints), 'joint')}"
+        rows = zip(self.joints, position, strict=True)
+        return next((_limits(joint) for joint, q in rows if not _is_within(joint, q)), None)
+
+    def stride(self, here: Position, goal: Position, *, turn: float, slide: float) -> tuple[Position, ...]:
+        assert isinstance(here, tuple) and isinstance(goal, tuple)
+        rows = zip(self.joints, here, goal, self.tolerances, strict=True)
+        lengths = [
+            abs(there - now) / _stride(joint, turn if joint.pinion_radius_m is None else slide, within)
+            for joint, now, there, within in rows
+        ]
+        part = max(lengths)
+        if part <= 1:
+            return (goal,)
+        return (tuple(now + (there - now) / part for now, there in zip(here, goal, strict=True)),)
+
     def travel_s(self, start: Position | None, way: Sequence[Position]) -> float:
         """Time of a joint move; from an unknown start, or one that cannot be, the longest possible one."""
         if self._longest_s is None:
@@ -72,3 +93,23 @@ class JointMotion(Movement):
         assert isinstance(before, tuple) and isinstance(after, tuple)
         rows = zip(self.joints, before, after, strict=True)
         return all(abs(now - then) <= joint.speed * elapsed_s + 2 * joint.step for joint, then, now in rows)
+
+
+def _is_within(joint: Joint, value: float) -> bool:
+    return joint.lower - joint.step <= value <= joint.upper + joint.step
+
+
+def _limits(joint: Joint) -> str:
+    """The limits of a joint, in words."""
+    if joint.pinion_radius_m is None:
+        return f"{joint.name} goes from {math.degrees(joint.lower):g} to {math.degrees(joint.upper):g} deg"
+    return f"{joint.name} goes from {joint.lower * 1000:g} to {joint.upper * 1000:g} mm"
+
+
+def _stride(joint: Joint, speed: float, tolerance: float) -> float:
+    """The length of a short goal from rest to rest: no faster than that, over in STRIDE_S, and one that the
+    robot can be seen to make.
+    """
+    slow = min(speed, joint.speed) ** 2 / joint.acceleration
+    short = joint.acceleration * (STRIDE_S / 2) ** 2
+    return max(min(slow, short), joint.step, 2 * tolerance)

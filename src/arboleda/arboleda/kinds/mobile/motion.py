@@ -21,6 +21,11 @@ class GridMotion(Movement):
         assert isinstance(goal, int)
         return self.grid.route(start, goal) if isinstance(start, int) else (goal,)
 
+    def beyond(self, position: Position) -> str | None:
+        if isinstance(position, int) and 0 <= position < self.grid.size:
+            return None
+        return f"node {position} is none of its {self.grid.size}"
+
     def travel_s(self, start: Position | None, way: Sequence[Position]) -> float:
         """The time of a path, s; one edge is added for a robot that starts elsewhere."""
         return len(way) * self.grid.pitch / self.speed

@@ -19,7 +19,7 @@ from arboleda.recorder.troubles import Troubles
 from arboleda.simulator.faults import Fault
 from arboleda.simulator.scripted_people import Act, scopes
 
-from ..recorded_plant import model_of
+from ..recorded_plant import model_of, versions_of
 from .faults import faults_behind, faults_of, stall
 
 LEAD_S = 2.0  # from the beginning of a case to the task that it is about: by then the boards are heard
@@ -83,7 +83,7 @@ class _Making:
     def __init__(self, record: Record, task: str | None) -> None:
         self._record = record
         self._beginning = record.first.beginning
-        self._plant = plant_of(self._beginning, model_of(self._beginning))
+        self._plant = plant_of(self._beginning, model_of(self._beginning), versions_of(record))
         model = self._plant.model
         self._task = task
         self._found = _Collected(model.on_boards(*ELSEWHERE))

@@ -14,6 +14,7 @@ from arboleda.model.errors import ConfigError
 from arboleda.model.messages import Event
 from arboleda.model.plant_model import Evidence, Link, PlantModel
 from arboleda.model.recipe import Builders
+from arboleda.model.revision import Versions
 from arboleda.recorder.plain_data import plain
 from arboleda.recorder.preamble import Beginning
 from arboleda.recorder.replay import ReplayedStep, first_difference
@@ -38,7 +39,7 @@ class ForkRequest:
     `model` is the plant of the fork: the `recorded` one, or a changed one, which gets the recorded inputs
     from the beginning. `builders` make the trees of tasks that begin after the fork. `healthy`: recorded
     troubles after it are not repeated on the virtual devices. `until_ns`: later parts of the record are left
-    out.
+    out. `versions` are those that it took while it ran, or what stands in for them.
     """
 
     at_ns: int
@@ -47,6 +48,7 @@ class ForkRequest:
     builders: Builders | None = None
     healthy: bool = False
     until_ns: int | None = None
+    versions: Versions = field(default_factory=dict)
 
     @property
     def changed(self) -> bool:
@@ -81,6 +83,7 @@ def forked(
         memory=beginning.memory,
         kept=beginning.kept,
         recipes=builders,
+        versions=asked.versions,
     )
     troubles = Troubles(_supervised(asked.recorded), asked.recorded.timing.stale_after_s)
     rest = iter(steps)
@@ -167,7 +170,8 @@ def _go_on(
     asked: ForkRequest,
     words: Words,
 ) -> World:
-    world = taken_over(plant, asked.model.on_boards(*ELSEWHERE))
+    model = plant.model if asked.versions else asked.model
+    world = taken_over(plant, model.on_boards(*ELSEWHERE))
     for now, events in inputs:
         device_replay.ask(world, now, events)
     if not asked.healthy:

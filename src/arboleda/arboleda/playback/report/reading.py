@@ -16,7 +16,7 @@ from arboleda.recorder.reader import Record, opened
 from arboleda.recorder.replay import plant_of
 from arboleda.recorder.writing import FLUSH_S
 
-from ..recorded_plant import model_of
+from ..recorded_plant import model_of, versions_of
 
 LOOK_S = 0.5  # between two looks at a record that is being written
 
@@ -72,7 +72,7 @@ def incident_of(task: str, record: Record) -> Incident:
     """The incident of a task, from executing the record again up to the task's end."""
     beginning = record.first.beginning
     model = model_of(beginning)
-    plant, reader = plant_of(beginning, model), Reader(task, model)
+    plant, reader = plant_of(beginning, model, versions_of(record)), Reader(task, model)
     for step in record.steps():
         reader.take(plant, step.unix_ns, step.now, step.events, plant.step(step.now, step.events))
         if reader.over:

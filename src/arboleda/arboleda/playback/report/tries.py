@@ -13,6 +13,7 @@ from arboleda.recorder.troubles import SILENCE
 from ..fork.plant_events import TASK, PlantEvent
 from ..fork.run import ForkRequest, forked
 from ..record_text import sentence_of
+from ..recorded_plant import versions_of
 from .reading import TaskRecord
 
 LONGER = 3.0  # times a deadline
@@ -65,11 +66,16 @@ def _changes(model: PlantModel, incident: Incident) -> Iterator[tuple[str, float
 def _tried(read: TaskRecord, what: str, value: float, model: PlantModel, options: str) -> ForkTrial:
     incident, record = read.incident, read.record
     since_s = (incident.ended_at or 0.0) - incident.asked_at
+    versions = {
+        digest: replace(each, timing=model.timing) if model is not read.model else each
+        for digest, each in versions_of(record).items()
+    }
     asked = ForkRequest(
         at_ns=incident.unix_ns - round(since_s * 1e9) - EARLIER_NS,
         model=model,
         recorded=read.model,
         healthy=what == HEALTHY,
+        versions=versions,
     )
     found = forked(record.first.beginning, record.steps(), asked, sentence_of)
     fork, recorded = (_last(row, incident.task) for row in (found.fork, found.recorded))

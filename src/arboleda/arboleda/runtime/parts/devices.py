@@ -5,7 +5,6 @@ from __future__ import annotations
 import threading
 from collections.abc import Callable, Collection
 from contextlib import suppress
-from dataclasses import replace
 from itertools import count
 from typing import Any
 
@@ -91,7 +90,7 @@ class DevicesPart:
             self._broker.address,
             subscriptions=self._devices.subscriptions(board),
             on_event=lambda event: self.loop.post(ToBoard(board=board, event=event)),
-            will=replace(gone, retain=True),
+            will=gone._replace(retain=True),
             credentials=self._broker.credentials,
             version=self._version,
             announce=announce,

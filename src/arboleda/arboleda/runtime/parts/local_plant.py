@@ -10,7 +10,7 @@ from typing import Any
 
 from arboleda.core.plant import Plant
 from arboleda.model.errors import QueueFull
-from arboleda.model.messages import OperatorAnswer, TaskChanged, Verb
+from arboleda.model.messages import Event, OperatorAnswer, TaskChanged, Verb
 from arboleda.model.plant_model import PlantModel
 from arboleda.model.verbs import Arguments
 from arboleda.store.oee_rows import OeeQuery
@@ -18,8 +18,12 @@ from arboleda.store.task_rows import History, TaskQuery, TaskRow
 from arboleda.views import view
 from arboleda.views.oee import Oee
 from arboleda.web.draft_api import DraftApi
+from arboleda.web.make_api import MakeApi
 from arboleda.web.plant_api import Found, PlantApi, Snapshot
+from arboleda.web.teach_api import TeachApi
+from arboleda.web.versions_api import VersionsApi
 
+from ..teach_desk import TeachDesk
 from .orchestrator import GLANCE_S, Orchestrator
 
 LOG = logging.getLogger(__name__)
@@ -28,10 +32,20 @@ LOG = logging.getLogger(__name__)
 class LocalPlant(PlantApi):
     """PlantApi of the plant in this process: its orchestrator, and the history of its tasks."""
 
-    def __init__(self, plant: Orchestrator, history: History, draft: DraftApi | None = None) -> None:
+    def __init__(
+        self,
+        plant: Orchestrator,
+        history: History,
+        draft: DraftApi | None = None,
+        versions: VersionsApi | None = None,
+        make: MakeApi | None = None,
+    ) -> None:
         self._plant = plant
         self._draft = draft
+        self._versions = versions
+        self._make = make
         self._history = history
+        self._teach = TeachDesk(lambda: plant.plant.model, self, draft)
         self._watchers: tuple[Callable[[Snapshot], None], ...] = ()
         self._changing = threading.Lock()
 
@@ -51,6 +65,22 @@ class LocalPlant(PlantApi):
     @property
     def draft(self) -> DraftApi | None:
         return self._draft
+
+    @property
+    def teach(self) -> TeachApi:
+        return self._teach
+
+    def post(self, event: Event) -> None:
+        """Give the plant an event."""
+        self._plant.hear(event)
+
+    @property
+    def make(self) -> MakeApi | None:
+        return self._make
+
+    @property
+    def versions(self) -> VersionsApi | None:
+        return self._versions
 
     def find(self, task: str) -> dict[str, Any] | None:
         return self._plant.find(task)

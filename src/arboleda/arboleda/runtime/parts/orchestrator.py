@@ -5,7 +5,6 @@ from __future__ import annotations
 import logging
 import threading
 import time
-from collections import deque
 from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
 from concurrent.futures import Future
 from dataclasses import replace
@@ -31,6 +30,7 @@ from arboleda.model.errors import ArboledaError
 from arboleda.model.messages import (
     ENDED,
     Absence,
+    CellRevised,
     Event,
     InternalError,
     Journal,
@@ -41,6 +41,8 @@ from arboleda.model.messages import (
     Outcome,
     Remember,
     Report,
+    Revision,
+    RevisionAnswer,
     Shutdown,
     TaskChanged,
     TaskRequest,
@@ -49,8 +51,10 @@ from arboleda.model.messages import (
     Verb,
 )
 from arboleda.model.plant_model import PlantModel
+from arboleda.model.revision import RevisionName
 from arboleda.model.sentence import Phrase, as_sentence
 from arboleda.model.verbs import Arguments
+from arboleda.recorder.preamble import PlantFiles
 from arboleda.store.plant_memory import PlantMemory, Superseded
 from arboleda.store.task_rows import COMMAND, ROS, History, TaskQuery
 from arboleda.views import diagnostics, twin_view, view
@@ -94,6 +98,17 @@ class FlightRecorder(Protocol):
 
     def stepped(self, plant: Plant, now: float, events: Sequence[Any], messages: Sequence[Any]) -> None: ...
     def saw(self, snapshot: dict[str, Any], drawn: dict[str, Any]) -> None: ...
+    def knows(self, digest: str, files: PlantFiles) -> None: ...
+
+
+Durable = TaskChanged | OperatorAnswer | RevisionAnswer
+"""What is told once all that led to it is durable."""
+
+
+class Facts(NamedTuple):
+    """Facts of a step between which no other message leaves: they are kept by one write."""
+
+    facts: list[Remember]
 
 
 class CommandsLeft(NamedTuple):
@@ -113,6 +128,16 @@ class RosPort(PlantPort, Protocol):
     def check_alone(self) -> None: ...
     def publish_view(self, view: dict[str, Any]) -> Iterator[None]: ...
     def publish_diagnostics(self, statuses: Iterable[diagnostics.Diagnostic]) -> Iterator[None]: ...
+
+
+class PutToWork(NamedTuple):
+    """A version that is to be put to work while the plant runs: who does it, and what it changes."""
+
+    version: RevisionName
+    model: PlantModel
+    files: PlantFiles
+    by: str
+    changes: tuple[str, ...]
 
 
 class StartState(NamedTuple):
@@ -185,7 +210,6 @@ class Orchestrator:
         self._drops_waiting = drops_waiting
         self._crash = crash
         self._amnesia: Exception | None = None
-        self._writes: deque[list[Remember]] = deque()  # for each fact of a step that is still to come
         self._noted = False  # whether facts are written that are not committed
         self._port: PlantPort | None = None
         self._ros: RosPort | None = None
@@ -280,6 +304,17 @@ class Orchestrator:
         )
         return answer
 
+    def revise(self, put: PutToWork) -> Future[RevisionAnswer]:
+        """Put a version to work, which each cell takes between two tasks; the future says which wait."""
+        self.plant.versions[put.version.digest] = put.model
+        if self.recorder is not None:  # before the first step that is told of it
+            self.recorder.knows(put.version.digest, put.files)
+        answer, token = self._expect()
+        self.hear(
+            Revision(at=clock.seconds(), version=put.version, by=put.by, changes=put.changes, request=token)
+        )
+        return answer
+
     def _take(self, request: OperatorRequest) -> None:
         """Give the plant an operator's request; a stop does not wait until the plant's thread is free."""
         if not request.verb.row.stops:
@@ -366,9 +401,12 @@ class Orchestrator:
         self.durability.stop()
         self.stops.loop.stop()
 
-    def _send(self, message: Command | Notice | StopsAway | CommandsLeft) -> None:
-        if isinstance(message, Remember | Journal):
-            self._keep(message)
+    def _send(self, message: Command | Notice | Facts | StopsAway | CommandsLeft) -> None:
+        if isinstance(message, Facts):
+            self._keep_facts(message.facts)
+            return
+        if isinstance(message, Journal):
+            self._keep_act(message)
             return
         if isinstance(message, StopsAway):
             self.stops.departed(message)
@@ -388,9 +426,12 @@ class Orchestrator:
         if self._amnesia is not None and not leaves_unkept(message):
             self._refuse_unkept(message, self._amnesia)
             return
+        if isinstance(message, CellRevised):
+            OPERATORS.info("%s works by version %d from now on", message.cell, message.version.number)
+            return
         if isinstance(message, TaskChanged):
             self._keep_task(message)
-        if isinstance(message, TaskChanged | OperatorAnswer):
+        if isinstance(message, Durable):
             self._settle()
             self.durability.tell(message)
         elif self._port is not None and self._may_leave(message):
@@ -405,7 +446,7 @@ class Orchestrator:
             if self.stops.ahead:  # one may have left meanwhile
                 self.stops.stop_again(message)
 
-    def _tell(self, message: TaskChanged | OperatorAnswer, failure: Exception | None) -> None:
+    def _tell(self, message: Durable, failure: Exception | None) -> None:
         """Tell whoever waits for it of a change that is durable, or that it is not; in the thread of that."""
         if failure is not None:
             self._refuse_unkept(message, failure)
@@ -415,6 +456,8 @@ class Orchestrator:
         if isinstance(message, TaskChanged):
             for listener in self.listeners:
                 listener(message)
+        if isinstance(message, RevisionAnswer):
+            return
         if self._port is not None and may_leave(message, self._standing):
             self._port.send(message)
 
@@ -455,7 +498,7 @@ class Orchestrator:
         """Refuse the requests that wait for an answer, as nothing is kept; nobody hears of unkept changes."""
         if isinstance(message, Command):
             raise amnesia
-        if isinstance(message, TaskChanged | OperatorAnswer):
+        if isinstance(message, Durable):
             self._answer(message, amnesia)
         if isinstance(message, OperatorAnswer):
             said = self._unkept(message, amnesia)
@@ -485,18 +528,14 @@ class Orchestrator:
                 self._not_sent(command, CommandOvertaken(command))
         if self.stops.ahead and (away := self.stops.stepped(messages)) is not None:
             stops = [*stops, away]
-        self._writes = _writes(messages)
-        return [*stops, *messages, COMMANDS_LEFT] if stops or self._writes else messages
+        if stops or Remember in map(type, messages):
+            return [*stops, *_bundled(messages), COMMANDS_LEFT]
+        return messages
 
-    def _keep(self, message: Remember | Journal) -> None:
-        if isinstance(message, Journal):
-            level = logging.WARNING if message.outcome is Outcome.FAILED else logging.INFO
-            OPERATORS.log(level, "%s", act_line(message))
+    def _keep_act(self, message: Journal) -> None:
+        level = logging.WARNING if message.outcome is Outcome.FAILED else logging.INFO
+        OPERATORS.log(level, "%s", act_line(message))
         if self._store is None or self._amnesia is not None:
-            return
-        if isinstance(message, Remember):
-            if facts := self._writes.popleft():
-                self._keep_facts(self._store, facts)
             return
         self._store.journal(message, time.time())
         self._wrote(message)
@@ -506,14 +545,16 @@ class Orchestrator:
                 if task is not None:
                     self._store.attempted(task.id, task.attempts)
 
-    def _keep_facts(self, store: PlantMemory, facts: Sequence[Remember]) -> None:
+    def _keep_facts(self, facts: Sequence[Remember]) -> None:
         """Keep facts before what comes after them leaves; what need not be durable then is only noted."""
+        if self._store is None or self._amnesia is not None:
+            return
         if any(map(self.plant.precedes_commands, facts)):
-            store.keep(*facts)
+            self._store.keep(*facts)
             self.durability.wrote(precedes_commands=True)
         else:
             self._settle()
-            store.note(*facts)
+            self._store.note(*facts)
             self._noted = True
 
     def _settle(self) -> None:
@@ -544,7 +585,7 @@ class Orchestrator:
         self._waiting[token] = answer
         return answer, token
 
-    def _answer(self, answer: TaskChanged | OperatorAnswer, unkept: Exception | None = None) -> None:
+    def _answer(self, answer: Durable, unkept: Exception | None = None) -> None:
         self._asked_by.pop(answer.request or "", None)
         if isinstance(answer, OperatorAnswer):
             self.stops.closed(answer)
@@ -561,7 +602,7 @@ class Orchestrator:
             waiting.set_exception(unkept)
 
     def _not_sent(self, message: Any, error: Exception) -> None:
-        if isinstance(message, Remember | Journal | TaskChanged | CommandsLeft):
+        if isinstance(message, Facts | Journal | TaskChanged | CommandsLeft):
             self._forget(error)
             if isinstance(message, TaskChanged):
                 self._answer(message, error)
@@ -667,24 +708,20 @@ class Orchestrator:
             yield
 
 
-def _writes(messages: Sequence[Any]) -> deque[list[Remember]]:
-    """The facts to be committed with each fact of a step, when that one comes.
-
-    With the first of several facts in a row all of them are committed, with the others nothing: no message
-    leaves between them, and a commit waits for the disk, or for the database's host.
-    """
-    writes: deque[list[Remember]] = deque()
-    run: list[Remember] | None = None
+def _bundled(messages: Sequence[Any]) -> list[Any]:
+    """The messages of a step, with all facts in a row as one."""
+    bundled: list[Any] = []
+    last: list[Remember] | None = None
     for each in messages:
         if not isinstance(each, Remember):
-            run = None
-        elif run is None:
-            run = [each]
-            writes.append(run)
+            last = None
+            bundled.append(each)
+        elif last is None:
+            last = [each]
+            bundled.append(Facts(last))
         else:
-            run.append(each)
-            writes.append([])
-    return writes
+            last.append(each)
+    return bundled
 
 
 def _log_defect(where: str, error: Exception) -> None:
@@ -706,9 +743,12 @@ def act_line(act: Journal) -> str:
     return str(act.sentence) if act.cell in (None, act.scope) else f"{act.sentence} ({act.cell})"
 
 
-def _log(message: TaskChanged | OperatorAnswer) -> None:
+def _log(message: Durable) -> None:
     """Log each change of a task, and refusals; `change` is for screens that show it in colours."""
-    if isinstance(message, OperatorAnswer):
+    if isinstance(message, RevisionAnswer):
+        if message.refusal is not None:
+            OPERATORS.warning("%s", message.refusal)
+    elif isinstance(message, OperatorAnswer):
         if message.refusal is not None:
             OPERATORS.info(
                 "%s %s was refused: %s", message.verb.value, message.scope or "plant", message.refusal

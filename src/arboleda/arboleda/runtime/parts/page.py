@@ -17,7 +17,9 @@ from arboleda.recorder.errors import NoRecord
 from arboleda.store.task_rows import History
 from arboleda.views import view
 from arboleda.web.draft_api import DraftApi
+from arboleda.web.versions_api import VersionsApi
 
+from ..make.bench import MakeBench
 from .local_plant import LocalPlant
 from .orchestrator import Orchestrator
 
@@ -26,6 +28,7 @@ if TYPE_CHECKING:  # slow to load, and only needed for a record
     from arboleda.dashboard.past.side import Start
 
     from .records import Records
+    from .tried import TriedPlant, TriedPlants
 
 NOT_YET = Phrase("record.not_yet", "There is no record of this start yet; try again in some seconds.")
 
@@ -34,13 +37,14 @@ NOT_YET = Phrase("record.not_yet", "There is no record of this start yet; try ag
 class Sources:
     """The page's sources besides snapshots; each is called from the server's thread."""
 
-    model: PlantModel
     links: Callable[[], dict[str, Any]]
     positions: Callable[[], dict[str, Any]]
     past_acts: Callable[[], list[dict[str, Any]]]
     recorded: Path | None  # the state directory of a plant that writes a record
     report: Callable[[str], str | None]
     draft: DraftApi | None = None
+    versions: VersionsApi | None = None
+    make: MakeBench | None = None
     end_demo: Callable[[], None] | None = None  # None: this start is no demonstration
 
 
@@ -48,12 +52,8 @@ class PagePlant(LocalPlant):
     """PageApi of the plant in this process: LocalPlant with what only the page shows."""
 
     def __init__(self, plant: Orchestrator, history: History, sources: Sources) -> None:
-        super().__init__(plant, history, sources.draft)
-        self._model = sources.model
-        self._layout = view.layout(sources.model) | {
-            "recorded": sources.recorded is not None,
-            "demo": sources.end_demo is not None,
-        }
+        super().__init__(plant, history, sources.draft, sources.versions, sources.make)
+        self._drawn: tuple[PlantModel | None, dict[str, Any]] = None, {}
         self._sources = sources
         self.links = sources.links
         self.positions = sources.positions
@@ -67,7 +67,15 @@ class PagePlant(LocalPlant):
         page.mount(app, self)
 
     def layout(self) -> dict[str, Any]:
-        return self._layout
+        model = self.model
+        if self._drawn[0] is not model:
+            beside = {
+                "recorded": self._sources.recorded is not None,
+                "demo": self._sources.end_demo is not None,
+                "draft": self._sources.make is not None,
+            }
+            self._drawn = model, view.layout(model) | beside
+        return self._drawn[1]
 
     def end_demo(self) -> None:
         if self._sources.end_demo is not None:
@@ -83,7 +91,21 @@ class PagePlant(LocalPlant):
     def _recorded(self) -> Records:
         from .records import Records
 
-        return Records(self._own, self._layout)
+        return Records(self._own, self.layout())
+
+    def tried(self) -> TriedPlant:
+        make = self._sources.make
+        return self._tried.last(None if make is None else make.tried())
+
+    @cached_property
+    def _tried(self) -> TriedPlants:
+        from .tried import TriedPlants
+
+        return TriedPlants()
+
+    def proof(self) -> str | None:
+        file = None if self._sources.make is None else self._sources.make.proof_page()
+        return None if file is None else file.read_text("utf-8")
 
     def _own(self) -> Path:
         from arboleda.recorder import files
@@ -96,4 +118,4 @@ class PagePlant(LocalPlant):
         return parts[-1].path
 
     def urdf(self, robot: str) -> str:
-        return robot_urdf(self._model, robot)
+        return robot_urdf(self.model, robot)

@@ -21,6 +21,7 @@ from arboleda.wire.status import OK, WARN
 from ..build import App, Options, build
 from ..state import StateDir, default_state
 from ..waiting import heed, interruptible
+from .changed_files import ReadAgain, is_changed, read_again
 from .leader import LeaderInfo, of_leader
 from .waiting_room import WaitingRoom
 
@@ -44,8 +45,13 @@ NEEDS_STORE = (
 )
 
 
-def take_over(model: PlantModel, parts: set[str], options: Options, tell: Callable[[str], None]) -> App:
-    """Wait until nobody leads the plant, then lead it; StartError, KeyboardInterrupt."""
+def take_over(
+    model: PlantModel, parts: set[str], options: Options, tell: Callable[[str], None], again: ReadAgain
+) -> App:
+    """Wait until nobody leads the plant, then lead it; StartError, KeyboardInterrupt.
+
+    `again` reads it as `model` was read, for files that were changed meanwhile by what was put to work.
+    """
     store = options.store or model.store
     if not store:
         raise StartError(NEEDS_STORE)
@@ -55,6 +61,9 @@ def take_over(model: PlantModel, parts: set[str], options: Options, tell: Callab
     while True:
         port = _wait(model, store, state, options, tell)
         options = replace(options, web=replace(options.web, usual_port=port))  # pages that are open find it
+        if is_changed(options.plant_file, options.recording):
+            model, recording = read_again(again, (model, options.recording), tell)
+            options = replace(options, recording=recording)
         try:
             return build(model, parts, options)
         except OtherLeader:

@@ -14,6 +14,7 @@ from . import (
     orchestrators,
     processes,
     sensors,
+    teachers,
     telemetry,
 )
 from .kind import Fault, Kind
@@ -44,6 +45,7 @@ FAMILIES = (
     foreigners,
     crashes,  # added at the end, so that seeds draw the same faults of the others as before
     hosts,
+    teachers,
 )
 KINDS: dict[str, Kind] = {kind.name: kind for family in FAMILIES for kind in family.KINDS}
 

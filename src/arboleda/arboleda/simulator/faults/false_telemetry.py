@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import replace
 from typing import Any
 
 from arboleda.wire.topics import Channel, topic
@@ -26,7 +25,7 @@ def alter(world: World, board: str, change: Callable[[bytes], bytes]) -> End:
         # a stranger may publish there too, and is not altered
         if publication.topic != address or world.moment.published[-1][0] != board:
             return (publication,)
-        return (replace(publication, payload=change(publication.payload)),)
+        return (publication._replace(payload=change(publication.payload)),)
 
     world.carriers.append(carry)
     return lambda: world.carriers.remove(carry)

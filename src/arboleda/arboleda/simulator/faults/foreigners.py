@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Iterable
-from dataclasses import replace
 
 from arboleda.model.commands import StopMode
 from arboleda.model.plant_model import PlantModel, Robot
@@ -137,7 +136,7 @@ def foreign_retained(world: World, fault: Fault) -> End | None:
     old = _old(world, fault)
     if old is None:
         return None
-    world.publish(replace(old, retain=True))
+    world.publish(old._replace(retain=True))
     return hold(world, "retained", old.topic, lambda: world.broker.retained.pop(old.topic, None))
 
 

@@ -28,7 +28,8 @@ OF_THE_CELL = {
     "an ended task": (TaskState.DONE, TaskState.FAILED, TaskState.CANCELLED),
 }
 SPARE = 50  # tasks beyond those that are remembered
-SAID = tuple(verb for verb in Verb if Scope.PERSON not in verb.row.scopes)  # nobody is asked here
+# nobody is asked here, and who teaches does more than to say so
+SAID = tuple(verb for verb in Verb if Scope.PERSON not in verb.row.scopes and not verb.row.mode)
 WEIGHTS = {Verb.STOP: 0.3, Verb.HOLD: 0.6, Verb.CANCEL: 0.8}
 
 

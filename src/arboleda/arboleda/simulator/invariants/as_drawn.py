@@ -91,7 +91,7 @@ def _meaning(
 
 
 def _told(cell: Cell, sent: Sequence[SentCommand]) -> dict[str, list[Told]]:
-    """What each role was told, in that order."""
+    """The calls to each role, in that order."""
     roles = {robot.name: role for role, robot in cell.roles.items()}
     found: dict[str, list[Told]] = {}
     for each in sent:

@@ -132,7 +132,7 @@ def _overrun(look: Look) -> Iterator[str]:
 
 
 def _too_long(look: Look, sent: SentCommand) -> str | None:
-    timing = look.world.model.timing
+    timing = look.record.timing_of(sent)
     allowed_s = _longest_s(look.world.model.robots[sent.robot], sent, timing)
     if sent.cancelled_at is not None:  # cancelled in the same step: its deadline is that of its halt
         allowed_s = max(allowed_s, timing.stop_timeout_s)
@@ -158,7 +158,7 @@ def _moved_deadline(look: Look, sent: SentCommand) -> Iterator[str]:
     if sent.entry is None or sent.cancelled_at is None:
         if sent.entry is not None and sent.entry.deadline != sent.deadline:
             yield f"the deadline of {sent} was moved"
-    elif sent.entry.deadline > sent.cancelled_at + look.world.model.timing.stop_timeout_s + ROUNDING_S:
+    elif sent.entry.deadline > sent.cancelled_at + look.record.timing_of(sent).stop_timeout_s + ROUNDING_S:
         yield f"{sent} has more than stop_timeout_s to end after its cancel"
 
 
@@ -221,8 +221,8 @@ def _left(look: Look) -> Iterator[str]:
         if not sent.can_be_halted or sent.state is State.CANCELLING or isinstance(sent.command, Home):
             continue
         cell = record.cells[sent.entry.cell] if sent.entry else None
-        if cell is None:
-            continue
+        if cell is None or (cell.run.teaching is not None and cell.run.teaching.held is not None):
+            continue  # of a cell that is taught whoever holds its button waits for it
         if cell.run.tree is None:
             yield f"{sent} is open, and no tree of {cell.name} runs"
         elif cell.looked and not any(getattr(leaf, "entry", None) is sent.entry for leaf in cell.leaves):

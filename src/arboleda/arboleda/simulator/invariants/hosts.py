@@ -18,7 +18,7 @@ def one_leader_at_a_time(look: Look) -> Iterator[str]:
 
 @invariant(Trigger.SURE_TOO_LONG)
 def a_lead_is_over_before_the_next_begins(look: Look) -> Iterable[str]:
-    """When a process begins to lead, each one that led before knows that it may be superseded."""
+    """Each process that led before knows that it may be superseded once another begins to lead."""
     assert look.leaders is not None
     return look.leaders.sure
 

@@ -21,7 +21,7 @@ def parts_are_taken_and_put_where_they_can_be(look: Look) -> Iterator[str]:
 
 @invariant(Trigger.DONE_TASKS)
 def books_of_parts_are_true(look: Look) -> Iterator[str]:
-    """When a task is called done, each place of its cell has as many parts as the plant has booked there, and
+    """Each place of a cell whose task is called done has as many parts as the plant has booked there, and
     has kept for its next start.
     """
     for cell, task, _ in look.truth.done_tasks:
@@ -68,7 +68,7 @@ def _left_in_devices(look: Look, cell: Cell, task: str, wanted: dict[str, Value]
 
 @invariant(Trigger.DONE_TASKS)
 def recipes_end_as_they_say(look: Look) -> Iterator[str]:
-    """When a task is called done, what its recipe says of its end is so."""
+    """The end of a task that is called done is as its recipe says."""
     for cell, task, _ in look.truth.done_tasks:
         model = look.world.model.cell(cell)
         if not _is_known(look, cell) or task not in look.world.plant.intake.tasks:

@@ -69,7 +69,7 @@ def _settled(look: Look, sent: SentCommand) -> bool:
 
     So do an effector that reports nothing and, at `state`, a move to where the robot is already.
     """
-    evidence, timing = look.world.model.robots[sent.robot].evidence, look.world.model.timing
+    evidence, timing = look.world.model.robots[sent.robot].evidence, look.record.timing_of(sent)
     passed_s = look.record.stepped_at - sent.at - sent.late_s + ROUNDING_S
     if isinstance(sent.command, Switch):
         return evidence is not Evidence.IDS and passed_s >= timing.effector_settle_s + sent.command.takes_s

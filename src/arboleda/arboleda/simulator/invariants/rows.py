@@ -177,6 +177,8 @@ def ways(advised: tuple[Advice, ...], row: Row) -> Iterator[str]:
 
 def stands(row: Row) -> str:
     """The words of a cell's state."""
+    if row["teaching"] is not None:
+        return f"{row['state']}, manual"
     if row["state"] != "idle" or row["not_ready"] is None:
         return str(row["state"])
     only_paused = [each["do"] for each in row["advice"]] == ["resume"]

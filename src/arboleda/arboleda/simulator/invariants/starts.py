@@ -44,7 +44,7 @@ def asked_again_is_the_same_task(look: Look) -> Iterator[str]:
 
 def _asks_for(look: Look, request: TaskRequest, said: TaskChanged) -> bool:
     try:
-        allowed = text.alternatives(request.text, look.world.model)
+        allowed = text.alternatives(request.text, look.world.offers)
         return any(order.text == said.text for order in allowed)
     except TextError:
         return False
@@ -75,7 +75,7 @@ def no_step_is_done_twice(look: Look) -> Iterable[str]:
 
 @invariant(Trigger.KEPT_WRONGLY)
 def tasks_go_on_from_what_was_kept(look: Look) -> Iterable[str]:
-    """What is kept of a task at work says which of its commands are done; and it goes on for a later start
+    """The record of a task at work says which of its commands are done; and it goes on for a later start
     only where no device has booted since, which is said of that device and nothing else.
     """
     return look.record.trails.wrong

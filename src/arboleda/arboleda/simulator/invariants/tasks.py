@@ -29,6 +29,7 @@ from ..recorded.scopes import UNSENT
 from ..storage.tasks import NAMES
 from ..truth.mobile import MobileTruth
 from .invariant import Look, Trigger, invariant
+from .revisions import is_offered
 
 LONGEST_WAIT_S = 1.5  # s in which robots wait for the plant before they stop by themselves
 LEGAL: dict[TaskState | None, frozenset[TaskState]] = {
@@ -78,7 +79,7 @@ def each_task_ends_once(look: Look) -> Iterable[str]:
 
 @invariant(Trigger.TOLD)
 def nothing_of_an_ended_task_moves(look: Look) -> Iterable[str]:
-    """When a task has ended, all work for it has ended or was told to halt, but for what has to finish."""
+    """All work for a task that has ended is over or was told to halt, but for what has to finish."""
     commands = look.record.commands
     for change in look.record.tasks.changes:
         if change.answer or change.before is not TaskState.RUNNING or change.said.state not in ENDED:
@@ -162,6 +163,8 @@ def cancelled_tasks_end_cancelled(look: Look) -> Iterable[str]:
             continue
         cancelled = change.said.state is TaskState.CANCELLED
         known = change.cancelled is not None and not (cancelled and _asked_to_cancel(look))
+        if cancelled and look.world.versions and not is_offered(look.world.offers, change.said.text):
+            continue  # another version was put to work, which has no such task
         if known and cancelled is not change.cancelled:
             word = "cancelled" if change.cancelled else "never cancelled"
             yield f"task {change.said.task} was {word}, and ended as {change.said.state.value}"

@@ -136,8 +136,8 @@ def _not_so(look: Look, request: OperatorRequest) -> bool:
 @invariant(Trigger.ASKED)
 def verbs_do_what_they_say(look: Look) -> Iterator[str]:
     """A verb that is not refused is in the journal and has done its work, in its scope and nowhere else."""
-    begun = (each for each in look.moment.sent if isinstance(each, Journal) and each.outcome is None)
-    journalled = len([*begun])
+    told = (each for each in look.moment.sent if isinstance(each, Journal) and each.verb is not None)
+    journalled = sum(each.outcome is None for each in told)
     done = sum(answer.refusal is None for answer in look.record.answers)
     if journalled != done:
         yield f"{done} verbs were done, {journalled} are in the journal"
@@ -314,7 +314,7 @@ def acts_end_as_told(look: Look) -> Iterator[str]:
     ended = [sent for sent, _ in look.record.commands.moved if sent.state not in OPEN]
     for end in told:
         scope = look.record.scopes.robots(end.scope)
-        mine = [sent for sent in ended if sent.robot in scope and _is_of(sent, end.verb)]
+        mine = [sent for sent in ended if sent.robot in scope and end.verb and _is_of(sent, end.verb)]
         undone = [str(sent) for sent in mine if sent.state is not State.DONE]
         if undone and end.outcome is not Outcome.FAILED:
             yield f"{end.sentence} is told, and {undone} were not done"

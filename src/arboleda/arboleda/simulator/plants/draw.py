@@ -23,6 +23,7 @@ NOT_DRAWN = (
     ("", "groot2"),
     ("", "store"),
     ("cells", "on_restart"),  # a plant that crashes here starts without the tasks that it had
+    ("cells", "teach"),  # people who teach are asked for apart (`rates: {teach: 3}`)
     ("cells", "on_absence"),  # people of the simulator get a held cell going
     ("zones", "free_while"),
     ("zones", "held_while"),

@@ -32,9 +32,10 @@ class Acts:
     def take(self, request: OperatorRequest, cells: Iterable[KnownCell]) -> None:
         """Note that somebody asks for something on these cells.
 
-        An answer is none of them: it ends its question, and a recipe may ask any number of them.
+        An answer is none of them: it ends its question, and a recipe may ask any number of them. Nor is what
+        begins and ends manual mode.
         """
-        if request.verb is Verb.ANSWER:
+        if request.verb is Verb.ANSWER or request.verb.row.mode:
             return
         for cell in cells:
             if cell.name not in self.of:
@@ -46,6 +47,8 @@ class Acts:
     def _works(self, cell: KnownCell) -> bool:
         """True if a cell would start a task, or works on another one than at the first noted act."""
         run = cell.run
+        if run.teaching is not None:  # as its teacher wants it to be
+            return True
         if run.state is CellState.IDLE:
             return run.not_ready is None
         return run.state is CellState.EXECUTE and run.task not in (None, self._had[cell.name])

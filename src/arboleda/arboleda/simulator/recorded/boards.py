@@ -82,9 +82,13 @@ class KnownBoard:
         return ExecutedCommand(self.robot.mqtt, goal, before, delivered, self.beat, told_at)
 
     def _told_at(self, number: int | None) -> float | None:
-        wanted = b"" if number is None else b"%d" % number
-        numbers = ((parts(told)[1], at) for told, at in reversed(self.told))
-        return next((at for told, at in numbers if told and told == wanted), None)
+        if number is None:
+            return None
+        wanted = b"%d" % number
+        for told, at in reversed(self.told):
+            if parts(told)[1] == wanted:
+                return at
+        return None
 
     def forget_read(self, unread: list[Any]) -> None:
         """Forget messages that left the board's inbox, read or lost: they are no longer new to it."""

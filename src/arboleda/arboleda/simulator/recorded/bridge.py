@@ -85,6 +85,7 @@ class _Bridge:
         robots = [robot for robot in reached if robot.goes]
         self._wrong = wrong
         self._boards = {robot.name: _Board(robot, model.timing.stale_after_s, wrong) for robot in robots}
+        self._rows = [(name, board.robot.mqtt, board) for name, board in self._boards.items()]
         self._by_topic = {
             f"{robot.mqtt}/{channel}": (self._boards[robot.name], channel)
             for robot in robots
@@ -119,9 +120,8 @@ class _Bridge:
                 self._deliver(event, passed.now, reports)
             else:
                 self._event(event, passed.now)
-        for name, board in self._boards.items():
-            mqtt = board.robot.mqtt
-            if board.touched or name in reports or mqtt in published or board.stale_at <= passed.now:
+        for name, mqtt, board in self._rows:
+            if board.touched or name in reports or mqtt in published or board.is_silent(passed.now):
                 board.end_step(passed.now, reports[name], published[mqtt], late=late)
 
     def _told(self, message: Rejection | ForeignCommand, board: _Board | None) -> None:
@@ -225,10 +225,9 @@ class _Board:
         self._up, self._heard_at = belief.heard_at is not None, now
         self._was_down, self._is_taken_over = not self._up, True
 
-    @property
-    def stale_at(self) -> float:
-        """The time at which the silence of the board has lasted too long."""
-        return self._heard_at + self._patience_s if self._up else math.inf
+    def is_silent(self, now: float) -> bool:
+        """True if the silence of the board has lasted too long."""
+        return self._up and self._heard_at + self._patience_s <= now
 
     def connect(self, up: bool) -> None:
         self.touched = True
@@ -402,7 +401,7 @@ class _Board:
     ) -> None:
         """Compare all that this step should have brought with what it brought; `late`: it was away before."""
         self._late = late
-        if self._up and self._heard_at + self._patience_s <= now:
+        if self.is_silent(now):
             self._lose()
         self._compare_beats(published)
         if self._orders or published:

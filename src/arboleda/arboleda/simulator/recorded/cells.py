@@ -11,7 +11,7 @@ from py_trees.common import Status
 
 from arboleda.core.cell import CellRun
 from arboleda.core.cell_states import CellState
-from arboleda.model.plant_model import Cell
+from arboleda.model.plant_model import Cell, Timing
 from arboleda.recipes.storage_layout import StorageLayout
 from arboleda.trees.leaves import Act, TakeZones
 
@@ -33,12 +33,18 @@ class KnownCell:
     pass since the last news although the cell was not held.
     """
 
-    def __init__(self, cell: Cell) -> None:
-        self.cell = cell
+    def __init__(self, cell: Cell, timing: Timing) -> None:
+        self.cell, self.timing = cell, timing
+        self.timing_before = timing  # before this step
         self.layout = StorageLayout(cell)
         self.name = cell.name
         self.stopped = False
         self.retries = 0
+
+    def revise(self, cell: Cell, timing: Timing) -> None:
+        """Go by another version, which the cell has taken in this step."""
+        self.cell, self.timing = cell, timing
+        self.layout = StorageLayout(cell)
 
     def begin(self, run: CellRun) -> None:
         """Begin anew with a plant that starts."""

@@ -57,7 +57,7 @@ class Choices:
         if not alone or not isinstance(asked[0], TaskRequest):
             return
         try:
-            orders = text.alternatives(asked[0].text, world.model)
+            orders = text.alternatives(asked[0].text, world.offers)
         except TextError:
             return
         if len(orders) > 1 and orders[0].id not in plant.intake.tasks:

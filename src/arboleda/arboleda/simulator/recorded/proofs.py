@@ -6,6 +6,7 @@ The rules are slower and plainer than the plant's, and none of its books is read
 from __future__ import annotations
 
 import math
+from collections import defaultdict
 from dataclasses import dataclass, field
 
 from arboleda.kinds.joints import MoveJoints
@@ -60,8 +61,8 @@ class Proofs:
     """
 
     def __init__(self) -> None:
-        self.of: dict[str, Proof] = {}
-        self._shown: dict[str, ReportEvidence] = {}
+        self.of: defaultdict[str, Proof] = defaultdict(Proof)
+        self._shown: defaultdict[str, ReportEvidence] = defaultdict(ReportEvidence)
         self.by_robot: dict[str, list[SentCommand]] = {}
 
     def forget(self) -> None:
@@ -79,17 +80,18 @@ class Proofs:
         for each in sent:
             self.by_robot.setdefault(each.robot, []).append(each)
         ids = {each.command.id for each in sent}
-        self._shown = {id: shown for id, shown in self._shown.items() if id in ids}
+        for id in self._shown.keys() - ids:
+            del self._shown[id]
 
     def hear(self, report: Report, known: KnownRobot) -> None:
         """Take in a report; `known` is what its robot had said before."""
         q = known.q if report.q is None else report.q
         node = known.node if report.node is None else report.node
         for sent in self.by_robot.get(report.robot, ()):
-            proof = self.of.setdefault(sent.command.id, Proof())
+            proof = self.of[sent.command.id]
             _broken(proof, sent, report, known)
             if report.at >= sent.at:
-                shown = self._shown.setdefault(sent.command.id, ReportEvidence())
+                shown = self._shown[sent.command.id]
                 _see(shown, sent, report)
                 _said(proof, sent, report, known.robot)
                 off = _off(sent, known.robot, q, node) if sent.way else _off_facts(sent, report, known)

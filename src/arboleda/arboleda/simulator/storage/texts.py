@@ -25,8 +25,8 @@ def texts_mean_what_they_say(look: Look) -> Iterator[str]:
         return
     changes = [change.said for change in record.tasks.changes if change.before is None or change.answer]
     refused = record.tasks.refused > 0
-    meant = _all_meant(look.world.model, asked[0].text)
-    if not meant and not all(map(only_stores, look.world.model.cells)):
+    meant = _all_meant(look.world.offers, asked[0].text)
+    if not meant and not all(map(only_stores, look.world.offers.cells)):
         return  # it may be a task of another recipe
     if not meant:
         if not refused:
@@ -34,7 +34,7 @@ def texts_mean_what_they_say(look: Look) -> Iterator[str]:
         yield from _unhelpful(look)
         return
     queued = {each.name: each.queued for each in record.asked.cells}
-    full = [cell for cell, _, _ in meant if queued[cell] >= look.world.model.cell(cell).queue_limit]
+    full = [cell for cell, _, _ in meant if queued[cell] >= look.world.offers.cell(cell).queue_limit]
     id = meant[0][2]
     known = id is not None and id in record.asked.ids
     if not known and refused is not (len(full) == len(meant)):
@@ -56,7 +56,7 @@ def _unhelpful(look: Look) -> Iterator[str]:
             continue
         for part in said.sentence.parts():
             example = str(part.values["example"]) if part.phrase is FORM else None
-            if example is not None and not _is_last_place(look.world.model, example):
+            if example is not None and not _is_last_place(look.world.offers, example):
                 yield f"{example!r} is given as an example, and is no task"
             if part.phrase is UNKNOWN_BUT_NEAR and part.values["near"] not in _list(part.values["there"]):
                 yield f"{said.sentence!r} hints at what there is not"
@@ -98,7 +98,8 @@ def _meant(model: PlantModel, text: str) -> tuple[str, str, str | None] | None:
     cell = next((each for each in cells if each.name.lower() == name), None)
     if len(words) == 2 and rest == ["palletizing"]:
         cell = cell or next((each for each in cells if each.roles["arm"].name.lower() == name), None)
-        return (cell.name, f"{cell.name} palletizing", id) if cell else None
+        offers = cell is not None and any(each.name == "palletizing" for each in cell.recipes)
+        return (cell.name, f"{cell.name} palletizing", id) if cell and offers else None
     if cell is None or len(words) != 3:
         return None
     code = next((code for code in cell.paths if code.lower() == rest[0]), None)

@@ -124,6 +124,8 @@ class StorageTruth:
             self.parts.empty(cell.cell.name)
 
     def _begin(self, cell: CellTruth, task: str, order: Order) -> None:
+        if self._world.versions:  # what ended before, ended with its own
+            cell.cell = StorageLayout(self._world.model.cell(cell.cell.name))
         if order.recipe not in NAMES:
             cell.cut_off()
             cell.of_others, cell.switch = True, None

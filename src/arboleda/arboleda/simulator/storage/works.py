@@ -48,11 +48,10 @@ class Work:
 class Works:
     """Work of every cell; `wrong` are sentences on commands of this step that do not follow the recipe."""
 
-    def __init__(self, cells: dict[str, Any], robots: dict[str, KnownRobot], dwell_s: float) -> None:
+    def __init__(self, cells: dict[str, Any], robots: dict[str, KnownRobot]) -> None:
         self.wrong: list[str] = []
         self._cells = cells
         self._robots = robots
-        self._dwell_s = dwell_s
         self._works: dict[str, Work] = {}
 
     def restart(self, running: Mapping[str, str], *, undone: bool) -> None:
@@ -152,7 +151,7 @@ class Works:
         since = work.began_at if work.last is None else -1.0
         if work.last is not None and isinstance(work.last.command, SetEffector):
             since = work.last.at
-        if since >= 0 and sent.at < since + self._dwell_s - ROUNDING_S:
+        if since >= 0 and sent.at < since + self._cells[name].timing.dwell_s - ROUNDING_S:
             self.wrong.append(f"{name}: {sent} leaves {sent.at - since:.3f} s after what it has to wait for")
 
     def _finished(self, name: str, work: Work) -> None:

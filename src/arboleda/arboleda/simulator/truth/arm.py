@@ -68,6 +68,13 @@ class ArmTruth(RobotTruth):
         self._jitter = tuple(2 * JITTER_STEPS * j.acceleration / j.step for j in robot.joints)
         self._locate()
 
+    def revise(self, cell: Cell) -> None:
+        """Know the poses of another version of its cell, beside those of before."""
+        space = cell.workspaces.get(self.arm.name)
+        self._poses = space.poses if space else ()
+        for pose in self._poses:
+            self._enter(pose)
+
     def be_opened(self, at: float) -> None:
         """Note that somebody else than the plant opens its effector."""
         self.opened = True

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from arboleda.model.commands import Command, needs_clear
+from arboleda.model.commands import Command, Switch, needs_clear
 from arboleda.model.facts import Value
 from arboleda.model.plant_model import Cell, Interlock, Robot
 from arboleda.sim.board import Board
@@ -13,13 +13,17 @@ from .robot import Act, RobotTruth
 
 Facts = dict[str, Value]
 
+GIVEN_UP = 1.5  # a switch that ends so many times later than it may has been given up long before
+KEPT = 8  # switches whose end is looked at
+
 
 class MachineTruth(RobotTruth):
     """Truth about one device: its `facts`, those that `were` before this step, and its `work`, if any.
 
     `zones` are those that it is in the way of. Of this step: `unmet`, the commands that it carries out
     although what they need is not so, each with what that is; `cut_short`: it ended work that goes on
-    through a stop, and neither its power nor an alarm explains that.
+    through a stop, and neither its power nor an alarm explains that; `overdue`: it switched so late that
+    nobody counts on that any more.
     """
 
     SIGNS = ("next_change_us",)
@@ -33,6 +37,7 @@ class MachineTruth(RobotTruth):
         self.cut_short = False
         self._locks: tuple[Interlock, ...] = ()
         self._finishes = board.body.finishes
+        self._switches: list[tuple[Switch, int]] = []  # and when they were given, the last one first
         self._now_us = 0
         super().__init__(robot, cell, board, client)
 
@@ -100,6 +105,9 @@ class MachineTruth(RobotTruth):
         self.by_hand = self._put_right
         self.swerved = False  # of several things that it does, one may end
         given = [(act, self._command(act.goal)) for act in self.acts]
+        self.overdue = self._switched_late(before)
+        switches = [(command, self._now_us) for _, command in given if isinstance(command, Switch)]
+        self._switches = [*reversed(switches), *self._switches][:KEPT]
         self._follow_work(was_moving, given)
         self.zones = self._in_the_way()
         self.unmet = [
@@ -118,6 +126,13 @@ class MachineTruth(RobotTruth):
             self.work, self.worked_from = began[-1], self._now_us / 1e6
         elif not self.moving:
             self.work = None
+
+    def _switched_late(self, before: Facts) -> bool:
+        """True where a fact has changed that the last switch of it was to change long ago."""
+        for switch, given_us in self._switches:
+            if any(self.facts[name] != before[name] for name, _ in switch.sets):
+                return self._now_us - given_us > GIVEN_UP * 1e6 * (switch.at_most_s or 0.0)
+        return False
 
     @property
     def _ended_in_time(self) -> bool:

@@ -59,6 +59,7 @@ class RobotTruth:
     unmet: Sequence[tuple[Command, str]] = ()  # commands that it carries out without their needs
     cut_short = False  # it ended work that goes on through a stop, and nothing explains that
     unbidden = False  # what moved it in this step was none of its goals
+    overdue = False  # in this step it switched so late that nobody counts on that any more
     let_go = False  # in this step it let go of what it held, by itself and with its power on
     worked_from: float | None = None  # for a machine that reports only ends: when it began to move, s
 
@@ -108,6 +109,9 @@ class RobotTruth:
 
     def be_locked(self, locks: tuple[Interlock, ...]) -> None:
         """Have it occupy zones whenever its facts differ from one of these, one for each cell."""
+
+    def revise(self, cell: Cell) -> None:
+        """Know the places of another version of its cell, beside those of before."""
 
     def be_opened(self, at: float) -> None:
         """Note that somebody else than the plant has it let go of what it holds."""

@@ -10,7 +10,7 @@ from arboleda.kinds.joints import Jointed
 from arboleda.kinds.mobile import Mobile
 from arboleda.model.by_class import nearest
 from arboleda.model.commands import Command
-from arboleda.model.messages import Fact, OperatorAnswer, Remember, Verb
+from arboleda.model.messages import CellRevised, Fact, OperatorAnswer, Remember, Verb
 from arboleda.model.plant_model import Evidence, Robot
 from arboleda.model.whole_cells import whole_cell
 
@@ -87,7 +87,7 @@ class RobotsTruth:
     def mistaken(self, robot: RobotTruth) -> bool:
         """True if the plant may be told a wrong place of a robot: it is `unseen`, its board lies, a report
         from before an earlier start moved it comes late, or it says that it stands still while it moves; for
-        a machine also if it has said so since it began to move.
+        a machine also if it has said so since it began to move, or does something long after its time.
         """
         if self.world.now < self._late_until and robot.robot.name in self._late:
             return True
@@ -96,7 +96,8 @@ class RobotsTruth:
             from_s = self.world.now
         if from_s is not None and self.deceived_since(board, "state", from_s):
             return True
-        return self.unseen(robot) or self.deceived_since(board, robot.PLACE, self.world.now)
+        lies = self.deceived_since(board, robot.PLACE, self.world.now)
+        return robot.overdue or lies or self.unseen(robot)
 
     def look(self) -> None:
         """Take in what happened in this step; called before any invariant."""
@@ -105,6 +106,8 @@ class RobotsTruth:
         is_new = self.world.plant is not self._plant
         if is_new:
             self.books.drop()  # the old one took them with it
+        if self.world.versions and (is_new or CellRevised in map(type, self.world.moment.sent)):
+            self._revise()
         self._look_at_messages()
         self._look_at_robots()
         if is_new:
@@ -156,6 +159,11 @@ class RobotsTruth:
             for message in moment.sent:
                 self._take_in(message)
             self.stops.settle()
+
+    def _revise(self) -> None:
+        """Know the places of what cells work by now."""
+        for name, truth in self.robots.items():
+            truth.revise(whole_cell(self.world.model, name))
 
     def _forget(self) -> None:
         for robot in self.changed:

@@ -11,6 +11,6 @@ from ..plant_api import PlantApi
 
 
 def routers(side: PlantApi) -> list[APIRouter]:
-    """What each module of this folder registers."""
+    """The routers that the modules of this folder register."""
     names = sorted(each.name for each in iter_modules(__path__))
     return [import_module(f"{__name__}.{name}").routes(side) for name in names]

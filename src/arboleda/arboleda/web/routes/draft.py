@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Annotated, Any, TypeVar
 
-from fastapi import APIRouter, Request
+from fastapi import APIRouter, Query, Request
 from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import JSONResponse
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 from starlette.exceptions import HTTPException
 
+from arboleda.bt_xml.markup import LARGEST
 from arboleda.model.errors import PayloadError
 
 from ..auth import require
@@ -57,6 +58,19 @@ class Setting(Removal):
     value: Any = Field(description="A plain value of the plant file.")
 
 
+RecipeName = Annotated[
+    str, Field(pattern="^[a-z][a-z0-9_]{0,39}$", description="Of a recipe.", examples=["to_tray"])
+]
+
+
+class Trees(_Request):
+    file: str = Field(min_length=5, max_length=200, examples=["tend.xml"])
+
+
+class TreesSetting(Trees):
+    text: str = Field(max_length=LARGEST, description="The file as text, BehaviorTree.CPP XML.")
+
+
 class Keeping(_Request):
     note: str = Field(default="", max_length=200)
 
@@ -76,6 +90,11 @@ class DraftState(ResponseModel):
     undo: int = Field(description="How many steps can be undone.")
     redo: int
     values: dict[str, Any] = Field(description="The plant file of the draft as plain values.")
+    trees: list[str] = Field(description="The files of trees of the draft.")
+    restart: list[str] = Field(description="Those of its changes that only a restart takes, and why.")
+    is_ours: bool = Field(
+        description="False where its files cannot be changed before they are made one's own."
+    )
 
 
 class DraftCheck(ResponseModel):
@@ -85,6 +104,17 @@ class DraftCheck(ResponseModel):
 
 class KeptDraft(DraftCheck):
     version: int | None = Field(description="Its number; null, with its problems, if nothing was changed.")
+
+
+class AppliedDraft(KeptDraft):
+    cells: dict[str, str] = Field(description="By cell when it takes it: now, or when which task has ended.")
+    cancelled: list[str] = Field(description="The ids of tasks that waited and that it does not offer.")
+    restart: list[str] = Field(description="Why the plant that runs goes on as it is; the next start has it.")
+
+
+class TreesText(ResponseModel):
+    file: str
+    text: str
 
 
 Body = TypeVar("Body", bound=_Request)
@@ -102,12 +132,18 @@ def routes(side: PlantApi) -> APIRouter:
 def _look(api: APIRouter, side: PlantApi) -> None:
     @api.get("", response_model=DraftState, responses=REFUSED)
     async def draft(request: Request) -> JSONResponse:
-        """Who edits the draft of the plant's files, and what it would change."""
+        """The editor of the draft of the plant's files, and its changes."""
         return await _answered(_draft(side, request).state)
+
+    @api.get("/trees", response_model=TreesText, responses=REFUSED)
+    async def trees(request: Request, file: Annotated[str, Query(max_length=200)]) -> JSONResponse:
+        """A file of trees as the draft has it."""
+        draft = _draft(side, request)
+        return await _answered(lambda: draft.trees(file))
 
     @api.post("/check", response_model=DraftCheck, responses=REFUSED)
     async def check(request: Request) -> JSONResponse:
-        """What `arboleda check` says of the draft; in a process of its own, within seconds."""
+        """The findings of `arboleda check` on the draft; from a process of its own, within seconds."""
         return await _answered(_draft(side, request).check)
 
 
@@ -126,6 +162,19 @@ def _edit(api: APIRouter, side: PlantApi) -> None:
     route("/take", Taking, "Begin to edit, or take over.", lambda each, to: each.take(to.editor, to.name))
     route("/set", Setting, "Set a value.", lambda each, to: each.set(to.editor, tuple(to.place), to.value))
     route("/remove", Removal, "Remove a key.", lambda each, to: each.remove(to.editor, tuple(to.place)))
+    route(
+        "/set_trees",
+        TreesSetting,
+        "Give a file of trees another text.",
+        lambda each, to: each.set_trees(to.editor, to.file, to.text),
+    )
+    route(
+        "/remove_trees",
+        Trees,
+        "Take a file of trees out of it.",
+        lambda each, to: each.remove_trees(to.editor, to.file),
+    )
+    route("/own", Step, "Copy its files to a folder of one's own.", lambda each, to: each.own(to.editor))
     route("/undo", Step, "Take the last step back.", lambda each, to: each.undo(to.editor))
     route("/redo", Step, "Do it again.", lambda each, to: each.redo(to.editor))
     route("/discard", Step, "Forget all of the draft.", lambda each, to: each.discard(to.editor))
@@ -140,6 +189,13 @@ def _keep(api: APIRouter, side: PlantApi) -> None:
         draft = _draft(side, request)
         told = _read(Keeping, await request.body())
         return await _answered(lambda: draft.keep(told.editor, told.note))
+
+    @api.post("/apply", response_model=AppliedDraft, responses=REFUSED, openapi_extra=described)
+    async def apply(request: Request) -> JSONResponse:
+        """The same, and put the version to work: a cell takes it once its task has ended."""
+        draft = _draft(side, request)
+        told = _read(Keeping, await request.body())
+        return await _answered(lambda: draft.apply(told.editor, told.note))
 
 
 async def _answered(act: Callable[[], State]) -> JSONResponse:

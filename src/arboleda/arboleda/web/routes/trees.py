@@ -3,21 +3,17 @@
 from __future__ import annotations
 
 import asyncio
-from typing import Any, TypeVar
 
 from fastapi import APIRouter, Request
 from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import JSONResponse
-from pydantic import BaseModel, ConfigDict, ValidationError
-
-from arboleda.model.errors import PayloadError
-from arboleda.model.outside import quoted
+from pydantic import BaseModel, ConfigDict
 
 from ..auth import require
 from ..languages import FIRST
 from ..plain_json import PlainJson
 from ..plant_api import PlantApi
-from ..queries import WRONG, Answers, asked, described
+from ..queries import WRONG, Answers, asked, described, described_body, read_body
 from ..schema import Sentence
 from ..tree_schema import Drawn, EditForm, Nodes, TreeFile, TreeForm, operation_of
 
@@ -26,7 +22,6 @@ REFUSED: Answers = {
     403: {"model": Sentence, "description": "The role is not enough."},
     422: {"model": Sentence, "description": "The text cannot be read, or the operation cannot be done."},
 }
-Form = TypeVar("Form", bound=BaseModel)
 
 
 class PaletteFilter(BaseModel):
@@ -54,36 +49,21 @@ def routes(side: PlantApi) -> APIRouter:
         wanted = asked(request, PaletteFilter)
         return PlainJson(await run_in_threadpool(side.palette, wanted.cell, wanted.language))
 
-    @api.post("/check", response_model=Drawn, responses=REFUSED, openapi_extra=_body(TreeForm))
+    @api.post("/check", response_model=Drawn, responses=REFUSED, openapi_extra=described_body(TreeForm))
     async def check(request: Request) -> JSONResponse:
         """A file as an editor shows it, with what `check` says of each node in a cell."""
         require(request.scope["arboleda.role"], DRAW)
-        form = _read(await request.body(), TreeForm)
+        form = read_body(await request.body(), TreeForm)
         async with turn:
             return PlainJson(await run_in_threadpool(side.drawn, form.cell, form.text))
 
-    @api.post("/edit", response_model=Drawn, responses=REFUSED, openapi_extra=_body(EditForm))
+    @api.post("/edit", response_model=Drawn, responses=REFUSED, openapi_extra=described_body(EditForm))
     async def edit(request: Request) -> JSONResponse:
         """The same file after an operation, which leaves every other byte of it as it was."""
         require(request.scope["arboleda.role"], DRAW)
-        form = _read(await request.body(), EditForm)
+        form = read_body(await request.body(), EditForm)
         operation = operation_of(form.operation)
         async with turn:
             return PlainJson(await run_in_threadpool(side.drawn, form.cell, form.text, operation))
 
     return api
-
-
-def _read(body: bytes, model: type[Form]) -> Form:
-    """A body as `model`; raises PayloadError, which names the first wrong key."""
-    try:
-        return model.model_validate_json(body)
-    except ValidationError as error:
-        found = error.errors(include_url=False, include_context=False)[0]
-        name = quoted(".".join(map(str, found["loc"])) or "the body", 80)
-        raise PayloadError(f"{name}: {found['msg'].lower()}; /api/docs says what is allowed.") from None
-
-
-def _body(model: type[BaseModel]) -> dict[str, Any]:
-    schema = model.model_json_schema(ref_template="#/components/schemas/{model}")
-    return {"requestBody": {"content": {"application/json": {"schema": schema}}, "required": True}}

@@ -245,7 +245,7 @@ class Blocks:
 
     @property
     def _may_fail(self) -> bool:
-        """Where a part is under way a task that fails would leave it there."""
+        """True where no part is under way: a task that fails would leave it there."""
         return not self.resting and not self.state.frozen
 
     def _way(self) -> Step:

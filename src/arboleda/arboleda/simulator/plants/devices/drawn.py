@@ -15,7 +15,7 @@ from .xml_text import xml_of
 
 
 class Form(str, Enum):
-    """How the recipes of a drawn plant are written."""
+    """Form of the recipes of a drawn plant."""
 
     PYTHON = "python"
     XML = "xml"

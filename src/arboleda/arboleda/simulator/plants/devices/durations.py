@@ -1,4 +1,4 @@
-"""How long a drawn step can take where nothing goes wrong, with room to spare."""
+"""Durations of drawn steps where nothing goes wrong, with room to spare."""
 
 from __future__ import annotations
 

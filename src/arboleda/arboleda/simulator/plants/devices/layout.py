@@ -45,7 +45,7 @@ class Robot:
     section: Section = field(default_factory=dict)
 
     def door(self, target: str | Param) -> Need | None:
-        """What has to be so before it goes there, whatever a parameter is; a mobile robot may come by each
+        """The condition for going there, whatever a parameter is; a mobile robot may come by each
         node on its way.
         """
         if isinstance(target, Param) or self.section.get("kind") == "mobile":

@@ -36,7 +36,7 @@ class State:
         return replace(self, frozen=self.frozen | set(keys))
 
     def met(self, others: Iterable[State]) -> State:
-        """What all of these know."""
+        """The state of which all of these know."""
         known = [set(each.facts.items()) for each in others]
         return replace(self, facts=dict(set.intersection(*known))) if known else self
 

@@ -1,0 +1,1 @@
+"""Tries and proofs of a draft for the page, each in a process that a plant starts beside itself."""

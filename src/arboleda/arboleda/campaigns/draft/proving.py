@@ -1,0 +1,87 @@
+"""Proof of a draft: `arboleda prove` on the recipes that are named, or on all."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from io import StringIO
+from pathlib import Path
+from typing import Any
+
+from rich.console import Console
+
+from arboleda.model.errors import ArboledaError, ConfigError
+from arboleda.plant_file import loader
+
+from ..proof.outcome import End
+from ..proof.proof_campaign import ProofCampaign, ProofRequest
+from ..proof.proof_lines import ProofLines
+from .process import Errand, errand, say, write
+
+JSON, HTML, TEXT = "proof.json", "proof.html", "proof.txt"
+RESULT = "result.json"
+MOST = 40  # rows of what the page shows
+SCREEN = 110  # columns of the text
+
+
+def main() -> None:
+    """Run the errand of this process."""
+    with errand() as given:
+        try:
+            loader.load(given.shade.plant_file)
+        except ConfigError as error:
+            raise ArboledaError("\n".join(map(given.shade.renamed, error.problems))) from None
+        prove(given)
+
+
+def prove(given: Errand) -> None:
+    """Prove, and write the answer as JSON and as a page, with the real names of files."""
+    wanted, folder = given.wanted, given.folder
+    request = ProofRequest(
+        plant=given.shade.plant_file,
+        recipes=tuple(wanted.get("recipes", ())),
+        kinds=tuple(wanted.get("kinds", ())),
+        budget_s=float(wanted["budget_s"]),
+        folder=Path(wanted["kept"]),
+        json=folder / JSON,
+        html=folder / HTML,
+    )
+    screen = StringIO()
+    console = Console(file=screen, width=SCREEN, highlight=False)
+    ProofCampaign(request, console, ProofLines(ProgressOnly())).run(1)
+    (folder / TEXT).write_text(screen.getvalue(), "utf-8")
+    for name in (JSON, HTML, TEXT):
+        _rename(folder / name, given.shade.renamed)
+    write(folder / RESULT, shown(json.loads((folder / JSON).read_text("utf-8"))))
+
+
+def shown(proof: dict[str, Any]) -> dict[str, Any]:
+    """The part of an answer that the page shows; all of it is in the page of its own."""
+    return {
+        "complete": proof["complete"],
+        "runs": proof["runs"],
+        "alone": proof["alone"],
+        "table": proof["table"],
+        "unsound": [each for each in proof["scenarios"] if not _is_sound(each["without_faults"])][:MOST],
+        "tasks": [each["task"] for each in proof["scenarios"]],
+        "unnoticed": proof["unnoticed"][:MOST],
+        "breaches": proof["breaches"][:MOST],
+    }
+
+
+def _is_sound(outcome: dict[str, Any]) -> bool:
+    return outcome["end"] == End.DONE.value and outcome["broken"] is None
+
+
+def _rename(file: Path, renamed: Callable[[str], str]) -> None:
+    file.write_text(renamed(file.read_text("utf-8")), "utf-8")
+
+
+class ProgressOnly(StringIO):
+    """Reader of a proof's lines who passes on how far it is; the answer goes into files."""
+
+    def write(self, line: str) -> int:
+        told = json.loads(line).get("progress")
+        if told is not None:
+            say(doing=told["phase"], done=told["done"], total=told["of"])
+        return len(line)

@@ -1,0 +1,122 @@
+// Make: the draft of the plant's files, what differs, its check, and what leads to it: cells, tries, proofs, devices.
+
+import * as cells from "./make_cells.js";
+import * as device from "./make_device.js";
+import * as proof from "./make_prove.js";
+import * as tryout from "./make_try.js";
+import { ask, box, draft, editor, element, fill, isMine, look, onDraft, say, step, take, there } from "./make_state.js";
+import * as question from "./question.js";
+import { all, words } from "./shell.js";
+
+const CHECK_MS = 1200; // after the last change
+const LOOK_MS = 5000; // what others do
+const WAIT_MS = 1500; // while another check is under way
+let shown = false;
+let checked = ""; // the changes that were checked last
+let timer = null;
+
+export function start() {
+  if (!there()) return;
+  box("name").value = localStorage.getItem("arboleda_name") ?? "";
+  document.getElementById("make").addEventListener("click", clicked);
+  onDraft(drawn);
+  cells.start();
+  tryout.start();
+  proof.start();
+  device.start();
+  setInterval(() => shown && !document.hidden && look(), LOOK_MS);
+}
+
+export async function show(is) {
+  shown = is && there();
+  if (!shown) return;
+  await look();
+  if (draft.state?.is_ours !== false) cells.read();
+}
+
+const ACTS = {
+  take,
+  undo: () => step("undo").then(reread),
+  redo: () => step("redo").then(reread),
+  discard: async () => (await question.confirmed(words.make_discard)) && step("discard").then(reread),
+  check: () => check(),
+  keep,
+  own: () => step("own").then((done) => done && reread()),
+};
+
+const reread = () => cells.read();
+
+function clicked({ target }) {
+  const { make: act, makePanel } = target.closest("button")?.dataset ?? {};
+  ACTS[act]?.();
+  if (makePanel) open(makePanel);
+}
+
+export function open(panel) {
+  all("[data-make-panel]").forEach((each) => each.setAttribute("aria-pressed", each.dataset.makePanel === panel));
+  all(".make-panel").forEach((each) => (each.hidden = each.id !== `make-${panel}`));
+}
+
+function drawn() {
+  const { state } = draft;
+  box("not-ours").hidden = state.is_ours;
+  const who = state.editor;
+  const since = who && new Date(who.since).toLocaleTimeString();
+  box("who").textContent = !who ? words.make_nobody : isMine() ? words.make_you : fill(words.make_other, { name: who.name, since });
+  const taking = button("take");
+  taking.textContent = who && !isMine() ? words.make_take_over : words.make_take;
+  taking.hidden = isMine();
+  button("undo").disabled = !state.undo;
+  button("redo").disabled = !state.redo;
+  button("keep").disabled = button("discard").disabled = !state.changes.length;
+  lines("changes", state.changes, words.make_no_change);
+  lines("restart", state.restart, words.make_no_wait);
+  lines("waiting", state.waiting, words.make_no_wait);
+  const now = state.changes.join("\n");
+  if (now !== checked) clearTimeout(timer), (timer = setTimeout(check, CHECK_MS));
+}
+
+const button = (act) => document.querySelector(`#make [data-make="${act}"]`);
+
+function lines(id, rows, none) {
+  const made = (rows.length ? rows : [none]).map((text) => element("li", text));
+  box(id).replaceChildren(...made);
+}
+
+// What `check` says of the draft; one at a time, and the last change counts.
+async function check() {
+  clearTimeout(timer);
+  const now = draft.state.changes.join("\n");
+  const found = await ask("/api/draft/check", {}, () => {});
+  if (!found) return void (timer = setTimeout(check, WAIT_MS));
+  checked = now;
+  draft.problems = found.problems;
+  marks(found);
+}
+
+export function marks({ problems, warnings }) {
+  const rows = [...problems.map((text) => ["mistake", `✕ ${text}`]), ...warnings.map((text) => ["warning", `▲ ${text}`])];
+  const made = rows.map(([sort, text]) => element("li", text, { "data-mark": sort }));
+  box("problems").replaceChildren(...(made.length ? made : [element("li", words.make_good)]));
+  const tab = document.querySelector('[data-make-panel="draft"]');
+  tab.dataset.mark = problems.length ? "mistake" : warnings.length ? "warning" : "";
+  tab.title = problems.length ? fill(words.make_problems, { count: problems.length }) : "";
+}
+
+// The version, and when each cell takes it, or why only the next start does.
+function applied({ version, cells: taken, restart, cancelled }) {
+  const when = Object.entries(taken).map(([cell, told]) => `${cell}: ${told}`);
+  const lost = cancelled.length ? [fill(words.make_cancelled, { tasks: cancelled.join(", ") })] : [];
+  return [fill(words.make_kept, { version }), ...(restart.length ? [words.make_restart, ...restart] : when), ...lost].join(" ");
+}
+
+async function keep() {
+  if (!(await question.confirmed(`${words.make_keep} ${draft.state.changes.join("; ")}`))) return;
+  say(words.make_checking);
+  const kept = await ask("/api/draft/apply", { editor: editor(), note: box("version-note").value.trim() });
+  if (!kept) return;
+  marks(kept);
+  say(kept.version === null ? words.make_not_kept : applied(kept));
+  if (kept.version === null) open("draft");
+  await look();
+}

@@ -1,0 +1,87 @@
+// The draft as this page knows it, and the way of its steps to the server: one after the other, as one editor.
+
+import { words } from "./shell.js";
+
+// Since when this page edits the draft, here or by teaching; kept also where the page is opened anew.
+const MINE = "arboleda_mine";
+
+export const draft = { state: null, cells: [], faults: [], problems: [] };
+const listeners = [];
+const MOST_TRIES = 10;
+const RETRY_MS = 300; // while the server takes no more in this second
+let line = Promise.resolve();
+
+export const box = (id) => document.getElementById(`make-${id}`);
+export const onDraft = (listener) => listeners.push(listener);
+// The sentence stands in both places where the draft is edited.
+export const say = (sentence) => ["make-note", "draw-note"].forEach((id) => (document.getElementById(id).textContent = sentence ?? ""));
+export const there = () => box("who") !== null;
+export const fill = (text, values) => Object.entries(values).reduce((done, [name, value]) => done.replaceAll(`{${name}}`, value), text);
+
+export function element(name, text = "", attributes = {}) {
+  const made = Object.assign(document.createElement(name), { textContent: text });
+  for (const [key, value] of Object.entries(attributes)) made.setAttribute(key, value);
+  return made;
+}
+
+// The id by which the server knows this page, as long as it is open.
+export function editor() {
+  let id = sessionStorage.getItem("arboleda_editor");
+  if (!id) sessionStorage.setItem("arboleda_editor", (id = crypto.getRandomValues(new Uint32Array(4)).join("-")));
+  return id;
+}
+
+export const name = () => box("name").value.trim() || words.make_somebody;
+export const isMine = () => draft.state?.editor != null && sessionStorage.getItem(MINE) === draft.state.editor.since;
+
+// A GET without a body; null, and the sentence is shown, where it is refused.
+export async function ask(path, body, shown = say) {
+  try {
+    for (let tries = 0; ; tries++) {
+      const options = body && { method: "POST", headers: { "content-type": "application/json" }, body: JSON.stringify(body) };
+      const got = await fetch(path, options);
+      if (got.status === 429 && tries < MOST_TRIES) await new Promise((go) => setTimeout(go, RETRY_MS));
+      else if (got.ok) return await got.json();
+      else return shown((await got.json()).sentence), null;
+    }
+  } catch {
+    return shown(words.not_sent), null;
+  }
+}
+
+// One step of the draft; whoever edits nothing yet begins to. True if it was done.
+export function step(path, body = {}) {
+  const done = line.then(async () => {
+    if (!draft.state?.editor && !(await take())) return false;
+    const state = await ask(`/api/draft/${path}`, { ...body, editor: editor() });
+    if (state) say(""), heard(state);
+    return state !== null;
+  });
+  line = done.catch(() => {});
+  return done;
+}
+
+export async function take() {
+  const state = await ask("/api/draft/take", { editor: editor(), name: name() });
+  if (!state) return false;
+  sessionStorage.setItem(MINE, state.editor.since);
+  localStorage.setItem("arboleda_name", box("name").value.trim());
+  heard(state);
+  return true;
+}
+
+export async function look() {
+  const state = await ask("/api/draft");
+  if (state) heard(state);
+  return state !== null;
+}
+
+export function heard(state) {
+  draft.state = state;
+  for (const listener of listeners) listener();
+}
+
+export function options(select, rows, chosen = select.value) {
+  select.replaceChildren(...rows.map(([value, text]) => new Option(text ?? value, value)));
+  if (rows.some(([value]) => value === chosen)) select.value = chosen;
+}

@@ -1,0 +1,65 @@
+// The versions of the plant's files: which is at work, and a way back.
+
+const { language } = window.arboledaPage;
+const EVERY_MS = 10_000;
+
+const part = (id) => document.getElementById(id);
+const seen = () => !document.getElementById("part-links").hidden;
+
+export function start() {
+  setInterval(() => seen() && show(), EVERY_MS);
+  part("versions").addEventListener("click", back);
+}
+
+export async function show() {
+  const answer = await fetch(`/versions.json?${new URLSearchParams({ lang: language })}`).catch(() => null);
+  if (!answer?.ok) return;
+  const found = await answer.json();
+  part("versions-box").hidden = false;
+  part("versions-now").textContent = found.now;
+  part("versions-cells").replaceChildren(...found.cells.map(line));
+  if (JSON.stringify(found.rows) === part("versions").dataset.shown) return; // a button keeps the focus
+  part("versions").dataset.shown = JSON.stringify(found.rows);
+  part("versions").replaceChildren(...found.rows.map(row));
+}
+
+function line(text) {
+  const item = document.createElement("li");
+  item.textContent = text;
+  return item;
+}
+
+function row({ number, title, lines, back: label }) {
+  const item = line(title);
+  if (lines.length) {
+    const inner = document.createElement("ul");
+    inner.replaceChildren(...lines.map(line));
+    item.append(inner);
+  }
+  if (label) {
+    const button = document.createElement("button");
+    Object.assign(button, { type: "button", className: "act", textContent: label });
+    button.dataset.number = number;
+    item.append(button);
+  }
+  return item;
+}
+
+async function back(event) {
+  const button = event.target.closest("button[data-number]");
+  if (!button) return;
+  const { by, sure } = part("versions-box").dataset;
+  if (!confirm(`${button.textContent}: ${sure}`)) return;
+  button.disabled = true;
+  const body = JSON.stringify({ name: by });
+  const options = { method: "POST", headers: { "content-type": "application/json" }, body };
+  const answer = await fetch(`/api/versions/${button.dataset.number}/put`, options).catch(() => null);
+  button.disabled = false;
+  const said = answer && (await answer.json().catch(() => null));
+  part("versions-said").textContent = said ? (answer.ok ? told(said) : said.sentence) : part("versions-box").dataset.lost;
+  show();
+}
+
+function told({ problems, restart }) {
+  return [...problems, ...restart].join("\n");
+}

@@ -1,0 +1,97 @@
+"""MakeApi of the plant in this process: its draft in the workshop, and what is tried and proved of it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from arboleda.bt_xml.editing.operations import Operation
+from arboleda.plant_file.tree_file import ENDING
+from arboleda.web.draft_api import DraftRefused
+from arboleda.web.languages import spoken, texts
+from arboleda.web.make_api import MakeApi, Row
+
+from ..draft_desk import DraftDesk
+from ..plant_folder import NOT_OURS, PlantFolder
+from .errands import ErrandRun, Work
+from .workshop import Workshop
+
+FOLDER, RESULT, KEPT = "make", "result.json", "prove"
+WORK = {
+    "try": Work(module="tryout", command="simulate"),
+    "prove": Work(module="proving", command="prove"),
+    "notice": Work(module="noticing", command="prove"),
+}
+
+
+class MakeBench(MakeApi):
+    """MakeBench: for threads of a server; `start` and `stop` as a part of a plant."""
+
+    def __init__(self, folder: PlantFolder, state: Path, desk: DraftDesk) -> None:
+        self._folder = folder
+        self._kept = state / KEPT
+        self._desk = desk
+        self._workshop = Workshop(self._plant_file)
+        self._runs = {name: ErrandRun(work, state / FOLDER / name) for name, work in WORK.items()}
+
+    def start(self) -> None:
+        """Nothing: processes begin when somebody asks for them."""
+
+    def stop(self) -> None:
+        """End all processes. Idempotent."""
+        self._workshop.stop()
+        for run in self._runs.values():
+            run.stop()
+
+    def _plant_file(self) -> Path:
+        """The plant file that there is; DraftRefused before the plant that comes with Arboleda is copied."""
+        if self._folder.file is None:
+            raise DraftRefused(NOT_OURS)
+        return self._folder.file
+
+    def cells(self) -> Row:
+        return self._workshop.cells(*self._desk.files)
+
+    def palette(self, cell: str, language: str) -> list[Row]:
+        return self._workshop.palette(*self._desk.files, cell, texts(spoken([language]), "nodes"))
+
+    def drawn(self, cell: str, text: str, operation: Operation | None = None) -> Row:
+        return self._workshop.drawn(*self._desk.files, cell, text, operation)
+
+    def shown(self, cell: str, recipe: str) -> str:
+        return self._workshop.shown(*self._desk.files, cell, recipe)
+
+    def carry(self, editor: str, recipe: str, way: Mapping[str, str]) -> Row:
+        text = self._workshop.carrying(*self._desk.files, way["cell"], recipe, way)
+        return self._desk.add_trees(editor, f"{recipe}{ENDING}", text)
+
+    def begin(self, what: str, wanted: Mapping[str, Any]) -> Row:
+        kept = {"kept": str(self._kept.absolute())} if what == "prove" else {}
+        self._runs[what].begin(self._desk.files[1], self._plant_file(), {**wanted, **kept})
+        return self.run(what)
+
+    def run(self, what: str) -> Row:
+        return self._runs[what].state()
+
+    def end(self, what: str) -> Row:
+        self._runs[what].stop()
+        return self.run(what)
+
+    def result(self, what: str) -> Path | None:
+        return self._file(what, RESULT)
+
+    def proof_page(self) -> Path | None:
+        """The file of the last proof as a page."""
+        return self._file("prove", "proof.html")
+
+    def tried(self) -> tuple[Path, Path] | None:
+        """The record of the last tryout, and the file of what a page on it shows."""
+        record, layout = self._file("try", "tried.mcap"), self._file("try", "layout.json")
+        return (record, layout) if record and layout else None
+
+    def _file(self, what: str, name: str) -> Path | None:
+        """A file that came of one of the runs; None if it is not there."""
+        run = self._runs[what]
+        file = run.folder / name
+        return file if run.state()["state"] != "running" and file.exists() else None

@@ -1,0 +1,59 @@
+"""Collection of Python's garbage between the steps of a plant, and not in the middle of one."""
+
+from __future__ import annotations
+
+import gc
+import math
+
+from arboleda.adapters import clock
+from arboleda.core.plant import Plant
+
+MOST_YOUNG = 10_000  # objects at which Python collects by itself, as where the plant's thread hangs
+SHARE = 0.01  # of the time for collections of everything, at most: one of a large plant takes 0.1 s
+
+
+class Garbage:
+    """Garbage: collects once a step is over and its commands have left, as often as Python would.
+
+    `start` leaves out for good what is there by then: a collection of everything would look at every library
+    again, and no thread of Python runs meanwhile.
+    """
+
+    def __init__(self) -> None:
+        self._often = gc.get_threshold()
+        self._all_from = -math.inf
+        self._runs = False
+
+    def start(self, *, has_steps: bool) -> None:
+        """Begin; without steps Python collects as ever."""
+        if gc.get_freeze_count():  # whoever runs this process has seen to it
+            return
+        gc.collect()
+        gc.freeze()
+        if has_steps:
+            gc.set_threshold(MOST_YOUNG, *self._often[1:])
+        self._runs = True
+
+    def stop(self) -> None:
+        if self._runs:
+            self._runs = False
+            gc.set_threshold(*self._often)
+            gc.unfreeze()
+
+    def stepped(self, _plant: Plant) -> None:
+        """Collect what is due."""
+        if not self._runs:
+            return
+        young, middle, old = (count > most for count, most in zip(gc.get_count(), self._often, strict=True))
+        if old and clock.seconds() >= self._all_from:
+            self._collect_all()
+        elif middle:
+            gc.collect(1)
+        elif young:
+            gc.collect(0)
+
+    def _collect_all(self) -> None:
+        began = clock.seconds()
+        gc.collect()
+        ended = clock.seconds()
+        self._all_from = ended + (ended - began) / SHARE

@@ -1,0 +1,74 @@
+"""Folder of a plant's files: the one that was given, or a copy of one's own where nobody can change that."""
+
+from __future__ import annotations
+
+import os
+import shutil
+from pathlib import Path
+
+from arboleda.model.errors import StartError
+from arboleda.plant_file.draft_check import root_of
+from arboleda.plant_file.versions import Version, Versions
+from arboleda.web.draft_api import DraftRefused
+
+OWN = "files"  # in the state directory
+NOT_OURS = "these files cannot be changed where they are; make them your own first"
+THERE = "there is a plant of your own already: start the plant with --plant {file}"
+YOURS = "this plant was made yours: `arboleda up --plant {file}` starts that one"
+
+
+class PlantFolder:
+    """Folder with the plant file `file`; None for the plant that comes with Arboleda, until it is copied."""
+
+    def __init__(self, file: Path | None, state: Path) -> None:
+        self.file = file
+        self._own = state / OWN
+
+    @property
+    def is_ours(self) -> bool:
+        """True where its files can be changed."""
+        return self.file is not None and all(
+            os.access(each, os.W_OK) for each in (self.file, self.file.parent)
+        )
+
+    @property
+    def ours(self) -> Path:
+        """Its plant file, to be changed; DraftRefused where that cannot be."""
+        if self.file is None or not self.is_ours:
+            raise DraftRefused(NOT_OURS)
+        return self.file
+
+    @property
+    def versions(self) -> Versions | None:
+        """The versions beside it; None where there can be none."""
+        return None if self.file is None else Versions(self.file)
+
+    @property
+    def note(self) -> str:
+        """The line for who starts a plant of which there is a copy of his own; "" where there is none."""
+        copies = [] if self.is_ours or not self._own.is_dir() else sorted(self._own.glob("**/*.yaml"))
+        return YOURS.format(file=copies[0]) if copies else ""
+
+    def own(self, at_work: Version) -> Path:
+        """Copy all of its files and go on there; DraftRefused or StartError, and nothing is copied, if that
+        cannot be."""
+        if self._own.exists():
+            raise DraftRefused(THERE.format(file=self._own / at_work.files.plant))
+        fresh = self._own.with_name(f".{OWN}.{os.getpid()}")
+        try:
+            shutil.rmtree(fresh, ignore_errors=True)
+            for name, content in (dict(at_work.files.contents) | self._others(at_work)).items():
+                (fresh / name).parent.mkdir(parents=True, exist_ok=True)
+                (fresh / name).write_bytes(content)
+            fresh.rename(self._own)
+        except OSError as error:
+            raise StartError(f"{self._own} cannot be written: {error.strerror or error}") from error
+        self.file = self._own / at_work.files.plant
+        return self.file
+
+    def _others(self, at_work: Version) -> dict[str, bytes]:
+        """The files that are not kept with what is at work, such as Python."""
+        if self.file is None:
+            return {}
+        root = root_of(at_work.files, self.file)
+        return {name: (root / name).read_bytes() for name in at_work.others}

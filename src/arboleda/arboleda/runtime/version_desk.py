@@ -1,0 +1,190 @@
+"""VersionsApi of the plant in this process: puts versions of its files to work while it runs."""
+
+from __future__ import annotations
+
+import logging
+import threading
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from datetime import datetime, timezone
+from pathlib import Path
+from typing import Any
+
+from arboleda.core.plant import Plant
+from arboleda.model.errors import ArboledaError, ConfigError
+from arboleda.model.messages import RevisionAnswer
+from arboleda.model.plant_model import PlantModel
+from arboleda.model.revision import RevisionName
+from arboleda.plant_file import loader
+from arboleda.plant_file.changes import Change, changes
+from arboleda.plant_file.draft_check import Checked
+from arboleda.plant_file.restart import needing_restart
+from arboleda.plant_file.versions import Version, Versions, version_of, whole
+from arboleda.recorder.preamble import PlantFiles
+from arboleda.web.draft_api import DraftRefused, State
+from arboleda.web.versions_api import VersionsApi
+
+from . import at_work
+from .parts.orchestrator import Orchestrator, PutToWork
+from .plant_folder import PlantFolder
+
+LOG = logging.getLogger("arboleda.operators")
+PATIENCE_S = 30.0  # for the answer of the plant, which waits for its disk
+UNKNOWN = "this plant does not keep what it was started with (record: off), so nothing can be compared"
+MEANWHILE = "its files were changed while it was put to work; `arboleda apply` shows what they have now"
+SAME = "the files are as they are at work"
+NOW, AFTER_TASK, AT_REST = "now", "when task {task} has ended", "when it rests"
+Check = Callable[[PlantFiles, Path], Checked]
+
+
+class VersionDesk(VersionsApi):
+    """VersionDesk: one version at a time, for threads of a server and for a signal; they wait for each other.
+
+    `as_it_runs` makes of a plant as its files have it the one that runs here, at its rate and on its boards.
+    """
+
+    def __init__(
+        self,
+        folder: PlantFolder,
+        state: Path,
+        plant: Callable[[], Orchestrator],
+        *,
+        as_it_runs: Callable[[PlantModel], PlantModel],
+        check: Check,
+    ) -> None:
+        self._folder = folder
+        self._state = state
+        self._plant = plant
+        self._as_it_runs = as_it_runs
+        self._check = check
+        self._turns = threading.Lock()
+
+    def listed(self) -> State:
+        started = self.at_work()
+        kept = self._folder.versions
+        known = [] if kept is None else kept.all()
+        number = next((each.number for each in reversed(known) if each.digest == started.digest), None)
+        rows = [_row(each, is_at_work=each.number == number) for each in known]
+        cells = self._plant().loop.read(_cells)
+        return {"at_work": {"number": number, "at": started.at}, "versions": rows, "cells": cells}
+
+    def at_work(self) -> Version:
+        """The files at work; DraftRefused where that is not known."""
+        found = at_work.known(self._state)
+        if found is None:
+            raise DraftRefused(UNKNOWN)
+        return found
+
+    def put(self, number: int, by: str) -> State:
+        with self._turns:
+            kept = Versions(self._folder.ours)
+            version = kept.find(number)
+            found = self._check(version.files, self._folder.ours)
+            if found.problems or found.read is None:
+                return _refused(found)
+            if kept.is_in_place(version):
+                return self._put(found, found.read, by, "")
+            kept.bring_back(version)
+            return self._put(found, found.read, by, f"version {number} again")
+
+    def put_files(self, by: str) -> State:
+        """Put to work what the files have now; as `put`."""
+        with self._turns:
+            found = self._check(self._on_disk(self.at_work()), self._folder.ours)
+            if found.problems or found.read is None:
+                return _refused(found)
+            return self._put(found, found.read, by, "")
+
+    def _put(self, found: Checked, read: PlantFiles, by: str, note: str) -> State:
+        """Keep as a version what was checked and is in its place, and put it to work."""
+        started = self.at_work()
+        fresh = version_of(read, at=_now(), by=by, note=note)
+        told = changes(whole(started), whole(fresh))
+        if not told:
+            raise DraftRefused(SAME)
+        kept = Versions(self._folder.ours)
+        if kept.last() is None:  # so that there is a way back to it
+            kept.keep(replace(started, note="as the plant was started"))
+        fresh = replace(fresh, changes=tuple(each.words for each in told))
+        last = kept.last()
+        is_kept = last is not None and last.digest == fresh.digest  # by `arboleda apply`
+        version = last if last is not None and is_kept else kept.keep(fresh)
+        return self._work_by(version, found, told, by)
+
+    def work_by(self, version: Version, found: Checked, by: str) -> State:
+        """Put a version to work whose files are in their place; as `put`."""
+        with self._turns:
+            return self._work_by(version, found, changes(whole(self.at_work()), whole(version)), by)
+
+    def _work_by(self, version: Version, found: Checked, told: Sequence[Change], by: str) -> State:
+        """Tell the plant of a version that is kept and whose files are in their place."""
+        answer: State = {"version": version.number, "problems": (), "warnings": found.warnings, "cells": {}}
+        restart = needing_restart(told)
+        if not restart:
+            said = self._told(version, by)
+            restart = () if said.refusal is None else (str(said.refusal),)
+            answer |= {"cells": _when(self._plant(), said), "cancelled": said.cancelled}
+        if restart:
+            LOG.warning("version %d is kept; the next start of the plant has it", version.number)
+            return answer | {"restart": restart, "cells": {}, "cancelled": ()}
+        return answer | {"restart": ()}
+
+    def _told(self, version: Version, by: str) -> RevisionAnswer:
+        """The answer of the plant to a version; the files are read again, without running any Python."""
+        try:
+            model, files = loader.load_with_files(self._folder.ours, runs=True)
+        except ConfigError as error:
+            raise DraftRefused(f"{MEANWHILE}: {error}") from error
+        if version_of(files, at="").digest != version.digest:
+            raise DraftRefused(MEANWHILE)
+        name = RevisionName(digest=version.digest, number=version.number)
+        put = PutToWork(name, self._as_it_runs(model), files, by, version.changes)
+        answer = self._plant().revise(put).result(PATIENCE_S)
+        if answer.refusal is None:
+            at_work.keep(self._state, files, _now())
+        return answer
+
+    def _on_disk(self, started: Version) -> PlantFiles:
+        """The plant file as it is now; the check reads what it uses."""
+        file, name = self._folder.ours, started.files.plant
+        try:
+            return PlantFiles(plant=name, contents={name: file.read_bytes()})
+        except OSError as error:
+            raise ArboledaError(f"{file} cannot be read: {error.strerror}") from error
+
+
+def _refused(found: Checked) -> State:
+    problems = found.problems or (MEANWHILE,)
+    empty: dict[str, Any] = {"version": None, "cells": {}, "cancelled": (), "restart": ()}
+    return empty | {"problems": problems, "warnings": found.warnings}
+
+
+def _row(version: Version, *, is_at_work: bool) -> State:
+    told = {"number": version.number, "at": version.at, "by": version.by, "note": version.note}
+    return told | {"changes": list(version.changes), "is_at_work": is_at_work}
+
+
+def _cells(plant: Plant) -> list[State]:
+    """By cell the version that it took while the plant ran, and the one that it takes next and when."""
+    return [
+        {
+            "cell": name,
+            "version": None if run.version is None else run.version.number,
+            "following": None if run.following is None else run.following.version.number,
+            "when": NOW if run.following is None else _after(run.task.id if run.task else ""),
+        }
+        for name, run in plant.cells.items()
+    ]
+
+
+def _when(plant: Orchestrator, answer: RevisionAnswer) -> dict[str, str]:
+    waits = dict(answer.waits)
+    return {name: _after(waits[name]) if name in waits else NOW for name in plant.plant.cells}
+
+
+def _after(task: str) -> str:
+    return AFTER_TASK.format(task=task) if task else AT_REST
+
+
+def _now() -> str:
+    return datetime.now(timezone.utc).isoformat(timespec="seconds")

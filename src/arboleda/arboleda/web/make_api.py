@@ -1,0 +1,54 @@
+"""Draft as a plant, as the web server sees it: its cells and trees, what is tried and proved of it."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any, Protocol
+
+from arboleda.bt_xml.editing.operations import Operation
+
+Row = dict[str, Any]
+RUNS = ("try", "prove", "notice")
+
+
+class MakeApi(Protocol):
+    """All data is plain. What runs does so in processes of its own; a call waits for one that only looks."""
+
+    @abstractmethod
+    def cells(self) -> Row:
+        """`cells`, each with devices, targets and recipes, kinds of `faults`, and the `problems` for which
+        these may be those of before."""
+
+    @abstractmethod
+    def palette(self, cell: str, language: str) -> list[Row]:
+        """The nodes that a tree can have in a cell of the draft."""
+
+    @abstractmethod
+    def drawn(self, cell: str, text: str, operation: Operation | None = None) -> Row:
+        """A file of trees as an editor shows it in a cell of the draft, after an operation on it."""
+
+    @abstractmethod
+    def shown(self, cell: str, recipe: str) -> str:
+        """The tree of a recipe, whoever wrote it, as XML for viewers."""
+
+    @abstractmethod
+    def carry(self, editor: str, recipe: str, way: Mapping[str, str]) -> Row:
+        """Add a recipe that carries a part: `way` has `cell`, `robot`, `start`, `end`. The draft's state."""
+
+    @abstractmethod
+    def begin(self, what: str, wanted: Mapping[str, Any]) -> Row:
+        """Begin one of RUNS with the draft as it is now; the one before ends. Its state."""
+
+    @abstractmethod
+    def run(self, what: str) -> Row:
+        """State of one of RUNS: `state`, how far it is, the sentence why it failed."""
+
+    @abstractmethod
+    def end(self, what: str) -> Row:
+        """End one of RUNS. Its state."""
+
+    @abstractmethod
+    def result(self, what: str) -> Path | None:
+        """The file with what came of the last one, as JSON; None if nothing came of it."""

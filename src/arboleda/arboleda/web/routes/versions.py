@@ -1,0 +1,98 @@
+"""Versions of the plant's files: which is at work, and putting one to work."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from fastapi import APIRouter, Path, Request
+from fastapi.concurrency import run_in_threadpool
+from fastapi.responses import JSONResponse
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from starlette.exceptions import HTTPException
+
+from arboleda.model.errors import PayloadError
+
+from ..auth import require
+from ..plain_json import PlainJson
+from ..plant_api import PlantApi
+from ..schema import ResponseModel
+from ..versions_api import VersionsApi
+from .draft import REFUSED, SHIPPED, AppliedDraft
+
+MAY = "putting a version to work"
+Number = Annotated[int, Path(ge=1, le=1_000_000)]
+
+
+class PutRequest(BaseModel):
+    """Body: these keys and no others, of exactly these types."""
+
+    model_config = ConfigDict(extra="forbid", strict=True)
+
+    name: str = Field(
+        min_length=1, max_length=60, description="Of who does it, for the journal.", examples=["Ana"]
+    )
+
+
+class VersionRow(ResponseModel):
+    number: int
+    at: str = Field(description="In UTC, ISO 8601.")
+    by: str
+    note: str
+    changes: list[str]
+    is_at_work: bool
+
+
+class AtWork(ResponseModel):
+    number: int | None = Field(description="Null where no version has what is at work.")
+    at: str
+
+
+class CellVersion(ResponseModel):
+    cell: str
+    version: int | None = Field(description="Which it took while the plant ran; null: as the plant started.")
+    following: int | None = Field(description="Which it takes next, if any.")
+    when: str = Field(description="now, or when which task has ended.")
+
+
+class VersionList(ResponseModel):
+    at_work: AtWork
+    versions: list[VersionRow] = Field(description="Oldest first.")
+    cells: list[CellVersion]
+
+
+def routes(side: PlantApi) -> APIRouter:
+    """Register the routes."""
+    api = APIRouter(prefix="/api/versions")
+
+    @api.get("", response_model=VersionList, responses=REFUSED)
+    async def versions() -> JSONResponse:
+        """The versions that were put to work, which one is, and what each cell works by."""
+        return PlainJson(await run_in_threadpool(_versions(side).listed))
+
+    described = {"requestBody": {"content": {"application/json": {"schema": PutRequest.model_json_schema()}}}}
+
+    @api.post("/{number}/put", response_model=AppliedDraft, responses=REFUSED, openapi_extra=described)
+    async def put(request: Request, number: Number) -> JSONResponse:
+        """Put a version to work, as when going back to it: a cell takes it once its task has ended."""
+        require(request.scope["arboleda.role"], MAY)
+        desk, told = _versions(side), _read(await request.body())
+        return PlainJson(await run_in_threadpool(lambda: desk.put(number, told.name)))
+
+    return api
+
+
+def _versions(side: PlantApi) -> VersionsApi:
+    """The plant's versions; 404 if it has none."""
+    found = side.versions
+    if found is None:
+        raise HTTPException(404, SHIPPED)
+    return found
+
+
+def _read(body: bytes) -> PutRequest:
+    try:
+        return PutRequest.model_validate_json(body)
+    except ValidationError as error:
+        found = error.errors(include_url=False, include_context=False, include_input=False)[0]
+        where = ".".join(map(str, found["loc"])) or "the body"
+        raise PayloadError(f"{where[:80]}: {found['msg'].lower()}.") from None

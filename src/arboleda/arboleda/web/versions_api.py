@@ -1,0 +1,23 @@
+"""The versions of a plant's files as the web server sees them: which is at work, and putting one to work."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from typing import Protocol
+
+from .draft_api import State
+
+
+class VersionsApi(Protocol):
+    """Versions of one plant, as plain data; DraftRefused, and nothing is changed, where it cannot be."""
+
+    @abstractmethod
+    def listed(self) -> State:
+        """`at_work`, `versions` oldest first, and `cells` with what each works by and what it waits for."""
+
+    @abstractmethod
+    def put(self, number: int, by: str) -> State:
+        """Put a kept version to work, and bring its files back where they are others now: its `version`, the
+        `cells` and when each takes it, and what of it needs a `restart`; or the `problems` for which nothing
+        was changed. It waits for seconds.
+        """

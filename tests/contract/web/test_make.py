@@ -1,0 +1,134 @@
+"""The routes of the draft as a plant: who may, what they take, and what they answer."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from arboleda.web.auth import Role
+from arboleda.web.draft_api import DraftRefused
+
+STATE = {"file": "plant.yaml", "editor": None, "changes": [], "waiting": [], "undo": 0, "redo": 0}
+STATE |= {"values": {}}
+CELLS = {"cells": [], "faults": [], "problems": ["plant.yaml:1:1: no"]}
+CARRY = {"editor": "ana-12345", "cell": "lab", "recipe": "to_tray", "robot": "arm", "start": "a", "end": "b"}
+FAULT = {"kind": "reboot", "at": 2.5, "seconds": 0.0, "target": "arm", "amount": 0.0, "word": "will"}
+POSTS = {
+    "carry": CARRY,
+    "drawn/check": {"cell": "lab", "text": "<root/>"},
+    "runs/try": {},
+    "runs/try/end": {},
+}
+
+
+class Make:
+    """Answers what a bench answers, and notes what it was asked."""
+
+    def __init__(self, file: Path) -> None:
+        self.asked: list[tuple[Any, ...]] = []
+        self.file: Path | None = file
+
+    def cells(self) -> dict[str, Any]:
+        return CELLS
+
+    def shown(self, cell: str, recipe: str) -> str:
+        self.asked.append((cell, recipe))
+        return "<root/>"
+
+    def carry(self, editor: str, recipe: str, way: dict[str, str]) -> dict[str, Any]:
+        self.asked.append((editor, recipe, way))
+        if recipe == "known":
+            raise DraftRefused("'known.xml' is there already")
+        return STATE
+
+    def begin(self, what: str, wanted: dict[str, Any]) -> dict[str, Any]:
+        self.asked.append((what, wanted))
+        return {"state": "running"}
+
+    def run(self, what: str) -> dict[str, Any]:
+        return {"state": "running", "sentence": "1 of 9", "doing": "proving", "done": 1, "total": 9}
+
+    def end(self, what: str) -> dict[str, Any]:
+        return {"state": "stopped"}
+
+    def result(self, what: str) -> Path | None:
+        return self.file
+
+
+@pytest.fixture
+def make(plant: Any, tmp_path: Path) -> Make:
+    (tmp_path / "result.json").write_text('{"runs": 3}')
+    plant.make = Make(tmp_path / "result.json")
+    return plant.make
+
+
+def test_cells_are_told_with_their_problems(web: Any, make: Make) -> None:
+    assert web.get("/api/make/cells").json() == CELLS
+
+
+def test_the_tree_of_a_recipe_is_xml(web: Any, make: Make) -> None:
+    answer = web.get("/api/make/recipe?cell=lab&recipe=weigh")
+    assert (answer.text, answer.headers["content-type"]) == ("<root/>", "application/xml")
+    assert make.asked == [("lab", "weigh")]
+
+
+def test_a_part_is_carried_by_a_new_recipe(web: Any, make: Make) -> None:
+    assert web.post("/api/make/carry", json=CARRY).json() == STATE
+    way = {"cell": "lab", "robot": "arm", "start": "a", "end": "b"}
+    assert make.asked == [("ana-12345", "to_tray", way)]
+
+
+@pytest.mark.parametrize("name", ["", "To Tray", "../x", "9a", "x" * 41])
+def test_what_is_no_name_of_a_recipe_is_refused(web: Any, make: Make, name: str) -> None:
+    answer = web.post("/api/make/carry", json=CARRY | {"recipe": name})
+    assert answer.status_code == 422 and "recipe" in answer.json()["sentence"] and make.asked == []
+
+
+def test_a_recipe_that_is_there_is_a_conflict(web: Any, make: Make) -> None:
+    answer = web.post("/api/make/carry", json=CARRY | {"recipe": "known"})
+    assert answer.status_code == 409 and "already" in answer.json()["sentence"]
+
+
+def test_a_tryout_begins_with_its_faults_and_says_how_far_it_is(web: Any, make: Make) -> None:
+    begun = web.post("/api/make/runs/try", json={"task": "lab", "faults": [FAULT]}).json()
+    assert begun["state"] == "running" and make.asked[0][1]["faults"] == [FAULT]
+    assert web.get("/api/make/runs/try").json()["done"] == 1
+    assert web.post("/api/make/runs/try/end").json()["state"] == "stopped"
+    assert web.get("/api/make/runs/try/result").json() == {"runs": 3}
+
+
+@pytest.mark.parametrize(
+    "body", [{"budget_s": 0}, {"budget_s": 601}, {"faults": [FAULT] * 3}, {"task": "x" * 201}, {"more": 1}]
+)
+def test_a_wish_beyond_its_limits_is_refused(web: Any, make: Make, body: dict[str, Any]) -> None:
+    assert web.post("/api/make/runs/prove", json=body).status_code == 422 and make.asked == []
+
+
+def test_only_what_there_is_can_be_run(web: Any, make: Make) -> None:
+    assert web.get("/api/make/runs/rm").status_code == 422
+
+
+def test_nothing_came_of_it_yet(web: Any, make: Make) -> None:
+    make.file = None
+    assert web.get("/api/make/runs/prove/result").status_code == 404
+
+
+@pytest.mark.parametrize(
+    "path", ["cells", "recipe?cell=a&recipe=b", "palette?cell=a", "runs/try", "runs/try/result"]
+)
+def test_a_viewer_may_not_look(open_to_all: Any, make: Make, path: str) -> None:
+    assert open_to_all.client(token=Role.VIEWER).get(f"/api/make/{path}").status_code == 403
+
+
+@pytest.mark.parametrize("path", POSTS)
+def test_a_viewer_may_do_nothing(open_to_all: Any, make: Make, path: str) -> None:
+    answer = open_to_all.client(token=Role.VIEWER).post(f"/api/make/{path}", json=POSTS[path])
+    assert answer.status_code == 403 and make.asked == []
+
+
+def test_the_shipped_plant_has_none(web: Any, plant: Any) -> None:
+    plant.make = None
+    answer = web.get("/api/make/cells")
+    assert answer.status_code == 404 and "arboleda new" in answer.json()["sentence"]

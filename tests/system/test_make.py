@@ -1,0 +1,240 @@
+"""A cell made on the page of its plant, in a real browser: drawn, tried, proved, mended, and put to work."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import httpx
+import pytest
+
+from arboleda.plant_file.loader import load
+from arboleda.plant_file.versions import Versions
+
+from ..chromium import leave
+from ..patience import PATIENCE_MS
+from .page import connected, running
+from .test_accessible import Eye
+
+pytestmark = [pytest.mark.system, pytest.mark.requires("chromium", "playwright")]
+
+PLANT = """# A cell for tests of the page.
+name: lab
+uses: [rest.xml]
+kinds:
+  lamp: # shines while the arm works
+    facts: {lit: bool}
+    verbs:
+      shine: {effect: switch, sets: {lit: true}}
+      dark:  {effect: switch, sets: {lit: false}}
+cells:
+  cell:
+    devices:
+      loader: {kind: arm, model: scara}
+      lamp:   {kind: lamp}
+    targets:
+      home: {loader: {deg: [0, 0], mm: 0}}
+      feed: {loader: {deg: [60, 20], mm: 80, approach_mm: 40}}
+"""
+REST = '<root BTCPP_format="4"><BehaviorTree ID="Rest"><loader_home/></BehaviorTree></root>\n'
+LAPTOP = {"viewport": {"width": 1366, "height": 900}, "locale": "en"}
+PHONE = {"viewport": {"width": 390, "height": 844}, "has_touch": True, "locale": "es"}
+PANELS = ("draft", "cells", "try", "prove", "device")
+LONG_MS = 4 * PATIENCE_MS  # of what takes another process
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    (tmp_path / "plant.yaml").write_text(PLANT)
+    (tmp_path / "rest.xml").write_text(REST)
+    return tmp_path
+
+
+@pytest.fixture
+def address(folder: Path) -> Iterator[str]:
+    with running(folder / "state", "--plant", str(folder / "plant.yaml")) as found:
+        yield found
+
+
+class Person:
+    """Person at a page: what is pressed is counted; a script that fails fails the test."""
+
+    def __init__(self, browser: Any, address: str, **screen: Any) -> None:
+        self.presses = 0
+        self.troubles: list[str] = []
+        self.context = browser.new_context(**screen)
+        self.page = self.context.new_page()
+        self.page.set_default_timeout(PATIENCE_MS)
+        self.page.on("pageerror", lambda error: self.troubles.append(f"{error} {error.stack}"))
+        self.page.goto(f"{address}/?tab=make")
+        connected(self.page)
+        self.page.wait_for_selector(".make-cell", state="attached", timeout=LONG_MS)
+
+    def press(self, selector: str) -> None:
+        self.presses += 1
+        self.page.click(selector)
+
+    def write(self, selector: str, text: str) -> None:
+        self.presses += 1
+        self.page.fill(selector, text)
+
+    def sees(self, selector: str, text: str) -> None:
+        self.page.wait_for_function(
+            "([at, words]) => document.querySelector(at)?.textContent.includes(words)",
+            arg=[selector, text],
+            timeout=LONG_MS,
+        )
+
+    def part(self, name: str) -> None:
+        self.press(f"[data-tab={name}]")
+
+    def panel(self, name: str) -> None:
+        self.press(f"[data-make-panel={name}]")
+
+    def go(self) -> None:
+        leave(self.context)
+        assert self.troubles == []
+
+
+def test_a_recipe_is_made_tried_proved_mended_and_put_to_work(
+    browser: Any, address: str, folder: Path
+) -> None:
+    me = Person(browser, address, **LAPTOP)
+    page = me.page
+    # a target, as a copy of another one that is turned away from it
+    me.panel("cells")
+    me.write(".make-target-name", "tray")
+    page.select_option(".make-target-like", "feed")
+    me.press("[data-new-target=cell]")
+    page.wait_for_selector("[aria-label='tray loader']")
+    me.write("[aria-label='tray loader'] input >> nth=0", "-45")
+    page.press("[aria-label='tray loader'] input >> nth=0", "Tab")
+    # a recipe of it, drawn further: a lamp before, a retry around
+    me.write("#make-recipe", "to_tray")
+    page.wait_for_selector("#make-end option[value=tray]", state="attached")
+    page.select_option("#make-end", "tray")
+    me.press("[data-make=carry]")
+    page.wait_for_selector("#draw-rows [data-path='1.0'][aria-label*=loader_let_go]", timeout=LONG_MS)
+    me.press("#draw-rows [data-path='0']")
+    me.press("[data-how=before]")
+    me.write("#draw-search", "lamp_shine")
+    me.press("[data-kind=lamp_shine]:visible")
+    page.wait_for_selector("#draw-rows [data-path='0'][aria-label*=lamp_shine]")
+    me.press("[data-how=around]")
+    me.write("#draw-search", "RetryUntil")
+    me.press("[data-kind=RetryUntilSuccessful]:visible")
+    page.wait_for_selector("#draw-rows [data-path='0'][data-mark=mistake]")
+    me.write("[data-port=num_attempts]", "2")
+    page.press("[data-port=num_attempts]", "Tab")
+    page.wait_for_selector("#draw-rows [data-path='0'][aria-label*='num_attempts=2']:not([data-mark])")
+    # simulated, and looked at
+    me.part("make")
+    me.panel("try")
+    page.wait_for_selector("#make-try_recipe option[value='cell to_tray']", state="attached", timeout=LONG_MS)
+    page.select_option("#make-try_recipe", "cell to_tray")
+    me.press("[data-make=try]")
+    me.sees("#make-try-state", ": done")
+    # what nobody notices, and the check that would
+    me.panel("prove")
+    page.select_option("#make-prove_recipe", "to_tray")
+    page.select_option("#make-prove_kind", "forgets")
+    page.select_option("#make-budget", "600")
+    me.press("[data-make=prove]")
+    page.wait_for_selector("#make-proof [data-find-check]", timeout=2 * LONG_MS)
+    me.press("#make-proof li:has-text('lamp.lit is false') [data-find-check] >> nth=0")
+    me.sees("#make-proof .make-check", "lamp: lit becomes true would notice it")
+    me.press("#make-proof .make-check button")
+    me.sees("#make-proof .make-check", "The check is in the draft")
+    # put to work
+    me.panel("draft")
+    me.sees("#make-changes", "to_tray.xml")
+    me.press("[data-make=keep]")
+    me.press("dialog button.primary")
+    me.sees("#make-note", "version")
+    me.go()
+    kept = load(folder / "plant.yaml")
+    assert [each.name for each in kept.cells[0].recipes] == ["rest", "to_tray"]
+    assert 'lamp_becomes lit="true"' in (folder / "to_tray.xml").read_text()
+    assert "# shines while the arm works" in (folder / "plant.yaml").read_text()
+    assert [each.by for each in Versions(folder / "plant.yaml").all()][-1] == "somebody"
+    assert me.presses <= 40
+
+
+def test_a_tryout_is_looked_at_as_a_record_and_the_way_leads_back(browser: Any, address: str) -> None:
+    me = Person(browser, address, **LAPTOP)
+    me.panel("try")
+    me.press("[data-make=try]")
+    me.sees("#make-try-state", ": done")
+    me.page.select_option("#make-fault", label="reboot loader will")
+    me.press("[data-make=try_fault]")
+    me.sees("#make-try-state", "reboot loader: ")
+    me.press("#make-tried a >> nth=1")
+    me.page.wait_for_selector("#record-slider", timeout=LONG_MS)
+    me.sees("h1", "the draft, simulated")
+    assert not me.page.is_visible(".to-teach")
+    me.press("[data-past=failure_after]")
+    me.page.wait_for_selector("[data-cell=cell] g.node", timeout=LONG_MS)
+    me.press(".record-leave")
+    me.page.wait_for_selector("#make-who", timeout=LONG_MS)
+    me.go()
+
+
+def test_a_new_device_is_declared_as_a_person_would_write_it(
+    browser: Any, address: str, folder: Path
+) -> None:
+    me = Person(browser, address, **LAPTOP)
+    me.panel("device")
+    me.write("#make-role", "door")
+    me.write("#make-new_kind", "gate")
+    fact, verb = "#make-facts .make-form >> nth=0 >> ", "#make-verbs .make-form >> nth=0 >> "
+    me.write(f"{fact}[data-key=fact]", "at")
+    me.write(f"{fact}[data-key=type]", "open, closed")
+    me.write(f"{verb}[data-key=verb]", "open")
+    me.write(f"{verb}[data-key=effect]", "motion")
+    me.write(f"{verb}[data-key=sets]", "at: open")
+    me.press("[data-make=add_device]")
+    me.sees("#make-note", "door is in the draft, a gate")
+    me.panel("draft")
+    me.sees("#make-problems", "Nothing to object to")
+    me.press("[data-make=keep]")
+    me.press("dialog button.primary")
+    me.sees("#make-note", "version")
+    me.go()
+    text = (folder / "plant.yaml").read_text()
+    assert re.search(r"^      door: +\{kind: gate\}$", text, re.MULTILINE)
+    assert "# shines while the arm works" in text
+    assert load(folder / "plant.yaml").cells[0].roles["door"].fact_names == ("at",)
+
+
+def test_the_second_person_sees_who_edits_and_takes_over(browser: Any, address: str) -> None:
+    ana = {"editor": "test-of-ana", "name": "Ana"}
+    httpx.post(f"{address}/api/draft/take", json=ana).raise_for_status()
+    me = Person(browser, address, **LAPTOP)
+    me.sees("#make-who", "Ana edits the draft since")
+    me.panel("cells")
+    me.write(".make-target-name", "tray")
+    me.press("[data-new-target=cell]")
+    me.sees("#make-note", "Ana edits this draft")
+    me.press("[data-make=take]")
+    me.sees("#make-who", "You edit the draft")
+    me.press("[data-new-target=cell]")
+    me.page.wait_for_selector("[aria-label='tray loader']")
+    me.press("[data-make=undo]")
+    me.page.wait_for_selector("[aria-label='tray loader']", state="detached")
+    me.go()
+
+
+@pytest.mark.requires("axe_playwright_python")
+@pytest.mark.parametrize("screen", [LAPTOP, PHONE], ids=["laptop", "phone"])
+def test_axe_finds_nothing_in_any_panel(browser: Any, address: str, screen: dict[str, Any]) -> None:
+    me = Person(browser, address, **screen)
+    eye = Eye(me.page)
+    for panel in PANELS:
+        me.panel(panel)
+        eye.look(panel)
+        width = me.page.evaluate("document.documentElement.scrollWidth")
+        assert width <= screen["viewport"]["width"], f"{panel} is {width} px wide"
+    assert not eye.violations, "\n".join(eye.violations)
+    me.go()

@@ -1,0 +1,64 @@
+"""New trees in which a part is carried: with a robot's own hand, with a tool, and what is refused."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from arboleda.bt_xml.editing import carry, desk
+from arboleda.model.errors import ArboledaError
+from arboleda.model.plant_model import Cell, PlantModel
+from arboleda.plant_file.loader import load
+
+EXAMPLES = Path(__file__).parents[3] / "examples"
+PLANT = """name: lab
+uses: [t.xml]
+cells:
+  lab:
+    devices: {arm: {kind: arm, model: scara}}
+    targets:
+      home: {arm: {deg: [0, 0], mm: 0}}
+      feed: {arm: {deg: [60, 20], mm: 80}}
+      tray: {arm: {deg: [-45, 20], mm: 80}}
+"""
+EMPTY = '<root BTCPP_format="4"><BehaviorTree ID="T"><arm_home/></BehaviorTree></root>'
+
+
+@pytest.fixture
+def lab(tmp_path: Path) -> PlantModel:
+    (tmp_path / "plant.yaml").write_text(PLANT)
+    (tmp_path / "t.xml").write_text(EMPTY)
+    return load(tmp_path / "plant.yaml")
+
+
+def nodes(model: PlantModel, cell: Cell, text: str) -> list[str]:
+    drawn = desk.drawn(model, cell.name, text)
+    assert drawn["marks"] == []
+    return [each["kind"] for each in drawn["trees"][0]["nodes"]]
+
+
+def test_a_robot_takes_a_part_with_its_own_hand(lab: PlantModel) -> None:
+    cell = lab.cells[0]
+    text = carry.tree(cell, "to_tray", robot="arm", start="feed", end="tray")
+    assert nodes(lab, cell, text) == [
+        "Sequence", "arm_visit", "arm_grip", "arm_visit", "arm_let_go", "arm_home"
+    ]  # fmt: skip
+    assert '<BehaviorTree ID="ToTray" _description="Take a part from feed to tray.">' in text
+
+
+def test_a_tool_is_told_its_own_verbs_with_values_that_it_takes() -> None:
+    model = load(EXAMPLES / "own_tree/plant.yaml")
+    cell = model.cells[0]
+    text = carry.tree(cell, "out", robot="loader", start="vise", end="done")
+    assert nodes(model, cell, text)[1:5] == ["loader_visit", "jaw_close", "loader_visit", "jaw_open"]
+    assert [*carry.carriers(cell)] == ["loader"]
+
+
+@pytest.mark.parametrize(
+    ("robot", "end", "why"),
+    [("lamp", "tray", "has nothing to take a part with"), ("arm", "moon", "no target of arm")],
+)
+def test_who_cannot_carry_it_there_is_refused(lab: PlantModel, robot: str, end: str, why: str) -> None:
+    with pytest.raises(ArboledaError, match=why):
+        carry.tree(lab.cells[0], "x", robot=robot, start="feed", end=end)

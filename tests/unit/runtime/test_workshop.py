@@ -1,0 +1,67 @@
+"""The draft as a plant in a process of its own: what it answers, and what it does with a wrong draft."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from arboleda.recorder.preamble import PlantFiles
+from arboleda.runtime.make.workshop import Workshop
+from arboleda.web.draft_api import DraftRefused
+
+OWN_TREE = Path(__file__).parents[3] / "examples/own_tree/plant.yaml"
+BASE = PlantFiles(
+    plant="plant.yaml",
+    contents={"plant.yaml": OWN_TREE.read_bytes(), "tend.xml": OWN_TREE.with_name("tend.xml").read_bytes()},
+)
+
+
+@pytest.fixture
+def workshop() -> Iterator[Workshop]:
+    made = Workshop(lambda: OWN_TREE)
+    yield made
+    made.stop()
+
+
+def changed(name: str, before: bytes, after: bytes) -> PlantFiles:
+    text = BASE.contents[name]
+    assert before in text
+    return PlantFiles(plant=BASE.plant, contents={**BASE.contents, name: text.replace(before, after)})
+
+
+def test_a_new_target_is_one_of_the_draft_at_once(workshop: Workshop) -> None:
+    draft = changed(
+        "plant.yaml", b"      vise:", b"      rack: {loader: {deg: [10, 20], mm: 5}}\n      vise:"
+    )
+    [cell] = workshop.cells(BASE, draft)["cells"]
+    assert "rack" in [each["name"] for each in cell["targets"]] and cell["carriers"] == ["loader"]
+    assert [(each["name"], each["sort"], each["file"]) for each in cell["recipes"]] == [
+        ("tend", "drawn", "tend.xml")
+    ]
+    text = workshop.carrying(
+        BASE, draft, "cell", "to_rack", {"robot": "loader", "start": "vise", "end": "rack"}
+    )
+    assert workshop.drawn(BASE, draft, "cell", text, None)["marks"] == []
+    wrong = workshop.drawn(BASE, draft, "cell", text.replace("rack", "moon"), None)["marks"]
+    assert "moon" in wrong[0]["sentence"]
+
+
+def test_a_draft_that_cannot_be_read_is_shown_as_it_was_with_its_problems(workshop: Workshop) -> None:
+    broken = changed("plant.yaml", b"kind: person", b"kind: persn")
+    found = workshop.cells(BASE, broken)
+    assert [each["name"] for each in found["cells"]] == ["cell"]
+    assert any(f"{OWN_TREE}:" in each and "persn" in each for each in found["problems"])
+    assert workshop.cells(BASE, BASE)["problems"] == []
+
+
+def test_a_process_that_ended_begins_again(workshop: Workshop) -> None:
+    assert "BehaviorTree" in workshop.shown(BASE, BASE, "cell", "tend")
+    workshop.stop()
+    assert "BehaviorTree" in workshop.shown(BASE, BASE, "cell", "tend")
+
+
+def test_what_is_not_there_is_refused_with_a_sentence(workshop: Workshop) -> None:
+    with pytest.raises(DraftRefused, match="'moon' is no recipe of cell"):
+        workshop.shown(BASE, BASE, "cell", "moon")
