@@ -16,7 +16,7 @@ import pytest
 
 from arboleda.adapters.broker_login import address
 from arboleda.adapters.mqtt import MqttClient
-from arboleda.runtime import place_claim
+from arboleda.runtime import host_claim
 from arboleda.wire.transport import Connection, Delivery
 
 from ..patience import PATIENCE_S
@@ -97,7 +97,7 @@ def test_an_idle_plant_whose_directory_was_moved_ends_and_goes_on_with_it_once_i
     assert typed("submit", "sis_a 0B 1 #one") == (0, "done: sis_a 0B 1 (id one)")
 
 
-@pytest.mark.skipif(not place_claim.HAS_ABSTRACT, reason="only Linux has names without files")
+@pytest.mark.skipif(not host_claim.HAS_ABSTRACT, reason="only Linux has names without files")
 def test_no_second_plant_starts_beside_one_whose_directory_was_deleted(
     arboleda: Callable[..., Any], tmp_path: Path
 ) -> None:

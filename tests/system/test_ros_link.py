@@ -47,6 +47,8 @@ from arboleda.model.messages import (
     Verb,
 )
 from arboleda.model.plant_model import Evidence, Link, MotionState, PlantModel
+from arboleda.runtime import host_claim
+from arboleda.runtime.host_claim import node_claim
 from arboleda.runtime.parts.orchestrator import Orchestrator
 from arboleda.store.sqlite import Store
 from arboleda.testing import shipped
@@ -753,12 +755,23 @@ def test_a_second_commander_at_start_is_refused_by_name(links):
     assert side.port._alone.others() == [("/ra1/joint_goals_q", "/other_plant")]
 
 
-def test_a_second_orchestrator_of_the_same_name_is_another_node(links):
+def test_discovery_finds_a_second_orchestrator_of_the_same_name(links):
+    Side(links(), "orchestrator", PLANT)  # which has claimed nothing, as on another computer
+    second = Side(links(), "orchestrator", PLANT)
+    with pytest.raises(StartError, match=r"another node already commands /.*: /orchestrator;"):
+        second.port.check_alone(PATIENCE_S)
+
+
+@pytest.mark.skipif(not host_claim.HAS_ABSTRACT, reason="only Linux has names without files")
+def test_a_second_orchestrator_on_this_computer_is_refused_without_discovery(links, ros_domain):
     first = Side(links(), "orchestrator", PLANT)
     first.port.check_alone(0.0)
     second = Side(links(), "orchestrator", PLANT)
-    with pytest.raises(StartError, match="/orchestrator"):
-        second.port.check_alone(PATIENCE_S)
+    sentence = f"commands robots as /orchestrator in ROS domain {ros_domain} of this computer"
+    with pytest.raises(StartError, match=sentence):
+        second.port.check_alone(0.0)
+    first.port.destroy()
+    node_claim(ros_domain, "/orchestrator").take()
 
 
 def test_a_heartbeat_of_the_far_future_is_refused_and_said(links, caplog):

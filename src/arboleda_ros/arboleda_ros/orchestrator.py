@@ -150,6 +150,7 @@ class OrchestratorPort(Port):
             self._offer.close()
 
     def destroy(self) -> None:
+        super().destroy()
         if self._offer is not None:
             self._offer.destroy()
 

@@ -17,6 +17,7 @@ from rclpy.subscription import Subscription
 
 from arboleda.adapters.rate_limit import RateLimit
 from arboleda.model.errors import PayloadError
+from arboleda.runtime.host_claim import node_claim
 from arboleda.wire.status import ERROR, OK, WARN
 
 from . import qos, statuses
@@ -45,6 +46,7 @@ class Port:
         self._clock = clock
         self._log = logging.getLogger(f"arboleda.ros.{node.get_name()}")
         self._alone = ExclusiveTopics(node)
+        self._claim = node_claim(node.context.get_domain_id(), node.get_fully_qualified_name())
         self._refused = 0
         self._failures = 0
         self._warnings: dict[str, None] = {}
@@ -56,6 +58,7 @@ class Port:
 
     def check_alone(self, wait_s: float = DISCOVERY_S) -> None:
         """Raise StartError as soon as another node is found that publishes what only this one may."""
+        self._claim.take()
         self._alone.check(wait_s)
 
     def close(self) -> None:
@@ -63,6 +66,7 @@ class Port:
 
     def destroy(self) -> None:
         """Release everything that does not end with the node; nothing is delivered any more."""
+        self._claim.release()
 
     def health(self) -> PortHealth:
         """The health now; a node that joined topics of this port's own is logged, each time it comes."""

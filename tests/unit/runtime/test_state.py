@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 
 from arboleda.model.errors import ArboledaError, StartError
-from arboleda.runtime import place_claim, state
+from arboleda.runtime import host_claim, state
 from arboleda.runtime.state import StateDir, default_state, find_running
 
 
@@ -190,7 +190,7 @@ def test_the_owner_notices_that_its_lock_is_not_in_its_place(tmp_path):
     owner.confirm()  # who has given it back has lost nothing
 
 
-@pytest.mark.skipif(not place_claim.HAS_ABSTRACT, reason="only Linux has names without files")
+@pytest.mark.skipif(not host_claim.HAS_ABSTRACT, reason="only Linux has names without files")
 @pytest.mark.parametrize("ways", [("demo", "demo"), ("demo", "demo/../demo"), ("demo", "link")])
 def test_a_second_owner_is_kept_out_though_the_directory_was_deleted(tmp_path, ways):
     first, second = (StateDir(tmp_path / way) for way in ways)
@@ -205,13 +205,13 @@ def test_a_second_owner_is_kept_out_though_the_directory_was_deleted(tmp_path, w
         second.confirm()
 
 
-@pytest.mark.skipif(not place_claim.HAS_ABSTRACT, reason="only Linux has names without files")
+@pytest.mark.skipif(not host_claim.HAS_ABSTRACT, reason="only Linux has names without files")
 def test_owners_of_two_directories_do_not_meet(tmp_path):
     with StateDir(tmp_path / "north"), StateDir(tmp_path / "south"):
         pass
 
 
 def test_where_no_name_is_without_a_file_the_lock_alone_keeps_owners_apart(tmp_path, monkeypatch):
-    monkeypatch.setattr(place_claim, "HAS_ABSTRACT", False)
+    monkeypatch.setattr(host_claim, "HAS_ABSTRACT", False)
     with StateDir(tmp_path), pytest.raises(StartError, match="already running"):
         StateDir(tmp_path).open()

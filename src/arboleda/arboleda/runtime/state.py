@@ -19,7 +19,7 @@ from arboleda.plant_file.user_file import read_bytes
 from arboleda.store.held_files import HeldFiles
 from arboleda.wire import epochs
 
-from .place_claim import PlaceClaim
+from .host_claim import HostClaim, place_claim
 
 STORE = "plant.sqlite"
 LOCK = "plant.lock"
@@ -90,7 +90,7 @@ class StateDir:
         self.path = path
         self._lock: int | None = None
         self._held = HeldFiles()
-        self._claim = PlaceClaim(path)
+        self._claim: HostClaim | None = None
         started = datetime.now(timezone.utc).isoformat(timespec="seconds")
         self._running = Running(pid=os.getpid(), started=started, plant=plant, store=store)
 
@@ -106,6 +106,7 @@ class StateDir:
             )
         self._lock, self._held = lock, HeldFiles([self.path / LOCK])
         try:
+            self._claim = place_claim(self.path)
             self._claim.take()
             with self._explained():
                 (self.path / FACTS).unlink(missing_ok=True)
@@ -158,7 +159,8 @@ class StateDir:
             (self.path / FACTS).unlink(missing_ok=True)
             os.close(self._lock)
             self._lock = None
-        self._claim.release()
+        if self._claim is not None:
+            self._claim.release()
 
     def confirm(self) -> None:
         """Raise ArboledaError if the lock of this process is not in its place; from any thread."""
