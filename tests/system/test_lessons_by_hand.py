@@ -186,7 +186,8 @@ def test_the_whole_plant_runs_over_ros_2_too(first: Callable[..., Any], ros_doma
 
 def test_a_running_plant_is_looked_at_and_operated(first: Callable[..., Any], tmp_path: Path) -> None:
     command, typed = terminals("10_plant")
-    shell = first(f"{command} --rate 0.1")  # still at work where each command takes seconds
+    more = '"sis_a 0B 8" "sis_a 0B 1"'  # still at work where each command takes ten seconds
+    shell = first(f"{command} {more} --rate 0.1")
     shell.wait_for("running")
     *before, resume = typed
     printed = [second_terminal(line, tmp_path) for line in before]
