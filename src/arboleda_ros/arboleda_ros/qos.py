@@ -78,7 +78,7 @@ class Matches:
         return 0
 
     def now(self) -> Any:
-        """How many publishers ever came, and how many are there: `total_count`, `current_count`."""
+        """Numbers of publishers that ever came, and that are there: `total_count`, `current_count`."""
         with self._event:
             return self._event.take_event()
 

@@ -254,10 +254,6 @@ class Belief:
         return self.q if self.is_located else None
 
     @property
-    def known_node(self) -> int | None:
-        return self.node if self.is_located else None
-
-    @property
     def unhomed(self) -> bool:
         """True where its position means nothing: it reports so, or it must have rebooted."""
         return self.displaced or self.homed is False or self.state is MotionState.NOT_HOMED

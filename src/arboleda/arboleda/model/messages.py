@@ -83,7 +83,7 @@ class Course:
     begun: Mapping[str, float]
 
     def left(self, step: str, seconds: float) -> float | None:
-        """What was left of it so many s after this step had begun, and at least what was left when the next
+        """Time in s that was left so many s after this step had begun, at least what was left when the next
         one began; None where it did not come to this step.
         """
         at = self.begun.get(step)
@@ -263,7 +263,7 @@ class Absence:
 
 @dataclass(frozen=True, kw_only=True)
 class RevisionAnswer:
-    """What became of a request to put a version to work; `refusal` says why nothing was, None where it was.
+    """Answer to a request to put a version to work; `refusal` says why nothing was, None where it was.
 
     `waits` has the cells that take it later, each with the task that has to end before, "" where something
     else has to; all others have it. `cancelled` are tasks that waited and that it does not offer any more.
@@ -459,8 +459,8 @@ class OperatorRequest:
 
 @dataclass(frozen=True, kw_only=True)
 class Jog:
-    """Who teaches a cell holds a button, or lets go of it: `session` is the number of the act that began the
-    teaching, `number` counts the presses in it.
+    """Press of a button by the person who teaches a cell, or its release: `session` is the number of the act
+    that began the teaching, `number` counts the presses in it.
 
     Its robot goes towards `goal`, or carries out the verb `word` with its values. A goal may be another one
     while the button is held. What is held has to be said again and again: see `HOLD_S` in `core/teaching.py`.

@@ -74,11 +74,6 @@ class Parts:
         """Let a recipe say anew where its parts come from."""
         self.back, self.origins = {}, set()
 
-    def set_origin(self, robot: str, pose: Pose) -> None:
-        """Let a recipe say where the next part of a robot comes from, whatever an earlier one has noted."""
-        self.origins.discard(robot)
-        self.back[robot] = pose
-
     def note_origin(self, robot: str, pose: Pose) -> None:
         """Note that a robot that holds nothing takes here what it will hold: a recovery brings that back."""
         given = robot in self.back and robot not in self.origins  # the recipe has set it

@@ -14,7 +14,6 @@ from .view import devices_once
 
 TASK_FAILED = Phrase("event.task", "{task}: {why}")
 EVENTS = 1000  # kept; older ones are forgotten
-ENDED_BADLY = frozenset({"failed", "refused"})
 
 Event = dict[str, Any]
 Row = dict[str, Any]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import MISSING, Field, fields
 from typing import Annotated, Any, Literal, Union, get_type_hints
 
-from pydantic import BaseModel, ConfigDict, TypeAdapter, create_model
+from pydantic import BaseModel, ConfigDict, create_model
 from pydantic import Field as Described
 
 from arboleda.bt_xml.editing import operations
@@ -111,7 +111,6 @@ NODE = _form("NewNode", NewNode)
 FORMS = {do: _form(each.__name__, each, do=(Literal[do], ...)) for do, each in OPERATIONS.items()}
 AnyForm = Annotated[Union[tuple(FORMS.values())], Described(discriminator="do")]  # noqa: UP007 - of a tuple
 EditForm: Any = create_model("EditForm", __base__=TreeForm, operation=(AnyForm, ...))
-EDIT: TypeAdapter[Any] = TypeAdapter(EditForm)
 
 
 def operation_of(form: BaseModel) -> Operation:

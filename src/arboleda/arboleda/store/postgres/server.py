@@ -37,7 +37,6 @@ WORDS = {  # advice by the class or the code of PostgreSQL's error
     "42501": "let this user use and make schemas and tables there",
     "53": "make room on the server, and start again",
 }
-CONNECTING = r"^connection failed: (connection to server .*? failed: )?(FATAL: *)?"
 T = TypeVar("T")
 
 

@@ -76,7 +76,7 @@ class WantedFault(BaseModel):
 
 
 class Wanted(BaseModel):
-    """What is tried: a task, with answers and faults; or proved: these recipes, for so long."""
+    """Task to be tried, with answers and faults; or recipes to be proved, for so long."""
 
     model_config = ConfigDict(extra="forbid")
 
@@ -142,7 +142,7 @@ def _draw(api: APIRouter, side: PlantApi) -> None:
 def _run(api: APIRouter, side: PlantApi) -> None:
     @api.get("/runs/{what}", response_model=RunState, responses=REFUSED)
     async def run(request: Request, what: What) -> JSONResponse:
-        """How far it is."""
+        """Progress of the run."""
         return PlainJson(_make(side, request).run(what))
 
     @api.post(
@@ -160,7 +160,7 @@ def _run(api: APIRouter, side: PlantApi) -> None:
 
     @api.get("/runs/{what}/result", response_model=dict[str, Any], responses=REFUSED)
     async def result(request: Request, what: What) -> Response:
-        """What came of the last one."""
+        """Result of the last run."""
         file = _make(side, request).result(what)
         if file is None:
             raise HTTPException(404, "Nothing has come of it yet.")

@@ -110,7 +110,7 @@ def routes(side: PlantApi) -> APIRouter:
 
     @api.get("/{cell}", response_model=TeachState, responses=REFUSED)
     async def state(cell: str, request: Request) -> JSONResponse:
-        """Who teaches a cell, what its devices can be told, and its targets."""
+        """Teacher of a cell, the commands that its devices take, and its targets."""
         desk = _desk(side, request)
         return await _answered(lambda: desk.state(cell))
 
