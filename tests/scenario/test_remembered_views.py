@@ -17,8 +17,8 @@ from arboleda.views.remembered import RestingCells
 from ..lengths import length
 
 CYCLES = 1
-FEW = [(1, False), (3, False), (6, True)]  # in which cells rest that share nothing
-SEEDS = length(FEW, [*FEW, *product(range(7, 60), (False, True))])
+FEW = [(3, False), (8, True)]  # in which cells rest that share nothing
+SEEDS = length(FEW, list(dict.fromkeys([*FEW, *product(range(1, 60), (False, True))])))
 
 
 class Onlooker:
