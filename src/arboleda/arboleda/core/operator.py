@@ -10,7 +10,7 @@ from arboleda.dispatch.belief import ONLY_DRAWN
 from arboleda.dispatch.dispatcher import Dispatcher, was_broken_off
 from arboleda.dispatch.ledger import Entry, State
 from arboleda.dispatch.zones import NONE, Zones
-from arboleda.model.commands import Question
+from arboleda.model.commands import Home, Question
 from arboleda.model.errors import ArboledaError, IllegalTransition
 from arboleda.model.messages import Fact, Failure, Journal, OperatorRequest, Outcome, Reason, TaskState, Verb
 from arboleda.model.outside import quoted
@@ -646,7 +646,7 @@ class Operator:
             return None
         if not has_routine:
             return CANNOT_REPORT(robot=name)
-        obstacle = self._dispatcher.obstacle_to_homing(name)
+        obstacle = self._dispatcher.objection(partial(Home, robot=name))
         return obstacle.sentence if obstacle else None
 
     def _latch(self, cell: CellRun, robots: set[str]) -> None:

@@ -565,8 +565,7 @@ class Plant:
     def _refuse_trigger(self, request: TaskRequest, task: Task) -> None:
         """Raise QueueFull for a machine's start signal that the cell does not take now."""
         cell = self.cells[task.order.cell]
-        at_work = [each.order.recipe for each in (cell.task, *cell.queue) if each]
-        busy = cell.cell.refuses_triggers(at_work) if request.trigger else None
+        busy = cell.queue.in_its_own_cycle(cell.task) if request.trigger else None
         if busy is not None:
             raise QueueFull(OWN_CYCLE(arm=busy))
 

@@ -49,6 +49,13 @@ class TaskQueue(deque[Task]):
             return one_or_more(cell=self._cell.name, number=len(self))
         return PAUSED(cell=self._cell.name)
 
+    def in_its_own_cycle(self, running: Task | None) -> str | None:
+        """The robot whose own cycle keeps start signals away while this task runs or others wait, if any."""
+        recipes = {task.order.recipe for task in (running, *self) if task is not None}
+        alone = (each.alone for each in self._cell.recipes if each.alone and each.name in recipes)
+        robots = (self._cell.roles[role] for role in alone)
+        return next((robot.name for robot in robots if not robot.queue_triggers), None)
+
     def add(self, task: Task) -> None:
         """Take a task in; QueueFull at the limit."""
         if self.is_full:

@@ -223,10 +223,6 @@ class Dispatcher:
         """Why an effector cannot be opened by hand now."""
         return self._obstacle_to(self.model.robots[robot].let_go(id=""), by_hand=True)
 
-    def obstacle_to_homing(self, robot: str) -> Failure | None:
-        """Why a robot would not run its homing routine now."""
-        return self._obstacle_to(Home(id="", robot=robot), by_hand=False)
-
     def latch(self, robot: str) -> None:
         """Stop a robot and let nothing move it until `unlatch`, whatever restarts meanwhile."""
         self.latched.add(robot)

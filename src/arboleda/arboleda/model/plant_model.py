@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Collection, Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from enum import Enum
 from functools import cached_property
@@ -509,13 +509,6 @@ class Cell:
 
     def recipe(self, name: str) -> Recipe:
         return next(recipe for recipe in self.recipes if recipe.name == name)
-
-    def refuses_triggers(self, at_work: Collection[str]) -> str | None:
-        """The robot whose own cycle keeps start signals of machines away, while tasks of these recipes run
-        or wait; None where none does.
-        """
-        alone = (self.roles[each.alone] for each in self.recipes if each.alone and each.name in at_work)
-        return next((robot.name for robot in alone if not robot.queue_triggers), None)
 
     def start_of(self, robot: str) -> Position | None:
         """The position of a virtual robot at first; None for one that has no place."""
