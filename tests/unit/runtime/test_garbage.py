@@ -5,6 +5,7 @@ from __future__ import annotations
 import gc
 from collections.abc import Iterator
 from typing import Any
+from unittest import mock
 
 import pytest
 
@@ -33,7 +34,6 @@ class Collections:
 @pytest.fixture
 def collections(monkeypatch: pytest.MonkeyPatch) -> Iterator[Collections]:
     before, heard = gc.get_threshold(), Collections(monkeypatch)
-    gc.unfreeze()
     gc.set_threshold(*OFTEN)
     gc.callbacks.append(heard.heard)
     try:
@@ -45,13 +45,23 @@ def collections(monkeypatch: pytest.MonkeyPatch) -> Iterator[Collections]:
 
 @pytest.fixture
 def garbage(collections: Collections) -> Iterator[Garbage]:
+    """What other tests have made stays left out meanwhile: it takes long to look at."""
     made = Garbage()
-    made.start(has_steps=True)
-    collections.found.clear()
-    try:
-        yield made
-    finally:
-        made.stop()
+    with mock.patch.object(gc, "get_freeze_count", return_value=0), mock.patch.object(gc, "unfreeze"):
+        made.start(has_steps=True)
+        collections.found.clear()
+        try:
+            yield made
+        finally:
+            made.stop()
+
+
+@pytest.fixture
+def thawed() -> Iterator[None]:
+    """Nothing is left out, as where a plant is a process of its own."""
+    gc.unfreeze()
+    yield
+    gc.freeze()
 
 
 def test_nothing_is_collected_in_the_middle_of_a_step(collections: Collections, garbage: Garbage) -> None:
@@ -98,7 +108,7 @@ def test_collections_of_everything_take_a_small_share_of_the_time(
     assert collections.found.count(2) == 2
 
 
-def test_what_was_there_before_is_left_out_until_the_end(collections: Collections) -> None:
+def test_what_was_there_before_is_left_out_until_the_end(collections: Collections, thawed: None) -> None:
     garbage = Garbage()
     garbage.start(has_steps=False)
     assert gc.get_freeze_count() > 0
@@ -114,4 +124,3 @@ def test_who_has_seen_to_it_is_left_alone(collections: Collections) -> None:
     assert gc.get_threshold() == OFTEN
     garbage.stop()
     assert gc.get_freeze_count() > 0
-    gc.unfreeze()

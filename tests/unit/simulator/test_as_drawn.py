@@ -98,9 +98,9 @@ class _Devices:
 
 
 def test_a_recipe_that_does_other_than_was_drawn_is_found() -> None:
-    setting = Setting(plants=_Devices(), cycles=4, level="none")
+    setting = Setting(plants=_Devices(), cycles=2, level="none")
     with pytest.MonkeyPatch.context() as patch:
         edit(Times.update, "self.done >= self.times", "self.done >= self.times - 1").make(patch)
-        broken = [result.broken for seed in (6, 7) if (result := setting.run(seed)).broken is not None]
-    assert {each.invariant for each in broken} == {NAME}
-    assert all(setting.run(seed).broken is None for seed in (6, 7))
+        broken = setting.run(6).broken
+    assert broken is not None and broken.invariant == NAME
+    assert setting.run(6).broken is None

@@ -120,7 +120,7 @@ LIKELY = {  # seeds that found them, tried first
     ("storage", "one_pick_one_place_over_all_starts", begins_anew): 12,
     ("storage", "nothing_moves_after_a_restart", goes_on_by_itself): 7,
     ("devices", "accepted_is_found_again", says_what_it_cannot_keep): 4,
-    ("devices", "asked_again_is_the_same_task", takes_ended_for_others): 2,
+    ("devices", "asked_again_is_the_same_task", takes_ended_for_others): 16,
     ("devices", "no_step_is_done_twice", begins_anew): 2,
     ("devices", "no_step_is_done_twice", gives_again_what_is_proven): 3,
 }
