@@ -13,13 +13,13 @@ from arboleda.simulator.run import Simulation
 from ..lengths import length
 
 PLANT = Path(__file__).parent / "shared_arm" / "plant.yaml"
-SEEDS = length(1, 40)
+SEEDS, CYCLES = length(1, 40), length(3, 6)
 RUNS = [(level, seed) for level in ("none", "normal", "many", "crashes") for seed in range(1, SEEDS + 1)]
 
 
 @pytest.mark.parametrize(("level", "seed"), RUNS)
 def test_nothing_is_broken(level: str, seed: int) -> None:
     plant = load(PLANT)
-    result = Simulation(plant, seed, Climate.draw(plant, seed, level).faults).run(cycles=6)
+    result = Simulation(plant, seed, Climate.draw(plant, seed, level).faults).run(cycles=CYCLES)
     assert result.broken is None
     assert result.cycles >= 1

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Callable
 from dataclasses import replace
+from functools import cache, partial
 from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree as Xml
@@ -24,6 +25,8 @@ from arboleda.model.errors import ArboledaError
 from arboleda.model.plant_model import PlantModel
 from arboleda.plant_file import loader
 from arboleda.testing import Sim
+
+from ...lengths import length
 
 PLANT = """
 name: small
@@ -238,11 +241,11 @@ def test_any_other_moment_ends_as_one_of_the_instants_beside_it(plant: Path) -> 
     (plant.parent / "small.py").write_text(STAMP)
     model = Plant(declared=loader.load(plant)).model
     calm = calm_run(model, next(scenarios(model)))
-    known = [(each.at, ends(model, calm, each)) for each in calm.instants]
-    for number in range(1, 8, 2):
+    known = cache(partial(ends, model, calm))
+    for number in range(1, 8, length(4, whole=2)):
         at = round(2.0 + 0.43 * number, 3)
-        before = [found for when, found in known if when <= at][-1]
-        after = next(found for when, found in known if when > at)
+        before = known([each for each in calm.instants if each.at <= at][-1])
+        after = known(next(each for each in calm.instants if each.at > at))
         for fault, end in ends(model, calm, replace(calm.instants[0], at=at)).items():
             assert end in (before[fault], after[fault]), (at, fault)
 

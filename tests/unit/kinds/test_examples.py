@@ -35,7 +35,7 @@ from arboleda.sim.machine import MachineBody
 from arboleda.testing.following import follow, works
 from arboleda.wire.payloads import OrderGoal
 
-from ...lengths import sample
+from ...lengths import length, sample
 from .lab import Bench
 
 EXAMPLES = Path(__file__).parents[3] / "examples"
@@ -263,7 +263,7 @@ def test_after_any_device_gave_up_the_first_advice_leads_back_to_work(case: Case
     assert whole.do() is TaskState.DONE
     deeds = {tuple(each.split()) for each in whole.said if each.split()[0] in whole.devices_by_name}
     assert deeds
-    for name, verb in sorted(deeds - case.tries_again - case.is_so):
+    for name, verb in sample(sorted(deeds - case.tries_again - case.is_so), every=2):
         here, given_up = Shop(case), []
 
         def fails(goal: OrderGoal, verb: str = verb, given_up: list[OrderGoal] = given_up) -> str | None:
@@ -284,7 +284,7 @@ def test_after_any_device_gave_up_the_first_advice_leads_back_to_work(case: Case
 def test_after_a_stop_at_any_time_the_first_advice_leads_back_to_work(case: Case) -> None:
     whole = Shop(case)
     assert whole.do() is TaskState.DONE
-    for count in range(1, len(whole.said), 4):
+    for count in range(1, len(whole.said), length(8, whole=4)):
         here = Shop(case)
         here.submit(case.task)
         assert here.wait(200.0, lambda here=here, count=count: len(here.said) >= count)
