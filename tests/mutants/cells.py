@@ -51,7 +51,7 @@ TASKS = (
         "To cancel a task that has ended is not refused.",
         edit(
             Operator._planned_cancel,
-            "raise Refused(TASK_ENDED(task=id, state=TASK_STATES[task.state]()))",
+            "raise VerbRefusal(TASK_ENDED(task=id, state=TASK_STATES[task.state]()))",
             "return lambda: None",
         ),
         weather={"operator_cancel": 30.0},

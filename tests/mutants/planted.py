@@ -9,7 +9,7 @@ from arboleda.core.operator import _not_yet
 from arboleda.dispatch import evidence
 from arboleda.model.messages import Course
 from arboleda.trees.places import Places
-from arboleda.trees.trail import Known, command_kept, put_back
+from arboleda.trees.trail import Knowledge, command_kept, put_back
 from arboleda.trees.tree_run import TreeRun
 from arboleda.trees.walk_back import WalkBack, fate
 from arboleda.views import view
@@ -89,7 +89,7 @@ PLANTED = (
     mutant(
         "commands_follow_the_recipe",
         "A board may have taken any commands since where its task stands was kept.",
-        edit(Known.explains, "if now == before:", "if True:"),
+        edit(Knowledge.explains, "if now == before:", "if True:"),
         weather={**DIES, "power_cut": 12.0, "slow_disk": 12.0},
         likely=28,
     ),

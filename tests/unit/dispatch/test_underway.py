@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from arboleda.campaigns.request import shared
 from arboleda.dispatch.evidence import QUIET_S
-from arboleda.dispatch.underway import PATIENCE_S, UnderWay, Unnamed
+from arboleda.dispatch.underway import PATIENCE_S, UnderWay, UnnamedCommands
 from arboleda.kinds.joints import MoveJoints
 from arboleda.model.messages import Report
 from arboleda.model.plant_model import Evidence
@@ -56,7 +56,7 @@ def test_work_of_an_arm_that_names_no_command_is_under_way_until_its_end_or_the_
 
 
 def test_what_left_for_a_board_is_counted_until_it_or_a_later_one_is_named() -> None:
-    unnamed = Unnamed(MODEL)
+    unnamed = UnnamedCommands(MODEL)
     for move in MOVES:
         unnamed.left(move)
     unnamed.hear(Report(at=1.0, robot=ARM, accepted="7-1"))
@@ -66,6 +66,6 @@ def test_what_left_for_a_board_is_counted_until_it_or_a_later_one_is_named() -> 
 
 
 def test_who_numbers_nothing_has_nothing_to_name() -> None:
-    unnamed = Unnamed(MODEL)
+    unnamed = UnnamedCommands(MODEL)
     unnamed.left(MoveJoints(id="7-1", robot=MUTE, q=(0.0, 0.0, 0.0)))
     assert unnamed.of(MUTE) == 0

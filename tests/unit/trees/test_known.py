@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from arboleda.model.messages import Receipt
-from arboleda.trees.trail import Known
+from arboleda.trees.trail import Knowledge
 
 BRIDGE, LATER = 1001, 1004
 
@@ -29,4 +29,4 @@ BRIDGE, LATER = 1001, 1004
 def test_only_commands_that_were_under_way_by_the_same_bridge_explain_it(
     before: Receipt | None, more: int, now: Receipt | None, explained: bool
 ) -> None:
-    assert Known(boot=1, receipt=before, more=more, bridge=BRIDGE).explains(now) is explained
+    assert Knowledge(boot=1, receipt=before, more=more, bridge=BRIDGE).explains(now) is explained

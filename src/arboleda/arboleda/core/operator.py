@@ -29,7 +29,7 @@ from .readiness import STILL_DOING
 from .teaching import NOT_TAUGHT, OTHER_TEACHES, ZONE_OF_OTHER, Teaching
 
 
-class Refused(ArboledaError):
+class VerbRefusal(ArboledaError):
     """A verb that changes nothing now; the sentence says why and what is possible."""
 
 
@@ -174,7 +174,7 @@ class Operator:
         self._homing = {robot.name for robot in reached if robot.homes}
 
     def act(self, request: OperatorRequest) -> OperatorAct:
-        """Do it and journal it; Refused says why nothing was done."""
+        """Do it and journal it; VerbRefusal says why nothing was done."""
         scope = scope_of(request)
         do = self._planned(request, scope)
         self._sent, self._defects = [], []
@@ -237,12 +237,12 @@ class Operator:
         """Why a request would be refused now; None where it would be done."""
         try:
             self._planned(request, scope_of(request))
-        except Refused as refused:
+        except VerbRefusal as refused:
             return refused.sentence
         return None
 
     def _planned(self, request: OperatorRequest, scope: str) -> Callable[[], None]:
-        """The function that carries out the request; Refused where something speaks against it."""
+        """The function that carries out the request; VerbRefusal where something speaks against it."""
         if request.arguments:
             _require_its_own(request)
         procedure = TABLE[request.verb]
@@ -275,7 +275,7 @@ class Operator:
         if holder is None and verb is Verb.RELEASE:
             return [cell for cell in cells if cell.context.devices.answers_for(scope)]
         if holder is None:
-            raise Refused(NOT_HELD(device=scope, cells=tuple(cell.cell.name for cell in cells)))
+            raise VerbRefusal(NOT_HELD(device=scope, cells=tuple(cell.cell.name for cell in cells)))
         return [cell for cell in cells if cell.cell.name == holder]
 
     def _with_shared(self, verb: Verb, scope: str, did: Sentence) -> Sentence:
@@ -295,7 +295,7 @@ class Operator:
                 refusals[cell.cell.name] = why
         firm = [cell.cell.name for cell in cells if cell.state in row.must_all and cell.cell.name in refusals]
         if firm or len(refusals) == len(cells):
-            raise Refused(refusals[firm[0]] if firm else next(iter(refusals.values())))
+            raise VerbRefusal(refusals[firm[0]] if firm else next(iter(refusals.values())))
         able = [cell for cell in cells if cell.cell.name not in refusals]
         acts = [row.do] if row.first is None else [row.first, row.do]
         return partial(self._do_in, able, acts, robots)
@@ -317,7 +317,7 @@ class Operator:
         """Do it in one cell; what that raises must not keep the others from a stop."""
         try:
             act(self, cell, robots)
-        except (Refused, IllegalTransition):
+        except (VerbRefusal, IllegalTransition):
             raise
         except Exception as error:  # noqa: BLE001 - whatever it is, it ends the work of this cell, not the plant
             self._defects.append(BROKE(cell=cell.cell.name))
@@ -333,12 +333,12 @@ class Operator:
         return name if name in self._cells else cells[0].name if len(cells) == 1 else None
 
     def _known_scope(self, scope: str) -> str:
-        """The plant, a cell or a robot, where it could be a task too; Refused names the tasks there are."""
+        """The plant, a cell or a robot, where it could be a task; VerbRefusal names the tasks there are."""
         name, names = scope.lower(), self._dispatcher.beliefs
         if name in ("", "plant") or name in self._cells or name in names:
             return name
         known = (*self._cells, *names)
-        raise Refused(NO_TASK(task=quoted(scope), open=self._open_tasks(), known=known))
+        raise VerbRefusal(NO_TASK(task=quoted(scope), open=self._open_tasks(), known=known))
 
     def _open_tasks(self) -> Value:
         """The ids of as many as a sentence can name."""
@@ -351,24 +351,24 @@ class Operator:
         """The robots of a scope: the plant, a cell, or one robot."""
         robots = self._scopes.get(scope)
         if robots is None:
-            raise Refused(NO_SCOPE(scope=quoted(scope), known=(*self._cells, *self._dispatcher.beliefs)))
+            raise VerbRefusal(NO_SCOPE(scope=quoted(scope), known=(*self._cells, *self._dispatcher.beliefs)))
         return set(robots)
 
     def _planned_override(self, request: OperatorRequest, zone: str) -> Callable[[], None]:
         holder = self._zones.holder(zone)
         cell = self._cells.get(holder or "")
         if cell is not None and cell.tree is not None and self._zones.is_quarantined(zone):
-            raise Refused(STILL_USES(cell=cell.cell.name, device=zone))
+            raise VerbRefusal(STILL_USES(cell=cell.cell.name, device=zone))
         if cell is not None and zone in cell.cell.shared and not self._is_left_anywhere(zone):
-            raise Refused(GOES_BACK(device=zone, cell=cell.cell.name))
+            raise VerbRefusal(GOES_BACK(device=zone, cell=cell.cell.name))
         known = self._dispatcher.model.cell_of  # without who is no longer in the plant file
         if holder in known and self._zones.is_quarantined(zone) and self._works(holder):
             name = self.in_charge(holder).cell.name  # what it does there counts on the zone
-            raise Refused(STILL_WORKS(robot=holder, zone=zone, cell=name))
+            raise VerbRefusal(STILL_WORKS(robot=holder, zone=zone, cell=name))
         try:
             self._zones.require_quarantined(zone)
         except IllegalTransition as error:
-            raise Refused(error.sentence) from error
+            raise VerbRefusal(error.sentence) from error
         return partial(self._override, zone)
 
     def _override(self, zone: str) -> None:
@@ -409,16 +409,16 @@ class Operator:
         racks = [(cell, dict[Value, str](enumerate(cell.cell.station_targets))) for cell in cells]
         found = [(cell, [rack[station]]) for cell, rack in racks if station in rack]
         if not found:
-            raise Refused(NO_STATION(station=quoted(str(station)), cell=_whole(scope)))
+            raise VerbRefusal(NO_STATION(station=quoted(str(station)), cell=_whole(scope)))
         return self._planned_removal(found, STATION_EMPTY(station=station, cell=_whole(scope)))
 
     def _planned_removal(
         self, places: list[tuple[CellRun, list[str]]], refusal: Sentence
     ) -> Callable[[], None]:
-        """Of these places; Refused where all are empty."""
+        """Of these places; VerbRefusal where all are empty."""
         full = [cell.context.places.full.intersection(names) for cell, names in places]
         if not any(full):
-            raise Refused(refusal)
+            raise VerbRefusal(refusal)
         return partial(self._set_parts, [(cell, dict.fromkeys(names, 0)) for cell, names in places])
 
     def _planned_loading(self, request: OperatorRequest, scope: str) -> Callable[[], None]:
@@ -429,7 +429,7 @@ class Operator:
         number = most if parts is None else parts
         if isinstance(number, str) or not 1 <= number <= most:
             told = quoted(number) if isinstance(number, str) else number
-            raise Refused(PARTS_OF_PLACE(place=place, cell=cell.cell.name, most=most, parts=told))
+            raise VerbRefusal(PARTS_OF_PLACE(place=place, cell=cell.cell.name, most=most, parts=told))
         return partial(self._set_parts, [(cell, {place: number})])
 
     def _with_books(self, scope: str) -> list[CellRun]:
@@ -447,18 +447,18 @@ class Operator:
         id, word = request.argument("question"), str(request.argument("answer") or "")
         people = [name for name, robot in self._dispatcher.model.robots.items() if robot.link is Link.SCREEN]
         if person not in people:
-            raise Refused(NO_PERSON(person=quoted(person), known=tuple(people) or NONE()))
+            raise VerbRefusal(NO_PERSON(person=quoted(person), known=tuple(people) or NONE()))
         entry = self._dispatcher.question(person)
         if entry is None and id is not None:
-            raise Refused(QUESTION_OVER(question=id, person=person))
+            raise VerbRefusal(QUESTION_OVER(question=id, person=person))
         if entry is None:
-            raise Refused(NOT_ASKED(person=person))
+            raise VerbRefusal(NOT_ASKED(person=person))
         assert isinstance(entry.command, Question)
         if id not in (None, entry.command.id):
-            raise Refused(OTHER_QUESTION(question=str(id), person=person, text=entry.command.text))
+            raise VerbRefusal(OTHER_QUESTION(question=str(id), person=person, text=entry.command.text))
         answer = known(word, entry.command.answers)
         if answer is None:
-            raise Refused(NO_ANSWER(word=quoted(word), person=person, known=entry.command.answers))
+            raise VerbRefusal(NO_ANSWER(word=quoted(word), person=person, known=entry.command.answers))
         return partial(self._answer, person, answer)
 
     def _answer(self, person: str, answer: str) -> None:
@@ -470,25 +470,25 @@ class Operator:
         if task.state is TaskState.QUEUED:
             return partial(cell.drop, task, failure)
         if task is not cell.task:
-            raise Refused(TASK_ENDED(task=id, state=TASK_STATES[task.state]()))
+            raise VerbRefusal(TASK_ENDED(task=id, state=TASK_STATES[task.state]()))
         if why := _not_cancellable(self, cell, set()):
-            raise Refused(why)
+            raise VerbRefusal(why)
         return partial(cell.cancel, failure)
 
     def _planned_emptying(self, robots: set[str], cells: list[CellRun]) -> Callable[[], None]:
         """A person has taken out what devices hold; all of them are still, as far as the plant moves them."""
         for cell in cells:
             if cell.state in AT_WORK:
-                raise Refused(HOLD_FIRST(cell=cell.cell.name, state=cell.state.said))
+                raise VerbRefusal(HOLD_FIRST(cell=cell.cell.name, state=cell.state.said))
         able = [(cell, name) for cell in cells for name in self._holders(cell, robots)]
         if not able:
-            raise Refused(self._none_able(robots, sorted(robots)[0]))
+            raise VerbRefusal(self._none_able(robots, sorted(robots)[0]))
         holding = [(cell, name) for cell, name in able if name in cell.context.parts.holding]
         if not holding:
-            raise Refused(_nothing_held(able))
+            raise VerbRefusal(_nothing_held(able))
         for cell, name in holding:
             if (told := cell.context.commands.first_of(name)) is not None:
-                raise Refused(STILL_DOING(robot=name, doing=told.doing))
+                raise VerbRefusal(STILL_DOING(robot=name, doing=told.doing))
         return partial(self._empty, holding)
 
     def _holders(self, cell: CellRun, robots: set[str]) -> list[str]:
@@ -519,9 +519,9 @@ class Operator:
         for name in sorted(robots):
             obstacle = self._not_homeable(name, by_hand=by_hand)
             if obstacle:
-                raise Refused(obstacle)
+                raise VerbRefusal(obstacle)
         if not by_hand and (occupied := self.not_free_for_homing(robots)):
-            raise Refused(occupied)
+            raise VerbRefusal(occupied)
         return partial(self._home, robots, by_hand=by_hand)
 
     def _here(self, scope: str, robots: set[str]) -> set[str]:
@@ -529,7 +529,7 @@ class Operator:
         shared = self._cells[scope].cell.shared
         found = {name for name in robots if name not in shared or self._zones.holder(name) in (None, scope)}
         if self._homing.isdisjoint(found) and (others := sorted(self._homing & robots)):
-            raise Refused(WITH_OTHER(device=others[0], cell=self._zones.holder(others[0]) or ""))
+            raise VerbRefusal(WITH_OTHER(device=others[0], cell=self._zones.holder(others[0]) or ""))
         return found
 
     def _home(self, robots: set[str], *, by_hand: bool) -> None:
@@ -575,11 +575,11 @@ class Operator:
         teacher = str(request.argument("teacher") or "").strip()
         cell = cells[0]
         if len(cells) > 1 or scope not in self._cells:
-            raise Refused(NO_SCOPE(scope=quoted(scope), known=(*self._cells,)))
+            raise VerbRefusal(NO_SCOPE(scope=quoted(scope), known=(*self._cells,)))
         if not 0 < len(teacher) <= LONGEST_NAME or not teacher.isprintable():
-            raise Refused(NO_TEACHER(cell=scope, most=LONGEST_NAME))
+            raise VerbRefusal(NO_TEACHER(cell=scope, most=LONGEST_NAME))
         if (refusal := self._not_teachable(cell)) is not None:
-            raise Refused(refusal)
+            raise VerbRefusal(refusal)
         return partial(self._teach, cell, teacher)
 
     def _not_teachable(self, cell: CellRun) -> Sentence | None:
@@ -751,11 +751,11 @@ def arguments_of(request: OperatorRequest) -> Arguments:
 
 
 def _require_its_own(request: OperatorRequest) -> None:
-    """Refused where a verb is told what it does not take."""
+    """VerbRefusal where a verb is told what it does not take."""
     takes = [each.name for each in request.verb.arguments]
     for name, _ in request.arguments:
         if name not in takes:
-            raise Refused(NO_ARGUMENT(verb=request.verb.value, argument=quoted(name)))
+            raise VerbRefusal(NO_ARGUMENT(verb=request.verb.value, argument=quoted(name)))
 
 
 def _did(request: OperatorRequest, scope: str) -> Sentence:
@@ -773,12 +773,12 @@ def _whole(scope: str) -> Value:
 
 
 def _with_place(cells: list[CellRun], scope: Value, place: str) -> CellRun:
-    """The cell with that place; Refused names the places that there are."""
+    """The cell with that place; VerbRefusal names the places that there are."""
     known = tuple(name for cell in cells for name in cell.context.places.counts)
     if not known:
-        raise Refused(NO_PLACES(cell=scope))
+        raise VerbRefusal(NO_PLACES(cell=scope))
     if place not in known:
-        raise Refused(NO_PLACE(place=quoted(place), cell=scope, known=known))
+        raise VerbRefusal(NO_PLACE(place=quoted(place), cell=scope, known=known))
     return next(cell for cell in cells if place in cell.context.places.counts)
 
 

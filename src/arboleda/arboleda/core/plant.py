@@ -59,7 +59,7 @@ from .cell import CellRun, NextVersion
 from .cell_states import CellState
 from .choosing import PastTimes, Prospect, best, prospect
 from .intake import CUT_OFF, Intake, gone
-from .operator import NO_SCOPE, PUT_TO_WORK, Operator, Refused
+from .operator import NO_SCOPE, PUT_TO_WORK, Operator, VerbRefusal
 from .teaching import NOT_TAUGHT, OTHER_TEACHES, Teaching
 
 HEARTBEAT_S = 0.25
@@ -576,7 +576,7 @@ class Plant:
             act = self._operator.act(request)
             for run in self.cells.values():
                 self._keep_trail(run, before)
-        except (Refused, IllegalTransition) as error:
+        except (VerbRefusal, IllegalTransition) as error:
             refusal = error.sentence
         except Exception as error:  # noqa: BLE001 - whoever asks gets an answer, and the plant goes on
             refusal = DEFECT()

@@ -33,7 +33,7 @@ from .evidence import Before, Verdict
 from .fact_memory import FactMemory, Memory
 from .interference import MOST, NEVER_GIVEN, Interferences
 from .ledger import Entry, Feed, Ledger, State
-from .underway import UnderWay, Unfinished, Unnamed
+from .underway import UnderWay, Unfinished, UnnamedCommands
 
 Make = Callable[..., Command]  # called with id=<the new command's id>
 Guard = Callable[[str, Callable[[], None]], None]  # runs what belongs to the cell of that name
@@ -111,7 +111,7 @@ class Dispatcher:
         self.reached: dict[str, Position] = {}  # the goal of each robot's last motion, once it is done
         self.under_way = UnderWay(model)
         self.unfinished = Unfinished(model)
-        self.unnamed = Unnamed(model)
+        self.unnamed = UnnamedCommands(model)
         self.unheard_clears: set[str] = set()  # robots whose stop was cleared while they were offline
         self.last_sent: dict[str, Entry] = {}  # each robot's last command, a stop or halt left out
         self._last_work: dict[str, Entry] = {}  # of each robot

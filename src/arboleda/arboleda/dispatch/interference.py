@@ -19,7 +19,7 @@ LATELY_S = 5.0  # in which a robot reports what a command has brought about
 
 
 @dataclass(frozen=True, kw_only=True)
-class Noticed:
+class NumberedInterference:
     """One command of somebody else, or several between two reports; `number` grows by one with each."""
 
     number: int
@@ -32,7 +32,7 @@ class Interferences:
     """The last ones of all robots, oldest first."""
 
     def __init__(self) -> None:
-        self.noticed: deque[Noticed] = deque(maxlen=KEPT)
+        self.noticed: deque[NumberedInterference] = deque(maxlen=KEPT)
         self._counts: dict[str, tuple[int | None, int, int]] = {}  # robot -> bridge's start, refused, obeyed
         self._obeyed: dict[str, tuple[float, Sentence]] = {}
         self._count = 0
@@ -42,7 +42,7 @@ class Interferences:
         self._count += 1
         if obeyed:
             self._obeyed[robot] = (at, sentence)
-        self.noticed.append(Noticed(number=self._count, at=at, robot=robot, sentence=sentence))
+        self.noticed.append(NumberedInterference(number=self._count, at=at, robot=robot, sentence=sentence))
 
     def lately_obeyed(self, robot: str, now: float) -> Sentence | None:
         """The last command of somebody else that a robot carried out, if it is not older than LATELY_S."""

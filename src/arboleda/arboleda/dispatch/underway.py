@@ -14,7 +14,7 @@ PATIENCE_S = 1.0  # in which an arm that is heard, and hears us, names our last 
 KEPT = 64  # commands per arm; whatever settles a later one settles those before it
 
 
-class Unnamed:
+class UnnamedCommands:
     """Count of commands that left for each board that numbers them, and were not named by it yet.
 
     What proves that a command is done need not name it: a switch may already be as it was told. `ids` are

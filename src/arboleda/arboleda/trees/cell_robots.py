@@ -13,7 +13,7 @@ from arboleda.model.plant_model import Cell, Evidence, MotionState, Pose
 
 from .cell_devices import CellDevices
 from .cell_time import CellTime
-from .trail import Known, Planned
+from .trail import Knowledge, Planned
 
 
 class CellRobots:
@@ -106,7 +106,7 @@ class CellRobots:
         belief = self._dispatcher.beliefs[robot]
         return belief.robot.evidence is Evidence.IDS and (belief.robot.says_homed or belief.says_unhomed)
 
-    def known(self, names: Iterable[str]) -> dict[str, Known]:
+    def known(self, names: Iterable[str]) -> dict[str, Knowledge]:
         """The reports of commands, in the form in which they are kept: those of these robots, and of those of
         the cell whose boards number their commands, and have been heard.
         """
@@ -115,7 +115,7 @@ class CellRobots:
         for robot in self._cell.reached:
             if beliefs[robot.name].numbers_commands:
                 kept.add(robot.name)
-        return {name: Known.of(beliefs[name], unnamed.of(name)) for name in sorted(kept)}
+        return {name: Knowledge.of(beliefs[name], unnamed.of(name)) for name in sorted(kept)}
 
     def moments(self) -> dict[str, Moment]:
         """Now, as each robot of the cell tells the time, for `moving_since`."""

@@ -36,7 +36,7 @@ OF_PLACE, OF_HAND, SURE, LETTING_GO = "=", ":", "+", "-"
 
 
 @dataclass(frozen=True, kw_only=True)
-class Held:
+class HeldPart:
     """Part that a hand may hold: the `target` where it took it, None where no part was known to be.
 
     `is_sure`: it has held it since; `lets_go`: it was told to let go.
@@ -58,7 +58,7 @@ class Held:
         return (self.target or "") + SURE * self.is_sure + LETTING_GO * self.lets_go
 
     @classmethod
-    def read(cls, word: str) -> Held:
+    def read(cls, word: str) -> HeldPart:
         """The part that such a word stands for."""
         target = word.rstrip(SURE + LETTING_GO)
         return cls(target=target or None, is_sure=SURE in word, lets_go=LETTING_GO in word)
@@ -86,7 +86,7 @@ class Places:
             if place.device is not None:
                 self._of_device.setdefault(place.device, []).append(place.target)
         self._parts = {place.target: 0 for place in cell.counted}
-        self._held: dict[str, Held] = {}
+        self._held: dict[str, HeldPart] = {}
         if self._parts:
             self._take_over(self._kept())
             for hand in self._hands:
@@ -104,8 +104,8 @@ class Places:
         self._parts |= {target: int(n) for target, n in numbers if target in self._parts}
         grips, words = self._dispatcher.effectors.grips, dict(_read(kept, OF_HAND))
         for hand in self._hands:
-            taken = Held(is_sure=True, lets_go=grips[hand] is Grip.SWITCHING)  # from no place
-            held = Held.read(words[hand]) if hand in words else taken
+            taken = HeldPart(is_sure=True, lets_go=grips[hand] is Grip.SWITCHING)  # from no place
+            held = HeldPart.read(words[hand]) if hand in words else taken
             # where there are places, each part in a hand is in the books: this one was empty
             is_empty = bool(self._places) and hand not in words and grips[hand] is Grip.SWITCHING
             if grips.holding(hand) and not is_empty:
@@ -172,7 +172,7 @@ class Places:
             return self._without_part(hand)
         here = self._target(space)
         if self._dispatcher.effectors.grips[hand] is Grip.ON:
-            taken = self._held.get(hand, Held()).target
+            taken = self._held.get(hand, HeldPart()).target
             return HOLDS_ONE(robot=hand, place=taken) if taken not in (None, here) else None
         known = here in self._places and not self.parts(here)
         return EMPTY(robot=hand, place=here, cell=self._cell.name) if here is not None and known else None
@@ -228,11 +228,11 @@ class Places:
 
     def _follow(self, hand: str, handling: Handling) -> None:
         """Take in a step of a part's way through a hand."""
-        held = self._held.get(hand) or Held()
+        held = self._held.get(hand) or HeldPart()
         here = held.target
         if handling is Handling.TOLD_TO_TAKE:
             here = self._target(self._hands[hand])
-            held = Held(target=None if here in self._rack and not self._parts[here] else here)
+            held = HeldPart(target=None if here in self._rack and not self._parts[here] else here)
             self._held[hand] = held
             self._move(here, -1)
         elif handling is Handling.HELD:

@@ -48,7 +48,7 @@ class Keeps:
         """Begin once more: times count from now."""
 
 
-class Known(NamedTuple):
+class Knowledge(NamedTuple):
     """Knowledge of a device; `more` commands may have reached it that it had not told of, by the start
     of the bridge that had the epoch `bridge`.
     """
@@ -59,7 +59,7 @@ class Known(NamedTuple):
     bridge: int | None = None
 
     @classmethod
-    def of(cls, belief: Belief, more: int) -> Known:
+    def of(cls, belief: Belief, more: int) -> Knowledge:
         """As it is now."""
         return cls(boot=belief.boot_id, receipt=belief.receipt, more=more, bridge=belief.epoch)
 
@@ -134,7 +134,7 @@ class Trail(NamedTuple):
     back: Mapping[str, str]
     origins: Sequence[str]
     used: Sequence[str]
-    known: Mapping[str, Known]
+    known: Mapping[str, Knowledge]
     grips: Mapping[str, str]
     zones: Mapping[str, Sequence[str]]  # those that its machines held, by the word of the tree
     failure: Failure | None = None
@@ -244,9 +244,11 @@ def _plain(said: Failure | Sentence | TaskAnswer) -> Any:
 ENCODE = json.JSONEncoder(separators=(",", ":"), default=_plain).encode
 
 
-def _known(boot: int | None, receipt: Sequence[int] | None, more: int, bridge: int | None = None) -> Known:
+def _known(
+    boot: int | None, receipt: Sequence[int] | None, more: int, bridge: int | None = None
+) -> Knowledge:
     told = None if receipt is None else Receipt(*receipt)
-    return Known(boot=boot, receipt=told, more=more, bridge=bridge)
+    return Knowledge(boot=boot, receipt=told, more=more, bridge=bridge)
 
 
 def _position(said: Any) -> Position:

@@ -19,7 +19,7 @@ REMEMBERED = 256  # commands per board; an open one is never that old
 
 
 @dataclass(frozen=True, kw_only=True)
-class Issued:
+class IssuedCommand:
     """Command that was given a number under `epoch`; `sender` names its sender if it has no id."""
 
     command: Command
@@ -47,12 +47,12 @@ class Labels:
         self.answered: tuple[str, Value] | None = None
         self.failed: tuple[str, str] | None = None
         self.failed_before: list[tuple[str, str]] = []
-        self.objection: tuple[Issued, str] | None = None
+        self.objection: tuple[IssuedCommand, str] | None = None
         self.foreign: tuple[int, int] | None = None
         self._accepted: tuple[int | None, int | None] = (None, None)  # as the board said it last
         self._least = -1  # the oldest epoch whose commands count for the board, as it said last
         self._seq = 0
-        self._issued: OrderedDict[int, Issued] = OrderedDict()
+        self._issued: OrderedDict[int, IssuedCommand] = OrderedDict()
         self._known: OrderedDict[str, None] = OrderedDict()
         self._spoken = False  # True once the board may have heard of this bridge
         self._led = False  # True if the board says this bridge is the newest it hears
@@ -96,7 +96,7 @@ class Labels:
         """The next seq, given to this command."""
         self._seq += 1
         self._spoken = True
-        _remember(self._issued, self._seq, Issued(command=command, epoch=self.epoch, sender=sender))
+        _remember(self._issued, self._seq, IssuedCommand(command=command, epoch=self.epoch, sender=sender))
         return self._seq
 
     def refuse(self, command_id: str, word: str) -> None:
