@@ -49,7 +49,6 @@ from ...lengths import sample
 
 INVARIANTS = (*ZONES, *MOTION, *GRIP, *STOP)
 ARM, MOBILE = "ra_1", "rm_sis_a"
-IN_THE_MIDDLE = 0.5  # s after a move of the arm began
 Patch = pytest.MonkeyPatch
 
 

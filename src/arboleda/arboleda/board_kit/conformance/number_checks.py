@@ -11,6 +11,7 @@ from .procedures import (
     accepted,
     answer,
     demand,
+    numbered_reports,
     only_in_time,
     refused,
     refused_as_retained,
@@ -36,12 +37,7 @@ def numbers(bench: ArmBench) -> Steps:
 
 def telling(bench: ArmBench) -> Steps:
     """Reports are numbered upwards in one boot, and say all that belongs to this level."""
-    before = len(bench.said)
-    yield Wait(seconds=1.0)
-    fresh = bench.said[before:]
-    rising = [said.number for said in fresh if said.number is not None]
-    demand(rising == sorted(set(rising)) and len(rising) == len(fresh), "seq of its reports does not rise")
-    demand(len({said.boot_id for said in fresh}) == 1, "arranque changes without a reboot")
+    yield from numbered_reports(bench)
     demand(bench.last.homed is not None and bench.last.effector is not None, "ref or efector is missing")
 
 

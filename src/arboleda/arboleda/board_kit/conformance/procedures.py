@@ -39,6 +39,16 @@ def rest(bench: Bench[Any]) -> Steps:
     demand(rested, f"it was not seen standing still within {bench.patience_s:g} s")
 
 
+def numbered_reports(bench: Bench[Any]) -> Steps:
+    """Hear the reports of a second, which are of one boot and numbered upwards."""
+    before = len(bench.said)
+    yield Wait(seconds=1.0)
+    fresh = bench.said[before:]
+    rising = [said.number for said in fresh if said.number is not None]
+    demand(rising == sorted(set(rising)) and len(rising) == len(fresh), "seq of its reports does not rise")
+    demand(len({said.boot_id for said in fresh}) == 1, "arranque changes without a reboot")
+
+
 def answer(bench: Bench[Any], send: Send, seq: int | None = None) -> Steps:
     """Send it, and wait until the board accepts or refuses its number."""
     yield send
