@@ -61,21 +61,30 @@ def busy(site: Site) -> None:
     site.work(s=40.0)
 
 
+@pytest.fixture(scope="module")
+def ended(tmp_path_factory: pytest.TempPathFactory) -> Site:
+    """A plant that was busy, and has ended."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(recorder, "SHARE", 1e9)
+        made = Site(tmp_path_factory.mktemp("ended"), patch)
+        busy(made)
+        made.end()
+    return made
+
+
 def views_of(site: Site) -> Views:
     return Views(reader.opened(site.files[0]))
 
 
-def test_every_snapshot_is_there_as_screens_and_twin_got_it(site: Site) -> None:
-    busy(site)
-    site.end()
-    views = views_of(site)
-    for number, (at, snapshot, drawn) in enumerate(site.seen):
-        following = site.seen[number + 1][0] if number + 1 < len(site.seen) else None
+def test_every_snapshot_is_there_as_screens_and_twin_got_it(ended: Site) -> None:
+    views = views_of(ended)
+    for number, (at, snapshot, drawn) in enumerate(ended.seen):
+        following = ended.seen[number + 1][0] if number + 1 < len(ended.seen) else None
         if following == at:
             continue
         same(views.at(at), snapshot, "snapshot")
         same({**drawn, "now": at / 1e9}, views.positions(at), "drawn")
-    assert len(site.seen) > 40
+    assert len(ended.seen) > 40
 
 
 def test_where_robots_are_is_told_between_snapshots(site: Site) -> None:
@@ -97,21 +106,17 @@ def test_where_robots_are_is_told_between_snapshots(site: Site) -> None:
     assert moved > 5
 
 
-def test_spans_grow_between_two_snapshots(site: Site) -> None:
-    busy(site)
-    site.end()
-    views = views_of(site)
+def test_spans_grow_between_two_snapshots(ended: Site) -> None:
+    views = views_of(ended)
     (silent,) = [each for each in views.at(views.ended_ns)["robots"] if each["name"] == "ra3"]
     (before,) = [each for each in views.at(views.ended_ns - 10**10)["robots"] if each["name"] == "ra3"]
     assert silent["age_s"] - before["age_s"] == pytest.approx(10.0) and silent["age_s"] > 30.0
     assert not silent["online"]
 
 
-def test_a_time_line_is_that_of_the_snapshots(site: Site) -> None:
-    busy(site)
-    site.end()
-    views, chronicle = views_of(site), Chronicle()
-    for at, snapshot, _ in site.seen:
+def test_a_time_line_is_that_of_the_snapshots(ended: Site) -> None:
+    views, chronicle = views_of(ended), Chronicle()
+    for at, snapshot, _ in ended.seen:
         chronicle.see(snapshot, at / 1e9)
     assert views.events() == list(chronicle.events) and len(chronicle.events) > 10
     for event in views.events():  # its moment shows what it says
@@ -176,21 +181,17 @@ def test_a_file_that_is_being_written_is_read_up_to_where_it_is(
     assert views.times() == whole.times() and events == len(whole.events())
 
 
-def test_a_copy_has_the_same_views(site: Site, tmp_path: Path) -> None:
-    busy(site)
-    site.end()
-    views = views_of(site)
-    copying.as_mcap(reader.opened(site.files[0]), tmp_path / "copy.mcap", (1,))
+def test_a_copy_has_the_same_views(ended: Site, tmp_path: Path) -> None:
+    views = views_of(ended)
+    copying.as_mcap(reader.opened(ended.files[0]), tmp_path / "copy.mcap", (1,))
     copy = Views(reader.opened(tmp_path / "copy.mcap"))
     assert copy.events() == views.events() and copy.times() == views.times()
     assert copy.at(views.ended_ns) == views.at(views.ended_ns)
     assert copy.links(views.ended_ns) == views.links(views.ended_ns) == {}
 
 
-def test_damage_is_passed_over_or_one_sentence(site: Site, tmp_path: Path) -> None:
-    busy(site)
-    site.end()
-    content, broken = site.files[0].read_bytes(), tmp_path / "broken.mcap"
+def test_damage_is_passed_over_or_one_sentence(ended: Site, tmp_path: Path) -> None:
+    content, broken = ended.files[0].read_bytes(), tmp_path / "broken.mcap"
     chance, seen = random.Random(3), 0
     for _ in range(60):
         at = chance.randrange(len(content))
