@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from .engine_bug import bug
 
-LEAVES, STEPS, PLACES = "trees/leaves.py", "trees/steps.py", "trees/places.py"
+LEAVES, STEPS, PLACES = "trees/leaves.py", "trees/steps.py", "trees/part_places.py"
 CELL_ZONES, CELL_DEVICES, WALK = "trees/cell_zones.py", "trees/cell_devices.py", "trees/walk_back.py"
 TRAIL, INTERLOCKS, ZONE_PLAN = "trees/trail.py", "trees/interlocks.py", "trees/zone_plan.py"
 

@@ -8,7 +8,7 @@ from arboleda.core.leaving import leaves_unkept
 from arboleda.core.operator import _not_yet
 from arboleda.dispatch import evidence
 from arboleda.model.messages import Course
-from arboleda.trees.places import Places
+from arboleda.trees.part_places import Places
 from arboleda.trees.trail import Knowledge, command_kept, put_back
 from arboleda.trees.tree_run import TreeRun
 from arboleda.trees.walk_back import WalkBack, fate

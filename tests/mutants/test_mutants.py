@@ -7,7 +7,7 @@ from collections import Counter
 import pytest
 
 from arboleda.simulator.invariants.devices import DEVICES
-from arboleda.simulator.invariants.places import PLACES
+from arboleda.simulator.invariants.part_places import PLACES
 from arboleda.simulator.run import NO_EXCEPTION
 
 from .mutant import Mutant

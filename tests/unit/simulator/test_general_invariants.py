@@ -28,7 +28,7 @@ from arboleda.simulator.faults import OF_DEVICES as FAULTS_OF_DEVICES
 from arboleda.simulator.faults import ON_ONE_HOST as JUDGED
 from arboleda.simulator.faults import Fault
 from arboleda.simulator.invariants.devices import DEVICES
-from arboleda.simulator.invariants.places import PLACES
+from arboleda.simulator.invariants.part_places import PLACES
 from arboleda.simulator.judged import INVARIANTS, judged_by
 from arboleda.simulator.judged_world import BrokenInvariant, JudgedWorld
 from arboleda.simulator.run import Simulation
@@ -37,7 +37,7 @@ from arboleda.trees.cell_devices import CellDevices
 from arboleda.trees.cell_zones import CellZones
 from arboleda.trees.interlocks import Interlocks
 from arboleda.trees.needs import CellNeeds
-from arboleda.trees.places import Places
+from arboleda.trees.part_places import Places
 from arboleda.wire.bridge import Bridge
 from arboleda.wire.payloads import OrderGoal, encode
 from arboleda.wire.transport import Publication

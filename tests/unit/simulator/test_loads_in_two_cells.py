@@ -9,7 +9,7 @@ import pytest
 from arboleda.model.messages import Verb
 from arboleda.simulator.judged_world import BrokenInvariant, JudgedWorld
 from arboleda.testing import shipped
-from arboleda.trees.places import Places
+from arboleda.trees.part_places import Places
 
 Books = Mapping[str, Places]
 Set = Callable[[Books, Places, Mapping[str, int]], None]

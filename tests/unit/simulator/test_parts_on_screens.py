@@ -11,7 +11,7 @@ from arboleda.simulator.climate import Climate
 from arboleda.simulator.faults import Fault
 from arboleda.simulator.run import Simulation
 from arboleda.testing import shipped
-from arboleda.trees.places import Places
+from arboleda.trees.part_places import Places
 
 
 def model() -> PlantModel:

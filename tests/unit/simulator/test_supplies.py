@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from arboleda.plant_file.loader import load
-from arboleda.simulator.invariants.places import PLACES
+from arboleda.simulator.invariants.part_places import PLACES
 from arboleda.simulator.run import Simulation
 
 from ..kinds.test_places import PLANT, written

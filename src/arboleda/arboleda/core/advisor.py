@@ -8,7 +8,7 @@ from dataclasses import replace
 from arboleda.dispatch.dispatcher import MAY_LET_GO
 from arboleda.model.messages import OperatorRequest, Reason, Verb
 from arboleda.model.sentence import Phrase, Sentence
-from arboleda.trees import places
+from arboleda.trees import part_places
 
 from . import reasons
 from .advice import Advice, Hand
@@ -297,7 +297,7 @@ def _mending_books(run: CellRun) -> Iterator[Advice]:
     """To make room at a place, or to bring a part there, where the last task failed for want of that."""
     trouble = run.place_trouble
     if trouble is not None and run.context.places.is_so_still(trouble):
-        hand = Hand.TAKE_OUT if trouble.key == places.FULL.key else Hand.PUT_IN
+        hand = Hand.TAKE_OUT if trouble.key == part_places.FULL.key else Hand.PUT_IN
         yield Advice(do=hand, scope=f"{run.cell.name} {trouble.values['place']}", why=trouble)
 
 

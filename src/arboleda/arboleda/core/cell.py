@@ -22,7 +22,7 @@ from arboleda.trees import steps
 from arboleda.trees.context import Context
 from arboleda.trees.keeping import Keeping
 from arboleda.trees.leaves import title_of
-from arboleda.trees.places import trouble_in
+from arboleda.trees.part_places import trouble_in
 from arboleda.trees.tree_run import TreeRun, path_of
 from arboleda.trees.walk_back import NO_PART
 

@@ -190,7 +190,7 @@ class Fact(str, Enum):
     EFFECTOR = "effector"  # arm -> "on", "off" or "switching"
     EMPTIED = "emptied"  # device that says that it holds a part -> "true" while a person has taken that out
     QUARANTINE = "quarantine"  # zone -> the robot that may still be in it
-    PARTS = "parts"  # cell -> its places with parts, as `trees/places.py` writes them
+    PARTS = "parts"  # cell -> its places with parts, as `trees/part_places.py` writes them
     STORED = (
         "stored"  # by version 0.1: cell -> the numbers of its stations with a part, "0 7"; now in `parts`
     )

@@ -10,7 +10,7 @@ from arboleda.kinds.declared import Device, DeviceKind, DeviceVerb, Effect
 from arboleda.model.plant_model import Cell, Evidence, Retry, Robot
 from arboleda.recipes.storage_layout import ARM, MOBILE
 
-from . import handovers, needs, own_kinds, places, shared, targets
+from . import handovers, needs, own_kinds, part_places, shared, targets
 from .arrays import arrays
 from .deadlines import ROUNDING_S, SHOWN_S
 from .document import Document, Place, choice, nearest, shown
@@ -116,7 +116,7 @@ def device_cell(document: Document, place: Place, kinds: Kinds, common: Mapping[
         handover=handover,
         recipes=handovers.recipes(document, place, handover, members, dict(groups)),
         needs=needs.needs(document, place, members),
-        places=places.places(document, place, members, spaces, dict(groups)),
+        places=part_places.places(document, place, members, spaces, dict(groups)),
         arrays=groups,
         grids=tuple((each.group, each.rows, each.columns) for each in arrays(document, place)),
         shared=tuple(sharing.values()),

@@ -15,7 +15,7 @@ from .invariants.memory import MEMORY
 from .invariants.memory_bounds import BOOKS
 from .invariants.motion import MOTION
 from .invariants.oee import OEE
-from .invariants.places import PLACES
+from .invariants.part_places import PLACES
 from .invariants.proofs import PROOFS
 from .invariants.revisions import REVISIONS
 from .invariants.screens import SCREENS

@@ -19,9 +19,9 @@ from .cell_zones import CellZones
 from .failures import Failures
 from .handling import Handling
 from .needs import CellNeeds
+from .part_places import Places
 from .parts import Parts
 from .piece_sensors import PieceSensors
-from .places import Places
 from .trail import Trail
 
 MOST_ANSWERS = 100  # that are kept of a task

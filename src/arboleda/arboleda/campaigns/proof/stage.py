@@ -13,7 +13,7 @@ from arboleda.model.messages import TaskChanged, TaskState
 from arboleda.model.plant_model import Link, PlantModel
 from arboleda.model.task import Order
 from arboleda.simulator.faults import Fault
-from arboleda.simulator.invariants.places import recipes_end_as_they_say
+from arboleda.simulator.invariants.part_places import recipes_end_as_they_say
 from arboleda.simulator.judged_world import BrokenInvariant, JudgedWorld
 from arboleda.simulator.people import Attendant, FixedAnswers
 from arboleda.simulator.run import NO_EXCEPTION

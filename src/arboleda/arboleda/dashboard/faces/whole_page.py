@@ -7,13 +7,13 @@ from typing import Any
 
 from arboleda.views.view import standing, waited_for
 
-from . import Face, cells, links, panel, places, questions, stop, tasks, timeline
+from . import Face, cells, links, panel, part_places, questions, stop, tasks, timeline
 from .moment import Moment
 
 PARTS = (
     stop.face,
     cells.face,
-    places.face,
+    part_places.face,
     questions.face,
     tasks.face,
     panel.face,

@@ -17,7 +17,7 @@ from ..commands import goal as goal_of
 from ..storage.truth import StorageTruth
 from ..world import World
 from .ended_commands import EndedCommand
-from .places import PlacesTruth
+from .part_places import PlacesTruth
 from .robots import RobotsTruth
 from .stops import is_order_of, robots_of
 

@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 from arboleda.dashboard.faces.moment import Moment
-from arboleda.dashboard.faces.places import face
+from arboleda.dashboard.faces.part_places import face
 from arboleda.dashboard.wording import words
 
 
