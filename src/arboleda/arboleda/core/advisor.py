@@ -113,18 +113,20 @@ class Advisor:
         name = run.cell.name
         readying = [*self._readying(run, asked)]
         yield from (each for each in readying if each.do is Hand.REPAIR)  # what is in fault is not still
-        yield Advice(do=Verb.CLEAR, scope=name, why=run.why_stopped)
+        yield Advice(do=Verb.CLEAR, scope=name, why=reasons.cause_of_stop(run))
         yield from self._stopped(run, asked)
 
     def _stopped(self, run: CellRun, asked: frozenset[str]) -> Iterator[Advice]:
-        yield Advice(do=Verb.RESET, scope=run.cell.name, why=run.why_stopped)
+        yield Advice(do=Verb.RESET, scope=run.cell.name, why=reasons.cause_of_stop(run))
         yield from self._readying(run, asked)
         failed = (Verb.RETRY, run.cell.name) in run.in_vain
         if run.context.parts.holding and _can_bring_back(run) and not failed:
-            yield Advice(do=Verb.RETRY, scope=run.cell.name, why=run.why_stopped, moves=_recovered(run))
+            yield Advice(
+                do=Verb.RETRY, scope=run.cell.name, why=reasons.cause_of_stop(run), moves=_recovered(run)
+            )
         elif run.context.parts.holding:
             for robot in run.context.parts.holding:
-                yield from _releasing(run, robot, run.why_stopped)
+                yield from _releasing(run, robot, reasons.cause_of_stop(run))
         yield from _running_again(run)
 
     def _readying(self, run: CellRun, asked: frozenset[str]) -> Iterator[Advice]:

@@ -30,7 +30,7 @@ from .advice import Advice
 from .cell_states import TABLE, Cause, CellState, after
 from .readiness import Readiness
 from .task_queue import TaskQueue
-from .teaching import TAUGHT, Teaching
+from .teaching import Teaching
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -58,7 +58,10 @@ class NextVersion:
 
 
 class CellRun:
-    """The moving part of a cell; `changed(task)` is told of every change of one of its tasks."""
+    """The moving part of a cell; `changed(task)` is told of every change of one of its tasks.
+
+    `stop`: how far it came out of a stop of an earlier start, which is not over before clear and reset.
+    """
 
     def __init__(
         self,
@@ -67,11 +70,13 @@ class CellRun:
         changed: Callable[[Task], None],
         build: Build,
         ways_out: Callable[[str], Sequence[Advice]] = lambda cell: (),
+        stop: CellState | None = None,
     ) -> None:
         self.cell = cell
         self.context = context
-        self.state = CellState.IDLE
+        self.state = stop or CellState.IDLE
         self.queue = TaskQueue(cell)
+        self.queue.paused = stop is not None
         self.readiness = Readiness(cell, context)
         self.ways_out = ways_out
         self.task: Task | None = None
@@ -88,7 +93,7 @@ class CellRun:
         self.closed = False
         self.following: NextVersion | None = None  # while it has not taken it
         self.version: RevisionName | None = None  # the one that it took while the plant ran
-        self._goes_on: GoesOn | None = None  # how it gets out of a hold by itself, after an absence
+        self.goes_on: GoesOn | None = None  # how it gets out of a hold by itself, after an absence
         self._changed = changed
         self._cancelling = False
         self._recovers_anew = False
@@ -110,39 +115,19 @@ class CellRun:
         return self.teaching.due if due is None else min(due, self.teaching.due)
 
     @property
-    def envelope(self) -> Sequence[str]:
-        """The effectors that its task may tell to switch before this is durable."""
-        return self.keeping.envelope if self.task is not None and self.task.ended_at is None else ()
-
-    @property
     def not_ready(self) -> Sentence | None:
         """Why an idle cell would not start a task; None where it would, or is not idle."""
         if self.state is not CellState.IDLE:
             return None
         if self.teaching is not None:
-            return self.taught
+            return self.teaching.sentence
         return self.readiness.objection() or (self.queue.why_paused if self.queue.paused else None)
-
-    @property
-    def taught(self) -> Sentence | None:
-        """The person who teaches it, and how that ends; None while nobody does."""
-        return None if self.teaching is None else TAUGHT(cell=self.cell.name, teacher=self.teaching.teacher)
 
     @property
     def waits_for_grip(self) -> bool:
         """True while only a part in a gripper holds the cell, so that it is idle as soon as that is out."""
         trouble = self.trouble if self.state is CellState.HELD and self.task is None else None
         return trouble is not None and trouble.reason is Reason.INTERRUPTED
-
-    @property
-    def goes_on(self) -> bool:
-        """True where the cell gets out of its hold by itself, once its devices have proved what they did."""
-        return self._goes_on is not None
-
-    @property
-    def why_stopped(self) -> Sentence:
-        """The cause of a stop, or that it was not confirmed."""
-        return self.trouble.sentence if self.trouble else STOPPED(cell=self.cell.name)
 
     def advance(self, *, woken: bool) -> bool:
         """Do what can be done now: tick the tree until it rests, start the next task; whether it did."""
@@ -224,11 +209,6 @@ class CellRun:
         why, cancels = self.task.failure, self._cancelling
         return self.keeping.news(failure=why, cancels=cancels, holds=holds, stranded=self.stranded)
 
-    def start_in(self, state: CellState) -> None:
-        """The plant starts with a stop of an earlier start: it is not over before clear and reset."""
-        self.queue.paused = True
-        self.state = state
-
     def stop(self) -> None:
         """The operator's stop (software): the task has failed; the robots are latched by the caller."""
         self.queue.paused = True
@@ -259,7 +239,7 @@ class CellRun:
             if self.cell.goes_on_after_absence and self.task is not None:
                 by = self.context.time.plant_now + self.context.timing.stop_timeout_s
                 moments = self.context.robots.moments()
-                self._goes_on = GoesOn(trouble=failure, since=moments, by=by, paused=paused)
+                self.goes_on = GoesOn(trouble=failure, since=moments, by=by, paused=paused)
         self.context.commands.cancel_motions()
 
     def _hold(self, cause: Cause, trouble: Failure | None = None) -> None:
@@ -398,13 +378,13 @@ class CellRun:
 
     def _gone_on(self) -> bool:
         """Leave `held` after an absence, where nothing else is in the way and what was at work is proved."""
-        goes_on, self._goes_on = self._goes_on, None
+        goes_on, self.goes_on = self.goes_on, None
         if goes_on is None or self.trouble is not goes_on.trouble or self.stranded:
             return False
         if self.context.time.plant_now > goes_on.by:
             return False
         if self.context.commands.open() or not self._proved(goes_on.since):
-            self._goes_on = goes_on  # until its devices have said what they did
+            self.goes_on = goes_on  # until its devices have said what they did
             return False
         self._again(Cause.RETRY)
         self.queue.paused = goes_on.paused

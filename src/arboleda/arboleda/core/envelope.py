@@ -9,6 +9,8 @@ from arboleda.model.grips import Grip
 from arboleda.model.messages import Fact, KeptTask, Remember, TaskState
 from arboleda.trees.trail import Trail
 
+from .cell import CellRun
+
 
 def unsettled(memory: Memory, kept: Iterable[KeptTask]) -> Iterator[Remember]:
     """The changes of what is kept after a power cut, which may have undone the last of it.
@@ -21,6 +23,11 @@ def unsettled(memory: Memory, kept: Iterable[KeptTask]) -> Iterator[Remember]:
             for name in _envelope(memory.get(Fact.STEP, {}).get(task.id)):
                 if grips.get(name) != Grip.SWITCHING.value:
                     yield Remember(fact=Fact.EFFECTOR, name=name, value=Grip.SWITCHING.value)
+
+
+def of_task(run: CellRun) -> Iterable[str]:
+    """The effectors that the task of a cell may tell to switch before this is durable."""
+    return run.keeping.envelope if run.task is not None and run.task.ended_at is None else ()
 
 
 def _envelope(trail: str | None) -> Iterable[str]:

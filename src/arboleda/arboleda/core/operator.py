@@ -628,7 +628,7 @@ class Operator:
         if refusal := _at_rest(self, cell, set()):
             return refusal
         if cell.teaching is not None and not by_hand:
-            return cell.taught
+            return cell.teaching.sentence
         if name in cell.cell.shared and (stopped := cell.context.devices.not_reset(name)) is not None:
             return stopped.sentence
         if name not in self._reached:
@@ -700,7 +700,7 @@ class Operator:
 
     def _not_resumable(self, cell: CellRun, robots: set[str]) -> Sentence | None:
         if cell.teaching is not None:
-            return cell.taught
+            return cell.teaching.sentence
         if cell.state is CellState.IDLE:
             return None if cell.queue.paused else QUEUE_RUNS(cell=cell.cell.name)
         if cell.state is not CellState.HELD:
@@ -713,7 +713,7 @@ class Operator:
         if cell.state in AT_WORK:
             return HOLD_FIRST(cell=cell.cell.name, state=cell.state.said)
         if cell.teaching is not None:
-            return cell.taught
+            return cell.teaching.sentence
         able = self._holders(cell, robots)
         if not able:
             first = next(each.name for each in cell.cell.robots if each.name in robots)
@@ -818,7 +818,7 @@ def _not_holdable(operator: Operator, cell: CellRun, robots: set[str]) -> Senten
 
 def _not_retryable(operator: Operator, cell: CellRun, robots: set[str]) -> Sentence | None:
     if cell.teaching is not None:
-        return cell.taught
+        return cell.teaching.sentence
     refusal = _held(operator, cell, robots)
     if refusal is None and cell.stranded:
         return reasons.of_hold(cell)
@@ -838,7 +838,7 @@ def _not_taught(operator: Operator, cell: CellRun, robots: set[str]) -> Sentence
 
 def _not_abandonable(operator: Operator, cell: CellRun, robots: set[str]) -> Sentence | None:
     if cell.teaching is not None:
-        return cell.taught
+        return cell.teaching.sentence
     refusal = _held(operator, cell, robots)
     if refusal is None and cell.task is None and (holding := cell.context.parts.holding):
         return _release_first(holding)

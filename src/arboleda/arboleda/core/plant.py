@@ -51,7 +51,7 @@ from arboleda.model.sentence import OWN, Phrase, Sentence
 from arboleda.model.task import Order, Task
 from arboleda.trees.context import Context
 
-from . import reasons
+from . import envelope, reasons
 from .acts import OperatorAct
 from .advice import Advice
 from .advisor import Advisor
@@ -203,7 +203,7 @@ class Plant:
             return False
         if not isinstance(kept, Remember) or kept.fact is not Fact.EFFECTOR:
             return True
-        return not any(kept.name in run.envelope for run in self._runs.get(kept.name, ()))
+        return not any(kept.name in envelope.of_task(run) for run in self._runs.get(kept.name, ()))
 
     @property
     def version(self) -> int:
@@ -254,12 +254,12 @@ class Plant:
 
     def _run(self, cell: Cell) -> CellRun:
         context = Context(cell, self.dispatcher, self.zones, lambda: self.now, self._at_work)
-        run = CellRun(cell, context, self._task_changed, self._build, self._ways_out)
+        stop = None
         if self._was_stopped(cell, self.dispatcher.latched):
-            run.start_in(CellState.ABORTED)
+            stop = CellState.ABORTED
         elif self._was_stopped(cell, self.dispatcher.cleared):
-            run.start_in(CellState.STOPPED)
-        return run
+            stop = CellState.STOPPED
+        return CellRun(cell, context, self._task_changed, self._build, self._ways_out, stop)
 
     def _take_back(self, kept: Iterable[KeptTask]) -> None:
         """Queue again what waited when an earlier start ended, and hold what was at work then at its step."""

@@ -6,7 +6,7 @@ from arboleda.model.sentence import BOTH, NOTHING, Phrase, Sentence
 from arboleda.trees.tree_run import step_of
 
 from . import advice
-from .cell import CellRun
+from .cell import STOPPED, CellRun
 from .cell_states import CellState
 
 ENDING = Phrase("plant.ending", "the plant is ending")
@@ -75,6 +75,11 @@ def cause_of_hold(run: CellRun) -> Sentence:
     if (at_work := _at_work(run)) is None:
         return why or BY_OPERATOR()
     return BOTH(first=at_work, second=why) if why else at_work
+
+
+def cause_of_stop(run: CellRun) -> Sentence:
+    """The cause of a stop, or that it was not confirmed."""
+    return run.trouble.sentence if run.trouble else STOPPED(cell=run.cell.name)
 
 
 def of_earlier_task(run: CellRun) -> Sentence | None:

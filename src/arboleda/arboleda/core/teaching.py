@@ -74,6 +74,11 @@ class Teaching:
         return ends_at if self._press is None else min(ends_at, self._press.until)
 
     @property
+    def sentence(self) -> Sentence:
+        """The person who teaches the cell, and how that ends."""
+        return TAUGHT(cell=self._context.cell.name, teacher=self.teacher)
+
+    @property
     def is_forgotten(self) -> bool:
         """True once nobody has touched it for so long that it ends."""
         return self._context.time.plant_now >= self._touched_at + self._context.cell.teach.ends_after_s
