@@ -101,6 +101,11 @@ def test_a_body_that_is_none_is_refused_with_what_is_wrong(
     assert answer.status_code == 422 and ":" in answer.json()["sentence"] and draft.steps == []
 
 
+def test_what_an_id_has_to_be_is_said_as_it_is(web: Any, draft: Draft) -> None:
+    sentence = web.post("/api/draft/undo", json={"editor": "short"}).json()["sentence"]
+    assert "[A-Za-z0-9_-]{8,64}" in sentence
+
+
 def test_a_value_that_is_too_long_is_not_read(web: Any, draft: Draft) -> None:
     answer = web.post("/api/draft/set", json=EDITOR | {"place": ["a"], "value": "x" * 5000})
     assert answer.status_code == 413 and draft.steps == []

@@ -28,7 +28,7 @@ def asked(request: Request, model: type[Query]) -> Query:
             raise PayloadError(
                 f"{name} is nothing to ask for; there are {', '.join(model.model_fields)}."
             ) from None
-        raise PayloadError(f"{name} is {quoted(str(found['input']), 80)}: {found['msg'].lower()}.") from None
+        raise PayloadError(f"{name} is {quoted(str(found['input']), 80)}: {_begun(found['msg'])}.") from None
 
 
 def described(model: type[BaseModel]) -> dict[str, Any]:
@@ -46,10 +46,15 @@ def read_body(body: bytes, model: type[Query]) -> Query:
     except ValidationError as error:
         found = error.errors(include_url=False, include_context=False, include_input=False)[0]
         name = quoted(".".join(map(str, found["loc"])) or "the body", 80)
-        raise PayloadError(f"{name}: {found['msg'].lower()}; /api/docs says what is allowed.") from None
+        raise PayloadError(f"{name}: {_begun(found['msg'])}; /api/docs says what is allowed.") from None
 
 
 def described_body(model: type[BaseModel]) -> dict[str, Any]:
     """The OpenAPI description of a body as `model`."""
     schema = model.model_json_schema(ref_template="#/components/schemas/{model}")
     return {"requestBody": {"content": {"application/json": {"schema": schema}}, "required": True}}
+
+
+def _begun(sentence: str) -> str:
+    """A sentence as it stands behind a colon; what it quotes, such as a pattern, stays as it is."""
+    return sentence[:1].lower() + sentence[1:]

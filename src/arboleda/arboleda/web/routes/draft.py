@@ -8,17 +8,16 @@ from typing import Annotated, Any, TypeVar
 from fastapi import APIRouter, Query, Request
 from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import JSONResponse
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import BaseModel, ConfigDict, Field
 from starlette.exceptions import HTTPException
 
 from arboleda.bt_xml.markup import LARGEST
-from arboleda.model.errors import PayloadError
 
 from ..auth import require
 from ..draft_api import DraftApi, State
 from ..plain_json import PlainJson
 from ..plant_api import PlantApi
-from ..queries import Answers
+from ..queries import Answers, read_body
 from ..schema import ResponseModel, Sentence
 
 MAY = "editing a draft"
@@ -151,7 +150,7 @@ def _edit(api: APIRouter, side: PlantApi) -> None:
     def route(path: str, model: type[Body], about: str, act: Callable[[DraftApi, Body], State]) -> None:
         async def step(request: Request) -> JSONResponse:
             draft = _draft(side, request)
-            told = _read(model, await request.body())
+            told = read_body(await request.body(), model)
             return await _answered(lambda: act(draft, told))
 
         step.__doc__ = about
@@ -187,14 +186,14 @@ def _keep(api: APIRouter, side: PlantApi) -> None:
     async def keep(request: Request) -> JSONResponse:
         """Check the draft, write it into the plant's files and keep a version, which the next start takes."""
         draft = _draft(side, request)
-        told = _read(Keeping, await request.body())
+        told = read_body(await request.body(), Keeping)
         return await _answered(lambda: draft.keep(told.editor, told.note))
 
     @api.post("/apply", response_model=AppliedDraft, responses=REFUSED, openapi_extra=described)
     async def apply(request: Request) -> JSONResponse:
         """The same, and put the version to work: a cell takes it once its task has ended."""
         draft = _draft(side, request)
-        told = _read(Keeping, await request.body())
+        told = read_body(await request.body(), Keeping)
         return await _answered(lambda: draft.apply(told.editor, told.note))
 
 
@@ -209,12 +208,3 @@ def _draft(side: PlantApi, request: Request) -> DraftApi:
     if draft is None:
         raise HTTPException(404, SHIPPED)
     return draft
-
-
-def _read(model: type[Body], body: bytes) -> Body:
-    try:
-        return model.model_validate_json(body)
-    except ValidationError as error:
-        found = error.errors(include_url=False, include_context=False, include_input=False)[0]
-        where = ".".join(map(str, found["loc"])) or "the body"
-        raise PayloadError(f"{where[:80]}: {found['msg'].lower()}.") from None

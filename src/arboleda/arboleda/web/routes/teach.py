@@ -8,16 +8,14 @@ from typing import Annotated, Any, Literal, TypeVar
 from fastapi import APIRouter, Request
 from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import JSONResponse
-from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+from pydantic import BaseModel, ConfigDict, Field, model_validator
 from starlette.exceptions import HTTPException
-
-from arboleda.model.errors import PayloadError
 
 from .. import teach_api
 from ..auth import require
 from ..plain_json import PlainJson, explained
 from ..plant_api import PlantApi
-from ..queries import Answers
+from ..queries import Answers, read_body
 from ..schema import ResponseModel, Sentence, Teaching
 
 MAY = "teaching"
@@ -118,14 +116,14 @@ def routes(side: PlantApi) -> APIRouter:
     async def jog(cell: str, request: Request) -> JSONResponse:
         """Hold a button of a cell that is taught, or let go of it."""
         desk = _desk(side, request)
-        told = _read(ButtonState, await request.body())
+        told = read_body(await request.body(), ButtonState)
         return await _answered(lambda: desk.press(cell, told.button()))
 
     @api.post("/{cell}/here", response_model=MadeTarget, responses=REFUSED, openapi_extra=_body(NewTarget))
     async def here(cell: str, request: Request) -> JSONResponse:
         """Make a target in the draft where a robot stands now, or move one there."""
         desk = _desk(side, request)
-        told = _read(NewTarget, await request.body())
+        told = read_body(await request.body(), NewTarget)
         return await _answered(lambda: desk.here(cell, teach_api.Target(**told.model_dump())))
 
     return api
@@ -147,12 +145,3 @@ def _desk(side: PlantApi, request: Request) -> teach_api.TeachApi:
 
 def _body(model: type[BaseModel]) -> dict[str, Any]:
     return {"requestBody": {"content": {"application/json": {"schema": model.model_json_schema()}}}}
-
-
-def _read(model: type[Body], body: bytes) -> Body:
-    try:
-        return model.model_validate_json(body)
-    except ValidationError as error:
-        found = error.errors(include_url=False, include_context=False, include_input=False)[0]
-        where = ".".join(map(str, found["loc"])) or "the body"
-        raise PayloadError(f"{where[:80]}: {found['msg'].lower()}.") from None

@@ -7,14 +7,13 @@ from typing import Annotated
 from fastapi import APIRouter, Path, Request
 from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import JSONResponse
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import BaseModel, ConfigDict, Field
 from starlette.exceptions import HTTPException
-
-from arboleda.model.errors import PayloadError
 
 from ..auth import require
 from ..plain_json import PlainJson
 from ..plant_api import PlantApi
+from ..queries import read_body
 from ..schema import ResponseModel
 from ..versions_api import VersionsApi
 from .draft import REFUSED, SHIPPED, AppliedDraft
@@ -75,7 +74,7 @@ def routes(side: PlantApi) -> APIRouter:
     async def put(request: Request, number: Number) -> JSONResponse:
         """Put a version to work, as when going back to it: a cell takes it once its task has ended."""
         require(request.scope["arboleda.role"], MAY)
-        desk, told = _versions(side), _read(await request.body())
+        desk, told = _versions(side), read_body(await request.body(), PutRequest)
         return PlainJson(await run_in_threadpool(lambda: desk.put(number, told.name)))
 
     return api
@@ -87,12 +86,3 @@ def _versions(side: PlantApi) -> VersionsApi:
     if found is None:
         raise HTTPException(404, SHIPPED)
     return found
-
-
-def _read(body: bytes) -> PutRequest:
-    try:
-        return PutRequest.model_validate_json(body)
-    except ValidationError as error:
-        found = error.errors(include_url=False, include_context=False, include_input=False)[0]
-        where = ".".join(map(str, found["loc"])) or "the body"
-        raise PayloadError(f"{where[:80]}: {found['msg'].lower()}.") from None
