@@ -114,7 +114,22 @@ def test_old_steps_are_forgotten(empty: Draft) -> None:
 
 
 @pytest.mark.parametrize(
-    "name", ["recipes.py", "../t.xml", "/etc/t.xml", "t.xml/..", "a\\t.xml", ".xml", "t\n.xml", "plant.yaml"]
+    "name",
+    [
+        *(
+            "recipes.py",
+            "../t.xml",
+            "/etc/t.xml",
+            "t.xml/..",
+            "a\\t.xml",
+            ".xml",
+            "t\n.xml",
+            "plant.yaml",
+            ".t.xml",
+        ),
+        "-t.xml",
+        ".arboleda/t.xml",
+    ],
 )
 def test_only_trees_within_the_folder_are_written(empty: Draft, name: str) -> None:
     with pytest.raises(EditRefused, match="no file of trees"):

@@ -55,6 +55,17 @@ def test_a_version_comes_back_and_names_what_does_not(tmp_path: Path) -> None:
     assert sorted(each.name for each in tmp_path.iterdir()) == [FOLDER, "plant.yaml", "r.py", "s.py", "t.xml"]
 
 
+def test_a_version_comes_back_whole_or_not_at_all(tmp_path: Path) -> None:
+    plant = tmp_path / "plant.yaml"
+    plant.write_bytes(b"name: b\n")
+    (tmp_path / "u.xml").mkdir()  # a folder in the way
+    first = Versions(plant).keep(version(files(t_xml=b"<a/>", u_xml=b"<b/>")))
+    with pytest.raises(StartError, match=r"u\.xml cannot be written"):
+        Versions(plant).bring_back(first)
+    assert plant.read_bytes() == b"name: b\n" and not (tmp_path / "t.xml").exists()
+    assert Versions(plant).go_on() is None
+
+
 def test_two_plant_files_in_a_folder_have_versions_of_their_own(tmp_path: Path) -> None:
     Versions(tmp_path / "a.yaml").keep(version(files()))
     assert Versions(tmp_path / "b.yaml").all() == []

@@ -144,6 +144,12 @@ def test_a_place_that_cannot_be_is_named(place: tuple[str | int, ...], sentence:
         without(TEXT.encode(), place)
 
 
+@pytest.mark.parametrize("value", [float("nan"), [float("inf")], {"deg": [0, float("-inf")]}])
+def test_what_is_no_number_is_refused_as_such(value: Any) -> None:
+    with pytest.raises(EditRefused, match="neither nan nor infinity"):
+        with_value(b"a: 1\n", ("a",), value)
+
+
 def test_a_text_with_a_mistake_is_not_edited() -> None:
     with pytest.raises(EditRefused, match="line 2"):
         with_value(b"a: 1\na: 2\n", ("a",), 3)

@@ -8,6 +8,7 @@ from typing import Any
 
 import pytest
 
+from arboleda.model.errors import StartError
 from arboleda.plant_file.draft_check import Checked
 from arboleda.plant_file.versions import Version, Versions
 from arboleda.recorder.preamble import PlantFiles
@@ -162,6 +163,18 @@ def test_a_draft_that_is_changed_while_it_is_checked_is_not_kept(open_desk: Open
     assert plant.read_bytes() == TEXT
 
 
+def test_where_a_file_cannot_be_written_nothing_is_kept_and_the_draft_stays(
+    open_desk: Open, plant: Path
+) -> None:
+    desk = open_desk()
+    desk.set_trees(ANA, "tend.xml", "<root/>")
+    (plant.parent / "tend.xml").mkdir()  # a folder in the way
+    with pytest.raises(StartError, match=r"tend\.xml cannot be written"):
+        desk.keep(ANA, "")
+    assert plant.read_bytes() == TEXT and [each.number for each in Versions(plant).all()] == [1]
+    assert desk.state()["changes"] == ["uses: new, [tend.xml]", "tend.xml: new"]
+
+
 def test_an_empty_draft_is_not_kept(open_desk: Open) -> None:
     with pytest.raises(DraftRefused, match="changes nothing"):
         open_desk().keep(ANA, "")
@@ -183,8 +196,9 @@ def test_trees_are_a_part_of_the_draft(open_desk: Open, plant: Path) -> None:
     assert desk.undo(ANA)["trees"] == []
     desk.redo(ANA)
     assert desk.remove_trees(ANA, "tend.xml")["trees"] == [] and not (plant.parent / "tend.xml").exists()
-    with pytest.raises(DraftRefused, match="no file of trees"):
-        desk.set_trees(ANA, "../tend.xml", "<root/>")
+    for name in ("../tend.xml", "/etc/passwd", "r.py"):  # of which nobody is told whether they are there
+        with pytest.raises(DraftRefused, match="no file of trees"):
+            desk.set_trees(ANA, name, "<root/>")
 
 
 def test_a_new_file_of_trees_is_written_over_no_other_file(open_desk: Open, plant: Path) -> None:

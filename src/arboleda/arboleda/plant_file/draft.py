@@ -21,6 +21,7 @@ from .yaml_marks import parse
 MOST_STEPS = 1000  # that can be undone
 MOST_FILES = 50  # of trees
 USES = "uses"
+KEPT = ".arboleda"  # the folder of versions
 Contents = Mapping[str, bytes]
 
 
@@ -47,7 +48,7 @@ class Draft:
 
     def with_trees(self, name: str, content: bytes) -> Draft:
         """The draft with another content of a file of trees, or with a new one."""
-        _check_name(name)
+        check_name(name)
         if len(content) > LARGEST_TREES:
             raise EditRefused(f"{name} would be larger than {LARGEST_TREES // 1024} KiB")
         count = sum(each.endswith(ENDING) for each in {*self.files.contents, name})
@@ -77,7 +78,7 @@ class Draft:
 
     def without_trees(self, name: str) -> Draft:
         """The draft without a file of trees; one that is at work stays in its folder, unused."""
-        _check_name(name)
+        check_name(name)
         if name not in self.files.contents:
             raise EditRefused(f"{quoted(name)} is no file of this plant")
         return self._step({key: each for key, each in self.files.contents.items() if key != name})
@@ -113,7 +114,7 @@ class Draft:
         """The draft with another plant file; it may use more trees than now at work, no more Python."""
         for word in _uses(text):
             if word not in _uses(self.base.contents[self.base.plant]):
-                _check_name(word)
+                check_name(word)
         return self._with(self.files.plant, text)
 
     def _with(self, name: str, content: bytes) -> Draft:
@@ -142,9 +143,10 @@ def _uses(text: bytes) -> list[str]:
     return [each for each in found if isinstance(each, str)] if isinstance(found, list) else []
 
 
-def _check_name(name: str) -> None:
+def check_name(name: str) -> None:
     """Raise EditRefused for what is no file of trees in the plant's folder."""
     path = PurePosixPath(name)
     is_inside = not path.is_absolute() and ".." not in path.parts and name.isprintable() and "\\" not in name
-    if not is_inside or path.suffix != ENDING or not path.stem or len(name) > 200:
+    is_hidden = path.name.startswith((".", "-")) or KEPT in path.parts  # or taken for an option of a command
+    if not is_inside or is_hidden or path.suffix != ENDING or not path.stem or len(name) > 200:
         raise EditRefused(f"{quoted(name)} is no file of trees, *{ENDING}, in the plant's folder")

@@ -6,6 +6,7 @@ import json
 import os
 import shutil
 from collections.abc import Mapping
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from hashlib import blake2b
 from pathlib import Path
@@ -99,16 +100,30 @@ class Versions:
         return numbered
 
     def bring_back(self, version: Version) -> None:
-        """Write plant file and trees of a kept version where they were; StartError if the disk refuses.
+        """Write plant file and trees of a kept version where they were, all of them or none; StartError if
+        the disk refuses.
 
         What is cut off in the middle is done by `go_on`: who starts next finds all of it.
         """
         mark = self._folder / MARK
         if len(version.files.contents) > 1:
             _replace(mark, str(version.number).encode())
-        for name, content in version.files.contents.items():
-            _replace(self._path(version, name), content)
+        written: dict[Path, bytes | None] = {}
+        try:
+            for name, content in version.files.contents.items():
+                file = self._path(version, name)
+                before = _content(file)
+                _replace(file, content)
+                written[file] = before
+        except StartError:
+            _put_back(written)
+            mark.unlink(missing_ok=True)
+            raise
         mark.unlink(missing_ok=True)
+
+    def forget(self, version: Version) -> None:
+        """Forget a version that was kept and never was in its place."""
+        shutil.rmtree(self._folder / str(version.number).zfill(DIGITS), ignore_errors=True)
 
     def go_on(self) -> Version | None:
         """Write the rest of a version that was cut off in the middle of `bring_back`; None if none was."""
@@ -208,6 +223,24 @@ def _replace(file: Path, content: bytes) -> None:
         raise StartError(f"{file} cannot be written: {error.strerror or error}") from error
 
 
+def _content(file: Path) -> bytes | None:
+    """The content of a file; None where there is none."""
+    try:
+        return file.read_bytes()
+    except OSError:
+        return None
+
+
+def _put_back(written: Mapping[Path, bytes | None]) -> None:
+    """Give files their contents of before, as far as the disk lets that be done."""
+    for file, content in written.items():
+        with suppress(StartError):
+            if content is None:
+                file.unlink(missing_ok=True)
+            else:
+                _replace(file, content)
+
+
 def _inside(name: str) -> str:
     """The name of a file within a folder; ValueError for one that leads out of it."""
     path = Path(name)
@@ -217,10 +250,8 @@ def _inside(name: str) -> str:
 
 
 def _digest_now(file: Path) -> str | None:
-    try:
-        return _digest(file.read_bytes())
-    except OSError:
-        return None
+    content = _content(file)
+    return None if content is None else _digest(content)
 
 
 def _digest(content: bytes) -> str:

@@ -6,6 +6,7 @@ read again before it counts: it changed exactly what was to be changed, or it is
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 from arboleda.model.errors import ArboledaError
@@ -28,6 +29,8 @@ def with_value(raw: bytes, place: Place, value: Any) -> bytes:
 
     EditRefused where something on the way is no mapping, or the change would reach other places.
     """
+    if not _is_finite(value):
+        raise EditRefused(f"{dotted(place)} must have numbers, neither nan nor infinity")
     before = _plain(raw)
     wanted = _set(before, place, place, value)
     return _verified(_text(raw, _cut(raw).set(place, wanted, before)), place, wanted)
@@ -38,6 +41,15 @@ def without(raw: bytes, place: Place) -> bytes:
     before = _plain(raw)
     wanted = _removed(before, place, place)
     return _verified(_text(raw, _cut(raw).remove(place, wanted)), place, wanted)
+
+
+def _is_finite(value: Any) -> bool:
+    """False for data with a number that equals no number, or is beyond all of them."""
+    if isinstance(value, dict):
+        return all(map(_is_finite, value.values()))
+    if isinstance(value, list):
+        return all(map(_is_finite, value))
+    return not isinstance(value, float) or math.isfinite(value)
 
 
 def _plain(raw: bytes) -> Any:

@@ -11,11 +11,11 @@ from datetime import datetime, timezone
 from pathlib import Path, PurePosixPath
 from typing import Any, Protocol
 
-from arboleda.model.errors import ArboledaError
+from arboleda.model.errors import ArboledaError, StartError
 from arboleda.model.outside import plain, quoted
 from arboleda.plant_file import versions
 from arboleda.plant_file.changes import changes
-from arboleda.plant_file.draft import Draft, draft_of
+from arboleda.plant_file.draft import Draft, check_name, draft_of
 from arboleda.plant_file.draft_check import Checked, root_of
 from arboleda.plant_file.restart import needing_restart
 from arboleda.plant_file.tree_file import ENDING
@@ -209,6 +209,7 @@ class DraftDesk(DraftApi):
 
     def _new_name(self, draft: Draft, file: str) -> str:
         """The path of a new file beside the plant file; EditRefused where one lies there, of another use."""
+        check_name(file)  # before anybody learns whether there is such a file
         name = str(PurePosixPath(draft.files.plant).parent / file)
         known = draft.files.contents.keys() | draft.base.contents.keys()
         if name not in known and (root_of(draft.files, self._folder.ours) / name).exists():
@@ -241,7 +242,11 @@ class DraftDesk(DraftApi):
         if read is None:
             fresh = replace(fresh, others=started.others)
         version = kept.keep(replace(fresh, changes=tuple(each.words for each in draft.changes)))
-        kept.bring_back(replace(version, files=draft.files))
+        try:
+            kept.bring_back(replace(version, files=draft.files))
+        except StartError:
+            kept.forget(version)
+            raise
         return version
 
     def _shown(self) -> State:
