@@ -10,6 +10,7 @@ from datetime import datetime, timezone
 from pathlib import Path
 from typing import Any
 
+from arboleda.core.cell import CellRun
 from arboleda.core.plant import Plant
 from arboleda.model.errors import ArboledaError, ConfigError
 from arboleda.model.messages import RevisionAnswer
@@ -34,6 +35,7 @@ UNKNOWN = "this plant does not keep what it was started with (record: off), so n
 MEANWHILE = "its files were changed while it was put to work; `arboleda apply` shows what they have now"
 SAME = "the files are as they are at work"
 NOW, AFTER_TASK, AT_REST = "now", "when task {task} has ended", "when it rests"
+AFTER_TEACHING = "when nobody teaches it any more; `automatic {cell}` ends that"
 Check = Callable[[PlantFiles, Path], Checked]
 
 
@@ -171,7 +173,7 @@ def _cells(plant: Plant) -> list[State]:
             "cell": name,
             "version": None if run.version is None else run.version.number,
             "following": None if run.following is None else run.following.version.number,
-            "when": NOW if run.following is None else _after(run.task.id if run.task else ""),
+            "when": NOW if run.following is None else _after(run),
         }
         for name, run in plant.cells.items()
     ]
@@ -179,11 +181,17 @@ def _cells(plant: Plant) -> list[State]:
 
 def _when(plant: Orchestrator, answer: RevisionAnswer) -> dict[str, str]:
     waits = dict(answer.waits)
-    return {name: _after(waits[name]) if name in waits else NOW for name in plant.plant.cells}
+    return {
+        name: _after(run, waits[name]) if name in waits else NOW for name, run in plant.plant.cells.items()
+    }
 
 
-def _after(task: str) -> str:
-    return AFTER_TASK.format(task=task) if task else AT_REST
+def _after(run: CellRun, task: str = "") -> str:
+    """The sentence for when a cell takes what it waits with: for `task`, if that is known."""
+    task = task or (run.task.id if run.task else "")
+    if task:
+        return AFTER_TASK.format(task=task)
+    return AT_REST if run.teaching is None else AFTER_TEACHING.format(cell=run.cell.name)
 
 
 def _now() -> str:
