@@ -40,6 +40,7 @@ def build(layout: Layout, words: Words) -> None:
                 "div", id=f"make-{name}", classes="make-panel", role="group", aria_label=label, **hidden
             ):
                 build_panel(words)
+        tag("p", id="make-note", role="status", classes="act-note")
 
 
 def _bar(words: Words) -> None:
@@ -56,7 +57,6 @@ def _bar(words: Words) -> None:
         with tag("div", id="make-not-ours", hidden="true"):
             tag("p", words("make.not_ours"))
             _button(words, "own", classes="act primary")
-        tag("p", id="make-note", role="status", classes="hint")
 
 
 def _draft(words: Words) -> None:
@@ -65,12 +65,14 @@ def _draft(words: Words) -> None:
         tag("ul", id="make-changes", classes="make-lines")
         tag("h2", words("make.problems"))
         tag("ul", id="make-problems", classes="draw-marks")
+        for name in ("restart", "waiting"):
+            with tag("div", id=f"make-{name}-box", hidden="true"):
+                tag("h2", words(f"make.{name}"))
+                tag("ul", id=f"make-{name}", classes="make-lines")
         with tag("label", words("make.note")):
             tag("input", id="make-version-note", type="text", maxlength="200", autocomplete="off")
-        tag("h2", words("make.restart"))
-        tag("ul", id="make-restart", classes="make-lines")
-        tag("h2", words("make.waiting"))
-        tag("ul", id="make-waiting", classes="make-lines")
+        with tag("div", classes="draw-acts"):
+            way(words("make.versions"), {"tab": "links"}, classes="act")
 
 
 def _cells(words: Words) -> None:
@@ -83,7 +85,8 @@ def _cells(words: Words) -> None:
             _button(words, "carry", classes="act primary")
             _button(words, "empty")
         tag("p", words("make.carry_how"), classes="hint")
-    tag("div", id="make-cell-list")
+    with tag("div", id="make-cell-list"):
+        tag("p", words("make.reading"), classes="hint")
 
 
 def _try(words: Words) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from .page_api import Layout
-from .tags import live, tag
+from .tags import live, tag, way
 from .wording import Words
 
 STEPS = ("hold", "10", "1", "0.1")  # what a button of an axis does: on and on, or so many degrees or mm
@@ -15,13 +15,15 @@ def build(layout: Layout, words: Words) -> None:
         with tag("div", classes="box"):
             tag("h2", words("teach.title"))
             _who(layout, words)
-            tag("p", id="teach-note", role="status", classes="hint")
             for cell in layout["cells"]:
                 name = cell["name"]
                 live("p", f"{name}.taught", classes="hint teach-state", data_teach_cell=name, hidden="true")
             tag("p", words("teach.not_safety"), classes="hint")
         _steps(words)
         tag("div", id="teach-devices", classes="teach-devices")
+        if layout.get("draft"):
+            way(words("teach.recipe"), {"tab": "make"}, id="teach-recipe", classes="act")
+        tag("p", id="teach-note", role="status", classes="act-note")
 
 
 def _who(layout: Layout, words: Words) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from .page_api import Layout
-from .tags import tag
+from .tags import tag, way
 from .wording import Words
 
 HOW = ("into", "before", "around", "instead")  # where a node of the palette goes
@@ -14,11 +14,11 @@ OF_TREES = ("add_tree", "extract", "rename_tree", "remove_tree")
 def build(layout: Layout, words: Words) -> None:
     with tag("div", id="draw", classes="draw"):
         _bar(layout, words)
-        tag("p", id="draw-note", role="status", classes="hint")
         with tag("div", classes="draw-desk"):
             _palette(words)
             _tree(words)
             _form(words)
+        tag("p", id="draw-note", role="status", classes="act-note")
 
 
 def _bar(layout: Layout, words: Words) -> None:
@@ -29,7 +29,9 @@ def _bar(layout: Layout, words: Words) -> None:
         with tag("label", words("draw.file")):
             tag("select", id="draw-file")
         for act in ("undo", "redo", "download"):
-            _button(words, act, classes="act primary" if act == "download" else "act")
+            _button(words, act)
+        if layout.get("draft"):
+            way(words("draw.to_make"), {"tab": "make"}, classes="act primary")
 
 
 def _palette(words: Words) -> None:

@@ -4,20 +4,21 @@ import * as cells from "./make_cells.js";
 import * as device from "./make_device.js";
 import * as proof from "./make_prove.js";
 import * as tryout from "./make_try.js";
-import { ask, box, draft, editor, element, fill, isMine, look, onDraft, say, step, take, there } from "./make_state.js";
+import { ask, box, draft, editor, element, fill, isMine, knownName, look, onDraft, say, step, take, there } from "./make_state.js";
 import * as question from "./question.js";
 import { all, words } from "./shell.js";
 
 const CHECK_MS = 1200; // after the last change
 const LOOK_MS = 5000; // what others do
 const WAIT_MS = 1500; // while another check is under way
+const PANEL = "arboleda_make_panel"; // where this browser tab was last, also before it looked at a record
+const FIRST = "draft";
 let shown = false;
-let checked = ""; // the changes that were checked last
+let checked = null; // the changes that were checked last
 let timer = null;
 
 export function start() {
   if (!there()) return;
-  box("name").value = localStorage.getItem("arboleda_name") ?? "";
   document.getElementById("make").addEventListener("click", clicked);
   onDraft(drawn);
   cells.start();
@@ -30,8 +31,13 @@ export function start() {
 export async function show(is) {
   shown = is && there();
   if (!shown) return;
+  box("name").value ||= knownName();
+  open(sessionStorage.getItem(PANEL) ?? FIRST);
   await look();
-  if (draft.state?.is_ours !== false) cells.read();
+  if (draft.state?.is_ours === false) return;
+  await cells.read();
+  tryout.recall();
+  proof.recall();
 }
 
 const ACTS = {
@@ -53,6 +59,7 @@ function clicked({ target }) {
 }
 
 export function open(panel) {
+  sessionStorage.setItem(PANEL, panel);
   all("[data-make-panel]").forEach((each) => each.setAttribute("aria-pressed", each.dataset.makePanel === panel));
   all(".make-panel").forEach((each) => (each.hidden = each.id !== `make-${panel}`));
 }
@@ -69,19 +76,15 @@ function drawn() {
   button("undo").disabled = !state.undo;
   button("redo").disabled = !state.redo;
   button("keep").disabled = button("discard").disabled = !state.changes.length;
-  lines("changes", state.changes, words.make_no_change);
-  lines("restart", state.restart, words.make_no_wait);
-  lines("waiting", state.waiting, words.make_no_wait);
+  lines("changes", state.changes.length ? state.changes : [words.make_no_change]);
+  for (const name of ["restart", "waiting"]) lines(name, state[name]), (box(`${name}-box`).hidden = !state[name].length);
   const now = state.changes.join("\n");
   if (now !== checked) clearTimeout(timer), (timer = setTimeout(check, CHECK_MS));
 }
 
 const button = (act) => document.querySelector(`#make [data-make="${act}"]`);
 
-function lines(id, rows, none) {
-  const made = (rows.length ? rows : [none]).map((text) => element("li", text));
-  box(id).replaceChildren(...made);
-}
+const lines = (id, rows) => box(id).replaceChildren(...rows.map((text) => element("li", text)));
 
 // What `check` says of the draft; one at a time, and the last change counts.
 async function check() {
@@ -97,7 +100,7 @@ async function check() {
 export function marks({ problems, warnings }) {
   const rows = [...problems.map((text) => ["mistake", `✕ ${text}`]), ...warnings.map((text) => ["warning", `▲ ${text}`])];
   const made = rows.map(([sort, text]) => element("li", text, { "data-mark": sort }));
-  box("problems").replaceChildren(...(made.length ? made : [element("li", words.make_good)]));
+  box("problems").replaceChildren(...(made.length ? made : [element("li", words.make_good, { "data-mark": "good" })]));
   const tab = document.querySelector('[data-make-panel="draft"]');
   tab.dataset.mark = problems.length ? "mistake" : warnings.length ? "warning" : "";
   tab.title = problems.length ? fill(words.make_problems, { count: problems.length }) : "";
@@ -111,7 +114,7 @@ function applied({ version, cells: taken, restart, cancelled }) {
 }
 
 async function keep() {
-  if (!(await question.confirmed(`${words.make_keep} ${draft.state.changes.join("; ")}`))) return;
+  if (!(await question.confirmed([words.make_keep, ...draft.state.changes].join("\n")))) return;
   say(words.make_checking);
   const kept = await ask("/api/draft/apply", { editor: editor(), note: box("version-note").value.trim() });
   if (!kept) return;

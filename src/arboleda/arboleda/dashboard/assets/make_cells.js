@@ -7,6 +7,7 @@ import { words } from "./shell.js";
 
 const NEW = '<?xml version="1.0" encoding="UTF-8"?>\n<root BTCPP_format="4" main_tree_to_execute="Main">\n  <BehaviorTree ID="Main">\n    <Sequence/>\n  </BehaviorTree>\n</root>\n';
 const NAME = /^[a-z][a-z0-9_]{0,39}$/;
+const APPROACH = "approach_mm";
 const listeners = [];
 let reading = null;
 
@@ -41,6 +42,20 @@ function offer() {
   const targets = (cell?.targets ?? []).filter(({ name, robots }) => robots.includes(robot) && name !== "home").map(({ name }) => [name]);
   options(box("start"), targets);
   options(box("end"), targets, box("end").value || targets[1]?.[0]);
+  chooseTaught(targets.map(([name]) => name));
+}
+
+// The two targets that were taught last, once: a part goes from the first to the second.
+function chooseTaught(known) {
+  const taught = draft.taught;
+  if (!taught || taught.cell !== box("cell").value || !taught.targets.every((each) => known.includes(each))) return;
+  [box("start").value, box("end").value] = taught.targets;
+  draft.taught = null;
+}
+
+// A recipe is to be made of targets that were taught: { cell, targets }.
+export function fromTaught(taught) {
+  draft.taught = taught;
 }
 
 const ACTS = {
@@ -77,6 +92,7 @@ async function shownIn(recipe, cell) {
 }
 
 function draw(cell, recipe) {
+  draft.latest = `${cell} ${recipe}`;
   showRecipe(recipe);
   place.go({ tab: "draw", cell });
 }
@@ -167,6 +183,7 @@ function targetRow(cell, target, robot, pose) {
       const several = Array.isArray(value);
       (several ? value : [value]).forEach((each, n) => typeof each === "number" && made.append(number(key, each, several ? n : null, at)));
     }
+  if (pose?.deg && pose[APPROACH] === undefined && target !== "home") made.append(number(APPROACH, "", null, at));
   const remove = element("button", "×", { type: "button", class: "tool", "aria-label": `${words.make_remove}: ${target}` });
   remove.dataset.removePlace = JSON.stringify(at.slice(0, 4));
   if (target !== "home") made.append(remove);

@@ -37,12 +37,13 @@ function row(where, fields) {
   const around = element("div", "", { class: "make-form" });
   for (const [name, value, list] of fields) {
     const id = `make-${where}-${name}-${(made += 1)}`;
-    const label = element("label", words[`make_key_${name}`], { for: id });
+    const label = element("label", words[`make_key_${name}`]);
     const input = element("input", "", { type: "text", id, autocomplete: "off", maxlength: "200", placeholder: words[`make_like_${name}`] ?? "" });
     input.value = value;
     if (list) input.setAttribute("list", listOf(name, list));
     input.dataset.key = name;
-    around.append(label, input);
+    label.append(input);
+    around.append(label);
   }
   box(where).append(around);
   return around;

@@ -8,6 +8,7 @@ import { words } from "./shell.js";
 const ENDS = ["done", "recovered", "held", "failed"];
 const says = (sentence) => (box("prove-state").textContent = sentence);
 let found = null;
+let isFollowed = false; // what this page has begun, or has found under way
 
 export function start() {
   document.getElementById("make").addEventListener("click", clicked);
@@ -20,12 +21,15 @@ function offer() {
   options(box("prove_kind"), [["", words.make_everything], ...draft.faults.map(({ name }) => [name])]);
 }
 
-// The recipes that are others than at work: those whose file differs; all, where the plant file does.
+// The recipes that are others than at work: those whose file differs; all, where the plant file has more than another
+// use of files and targets that no recipe had before.
+const HARMLESS = /^(uses: |[^:,]+\.xml\b|cell [^,]+, target [^:]+: new, )/;
+
 function differing() {
   const recipes = draft.cells.flatMap(({ recipes }) => recipes);
-  const changed = recipes.filter(({ file }) => file && draft.state.changes.some((line) => line.startsWith(`${file}`)));
-  const only = draft.state.changes.every((line) => /^(uses|[^:,]+\.xml)\b/.test(line));
-  return only ? [...new Set(changed.map(({ name }) => name))] : [];
+  const isOf = (file) => (line) => line.startsWith(`${file}:`) || line.startsWith(`${file},`);
+  const changed = recipes.filter(({ file }) => file && draft.state.changes.some(isOf(file)));
+  return draft.state.changes.every((line) => HARMLESS.test(line)) ? [...new Set(changed.map(({ name }) => name))] : [];
 }
 
 function clicked({ target }) {
@@ -39,14 +43,27 @@ function clicked({ target }) {
 async function prove() {
   const chosen = box("prove_recipe").value;
   const recipes = chosen ? [chosen] : differing();
+  isFollowed = true;
   box("proof").replaceChildren();
   says(words.make_proving);
   if (!(await ask("/api/make/runs/prove", { recipes, kinds: [box("prove_kind").value].filter(Boolean), budget_s: Number(box("budget").value) }, says))) return;
+  await follow();
+}
+
+async function follow() {
   const progress = box("progress");
   progress.hidden = false;
   found = await ended("prove", how, says);
   progress.hidden = true;
   if (found) drawn();
+}
+
+// A proof goes on, and its answer stays, whoever opens the page anew.
+export async function recall() {
+  if (isFollowed) return;
+  isFollowed = true;
+  const run = await ask("/api/make/runs/prove", undefined, () => {});
+  if (["running", "done"].includes(run?.state)) await follow();
 }
 
 function how({ doing, done, total }) {

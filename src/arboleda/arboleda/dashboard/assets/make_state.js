@@ -5,7 +5,8 @@ import { words } from "./shell.js";
 // Since when this page edits the draft, here or by teaching; kept also where the page is opened anew.
 const MINE = "arboleda_mine";
 
-export const draft = { state: null, cells: [], faults: [], problems: [] };
+// `latest` is the recipe that was made or drawn last here: "cell recipe".
+export const draft = { state: null, cells: [], faults: [], problems: [], latest: null };
 const listeners = [];
 const MOST_TRIES = 10;
 const RETRY_MS = 300; // while the server takes no more in this second
@@ -31,6 +32,9 @@ export function editor() {
   return id;
 }
 
+const NAME = "arboleda_name";
+export const knownName = () => localStorage.getItem(NAME) ?? "";
+export const keepName = (name) => localStorage.setItem(NAME, name);
 export const name = () => box("name").value.trim() || words.make_somebody;
 export const isMine = () => draft.state?.editor != null && sessionStorage.getItem(MINE) === draft.state.editor.since;
 
@@ -65,7 +69,7 @@ export async function take() {
   const state = await ask("/api/draft/take", { editor: editor(), name: name() });
   if (!state) return false;
   sessionStorage.setItem(MINE, state.editor.since);
-  localStorage.setItem("arboleda_name", box("name").value.trim());
+  keepName(box("name").value.trim());
   heard(state);
   return true;
 }

@@ -5,6 +5,7 @@ import { ask, box, draft, fill, options } from "./make_state.js";
 import { words } from "./shell.js";
 
 const LOOK_MS = 400;
+const says = (sentence) => (box("try-state").textContent = sentence);
 let last = null; // what came of the last try
 
 export function start() {
@@ -17,7 +18,8 @@ export function start() {
 function offer() {
   const rows = draft.cells.flatMap(({ name: cell, recipes }) => recipes.map(({ name, example }) => [`${cell} ${name}`, `${cell}: ${name}`, example]));
   const before = box("try_recipe").value;
-  options(box("try_recipe"), rows);
+  options(box("try_recipe"), rows, draft.latest ?? before);
+  if (box("try_recipe").value === draft.latest) draft.latest = null;
   if (box("try_recipe").value !== before || !box("task").value) example();
 }
 
@@ -34,16 +36,24 @@ function clicked({ target }) {
 
 const bare = ({ kind, at, seconds, target, amount, word }) => ({ kind, at, seconds, target, amount, word });
 
+// What this browser tab has looked at as a record, or a page before this one has tried, is there again.
+export async function recall() {
+  if (last) return;
+  const run = await ask("/api/make/runs/try", undefined, () => {});
+  if (last || run?.state !== "done") return;
+  last = await ask("/api/make/runs/try/result", undefined, () => {});
+  if (last) shown(last);
+}
+
 // Play a story: a task with what befell it, from a proof.
 export const play = (wanted) => go({ task: wanted.task, answers: wanted.answers ?? {}, faults: (wanted.faults ?? []).map(bare) });
 
 async function go(wanted) {
   box("tried").hidden = true;
-  const says = (sentence) => (box("try-state").textContent = sentence);
   says(words.make_trying);
   if (!(await ask("/api/make/runs/try", wanted, says))) return false;
   const found = await ended("try", () => {}, says);
-  if (found) last = found, shown(found, says);
+  if (found) last = found, shown(found);
   return found !== null;
 }
 
@@ -59,7 +69,7 @@ export async function ended(what, progress, says) {
   }
 }
 
-function shown({ task, outcome, why, faults, instants, possible }, says) {
+function shown({ task, outcome, why, faults, instants, possible }) {
   const befell = faults.map(({ kind, target }) => `${kind} ${target}`).join(", ");
   const how = [outcome.end, outcome.cause].filter(Boolean).join(": ");
   const untrue = outcome.untrue.length ? ` ${fill(words.make_unnoticed, { what: outcome.untrue.join("; ") })}` : "";

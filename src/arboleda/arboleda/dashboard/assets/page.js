@@ -37,7 +37,7 @@ function arrive(there) {
   if (cellOf(scope.of) !== (cell ?? "")) chooseScope(cell ?? "");
   form.offer(cell);
   task.show(named);
-  if (tab === "tasks") history.show(), oee.show();
+  if (tab === "tasks") versions.openAnew(), history.show(), oee.show();
   if (tab === "draw") draw.show(cell);
   if (tab === "teach") teach.show(cell);
   else teach.leave();

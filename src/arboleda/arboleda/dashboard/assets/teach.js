@@ -1,5 +1,8 @@
 // The panel of who teaches a cell: begins and ends its manual mode, and shows its devices as they are.
 
+import { open } from "./make.js";
+import { fromTaught } from "./make_cells.js";
+import { editor, keepName, knownName } from "./make_state.js";
 import { answer, words } from "./shell.js";
 import * as device from "./teach_device.js";
 import * as press from "./teach_press.js";
@@ -11,6 +14,8 @@ let cell = null;
 let drawn = new Map(); // the controls of each device, by name
 let shape = "";
 let timer = null;
+let recipeLink = null; // stands beside what was said of a second target
+let taught = null; // the targets that were made last, of one cell
 
 export function start() {
   if (!document.getElementById("teach")) return;
@@ -18,7 +23,9 @@ export function start() {
   box("cell").addEventListener("change", ({ target }) => show(target.value));
   box("begin").addEventListener("click", begin);
   box("end").addEventListener("click", end);
-  box("name").value = localStorage.getItem(KEY) ?? "";
+  recipeLink = box("recipe");
+  recipeLink?.addEventListener("click", recipe);
+  recipeLink?.remove();
   for (const each of document.querySelectorAll("[data-step]")) each.addEventListener("click", () => choose(each));
 }
 
@@ -28,6 +35,7 @@ export function show(named) {
   const chosen = named ?? cell ?? box("cell").value;
   if (chosen !== cell) (cell = chosen), (shape = ""), press.letGo();
   box("cell").value = cell;
+  box("name").value ||= knownName();
   for (const each of document.querySelectorAll("[data-teach-cell]")) each.hidden = each.dataset.teachCell !== cell;
   clearInterval(timer);
   timer = setInterval(look, LOOK_MS);
@@ -48,7 +56,7 @@ function mine() {
 async function begin() {
   const name = box("name").value.trim();
   if (!name) return say(words.teach_name_first), box("name").focus();
-  localStorage.setItem(KEY, name);
+  keepName(name);
   const said = await ask(`/api/cells/${encodeURIComponent(cell)}/teach`, { teacher: name });
   if (said) sessionStorage.setItem(KEY, JSON.stringify({ cell, session: said.act }));
   look();
@@ -104,21 +112,22 @@ function heard({ sentence, teaching, robot }, { number }) {
   else if (teaching.trouble) say(teaching.trouble);
 }
 
-async function here({ name }, target) {
+async function here({ name }, target, approach) {
   const person = box("name").value.trim();
-  const said = await ask(`/api/teach/${encodeURIComponent(cell)}/here`, { robot: name, target, editor: editor(), name: person });
+  const how = Number.isFinite(approach) ? { approach_mm: approach } : {};
+  const said = await ask(`/api/teach/${encodeURIComponent(cell)}/here`, { robot: name, target, editor: editor(), name: person, ...how });
   if (!said) return said;
+  taught = { cell, targets: [...(taught?.cell === cell ? taught.targets : []).filter((each) => each !== target), target].slice(-2) };
   say(words.teach_made.replace("{target}", target)), look();
+  if (recipeLink && taught.targets.length > 1) box("note").append(" ", recipeLink);
   const draft = await ask("/api/draft");
   if (draft?.editor) sessionStorage.setItem("arboleda_mine", draft.editor.since); // as Make of this page asks for it
   return said;
 }
 
-// The same as that of other parts of this page that edit the draft.
-function editor() {
-  const kept = sessionStorage.getItem("arboleda_editor") ?? crypto.randomUUID?.() ?? `page-${Date.now()}`;
-  sessionStorage.setItem("arboleda_editor", kept);
-  return kept;
+function recipe() {
+  fromTaught(taught);
+  open("cells");
 }
 
 async function ask(path, body) {

@@ -10,7 +10,7 @@ const filled = (text, values) => text.replace(/\{(\w+)\}/g, (_, name) => values[
 export function draw(device, targets, { step, here }) {
   const box = made("section", { className: "box teach-device" });
   box.setAttribute("aria-label", device.name);
-  box.append(made("h3", { textContent: `${device.name} (${device.role})` }));
+  box.append(made("h3", { textContent: device.name === device.role ? device.name : `${device.name} (${device.role})` }));
   const line = made("p", { className: "hint" });
   const facts = made("p", { className: "hint" });
   box.append(line, facts);
@@ -27,10 +27,12 @@ export function draw(device, targets, { step, here }) {
   function show(now) {
     state.at = now.at;
     line.textContent = [place(device, now.at), now.obstacle].filter(Boolean).join(" · ");
-    facts.textContent = Object.entries(now.facts).map(([name, value]) => `${name}: ${value ?? "?"}`).join(" · ");
+    facts.textContent = Object.entries(now.facts).map(([name, value]) => `${name}: ${said(value)}`).join(" · ");
     rows.forEach((row, index) => row.show(now.at?.[index]));
   }
 }
+
+const said = (value) => (value === true ? words.teach_yes : value === false ? words.teach_no : (value ?? "?"));
 
 export function place(device, at) {
   if (at === null || at === undefined) return device.joints.length || device.nodes ? words.teach_nowhere : "";
@@ -121,9 +123,11 @@ function places({ device }, targets, here) {
     const found = known.find((each) => each.name === select.value);
     return found && { robot: device.name, goal: found.at };
   });
+  const approach = made("input", { type: "number", min: 0, step: 1, placeholder: words.teach_approach, className: "teach-approach" });
+  approach.setAttribute("aria-label", words.teach_approach);
   const keep = act(words.teach_here, words.teach_here_does);
-  keep.addEventListener("click", () => here(device, name.value.trim() || select.value).then((done) => done && (name.value = "")));
-  row.append(select, go, name, keep);
+  keep.addEventListener("click", () => here(device, name.value.trim() || select.value, approach.valueAsNumber).then((done) => done && (name.value = "")));
+  row.append(select, go, name, ...(device.joints.length ? [approach] : []), keep);
   let known = [];
   offer(targets);
   return { row, offer };

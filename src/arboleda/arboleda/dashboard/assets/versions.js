@@ -6,9 +6,20 @@ const EVERY_MS = 10_000;
 const part = (id) => document.getElementById(id);
 const seen = () => !document.getElementById("part-links").hidden;
 
+let opened = null; // the version of each cell when this page was opened
+
 export function start() {
+  openAnew();
   setInterval(() => seen() && show(), EVERY_MS);
   part("versions").addEventListener("click", back);
+}
+
+// A page from before a cell took another version offers the recipes of before: it is opened anew.
+export async function openAnew() {
+  const answer = await fetch("/api/versions").catch(() => null);
+  if (!answer?.ok) return;
+  const now = JSON.stringify((await answer.json()).cells.map(({ cell, version }) => [cell, version]));
+  if (now !== (opened ??= now)) location.reload();
 }
 
 export async function show() {
