@@ -61,16 +61,17 @@ def address(folder: Path) -> Iterator[str]:
 class Person:
     """Person at a page: what is pressed is counted; a script that fails fails the test."""
 
-    def __init__(self, browser: Any, address: str, **screen: Any) -> None:
+    def __init__(self, browser: Any, address: str, tab: str = "make", **screen: Any) -> None:
         self.presses = 0
         self.troubles: list[str] = []
         self.context = browser.new_context(**screen)
         self.page = self.context.new_page()
         self.page.set_default_timeout(PATIENCE_MS)
         self.page.on("pageerror", lambda error: self.troubles.append(f"{error} {error.stack}"))
-        self.page.goto(f"{address}/?tab=make")
+        self.page.goto(f"{address}/?tab={tab}")
         connected(self.page)
-        self.page.wait_for_selector(".make-cell", state="attached", timeout=LONG_MS)
+        if tab == "make":
+            self.page.wait_for_selector(".make-cell", state="attached", timeout=LONG_MS)
 
     def press(self, selector: str) -> None:
         self.presses += 1

@@ -171,7 +171,7 @@ def test_a_verb_of_a_device_is_carried_out(lab: Lab) -> None:
 
 
 def test_here_moves_a_target_in_the_draft_and_keeps_all_else(lab: Lab) -> None:
-    lab.hold(3.0, "loader", goal=[5.0, 0.0, 10.0])
+    lab.hold(14.0, "loader", goal=[5.0, 0.0, 45.0])
     made = lab.here("loader", "nest")
     assert made["place"] == ["cells", "lab", "targets", "nest", "loader"]
     nest = lab.written["cells"]["lab"]["targets"]["nest"]
@@ -200,8 +200,12 @@ def test_what_cannot_be_a_target_is_refused_and_changes_nothing(lab: Lab) -> Non
     for name, why in (("a b", "a letter"), ("ñ", "a letter"), ("a" * 61, "a letter")):
         with pytest.raises(TeachRefused, match=why):
             lab.here("loader", name)
-    with pytest.raises(TeachRefused, match="no sliding joint"):
+    with pytest.raises(TeachRefused, match="no joint that slides up and down"):
         lab.here("cart", "spare", approach_mm=10.0)
+    with pytest.raises(TeachRefused, match="can go up 0 mm from here, so an approach of 20 mm cannot be"):
+        lab.here("loader", "spare", approach_mm=20.0)
+    with pytest.raises(TeachRefused, match="an approach of 40 mm cannot be"):  # which the target has
+        lab.here("loader", "nest")
     with pytest.raises(TeachRefused, match="no zone outside; there are inside"):
         lab.here("loader", "spare", zone="outside")
     lab.draft.take("ben-12345", "Ben")

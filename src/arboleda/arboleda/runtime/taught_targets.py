@@ -18,7 +18,8 @@ OF_ARRAY = "{target} is one of an array, which the plant file makes of its corne
 OF_RACK = "in {cell} the arm is taught at home, pickup and pickup_EXIT; the file has what else it reaches"
 BAD_NAME = "a target is called by a letter, then letters, digits and _, at most 60 of them"
 NO_ZONE = "there is no zone {zone}; there are {known}"
-NO_APPROACH = "{robot} has no sliding joint, and so no approach height"
+NO_APPROACH = "{robot} has no joint that slides up and down, and so no approach height"
+TOO_HIGH = "{robot} can go up {room:g} mm from here, so an approach of {approach:g} mm cannot be"
 MOST_LETTERS = 60
 
 
@@ -52,14 +53,24 @@ def edits(cell: Cell, values: Values, robot: Robot, target: Target, at: Spot) ->
     known = _at(values, place)
     spot = _written(robot, at)
     approach = target.approach_mm
-    if approach and not any(each.unit != "rad" for each in robot.joints):
-        raise TeachRefused(NO_APPROACH.format(robot=robot.name))
     if approach is None and isinstance(known, Mapping):
         approach = known.get("approach_mm")
     if approach:
+        _check_room(robot, at, approach)
         spot["approach_mm"] = approach
     found = list(_grown(values, place, spot))
     return found + ([_in_zone(cell, values, target)] if target.zone else [])
+
+
+def _check_room(robot: Robot, at: Spot, approach: float) -> None:
+    """Raise TeachRefused where a robot that stands there cannot be so much, in mm, above it."""
+    lifting = [number for number, joint in enumerate(robot.joints) if joint.unit != "rad" and joint.up]
+    if isinstance(at, int) or not lifting:
+        raise TeachRefused(NO_APPROACH.format(robot=robot.name))
+    joint, here = robot.joints[lifting[-1]], at[lifting[-1]]
+    room = joint.upper * 1000 - here if joint.up > 0 else here - joint.lower * 1000
+    if approach > room + 10**-taught_devices.DIGITS:
+        raise TeachRefused(TOO_HIGH.format(robot=robot.name, room=round(max(room, 0), 1), approach=approach))
 
 
 def _grown(values: Values, place: Place, value: Any) -> Iterator[tuple[Place, Any]]:

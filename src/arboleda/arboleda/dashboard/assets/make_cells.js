@@ -28,7 +28,10 @@ export async function read() {
   draft.cells = found.cells;
   draft.faults = found.faults;
   offer();
-  box("cell-list").replaceChildren(...found.cells.map(drawn));
+  const problems = found.problems.map((text) => element("li", `✕ ${text}`, { "data-mark": "mistake" }));
+  const list = element("ul", "", { class: "draw-marks make-unread" });
+  list.append(element("li", words.make_unread), ...problems);
+  box("cell-list").replaceChildren(...(problems.length ? [list] : []), ...found.cells.map(drawn));
   for (const listener of listeners) listener();
 }
 
@@ -183,7 +186,7 @@ function targetRow(cell, target, robot, pose) {
       const several = Array.isArray(value);
       (several ? value : [value]).forEach((each, n) => typeof each === "number" && made.append(number(key, each, several ? n : null, at)));
     }
-  if (pose?.deg && pose[APPROACH] === undefined && target !== "home") made.append(number(APPROACH, "", null, at));
+  if (typeof pose?.mm === "number" && pose[APPROACH] === undefined && target !== "home") made.append(number(APPROACH, "", null, at));
   const remove = element("button", "×", { type: "button", class: "tool", "aria-label": `${words.make_remove}: ${target}` });
   remove.dataset.removePlace = JSON.stringify(at.slice(0, 4));
   if (target !== "home") made.append(remove);

@@ -127,7 +127,7 @@ function places({ device }, targets, here) {
   approach.setAttribute("aria-label", words.teach_approach);
   const keep = act(words.teach_here, words.teach_here_does);
   keep.addEventListener("click", () => here(device, name.value.trim() || select.value, approach.valueAsNumber).then((done) => done && (name.value = "")));
-  row.append(select, go, name, ...(device.joints.length ? [approach] : []), keep);
+  row.append(select, go, name, ...(device.joints.some(({ unit }) => unit === "mm") ? [approach] : []), keep);
   let known = [];
   offer(targets);
   return { row, offer };
