@@ -18,22 +18,30 @@ from .page import running, until
 from .test_make import LONG_MS, Person
 from .test_teach_page import NOTE, device, hold
 
-pytestmark = [pytest.mark.system, pytest.mark.requires("chromium", "playwright")]
+pytestmark = [pytest.mark.system, pytest.mark.requires("chromium", "playwright"), pytest.mark.timeout(600)]
 
 LAPTOP = {"viewport": {"width": 1280, "height": 800}, "locale": "en"}
 ARM, DOWN = "#teach-devices [aria-label='brazo {sign}']", "#teach-devices [aria-label='efector +']"
 MOST_PRESSES = 60
+LAMP = """
+  lamp:
+    facts: {lit: bool}
+    verbs: {shine: {effect: switch, sets: {lit: true}}}
+"""
 
 
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
-    write(tmp_path / "lab")
-    return tmp_path / "lab"
+    """A plant as `arboleda new` writes it, with a lamp, which somebody may switch off unnoticed."""
+    plant = write(tmp_path / "lab")[0]
+    text = plant.read_text().replace("kinds:\n", f"kinds:{LAMP}", 1)
+    plant.write_text(text.replace("    devices:\n", "    devices:\n      lamp: {kind: lamp}\n", 1))
+    return plant.parent
 
 
 @pytest.fixture
 def address(tmp_path: Path, folder: Path) -> Iterator[str]:
-    """A plant as `arboleda new` writes it, on virtual boards that are as fast as real ones."""
+    """The plant on virtual boards that are as fast as real ones."""
     with running(tmp_path / "state", "--plant", str(folder / "plant.yaml"), "--rate", "1") as found:
         yield found.rstrip("/")
 
@@ -50,7 +58,7 @@ def test_a_newcomer_gets_from_an_arm_led_by_hand_to_a_task(browser: Any, address
     text = (folder / "plant.yaml").read_text()
     assert "# where parts lie: people fill the supply" in text and "approach_mm: 20" in text
     drawn = (folder / "to_tray.xml").read_text()
-    assert 'num_attempts="2"' in drawn and 'press_becomes door="closed"' in drawn
+    assert 'num_attempts="2"' in drawn and 'lamp_becomes lit="true"' in drawn
     assert [each.name for each in load(folder / "plant.yaml").cells[0].recipes] == ["press", "to_tray"]
     assert [each.by for each in Versions(folder / "plant.yaml").all()] == ["", "Nora"]
     assert me.presses <= MOST_PRESSES
@@ -117,16 +125,14 @@ def draw_a_recipe(me: Person) -> None:
     me.write("#make-recipe", "to_tray")
     me.press("[data-make=carry]")
     page.wait_for_selector("#draw-rows [data-path='1.0'][aria-label*=loader_let_go]", timeout=LONG_MS)
-    me.press("#draw-rows [data-path='2']")
-    me.write("#draw-search", "press_close")
-    me.press("[data-kind=press_close]:visible")
-    page.wait_for_selector("#draw-rows [data-path='3'][aria-label*=press_close]")
-    page.focus("#draw-rows [data-path='3']")
-    for _ in range(5):
-        press("ArrowUp")
-    page.wait_for_selector("#draw-rows [data-path='0'][aria-selected=true]")
+    me.press("#draw-rows [data-path='0']")
+    me.press("[data-how=before]")
+    me.write("#draw-search", "lamp_shine")
+    me.press("[data-kind=lamp_shine]:visible")
+    page.wait_for_selector("#draw-rows [data-path='0'][aria-label*=lamp_shine]")
+    page.focus("#draw-rows [data-path='0']")
     press("+")
-    for key in ("Shift+Tab", "Shift+Tab", "Space", "Tab", "Tab", "Control+A"):
+    for key in ("Shift+Tab", "Shift+Tab", "Space", "Tab", "Tab", "Control+A"):  # around
         press(key)
     page.keyboard.type("RetryUntil")
     press("Enter")
@@ -161,11 +167,11 @@ def have_a_check_added(me: Person) -> None:
     me.panel("prove")
     page.select_option("#make-prove_kind", "forgets")
     me.press("[data-make=prove]")
-    unnoticed = "#make-proof li:has-text('press.door is open') [data-find-check]"
+    unnoticed = "#make-proof li:has-text('lamp.lit is false') [data-find-check]"
     page.wait_for_selector(unnoticed, timeout=2 * LONG_MS)
     assert page.locator("#make-proof caption").all_inner_texts() == ["cell: to_tray"]
     me.press(f"{unnoticed} >> nth=0")
-    me.sees("#make-proof .make-check", "press: door becomes closed would notice it")
+    me.sees("#make-proof .make-check", "lamp: lit becomes true would notice it")
     me.press("#make-proof .make-check button")
     me.sees("#make-proof .make-check", "The check is in the draft")
     me.press("[data-make=prove]")
