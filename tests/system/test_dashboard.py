@@ -562,6 +562,9 @@ def test_a_viewer_may_stop_and_nothing_else(open_page: Open, tmp_path: Path) -> 
         token = json.loads((tmp_path / "tokens.json").read_text())["viewer"]
         page = open_page("links&cell=sis_b", at=address, token=token)
         assert page.is_visible("#part-links") and "cell=sis_b" in page.url
+        assert page.locator("#make, #teach").count() == 0
+        show(page, "cells")
+        assert page.is_visible("[data-choose=sis_b]") and not page.is_visible(".to-teach")
         page.click("#stop")
         wait_for_stop(page, "stopped")
         show(page, "panel")

@@ -151,6 +151,18 @@ def test_what_was_edited_by_hand_before_is_where_a_draft_begins(open_desk: Open,
     assert (state["changes"], state["waiting"]) == ([], ["timing.dwell_s: from 1 to 5"])
 
 
+def test_a_draft_that_changes_nothing_goes_on_with_what_somebody_wrote_meanwhile(
+    open_desk: Open, plant: Path
+) -> None:
+    desk = open_desk()
+    desk.set(ANA, DWELL, 2)
+    desk.undo(ANA)
+    plant.write_bytes(TEXT + b"# a word of mine\n")
+    desk.set(ANA, DWELL, 3)
+    assert desk.keep(ANA, "")["version"] == 2
+    assert plant.read_bytes() == TEXT.replace(b"dwell_s: 1", b"dwell_s: 3") + b"# a word of mine\n"
+
+
 def test_a_draft_that_is_changed_while_it_is_checked_is_not_kept(open_desk: Open, plant: Path) -> None:
     def slow(files: PlantFiles, plant_file: Path) -> Checked:
         desk.set(ANA, DWELL, 3)

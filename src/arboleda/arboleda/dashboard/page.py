@@ -56,6 +56,7 @@ PARTS: Parts = {
 }
 FROM_CARDS = ("teach",)
 """Parts that no tab of the header leads to, but the card of a cell."""
+OF_OPERATORS = ("make", "teach")
 Asked = Annotated[str, Query(alias="words", max_length=100)]
 Hours = Annotated[float, Query(gt=0, le=1000)]
 Most = Annotated[int, Query(ge=1, le=200)]
@@ -107,8 +108,10 @@ def mount(server: FastAPI, plant: PageApi) -> None:
 
 
 def parts_for(role: str | None) -> Parts:
-    """The parts of the page of a role: only operators make something."""
-    return {name: part for name, part in PARTS.items() if name != "make" or role != Role.VIEWER.value}
+    """The parts of the page of a role: only operators make or teach something."""
+    return {
+        name: part for name, part in PARTS.items() if name not in OF_OPERATORS or role != Role.VIEWER.value
+    }
 
 
 class Tried:

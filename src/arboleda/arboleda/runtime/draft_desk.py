@@ -267,10 +267,14 @@ class DraftDesk(DraftApi):
         }
 
     def _opened(self) -> Draft:
-        """The draft that there is, in this process or from an earlier start; else a new one of the files."""
+        """The draft that there is, in this process or from an earlier start; else a new one of the files, as
+        they are now: what changes nothing is begun anew once they were changed elsewhere."""
         if self._draft is None:
             base = self._saved(OPENED) or self._on_disk()
             self._draft = replace(draft_of(base), files=self._saved(MEANT) or base)
+        if self._draft.files == self._draft.base and self._draft.base != (now := self._on_disk()):
+            self._close()
+            self._draft = draft_of(now)
         return self._draft
 
     def _close(self) -> None:

@@ -80,7 +80,10 @@ class VersionDesk(VersionsApi):
     def put(self, number: int, by: str) -> State:
         with self._turns:
             kept = Versions(self._folder.ours)
-            version = kept.find(number)
+            try:
+                version = kept.find(number)
+            except ConfigError as error:
+                raise DraftRefused(str(error)) from error
             found = self._check(version.files, self._folder.ours)
             if found.problems or found.read is None:
                 return _refused(found)

@@ -14,8 +14,8 @@ let line = Promise.resolve();
 
 export const box = (id) => document.getElementById(`make-${id}`);
 export const onDraft = (listener) => listeners.push(listener);
-// The sentence stands in both places where the draft is edited.
-export const say = (sentence) => ["make-note", "draw-note"].forEach((id) => (document.getElementById(id).textContent = sentence ?? ""));
+// The sentence stands in each place where the draft is edited; a viewer has fewer.
+export const say = (sentence) => document.querySelectorAll("#make-note, #draw-note").forEach((note) => (note.textContent = sentence ?? ""));
 export const there = () => box("who") !== null;
 export const fill = (text, values) => Object.entries(values).reduce((done, [name, value]) => done.replaceAll(`{${name}}`, value), text);
 
