@@ -8,7 +8,7 @@ import pytest
 
 from arboleda.plant_file import draft_check
 from arboleda.plant_file.changes import changes
-from arboleda.plant_file.draft import MOST_STEPS, Draft, draft_of
+from arboleda.plant_file.draft import MOST_BYTES, MOST_STEPS, Draft, draft_of
 from arboleda.plant_file.loader import load_with_files
 from arboleda.plant_file.yaml_edit import EditRefused
 from arboleda.recorder.preamble import PlantFiles
@@ -111,6 +111,14 @@ def test_old_steps_are_forgotten(empty: Draft) -> None:
     for number in range(MOST_STEPS + 5):
         draft = draft.with_trees("t.xml", b"%d" % number)
     assert len(draft.past) == MOST_STEPS
+
+
+def test_steps_are_kept_as_long_as_all_of_them_fit(empty: Draft) -> None:
+    draft, large = empty, 1024 * 1024
+    for number in range(80):
+        draft = draft.with_trees("t.xml", bytes([number]) * large)
+    assert 60 <= len(draft.past) <= MOST_BYTES // large
+    assert draft.undo().files.contents["t.xml"][0] == 78
 
 
 @pytest.mark.parametrize(

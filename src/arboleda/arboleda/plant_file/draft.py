@@ -19,6 +19,7 @@ from .yaml_edit import EditRefused, with_value, without
 from .yaml_marks import parse
 
 MOST_STEPS = 1000  # that can be undone
+MOST_BYTES = 64 * 1024 * 1024  # of all that they keep
 MOST_FILES = 50  # of trees
 USES = "uses"
 KEPT = ".arboleda"  # the folder of versions
@@ -124,8 +125,7 @@ class Draft:
         """The draft after a step; one that changes nothing is none."""
         if contents == self.files.contents:
             return self
-        past = (*self.past, self.files.contents)[-MOST_STEPS:]
-        return self._as(contents, past, ())
+        return self._as(contents, _bounded((*self.past, self.files.contents)), ())
 
     def _as(self, contents: Contents, past: tuple[Contents, ...], future: tuple[Contents, ...]) -> Draft:
         return replace(self, files=replace(self.files, contents=contents), past=past, future=future)
@@ -134,6 +134,18 @@ class Draft:
 def draft_of(files: PlantFiles) -> Draft:
     """An empty draft of what is at work."""
     return Draft(base=files, files=files)
+
+
+def _bounded(past: tuple[Contents, ...]) -> tuple[Contents, ...]:
+    """The last of these steps, as many as are kept; what two of them share counts once."""
+    newer: Contents = {}
+    size = 0
+    for count, contents in enumerate(reversed(past)):
+        size += sum(len(each) for name, each in contents.items() if newer.get(name) is not each)
+        if count == MOST_STEPS or size > MOST_BYTES:
+            return past[len(past) - count :]
+        newer = contents
+    return past
 
 
 def _uses(text: bytes) -> list[str]:
