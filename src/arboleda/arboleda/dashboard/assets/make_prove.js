@@ -1,14 +1,14 @@
 // Prove: `arboleda prove` on the draft in a process of its own: how far it is, what came of it, and checks to add.
 
 import { onCells } from "./make_cells.js";
-import { ask, box, draft, element, fill, options, step } from "./make_state.js";
+import { ask, begun, box, draft, element, fill, isRecent, options, step } from "./make_state.js";
 import { ended, play } from "./make_try.js";
 import { words } from "./shell.js";
 
 const ENDS = ["done", "recovered", "held", "failed"];
 const says = (sentence) => (box("prove-state").textContent = sentence);
 let found = null;
-let isFollowed = false; // what this page has begun, or has found under way
+let isFollowed = false;
 
 export function start() {
   document.getElementById("make").addEventListener("click", clicked);
@@ -44,6 +44,7 @@ async function prove() {
   const chosen = box("prove_recipe").value;
   const recipes = chosen ? [chosen] : differing();
   isFollowed = true;
+  begun("prove");
   box("proof").replaceChildren();
   says(words.make_proving);
   if (!(await ask("/api/make/runs/prove", { recipes, kinds: [box("prove_kind").value].filter(Boolean), budget_s: Number(box("budget").value) }, says))) return;
@@ -58,9 +59,9 @@ async function follow() {
   if (found) drawn();
 }
 
-// A proof goes on, and its answer stays, whoever opens the page anew.
+// A proof that this browser tab has begun is there again after a story of it was looked at as a record.
 export async function recall() {
-  if (isFollowed) return;
+  if (isFollowed || !isRecent("prove")) return;
   isFollowed = true;
   const run = await ask("/api/make/runs/prove", undefined, () => {});
   if (["running", "done"].includes(run?.state)) await follow();
@@ -98,15 +99,18 @@ function section(title, items) {
 function unnoticedRow(row) {
   const { task, fault, outcome, instant, runs } = row;
   const made = element("li", `${task}: ${fault.kind} ${fault.target}: ${outcome.untrue.join("; ")} (${runs}; ${instant}) `);
-  made.append(storyButton(row), " ", button(words.make_find_check, { findCheck: JSON.stringify(wanted(row)) }));
+  made.append(about(fault), storyButton(row), " ", button(words.make_find_check, { findCheck: JSON.stringify(wanted(row)) }));
   return made;
 }
 
 function breachRow(row) {
   const made = element("li", `${row.task}: ${row.fault.kind} ${row.fault.target}: ${row.invariant}: ${row.seen} (${row.runs}; ${row.instant}) `);
-  made.append(storyButton(row));
+  made.append(about(row.fault), storyButton(row));
   return made;
 }
+
+// What such a fault is, in words.
+const about = ({ kind }) => element("p", draft.faults.find(({ name }) => name === kind)?.about ?? "", { class: "hint" });
 
 const storyButton = (row) => button(words.make_play, { playStory: JSON.stringify(wanted(row)) });
 

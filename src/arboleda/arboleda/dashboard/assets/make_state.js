@@ -7,6 +7,11 @@ const MINE = "arboleda_mine";
 
 // `latest` is the recipe that was made or drawn last here: "cell recipe".
 export const draft = { state: null, cells: [], faults: [], problems: [], latest: null };
+const RUN = "arboleda_run_"; // what this browser tab has tried or proved since it changed the draft last
+export const isRecent = (what) => sessionStorage.getItem(RUN + what) !== null;
+export const begun = (what) => sessionStorage.setItem(RUN + what, "begun");
+const changed = () => ["try", "prove"].forEach((what) => sessionStorage.removeItem(RUN + what));
+
 const listeners = [];
 const MOST_TRIES = 10;
 const RETRY_MS = 300; // while the server takes no more in this second
@@ -58,7 +63,7 @@ export function step(path, body = {}) {
   const done = line.then(async () => {
     if (!draft.state?.editor && !(await take())) return false;
     const state = await ask(`/api/draft/${path}`, { ...body, editor: editor() });
-    if (state) say(""), heard(state);
+    if (state) say(""), changed(), heard(state);
     return state !== null;
   });
   line = done.catch(() => {});

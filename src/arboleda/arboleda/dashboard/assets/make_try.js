@@ -1,7 +1,7 @@
 // Try: a task of the draft is simulated in a process of its own, with a fault or without, and looked at as a record.
 
 import { onCells } from "./make_cells.js";
-import { ask, box, draft, fill, options } from "./make_state.js";
+import { ask, begun, box, draft, fill, isRecent, options } from "./make_state.js";
 import { words } from "./shell.js";
 
 const LOOK_MS = 400;
@@ -36,9 +36,9 @@ function clicked({ target }) {
 
 const bare = ({ kind, at, seconds, target, amount, word }) => ({ kind, at, seconds, target, amount, word });
 
-// What this browser tab has looked at as a record, or a page before this one has tried, is there again.
+// What this browser tab has tried is there again after it was looked at as a record.
 export async function recall() {
-  if (last) return;
+  if (last || !isRecent("try")) return;
   const run = await ask("/api/make/runs/try", undefined, () => {});
   if (last || run?.state !== "done") return;
   last = await ask("/api/make/runs/try/result", undefined, () => {});
@@ -50,7 +50,7 @@ export const play = (wanted) => go({ task: wanted.task, answers: wanted.answers 
 
 async function go(wanted) {
   box("tried").hidden = true;
-  says(words.make_trying);
+  says(words.make_trying), begun("try");
   if (!(await ask("/api/make/runs/try", wanted, says))) return false;
   const found = await ended("try", () => {}, says);
   if (found) last = found, shown(found);
