@@ -29,11 +29,21 @@ def run(*words: object) -> Result:
     return CliRunner().invoke(cli, [str(word) for word in words])
 
 
-def mistakes(body: str, kinds: dict[str, leaves.Kind]) -> tuple[str, ...]:
+def found(body: str, kinds: dict[str, leaves.Kind]) -> Findings:
     findings = Findings()
     forest = reading.read("t.xml", tree(body).encode(), findings)
     checking.check(forest, findings, kinds)
-    return findings.mistakes
+    return findings
+
+
+def mistakes(body: str, kinds: dict[str, leaves.Kind]) -> tuple[str, ...]:
+    return found(body, kinds).mistakes
+
+
+@pytest.mark.parametrize("node", ["says", "tells", 'becomes at_most_s="2"'])
+def test_a_node_about_no_fact_is_a_warning(kinds: dict[str, leaves.Kind], node: str) -> None:
+    (warning,) = found(f"<mill_{node}/>", kinds).warnings
+    assert "is about no fact; give it some of door, clamped" in warning
 
 
 def test_verbs_questions_facts_and_targets_are_nodes_with_typed_ports(kinds: dict[str, leaves.Kind]) -> None:

@@ -174,6 +174,9 @@ class _Checker:
         self._mistake(node, f"{_named(node)} has {there or 'no'} {word}; it needs {needed}")
 
     def _check_ports(self, node: Node, kind: Kind, ports: Mapping[str, Port]) -> None:
+        if kind.some_of and not any(name in node.ports for name in kind.some_of) and self.knows(node):
+            some = ", ".join(kind.some_of)
+            self.findings.warning(node.place, f"{_named(node)} is about no fact; give it some of {some}")
         for name, attribute in node.ports.items():
             if name not in ports:
                 self._unknown_port(node, name, attribute, ports)

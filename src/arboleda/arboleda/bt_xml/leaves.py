@@ -106,9 +106,12 @@ def _of_facts(role: str, facts: Mapping[str, FactType]) -> Iterator[Kind]:
     ports = [_port(name, type, is_needed=False) for name, type in facts.items()]
     within = Port(name="at_most_s", type="double", is_needed=True, about="how long it is waited for, in s")
     told = [replace(each, way=PortDirection.OUT) for each in ports]
-    yield _kind(Category.CONDITION, f"{role}_says", *ports)
-    yield _kind(Category.ACTION, f"{role}_{TELLS}", *told)
-    yield _kind(Category.ACTION, f"{role}_becomes", *ports, within)
+    for kind in (
+        _kind(Category.CONDITION, f"{role}_says", *ports),
+        _kind(Category.ACTION, f"{role}_{TELLS}", *told),
+        _kind(Category.ACTION, f"{role}_becomes", *ports, within),
+    ):
+        yield replace(kind, some_of=tuple(facts))
 
 
 def _of_python(cell: Cell, node: WrittenNode) -> Kind:

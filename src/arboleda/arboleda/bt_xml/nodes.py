@@ -50,7 +50,7 @@ class Port:
 
 @dataclass(frozen=True, kw_only=True)
 class Kind:
-    """Kind of node; `ports` None: unknown."""
+    """Kind of node; `ports` None: unknown. Without any port of `some_of` it says nothing."""
 
     name: str
     category: Category
@@ -58,6 +58,7 @@ class Kind:
     fewest: int = 0
     most: int = 0
     about: str = ""
+    some_of: tuple[str, ...] = ()
 
 
 def by_name(ports: Iterable[Port]) -> dict[str, Port]:
