@@ -1,0 +1,25 @@
+"""Versions of a plant that runs: what is no version is refused with those that there are."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from arboleda.runtime.plant_folder import PlantFolder
+from arboleda.runtime.version_desk import VersionDesk
+from arboleda.web.draft_api import DraftRefused
+
+
+def never(*_: Any) -> Any:
+    raise AssertionError("nothing is checked, and no plant is told")
+
+
+def test_a_number_that_is_no_version_is_refused_with_those_that_are(tmp_path: Path) -> None:
+    plant = tmp_path / "plant.yaml"
+    plant.write_text("name: a\n")
+    folder = PlantFolder(plant, tmp_path / "state")
+    desk = VersionDesk(folder, tmp_path / "state", never, as_it_runs=never, check=never)
+    with pytest.raises(DraftRefused, match=r"there is no version 77 .*; kept: none"):
+        desk.put(77, "ana")
