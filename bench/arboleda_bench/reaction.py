@@ -51,9 +51,10 @@ def _result(ours: Sequence[Reaction], floor: Sequence[Reaction]) -> Result:
         figure("p50", 50, ours, floor, Aim(most=1.5)),
         figure("p99", 99, ours, floor, Aim(most=2)),
     ]
+    aims = {"arm to effector": Aim(most=1.5)}
     for what in dict.fromkeys(kind(each) for each in ours):
         one = [[each for each in side if kind(each) == what] for side in (ours, floor)]
-        figures.append(figure(f"p50, {what}", 50, *one))
+        figures.append(figure(f"p50, {what}", 50, *one, aims.get(what)))
     return Result(
         figures=figures,
         notes=(

@@ -36,7 +36,7 @@ from .result import Aim, Figure, Result
 from .scene import Scene
 from .time_by_part import time_by_part
 
-AIM = Aim(least=100, of_ratio=False)
+AIM = Aim(least=150, of_ratio=False)
 SPINS = 5_000_000
 Run = Callable[[Setting, int], tuple[int, float]]  # (setting, seed) -> (cycles, s of plant time)
 

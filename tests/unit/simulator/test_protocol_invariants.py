@@ -58,6 +58,7 @@ class Watch:
         self.world = World(model or shipped("sis_a"), **world)
         self.found: dict[str, list[str]] = {}
         self._look = Look(world=self.world, truth=Truth(self.world), record=Record(self.world))
+        self._judges = Judges(INVARIANTS)
         self.world.watchers.append(self._check)
         self.world.advance(0.5)
 
@@ -78,11 +79,11 @@ class Watch:
 
     def end(self) -> None:
         """Look at what must hold once everything is at rest."""
-        self._note(Judges(INVARIANTS).at_the_end(self._look))
+        self._note(self._judges.at_the_end(self._look))
 
     def _check(self) -> None:
         self._look.record.look()
-        self._note(Judges(INVARIANTS).after_a_step(self._look))
+        self._note(self._judges.after_a_step(self._look))
 
     def _note(self, breaches: Iterable[tuple[str, str]]) -> None:
         for name, sentence in breaches:

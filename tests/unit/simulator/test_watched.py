@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from itertools import pairwise
 
 import pytest
 
@@ -46,6 +47,25 @@ def test_a_breach_leaves_the_step_in_which_it_is_seen() -> None:
     with pytest.raises(BrokenInvariant, match="no_start: sis_a starts"):
         watched.world.advance(1.0)
     assert watched.seconds == pytest.approx(1.0)
+
+
+def test_an_invariant_looks_at_the_whole_when_its_time_has_come_and_else_after_its_steps() -> None:
+    looks: list[tuple[float, bool]] = []
+
+    @invariant(Trigger.ASKED, every_s=2.0)
+    def looked(look: Look) -> Iterable[str]:
+        """It looks."""
+        looks.append((look.world.now, look.whole))
+        return ()
+
+    watched = JudgedWorld(shipped("sis_a"), invariants=[looked])
+    watched.world.advance(7.0)
+    times = [at for at, whole in looks if whole]
+    assert len(times) == len(looks) == watched.checks["looked"] >= 3
+    assert all(2.0 <= after - before < 2.5 for before, after in pairwise(times))
+    watched.world.request_task("sis_a 0B 7")
+    watched.world.advance(0.1)
+    assert [whole for _, whole in looks[len(times) :]].count(False) == 1
 
 
 def test_coming_to_rest_ends_what_lasts_and_judges_the_end() -> None:

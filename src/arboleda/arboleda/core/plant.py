@@ -106,6 +106,7 @@ class Plant:
         self.model = model
         self.epoch = epoch
         self.now = now
+        self._clock = partial(getattr, self, "now")  # the trees ask all the time: no call of Python's
         self.intake = Intake(model, epoch)
         self.dispatcher = Dispatcher(model, epoch, memory)
         if memory.get(Fact.QUARANTINE):
@@ -113,7 +114,7 @@ class Plant:
         self.zones = Zones((*model.zones, *model.shared), memory.get(Fact.QUARANTINE, {}))
         self.cells = {cell.name: self._run(cell) for cell in model.cells}
         self._operator = Operator(
-            self.cells, self.dispatcher, self.zones, self.intake, lambda: self.now, self._break_down
+            self.cells, self.dispatcher, self.zones, self.intake, self._clock, self._break_down
         )
         self._advisor = Advisor(self.cells, self._operator.refusal)
         self._interlocked = [
@@ -253,7 +254,7 @@ class Plant:
         return [name for name in asleep if name not in awake]
 
     def _run(self, cell: Cell) -> CellRun:
-        context = Context(cell, self.dispatcher, self.zones, lambda: self.now, self._at_work)
+        context = Context(cell, self.dispatcher, self.zones, self._clock, self._at_work)
         stop = None
         if self._was_stopped(cell, self.dispatcher.latched):
             stop = CellState.ABORTED

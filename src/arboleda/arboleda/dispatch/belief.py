@@ -309,7 +309,7 @@ class Belief:
             return DRAWN
         if not self.online:
             return self._unreached()
-        if not self.answered:
+        if self.plant != self.plant_epoch and not self.answered:
             return self._unanswered()
         trouble = TROUBLES.get(self.state)
         if self.barred and trouble is None:

@@ -342,9 +342,10 @@ class Dispatcher:
 
     def _hear_of_others(self, report: Report) -> None:
         """A bridge counts the commands of others; each count that rose is news."""
-        refused, obeyed = self.interference.rise(report)
-        if report.foreign is not None and (refused or obeyed):
-            self.interfere(report.robot, report.foreign, report.at, obeyed=obeyed)
+        if report.foreign is not None:
+            refused, obeyed = self.interference.rise(report)
+            if refused or obeyed:
+                self.interfere(report.robot, report.foreign, report.at, obeyed=obeyed)
         number = self.interference.forged(report, self.epoch, self._count)
         if number is not None:
             self._halt_forged(report, number)

@@ -50,9 +50,7 @@ class Interferences:
         return sentence if now <= at + LATELY_S else None
 
     def rise(self, report: Report) -> tuple[bool, bool]:
-        """True for newly refused, and for newly obeyed commands, by a report since its bridge began."""
-        if report.foreign is None:
-            return False, False
+        """True for newly refused, and for newly obeyed commands, by a report that tells of any."""
         told = (report.epoch, report.foreign_refused or 0, report.foreign_obeyed or 0)
         epoch, refused, obeyed = self._counts.get(report.robot, (report.epoch, 0, 0))
         if epoch != report.epoch:

@@ -66,6 +66,11 @@ class Zones:
         return bool(self._holders)
 
     @property
+    def holders(self) -> Mapping[str, str]:
+        """The robot in each zone that has one."""
+        return self._holders
+
+    @property
     def robots(self) -> set[str]:
         """The holders of any."""
         return set(self._holders.values())

@@ -65,7 +65,7 @@ class Record:
     Of a step: `stepped`: the plant made it in this pass; `born`: the plant started in this pass; `begins`: it
     is the plant's first; `news`: something changed in it besides what robots report, or it is time to look at
     everything again; `told`: the plant spoke of a task, answered somebody, or a cell changed its state.
-    `anew`: the last reports that said something else than before, or the same for some time. `away`: the
+    `anew`: reports that say something else than before, or the same for some time. `away`: the
     plant finds in this step that it did nothing for long; `unattended`: the cells for which nobody has asked
     for anything since, with whether they had something to do then; `unasked`: the motions that it sends to
     such a cell by itself in this step; `stirring`: the same after a start. `born_at`: when the plant started
@@ -150,6 +150,8 @@ class Record:
     def look(self) -> None:
         """Take in what happened in this step; called before any invariant."""
         moment, plant = self.world.moment, self.world.plant
+        if self.anew:
+            self.anew = []
         if self.world.versions:
             self._revise(moment.sent)
         if self._has_news:
@@ -160,7 +162,8 @@ class Record:
             self.starts.hear((*moment.last_words, *moment.unkept, *moment.sent))
         for board, goal in moment.executed:
             self.starts.carries_out(board, goal)
-        self.boards.tell(self.world.now, moment.published)
+        if moment.published:
+            self.boards.tell(self.world.now, moment.published)
         if moment.delivered or moment.executed:
             self._look_at_boards()
         if moment.bridged:
@@ -174,7 +177,8 @@ class Record:
         skipped = self.world.skipped_s != self._skipped_s
         if skipped or self.world.to_plant.troubles or (inbox and inbox[0].at < now):
             self.slow_until, self._skipped_s = now + SLOW_S, self.world.skipped_s
-        if moment.sent or moment.heard or plant.now != self.stepped_at or moment.asked or self._is_new(plant):
+        acted = moment.sent or moment.heard or moment.asked
+        if acted or plant.now != self.stepped_at or plant is not self._plant:
             self._look_at_plant(plant)
         elif self.stepped:
             self.stepped = self.news = self.born = self.begins = False
@@ -193,9 +197,6 @@ class Record:
         dispatcher = self.world.plant.dispatcher
         return [entry for name in self._people if (entry := dispatcher.question(name)) is not None]
 
-    def _is_new(self, plant: Plant) -> bool:
-        return plant is not self._plant
-
     def due_for(self, what: str, every_s: float) -> bool:
         """True if a check that is made only every `every_s` is due now; counts as made then."""
         if self.world.now < self._next.get(what, 0.0):
@@ -205,7 +206,8 @@ class Record:
 
     def is_new(self, what: str, value: object) -> bool:
         """True if this is another value than when it was asked last; a check that depends on no more than the
-        value need not be made again."""
+        value need not be made again.
+        """
         if what in self._checked and self._checked[what] == value:
             return False
         self._checked[what] = value
@@ -224,7 +226,7 @@ class Record:
             known.timing_before = known.timing
             if name in revised:
                 known.revise(self.world.model.cell(name), self.world.versions[revised[name]].timing)
-            elif self._is_new(self.world.plant):
+            elif self.world.plant is not self._plant:
                 known.revise(self.world.model.cell(name), self.world.model.timing)
 
     def _begin(self, plant: Plant) -> None:
@@ -257,7 +259,8 @@ class Record:
         self.bridges.take_over(self.world.bridge, self.world.now, plant.dispatcher.beliefs)
         for name, known in self.robots.items():
             belief = plant.dispatcher.beliefs[name]
-            known.heard_at, known.state, known.homed = belief.heard_at, belief.state, belief.homed
+            known.take_over(belief.heard_at)
+            known.state, known.homed = belief.state, belief.homed
             known.boot, known.epoch, known.plant = belief.boot_id, belief.epoch, belief.plant
             known.q, known.node = belief.q, belief.node
             known.numbers.append(belief.number)
@@ -276,7 +279,7 @@ class Record:
     def _look_at_plant(self, plant: Plant) -> None:
         moment = self.world.moment
         self.stepped = self.world.has_stepped
-        self.born = self._is_new(plant)
+        self.born = plant is not self._plant
         if self.born:
             self._take_last_words()
             self.times.restart(self.stepped_at, plant.now)
@@ -299,8 +302,10 @@ class Record:
             for cell in self._cells:
                 if cell.cell.goes_on_after_absence:  # it goes on by itself, as after a retry
                     self._retried(cell.name)
-        self.proofs.clear_news()
-        self.works.clear_news()
+        if self.proofs.of:
+            self.proofs.of.clear()
+        if self.works.wrong:
+            self.works.wrong.clear()
         if moment.heard:
             self._hear(bool(moment.asked))
         if moment.asked:
@@ -375,15 +380,20 @@ class Record:
 
     def _is_behind_work(self, cell: KnownCell) -> bool:
         """True if all who have, or get earlier, the zones that this cell's arm wants were at work."""
-        zones, asked = self._plant.zones, dict(self._requests)
-        arms = list(asked)
-        wanted = asked[cell.layout.arm.name]
-        before = {arm for arm in arms[: arms.index(cell.layout.arm.name)] if wanted & asked[arm]}
-        before |= {holder for zone in wanted if (holder := zones.holder(zone)) is not None}
-        working = (each for each in self._cells if CellState.EXECUTE in (each.state, each.run.state))
-        at_work = {user for each in working for user in each.cell.zone_users}
-        at_work |= {sent.robot for sent in self.commands.open.values()}
-        return before <= at_work and not any(map(zones.is_quarantined, wanted))
+        zones, before, wanted = self._plant.zones, set(), dict(self._requests)[cell.layout.arm.name]
+        for arm, asked in self._requests:
+            if arm == cell.layout.arm.name:
+                break
+            if not wanted.isdisjoint(asked):
+                before.add(arm)
+        holders = zones.holders
+        before.update([holders[zone] for zone in wanted if zone in holders])
+        if before:
+            before.difference_update([sent.robot for sent in self.commands.open.values()])
+            for each in self._cells if before else ():
+                if CellState.EXECUTE in (each.state, each.run.state):
+                    before.difference_update(each.cell.zone_users)
+        return not before and not any(map(zones.is_quarantined, wanted))
 
     def _has_work(self, cell: KnownCell) -> bool:
         return cell.tree is not None or cell.queued > 0
@@ -443,7 +453,8 @@ class Record:
             self.times.look(self._cells, plant.now)
             idle = [cell for cell in self._cells if cell.queued and cell.state is CellState.IDLE]
             self.idle = [cell for cell in idle if not cell.paused]
-        self.news = moved or asked or changed or self.born or bool(self.tasks.changes)
+        late = self.commands.soonest <= plant.now
+        self.news = moved or asked or changed or late or self.born or bool(self.tasks.changes)
         said = self.tasks.changes or self.tasks.refused or self.answers or self.transitions
         self.told = bool(said or self.errors)
         self.unnumbered = (changed or bool(self.tasks.changes)) and plant.version == self._version
@@ -454,7 +465,6 @@ class Record:
     def _hear(self, asked: bool) -> None:
         """Take in reports; if somebody asked for something among them, a command may rest on any."""
         moment, robots = self.world.moment, self.robots
-        self.anew = []
         commanded = {each.robot for each in moment.sent if isinstance(each, Command)}
         for report in moment.heard:
             known = robots.get(report.robot)
@@ -468,7 +478,8 @@ class Record:
                 self._booted.add(report.robot)
             if known.hear(report):
                 self.anew.append(report)
-                self.commands.hear(report, known)
+                if report.rejected is not None:
+                    self.commands.hear(report, known)
 
     def _ask(self, asked: list[Any]) -> None:
         self._unanswered = deque(event for event in asked if isinstance(event, OperatorRequest))
@@ -498,7 +509,7 @@ class Record:
             if each.entry is not None and each.entry.cancelled_at is None:  # not halted at once
                 of_cell = moves.setdefault(each.entry.cell, [])
                 of_cell += [each] if isinstance(each.command, MoveJoints) else []
-        holders = plant.zones.robots
+        holders = plant.zones.holders.values()
         for cell in self._storage:
             if cell.name in moves:
                 cell.watch_recovery(moves[cell.name])
@@ -508,17 +519,20 @@ class Record:
         """Take over the states of the cells; True if any of them changed."""
         changed = False
         for cell in self._cells:
-            cell.looked = False
-            before = cell.state
-            if cell.follow():
-                changed = True
-                if cell.state is not before:
-                    self.transitions.append((cell, before, cell.state))
+            cell.looked, run = False, cell.run
+            cell.wakes = cell.context.time.wakes
+            if cell.signs(run) == cell.seen and len(run.queue) == cell.queued:
+                continue
+            before, changed = cell.state, True
+            cell.follow()
+            if cell.state is not before:
+                self.transitions.append((cell, before, cell.state))
         return changed
 
     def _look_at_trails(self) -> None:
-        retried = Verb.RETRY in [each.verb for each in self.answers] if self.answers else False
-        self.trails.look(self.cells, self.transitions, retried=retried)
+        if self.trails.found or self.trails.wrong:
+            retried = Verb.RETRY in [each.verb for each in self.answers] if self.answers else False
+            self.trails.look(self.cells, self.transitions, retried=retried)
         if self.answers:
             self.trails.keep(self.world.moment.sent, self.cells, self.commands)
 

@@ -136,7 +136,14 @@ def make_app(
     for router in routers:
         app.include_router(router, responses=OTHERS)
     app.router.routes.append(NotFound([route for router in routers for route in router.routes]))
+    _read_routes(app)
     return app
+
+
+def _read_routes(app: FastAPI) -> None:
+    """Have FastAPI read the included routes now, and not while somebody waits for the first answer."""
+    for route in app.routes:
+        route.matches({"type": "http", "method": "GET", "path": "", "root_path": "", "headers": []})
 
 
 def routes(side: PlantApi) -> APIRouter:

@@ -12,20 +12,17 @@ from arboleda.model.plant_model import Evidence
 from ..recorded.scopes import UNSENT
 from .invariant import Look, Trigger, invariant
 
-NOTHING: tuple[str, ...] = ()
 EVERY_S = 2.0
 FIELDS = ("state", "homed", "effector", "piece", "boot_id", "epoch", "plant", "q", "node")
 _believed = attrgetter(*FIELDS)
 _said = attrgetter(*("boot" if field == "boot_id" else field for field in FIELDS))
 
 
-@invariant(Trigger.STEPPED)
+@invariant(Trigger.SAID, every_s=EVERY_S)
 def believed_as_said(look: Look) -> Iterable[str]:
     """The plant believes the last word of each robot on everything, and that who is silent is not there."""
     record = look.record
-    if record.anew and look.moment.heard:
-        return _unlike(look, {report.robot for report in record.anew})
-    return _unlike(look, set(record.robots)) if record.due_for("beliefs", EVERY_S) else NOTHING
+    return _unlike(look, set(record.robots) if look.whole else {report.robot for report in record.anew})
 
 
 def _unlike(look: Look, robots: set[str]) -> Iterator[str]:

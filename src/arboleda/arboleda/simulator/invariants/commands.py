@@ -104,13 +104,11 @@ def _illegal(look: Look) -> Iterator[str]:
         yield f"{sent} is no longer in the ledger, and has not ended"
 
 
-@invariant(Trigger.STEPPED)
+@invariant(Trigger.NEWS)
 def no_deadline_overrun(look: Look) -> Iterable[str]:
     """No command outlasts its deadline, no deadline its longest way, and no wait its end."""
     record = look.record
-    if record.commands.soonest <= record.stepped_at:
-        return _late(look)
-    return _overrun(look) if record.news else NOTHING
+    return _late(look) if record.commands.soonest <= record.stepped_at else _overrun(look)
 
 
 def _late(look: Look) -> Iterator[str]:

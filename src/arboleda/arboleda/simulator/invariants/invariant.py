@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
@@ -17,12 +18,16 @@ from ..world import Moment, World
 
 @dataclass(kw_only=True)
 class Look:
-    """The world after one step: what is true and what was said and done so far; `moment`: in this step."""
+    """The world after one step: what is true and what was said and done so far; `moment`: in this step.
+
+    `whole`: this is one of the looks that an invariant makes every so often, whatever has changed.
+    """
 
     world: World
     truth: Truth
     record: Record
     leaders: Leaders | None = None  # where there are two hosts
+    whole: bool = False
     moment: Moment = field(init=False)
 
     def __post_init__(self) -> None:
@@ -36,6 +41,7 @@ class Trigger(Enum):
     DEEDS = "truth.deeds"
     ASKED = "moment.asked"
     HEARD = "moment.heard"
+    SAID = "record.anew"
     SENT = "moment.sent"
     UNKEPT = "moment.unkept"
     LATE = "moment.late"
@@ -48,12 +54,15 @@ class Trigger(Enum):
     BRIDGED_WRONGLY = "record.bridges.wrong"
     UNTOLD = "record.others.untold"
     STEPPED = "record.stepped"
+    LEFT_OVER = "world.plant.dispatcher.outbox"
+    TAUGHT = "record.teachers.taught"
     NEWS = "record.news"
     BORN = "record.born"
     TOLD_OTHERWISE = "record.starts.wrong"
     DONE_TWICE = "record.starts.twice"
     KEPT_WRONGLY = "record.trails.wrong"
     WAITING = "record.waiting"
+    IDLE = "record.idle"
     CHANGED = "truth.changed"
     MISPLACED = "truth.places.wrong"
     PASSED = "truth.storage.parts.passages"
@@ -82,13 +91,16 @@ class Invariant:
     sentence: str
     when: Trigger
     rule: Rule
+    every_s: float = math.inf
 
 
-def invariant(when: Trigger) -> Callable[[Rule], Invariant]:
-    """Make a rule an invariant, named as the function, that looks after the steps of this kind."""
+def invariant(when: Trigger, *, every_s: float = math.inf) -> Callable[[Rule], Invariant]:
+    """Make a rule an invariant, named as the function, that looks after the steps of this kind, and after a
+    step of the plant that comes `every_s` after the last one at which it did: at its `whole`.
+    """
 
     def make(rule: Rule) -> Invariant:
-        return Invariant(rule.__name__, (rule.__doc__ or "").strip(), when, rule)
+        return Invariant(rule.__name__, (rule.__doc__ or "").strip(), when, rule, every_s)
 
     return make
 
@@ -98,8 +110,12 @@ class Judges:
 
     def __init__(self, invariants: Iterable[Invariant]) -> None:
         self._benches = {when: _Bench() for when in Trigger}
+        self._rounds = []
         for each in invariants:
             self._benches[each.when].rules.append((each.name, each.rule))
+            if each.every_s < math.inf:
+                self._rounds.append(_Round(each))
+        self._next_round_at = -math.inf
         used = [when for when, bench in self._benches.items() if bench.rules and when is not Trigger.END]
         self._after_a_step = [self._benches[when] for when in used]
         # two more names, as attrgetter returns no tuple for a single one
@@ -108,7 +124,9 @@ class Judges:
     @property
     def looks(self) -> Counter[str]:
         benches = self._benches.values()
-        return Counter({name: bench.looks for bench in benches for name, _ in bench.rules})
+        looks = Counter({name: bench.looks for bench in benches for name, _ in bench.rules})
+        looks.update({each.name: each.looks for each in self._rounds})
+        return looks
 
     def after_a_step(self, look: Look) -> Iterator[tuple[str, str]]:
         """Each breach by an invariant that looks after this step: the invariant's name, and its sentence."""
@@ -117,6 +135,22 @@ class Judges:
             for name, rule in bench.rules:
                 for sentence in rule(look):
                     yield name, sentence
+        if look.record.stepped and look.world.now >= self._next_round_at:
+            yield from self._look_around(look)
+
+    def _look_around(self, look: Look) -> Iterator[tuple[str, str]]:
+        """Each breach by an invariant that is to look at the whole now."""
+        now, look.whole = look.world.now, True
+        try:
+            for each in self._rounds:
+                if now >= each.at:
+                    each.at = now + each.every_s
+                    each.looks += 1
+                    for sentence in each.rule(look):
+                        yield each.name, sentence
+        finally:
+            look.whole = False
+        self._next_round_at = min((each.at for each in self._rounds), default=math.inf)
 
     def at_the_end(self, look: Look) -> Iterator[tuple[str, str]]:
         """Each breach of an invariant that holds once everything should be at rest."""
@@ -126,6 +160,15 @@ class Judges:
     def is_at_rest(self, look: Look) -> bool:
         """True if everything that must hold at rest holds already."""
         return not any(True for _ in self._benches[Trigger.END].breaches(look))
+
+
+class _Round:
+    """An invariant that looks at the whole every so often; `at`: the time for its next look."""
+
+    def __init__(self, of: Invariant) -> None:
+        self.name, self.rule, self.every_s = of.name, of.rule, of.every_s
+        self.at = -math.inf
+        self.looks = 0
 
 
 class _Bench:

@@ -50,10 +50,10 @@ def no_tree_outlives_its_work(look: Look) -> Iterable[str]:
     return [f"{cell.name} is {cell.state.value}, and still has a tree" for cell in left]
 
 
-@invariant(Trigger.STEPPED)
+@invariant(Trigger.IDLE)
 def no_starvation(look: Look) -> Iterable[str]:
     """In a cell that is idle, ready and not paused the next task starts in the same step."""
-    return _idle_though_ready(look) if look.record.idle else NOTHING
+    return _idle_though_ready(look) if look.record.stepped else NOTHING
 
 
 def _idle_though_ready(look: Look) -> Iterator[str]:

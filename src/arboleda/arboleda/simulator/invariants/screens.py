@@ -44,11 +44,11 @@ STATUSES = {status: status.value for status in Status}
 Row = dict[str, Any]
 
 
-@invariant(Trigger.STEPPED)
+@invariant(Trigger.TOLD, every_s=EVERY_S)
 def screens_show_what_is(look: Look) -> Iterable[str]:
     """A screen shows cells, tasks, robots and zones as they were told, asked and commanded."""
-    if look.record.due_for("screens", EVERY_S) and _only_arms_and_mobiles(look):
-        return _shown(look)
+    if look.whole:
+        return _shown(look) if _only_arms_and_mobiles(look) else NOTHING
     return _lines(look) if look.record.tasks.changes else NOTHING
 
 
@@ -91,7 +91,6 @@ def _shown(look: Look) -> Iterator[str]:
         yield from _obstacle(look, known, row)
         yield from _refused(look, row, "robot")
         yield from rows.rejected(record.commands.last.get(row["name"]), row)
-    yield from _lines(look)
     yield from _tasks(look, shown)
     open_tasks = {row["id"]: row["state"] for row in shown["tasks"] if row["ended_at"] is None}
     if open_tasks != {id: task.state.value for id, task in record.tasks.open.items()}:
@@ -101,16 +100,34 @@ def _shown(look: Look) -> Iterator[str]:
     yield from _time_line(look, shown)
 
 
+# what is shown of a cell or a robot that verbs may be refused for, and of what only whether there is any
+REFUSED_BY = ("state", "paused", "online", "homed", "latched", "effector", "piece", "holding", "node")
+REFUSED_BY_ANY = (
+    "task",
+    "queue",
+    "tree",
+    "held_by",
+    "not_ready",
+    "blocked_by",
+    "teaching",
+    "obstacle",
+    "question",
+)
 REFUSABLE = {kind: refusable(Scope(kind)) for kind in ("cell", "robot")}
 
 
 def _refused(look: Look, row: Row, kind: str) -> Iterator[str]:
-    """Differences between the verbs shown as refused for a cell or a robot and those refused now."""
+    """Differences between the verbs shown as refused for a cell or a robot and those refused now, which are
+    asked for where these or what they may depend on have changed.
+    """
     plant, found = look.world.plant, []
+    shown = [name for name in row["refused"] if not name.endswith("_by_hand")]
+    stands = *map(row.get, REFUSED_BY), *map(bool, map(row.get, REFUSED_BY_ANY))
+    if not look.record.is_new(f"refused {row['name']}", (plant.epoch, *shown, *stands)):
+        return
     for verb in REFUSABLE[kind]:
         if plant.refusal(OperatorRequest(at=plant.now, verb=verb, scope=row["name"])) is not None:
             found.append(verb.value)
-    shown = [name for name in row["refused"] if not name.endswith("_by_hand")]
     if sorted(shown) != sorted(found):
         yield f"{row['name']}: {shown} are shown as refused, {found} would be"
 
@@ -378,10 +395,10 @@ def screens_are_told_of_news(look: Look) -> Iterable[str]:
     return NOTHING
 
 
-@invariant(Trigger.HEARD)
+@invariant(Trigger.SAID)
 def status_says_the_report(look: Look) -> Iterable[str]:
     """A report that goes over ROS 2 arrives as it left; a status that no bridge can mean is refused."""
-    if not look.record.anew or not look.record.due_for("status", STATUS_S):
+    if not look.record.due_for("status", STATUS_S):
         return NOTHING
     return (*_carried(look), *(_broken(look) if look.record.due_for("garbled", GARBLED_S) else NOTHING))
 
@@ -411,6 +428,8 @@ def _broken(look: Look) -> Iterator[str]:
     if robot is None:
         return
     sent = status.to_status(robot, report)
+    if not look.record.is_new(f"garbled {robot.name}", (sent.message, *sent.values)):
+        return
     garbled = [replace(sent, values={**sent.values, key: value}) for key, value in GARBLED]
     if robot.joints:
         endless = ",".join(["1e999"] * len(robot.joints))

@@ -48,13 +48,14 @@ def no_task_begins_in_manual(look: Look) -> Iterator[str]:
             yield f"task {message.task} begins in {message.cell}, which is taught"
 
 
-@invariant(Trigger.STEPPED)
+@invariant(Trigger.TAUGHT)
 def a_lost_teacher_stops_the_robot(look: Look) -> Iterator[str]:
     """A robot of joints of a cell that is taught stands 0.3 s after the plant last heard that its button is
     held, or after the longest of its short goals, where nothing has gone wrong for a while.
     """
     teachers, world = look.record.teachers, look.world
-    if not teachers.taught or world.faults_active or world.now < world.last_fault_at + QUIET_S:
+    calm = not world.faults_active and world.now >= world.last_fault_at + QUIET_S
+    if not (look.record.stepped and calm):
         return
     for name in teachers.taught:
         cell = world.model.cell(name)

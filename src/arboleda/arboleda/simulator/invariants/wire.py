@@ -179,9 +179,9 @@ def _untold(look: Look) -> Iterator[str]:
         if where is None or report.robot not in record.shown:
             continue
         _, board, _ = record.shown[report.robot]
-        if not board.remembers(report.at - SLOW_S):
-            continue  # the plant waited longer for its disk than this record reaches back
-        if not board.said(report.q, report.node, record.told_since(report.at)):
+        if board.said(report.q, report.node, record.told_since(report.at)):
+            continue
+        if board.remembers(report.at - SLOW_S):  # else the plant waited longer for its disk than that
             yield f"{report.robot} is reported at {where}, which its board has not told lately"
 
 

@@ -120,7 +120,9 @@ class KnownBoard:
         if not self.telemetry:
             return False
         last = self.telemetry[-1]
-        if last.at >= since and last.payload.startswith(self._words(q, node)):
+        position, written = node if q is None else q, self._written
+        words = self._words(q, node) if written is None or written[0] != position else written[1]
+        if last.at >= since and last.payload.startswith(words):
             return True
         there = dict(zip(self._keys, map(float, self._on_wire(q, node)), strict=True))
         return any(each.at >= since and _says(each.payload, there) for each in reversed(self.telemetry))
@@ -131,10 +133,9 @@ class KnownBoard:
 
     def _words(self, q: tuple[float, ...] | None, node: int | None) -> bytes:
         """The beginning of our boards' telemetry for this place."""
-        position = node if q is None else q
-        if self._written is None or self._written[0] != position:
-            self._written = position, (self._form % self._on_wire(q, node)).encode()
-        return self._written[1]
+        words = (self._form % self._on_wire(q, node)).encode()
+        self._written = node if q is None else q, words
+        return words
 
     def _on_wire(self, q: tuple[float, ...] | None, node: int | None) -> tuple[Any, ...]:
         if q is None:

@@ -87,7 +87,7 @@ class _Bridge:
         self._boards = {robot.name: _Board(robot, model.timing.stale_after_s, wrong) for robot in robots}
         self._rows = [(name, board.robot.mqtt, board) for name, board in self._boards.items()]
         self._by_topic = {
-            f"{robot.mqtt}/{channel}": (self._boards[robot.name], channel)
+            f"{robot.mqtt}/{channel}": (robot.name, self._boards[robot.name], channel)
             for robot in robots
             for channel in ("sensores", "conexion")
         }
@@ -114,31 +114,26 @@ class _Bridge:
                 self._told(message, self._boards.get(message.robot))
         self.of_others.clear()
         late = False
+        now = passed.now
         for event in passed.events:
-            late = late or event.at < passed.now
-            if isinstance(event, Delivery):
-                self._deliver(event, passed.now, reports)
-            else:
-                self._event(event, passed.now)
+            late = late or event.at < now
+            if not isinstance(event, Delivery):
+                self._event(event, now)
+            elif event.topic in self._by_topic:
+                name, board, channel = self._by_topic[event.topic]
+                if board.repeats and board.hear_again(event, now, reports[name]):
+                    del reports[name]
+                else:
+                    board.deliver(event, channel)
         for name, mqtt, board in self._rows:
-            if board.touched or name in reports or mqtt in published or board.is_silent(passed.now):
-                board.end_step(passed.now, reports[name], published[mqtt], late=late)
+            if board.touched or name in reports or mqtt in published or board.silent_at <= now:
+                board.end_step(now, reports[name], published[mqtt], late=late)
 
     def _told(self, message: Rejection | ForeignCommand, board: _Board | None) -> None:
         if board is not None and isinstance(message, Rejection):
             board.reject(message)
         elif board is not None:
             board.obey_foreign(taken=message.sentence.key == rejections.TAKEN.key)
-
-    def _deliver(self, delivery: Delivery, now: float, reports: dict[str, list[Report]]) -> None:
-        board, channel = self._by_topic.get(delivery.topic, (None, ""))
-        if board is None:
-            return
-        name = board.robot.name
-        if board.repeats and board.hear_again(delivery, now, reports[name]):
-            del reports[name]
-        else:
-            board.deliver(delivery, channel)
 
     def _event(self, event: Any, now: float) -> None:
         if isinstance(event, Connection):
@@ -179,6 +174,7 @@ class _Board:
         self._patience_s = math.inf if robot.evidence is Evidence.STATE else stale_after_s
         self._connected = self._absent = self._up = False
         self._heard_at = -math.inf
+        self.silent_at = math.inf  # when its silence has lasted too long, while there is a link to lose
         self._number: int | None = None
         self._boot: int | None = None
         self._least = self._least_before = -1  # the oldest epoca that the board obeys: now, and a step before
@@ -223,11 +219,8 @@ class _Board:
         self._connected, self._plant, self._boot = True, belief.plant, belief.boot_id
         self._plant_before = belief.plant
         self._up, self._heard_at = belief.heard_at is not None, now
+        self.silent_at = now + self._patience_s if self._up else math.inf
         self._was_down, self._is_taken_over = not self._up, True
-
-    def is_silent(self, now: float) -> bool:
-        """True if the silence of the board has lasted too long."""
-        return self._up and self._heard_at + self._patience_s <= now
 
     def connect(self, up: bool) -> None:
         self.touched = True
@@ -270,6 +263,7 @@ class _Board:
                 return False
             self._number = int(number)
         self._heard_at, self._heard_beat = delivery.at, False
+        self.silent_at = delivery.at + self._patience_s
         self._words = (before, after, report)
         return True
 
@@ -323,6 +317,7 @@ class _Board:
         if self._may_move:
             self._follow_motion(delivery.at, said)
         self._up, self._heard_at = True, delivery.at
+        self.silent_at = delivery.at + self._patience_s
         self._number = said.get("seq")
         self._boot = said.get("arranque", self._boot)
         self._least = max(said.get("epoca_ack", -1), said.get("epoca_min", -1))
@@ -393,7 +388,7 @@ class _Board:
 
     def _lose(self) -> None:
         self._fell |= self._up
-        self._up = False
+        self._up, self.silent_at = False, math.inf
         self._motion, self._may_move, self._over = None, False, len(self._orders)
 
     def end_step(
@@ -401,7 +396,7 @@ class _Board:
     ) -> None:
         """Compare all that this step should have brought with what it brought; `late`: it was away before."""
         self._late = late
-        if self.is_silent(now):
+        if self.silent_at <= now:
             self._lose()
         self._compare_beats(published)
         if self._orders or published:
@@ -410,9 +405,11 @@ class _Board:
             self._compare_reports(reports)
         counted = bool(self._telling and reports) and not (self._is_new_plant or self._is_foreign_new)
         if counted:
-            self._compare_foreign(reports[-1])
+            last = reports[-1]
+            if last.foreign is not None or last.foreign_refused or last.foreign_obeyed or any(self._foreign):
+                self._compare_foreign(last)
         if self._heard_at + self._patience_s <= now:
-            self._up = False  # what counted only in hindsight may be too old by now
+            self._up, self.silent_at = False, math.inf  # what counted only in hindsight may be too old by now
         if self._given and self._words:
             self._words = (None, None, self._words[2])  # the same bytes may name a command by now
         self._telling, self._maybe, self._orders, self._given, self._over = [], [], [], {}, 0
@@ -441,7 +438,7 @@ class _Board:
         before, self._had_ended = self._had_ended, ended
         if not (published or self._heard_beat):
             return
-        beats = any(each.topic.endswith("/latido") for each in published)
+        beats = bool(published) and any(each.topic.endswith("/latido") for each in published)
         needless = beats and not any(self._fences(each) for each in published)
         if needless and ended and before and not any(isinstance(each, Motion) for each, _ in self._orders):
             self._say(BEATS, f"{self.robot.name} is told that somebody is there, and need not move")

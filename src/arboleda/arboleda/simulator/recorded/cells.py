@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from operator import attrgetter
 from typing import Any
 
 from py_trees.behaviour import Behaviour
@@ -33,6 +34,8 @@ class KnownCell:
     pass since the last news although the cell was not held.
     """
 
+    signs = attrgetter("state", "run.tree", "task", "queue.paused")
+
     def __init__(self, cell: Cell, timing: Timing) -> None:
         self.cell, self.timing = cell, timing
         self.timing_before = timing  # before this step
@@ -49,8 +52,6 @@ class KnownCell:
     def begin(self, run: CellRun) -> None:
         """Begin anew with a plant that starts."""
         self.run, self.context = run, run.context
-        self.state, self.task = run.state, run.task
-        self.paused, self.queued = run.queue.paused, len(run.queue)
         self.tree: Behaviour | None = None
         self.sends: dict[tuple[Behaviour, str], int] = {}
         self.again = 0
@@ -65,27 +66,20 @@ class KnownCell:
         self.frozen_s = 0.0
         self._lag_s = math.inf
         self._waiter: Behaviour | None = None
+        self.wakes = self.context.time.wakes
         self.follow()
 
-    def follow(self) -> bool:
-        """Take over the present state of the cell; True if it differs from the one before."""
+    def follow(self) -> None:
+        """Take over the present state of the cell, of which `signs` got another one than what was `seen`, or
+        in whose queue is another number of tasks.
+        """
         run = self.run
-        self.wakes = self.context.time.wakes
-        if (
-            run.state is self.state
-            and run.run.tree is self.tree
-            and run.task is self.task
-            and run.queue.paused is self.paused
-            and len(run.queue) == self.queued
-        ):
-            return False
-        self.state, self.task = run.state, run.task
-        self.paused, self.queued = run.queue.paused, len(run.queue)
-        if run.tree is not self.tree:
-            self.tree = run.tree
+        self.seen = self.state, tree, self.task, self.paused = self.signs(run)
+        self.queued = len(run.queue)
+        if tree is not self.tree:
+            self.tree = tree
             self.sends.clear()
             self.again = 0
-        return True
 
     def changes(self) -> Iterator[str]:
         """Sentences on what is not as it was after the last step."""

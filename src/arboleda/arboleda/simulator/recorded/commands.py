@@ -25,6 +25,7 @@ class SentCommand:
         self, command: Command, at: float, obstacles: frozenset[Obstacle], verbs: frozenset[Verb], halts: int
     ) -> None:
         self.command = command
+        self.robot = command.robot
         self.at = at
         self.late_s = 0.0  # between the plant's step and when it left
         self.obstacles = obstacles
@@ -33,15 +34,12 @@ class SentCommand:
         self.is_work = isinstance(command, Work)
         self.can_be_halted = isinstance(command, Work) and command.on_stop is OnStop.HALT
         self.way = command.way if isinstance(command, Motion) else ()
+        self.sets = command.sets
         self.rejected = False
         self.entry: Entry | None = None
         self.state: State | None = None
         self.deadline = at
         self.cancelled_at: float | None = None
-
-    @property
-    def robot(self) -> str:
-        return self.command.robot
 
     def bind(self, entry: Entry) -> None:
         """Bind it to its entry in the ledger."""
@@ -100,7 +98,7 @@ class Commands:
             sent.late_s = late_s
 
     def hear(self, report: Report, known: KnownRobot) -> None:
-        """Take in a report, which names the last rejected command."""
+        """Take in a report that names the last rejected command."""
         rejected = self.open.get(report.rejected or "")
         if rejected is not None:
             rejected.rejected = True

@@ -29,11 +29,9 @@ class ForeignCommands:
             if each.bridge is not self._bridge:
                 self._bridge = each.bridge
                 self._waiting.clear()
-            self._waiting += [
-                (each.now + UNSURE_S, event.message)
-                for event in each.events
-                if isinstance(event, FromPlant) and event.sender and event.message not in obeyed
-            ]
+            for event in each.events:
+                if isinstance(event, FromPlant) and event.sender and event.message not in obeyed:
+                    self._waiting.append((each.now + UNSURE_S, event.message))
             if self._waiting:
                 self._tell(each)
 

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from collections import defaultdict
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from arboleda.kinds.joints import MoveJoints
 from arboleda.kinds.mobile import FollowPath
@@ -54,6 +54,9 @@ class ReportEvidence:
     unhomed: bool = False
 
 
+NOTHING: tuple[Proof | None, float | None] = (None, None)
+
+
 class Proofs:
     """Proofs by command id in `of`, for this step; a command of which nothing was said has none.
 
@@ -63,16 +66,16 @@ class Proofs:
     def __init__(self) -> None:
         self.of: defaultdict[str, Proof] = defaultdict(Proof)
         self._shown: defaultdict[str, ReportEvidence] = defaultdict(ReportEvidence)
+        # of reports that only said the last one again: what each such one proves, and when it was cancelled
+        self._repeated: dict[str, tuple[Proof, float | None]] = {}
         self.by_robot: dict[str, list[SentCommand]] = {}
 
     def forget(self) -> None:
         """Forget all, as the plant that sent the commands is gone."""
         self.of.clear()
         self._shown.clear()
+        self._repeated.clear()
         self.by_robot.clear()
-
-    def clear_news(self) -> None:
-        self.of.clear()
 
     def follow(self, sent: list[SentCommand]) -> None:
         """Take over which commands are open after this step."""
@@ -82,20 +85,39 @@ class Proofs:
         ids = {each.command.id for each in sent}
         for id in self._shown.keys() - ids:
             del self._shown[id]
+        for id in self._repeated.keys() - ids:
+            del self._repeated[id]
 
     def hear(self, report: Report, known: KnownRobot) -> None:
         """Take in a report; `known` is what its robot had said before."""
-        q = known.q if report.q is None else report.q
-        node = known.node if report.node is None else report.node
+        repeats = report.words == known.words and report.at <= known.stale_at
         for sent in self.by_robot.get(report.robot, ()):
-            proof = self.of[sent.command.id]
+            id = sent.command.id
+            proof, (again, cancelled_at) = self.of.get(id), self._repeated.get(id, NOTHING)
+            if proof is not None and proof is again:
+                proof = self.of[id] = replace(proof, causes=set(proof.causes))  # it stays as it is
+            elif proof is None and again is not None and repeats and cancelled_at == sent.cancelled_at:
+                self.of[id] = again
+                continue
+            alone = proof is None
+            proof = self.of[id]
             _broken(proof, sent, report, known)
             if report.at >= sent.at:
-                shown = self._shown[sent.command.id]
-                _see(shown, sent, report)
-                _said(proof, sent, report, known.robot)
-                off = _off(sent, known.robot, q, node) if sent.way else _off_facts(sent, report, known)
-                _moved(proof, sent, shown, report, known.robot, off)
+                self._take_in(proof, sent, report, known)
+            if alone and repeats and report.at >= sent.at:
+                self._repeated[id] = proof, sent.cancelled_at
+            elif not repeats:
+                self._repeated.pop(id, None)
+
+    def _take_in(self, proof: Proof, sent: SentCommand, report: Report, known: KnownRobot) -> None:
+        """Take in a report that is not older than the command."""
+        q = known.q if report.q is None else report.q
+        node = known.node if report.node is None else report.node
+        shown = self._shown[sent.command.id]
+        _see(shown, sent, report)
+        _said(proof, sent, report)
+        off = _off(sent, known.robot, q, node) if sent.way else _off_facts(sent, report, known)
+        _moved(proof, sent, shown, report, known.robot, off)
 
 
 def _broken(proof: Proof, sent: SentCommand, report: Report, known: KnownRobot) -> None:
@@ -106,7 +128,7 @@ def _broken(proof: Proof, sent: SentCommand, report: Report, known: KnownRobot) 
         _must(proof, Reason.LINK_LOST, "its robot was silent for too long")
     if known.epoch is not None and report.epoch is not None and report.epoch != known.epoch:
         _must(proof, Reason.LINK_LOST, "its bridge was restarted")
-    if _booted(report, known):
+    if report.boot_id != known.boot and _booted(report, known):
         _must(proof, Reason.REBOOTED, "its board booted")
     if known.robot.evidence is Evidence.JOINTS:
         proof.causes.add(Reason.REBOOTED)  # its place may have jumped; how far is judged elsewhere
@@ -118,7 +140,7 @@ def _broken(proof: Proof, sent: SentCommand, report: Report, known: KnownRobot) 
 
 def _booted(report: Report, known: KnownRobot) -> bool:
     """True if the board has booted; counts of boots at `joints` are comparable for one bridge only."""
-    if report.boot_id == known.boot or None in (report.boot_id, known.boot):
+    if None in (report.boot_id, known.boot):
         return False
     same_bridge = report.epoch == known.epoch
     evidence = known.robot.evidence
@@ -133,12 +155,12 @@ def _must(proof: Proof, reason: Reason, why: str) -> None:
 def _see(shown: ReportEvidence, sent: SentCommand, report: Report) -> None:
     shown.moving |= report.state is MotionState.MOVING
     shown.position |= report.q is not None or report.node is not None
-    for name, _ in sent.command.sets:
+    for name, _ in sent.sets:
         shown.facts |= report.fact(name) is not None
     shown.unhomed |= report.homed is False
 
 
-def _said(proof: Proof, sent: SentCommand, report: Report, robot: Robot) -> None:
+def _said(proof: Proof, sent: SentCommand, report: Report) -> None:
     """Note what state codes prove by themselves."""
     if report.state is MotionState.FAULT:
         _must(proof, Reason.DEVICE_FAULT, "its board reports a fault")
@@ -158,8 +180,8 @@ def _moved(
     """Note that it is under way or done; `off` is how far beyond its tolerance the robot stands."""
     command, stopped = sent.command, _rests(sent, report)
     if isinstance(command, Switch):
-        told = all(report.fact(name) == value for name, value in command.sets)
-        proof.done |= told if command.sets else report.done == command.id
+        told = all(report.fact(name) == value for name, value in sent.sets)
+        proof.done |= told if sent.sets else report.done == command.id
         return
     if isinstance(command, Query):
         proof.named |= report.accepted == command.id
@@ -182,7 +204,7 @@ def _moved(
         proof.named |= shown.moving
         # at `joints` state and place come in separate messages, so the truth judges the distance
         goal = shown.position or shown.facts
-        seen = goal if robot.evidence is Evidence.JOINTS and (sent.way or command.sets) else shown.moving
+        seen = goal if robot.evidence is Evidence.JOINTS and (sent.way or sent.sets) else shown.moving
         proof.done |= seen and (stopped or report.state is None)
     if (stopped or report.state is None) and not _surely_at(off):
         proof.causes.add(Reason.STOPPED_SHORT)
@@ -219,9 +241,9 @@ def _off(sent: SentCommand, robot: Robot, q: tuple[float, ...] | None, node: int
 
 def _off_facts(sent: SentCommand, report: Report, known: KnownRobot) -> float:
     """The distance from a switch's goal: -1 if all facts that it sets are so by their last report, else 1."""
-    said = {name: report.fact(name) for name, _ in sent.command.sets}
+    said = {name: report.fact(name) for name, _ in sent.sets}
     told = {name: known.fact(name) if value is None else value for name, value in said.items()}
-    return -1.0 if all(told[name] == value for name, value in sent.command.sets) else 1.0
+    return -1.0 if all(told[name] == value for name, value in sent.sets) else 1.0
 
 
 def _off_path(nodes: tuple[int, ...], node: int) -> float:

@@ -38,7 +38,9 @@ STOPS = {"on": StopProgress.LATCHED, "cleared": StopProgress.CLEARED}  # by the 
 
 
 class KnownRobot:
-    """Last word of a robot on everything, None where it never said; `stop` outlives the plant."""
+    """Last word of a robot on everything, None where it never said; `stop` outlives the plant, `words` are
+    those of its last report that counted as news.
+    """
 
     def __init__(self, robot: Robot, stale_after_s: float) -> None:
         self.robot = robot
@@ -50,9 +52,10 @@ class KnownRobot:
 
     def forget(self) -> None:
         """Forget all, as a plant that starts has heard nothing."""
-        self._words: tuple[object, ...] = ()  # of the last report
+        self.words: tuple[object, ...] = ()
         self._look_at = 0.0
         self.heard_at: float | None = None
+        self.stale_at = math.inf  # when its silence will have lasted too long, s
         self.state: MotionState | None = None
         self.homed: bool | None = None
         self.boot: int | None = None
@@ -68,6 +71,11 @@ class KnownRobot:
         self.barred = False  # it has no stop, and its bridge refused a command because of one
         self.unnamed: str | None = None  # the last command that it was sent, until a report names it
 
+    def take_over(self, heard_at: float | None) -> None:
+        """Take over when it was heard last, before this record began."""
+        self.heard_at = heard_at
+        self.stale_at = math.inf if heard_at is None else heard_at + self._patience_s
+
     def as_it_is(self) -> KnownRobot:
         """A copy that later reports do not change."""
         known = copy(self)
@@ -76,20 +84,20 @@ class KnownRobot:
 
     def hear(self, report: Report) -> bool:
         """Take over a report; True if it says something else than the one before, or the same for LOOK_S."""
-        anew = report.words != self._words or report.at >= self._look_at
+        anew = report.words != self.words or report.at >= self._look_at
         if anew:
-            self._words, self._look_at = report.words, report.at + LOOK_S
+            self.words, self._look_at = report.words, report.at + LOOK_S
             self._take_over(report)
         if report.number is not None:
             self.numbers.append(report.number)
         if report.state is not MotionState.NO_LINK:
-            self.heard_at = report.at
+            self.heard_at, self.stale_at = report.at, report.at + self._patience_s
         return anew
 
     def _take_over(self, report: Report) -> None:
         if self.unnamed is not None and self.unnamed in (report.accepted, report.done, report.rejected):
             self.unnamed = None
-        if report.boot_id is not None:
+        if report.boot_id is not None and report.boot_id != self.boot:
             self._hear_boot(report)
         if report.epoch is not None:
             self.barred &= report.epoch == self.epoch
@@ -115,22 +123,16 @@ class KnownRobot:
         return value
 
     def _hear_boot(self, report: Report) -> None:
-        changed = self.boot is not None and self.boot != report.boot_id
+        changed = self.boot is not None
         counted_anew = self.robot.evidence is Evidence.JOINTS and self.epoch != report.epoch
         if changed and not self.robot.says_homed and not counted_anew:
             self.displaced = True
         self.boot = report.boot_id
 
-    @property
-    def stale_at(self) -> float:
-        """The time at which the robot's silence has lasted too long, s."""
-        return math.inf if self.heard_at is None else self.heard_at + self._patience_s
-
     def offline(self, now: float) -> bool:
         if self.state is MotionState.NO_LINK:
             return True
-        never = self.heard_at is None and self._patience_s < math.inf
-        return never or self.stale_at <= now
+        return self.stale_at <= now or (self.heard_at is None and self._patience_s < math.inf)
 
     @property
     def unhomed(self) -> bool:

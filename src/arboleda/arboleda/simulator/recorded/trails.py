@@ -22,7 +22,7 @@ Transitions = Iterable[tuple[KnownCell, CellState, CellState]]
 
 
 class Trails:
-    """Trails that a plant found when it started, by cell, until their tasks go on or end.
+    """Trails that a plant `found` when it started, by cell, until their tasks go on or end.
 
     `wrong` are sentences of this step on boots that were not looked at, and on trails that do not say what
     became of a command.
@@ -31,7 +31,7 @@ class Trails:
     def __init__(self, robots: Mapping[str, KnownRobot]) -> None:
         self.wrong: list[str] = []
         self._robots = robots
-        self._found: dict[str, Trail] = {}
+        self.found: dict[str, Trail] = {}
         self._holders: Mapping[str, str] = {}  # of zones and shared devices, when it started
         self._said: dict[str, Sentence | None] = {}  # by cell, why its task does not go on
 
@@ -39,15 +39,15 @@ class Trails:
         """Begin another start of the plant, with what it found of the tasks that were at work, by cell."""
         self._said.clear()
         steps, self._holders = kept.get(Fact.STEP, {}), kept.get(Fact.QUARANTINE, {})
-        self._found = {cell: Trail.read(steps[task]) for cell, task in running.items() if task in steps}
+        self.found = {cell: Trail.read(steps[task]) for cell, task in running.items() if task in steps}
 
     def look(self, cells: Mapping[str, KnownCell], transitions: Transitions, *, retried: bool) -> None:
         """Take in what became of the tasks that were found; `retried`: somebody had steps given anew."""
         self.wrong = []
-        for name in self._found:
+        for name in self.found:
             self.wrong += self._told_more(cells[name])
         for cell, _, after in transitions:
-            trail = self._found.pop(cell.name, None)
+            trail = self.found.pop(cell.name, None)
             if trail is None or after is not CellState.EXECUTE or retried or cell.run.run.recovering:
                 continue
             booted = [robot for robot in self._devices(cell) if self._has_booted(trail, robot)]
@@ -76,7 +76,7 @@ class Trails:
         if said is None or before is not None or said.phrase is not MORE:
             return
         robot = str(said.values["robot"])
-        if self._has_booted(self._found[cell.name], robot):
+        if self._has_booted(self.found[cell.name], robot):
             yield f"{cell.name} is held as {said}, and {robot} has booted"
 
     def _has_booted(self, trail: Trail, robot: str) -> bool:

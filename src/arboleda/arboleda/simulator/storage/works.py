@@ -64,9 +64,6 @@ class Works:
             work.walked_back, work.undone = True, work.undone or undone
             work.retries = self._cells[name].retries
 
-    def clear_news(self) -> None:
-        self.wrong.clear()
-
     def follow(self, tasks: Tasks, new: list[SentCommand], now: float) -> None:
         """Take over what this step began, commanded and ended."""
         for change in tasks.changes:

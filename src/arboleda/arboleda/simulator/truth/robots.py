@@ -10,7 +10,7 @@ from arboleda.kinds.joints import Jointed
 from arboleda.kinds.mobile import Mobile
 from arboleda.model.by_class import nearest
 from arboleda.model.commands import Command
-from arboleda.model.messages import CellRevised, Fact, OperatorAnswer, Remember, Verb
+from arboleda.model.messages import CellRevised, Fact, OperatorAnswer, Remember, Report, Verb
 from arboleda.model.plant_model import Evidence, Robot
 from arboleda.model.whole_cells import whole_cell
 
@@ -115,10 +115,11 @@ class RobotsTruth:
         self._look_at_plant()
         if self.world.model.zones:
             self.zones.look(bool(self.changed))
-        self.deeds = self._did_anything()
+        self.deeds = bool(self.changed) or self._did_more()
 
-    def _did_anything(self) -> bool:
-        return bool(self.changed)
+    def _did_more(self) -> bool:
+        """True if anything was done in this step though no robot has changed."""
+        return False
 
     def _look_at_messages(self) -> None:
         """Take in what reached the boards, and what they carry out."""
@@ -150,8 +151,8 @@ class RobotsTruth:
     def _look_at_plant(self) -> None:
         """Take in what the plant heard, was deceived about and sent."""
         world, moment = self.world, self.world.moment
-        if self.boots.mute:
-            self.boots.look(moment.heard, asked=bool(moment.asked))
+        if moment.heard or self.boots.mute:
+            self._listen(moment.heard)
         if world.deceptions and world.now >= self._sampled_at + SAMPLE_S:
             self._sampled_at = world.now
             self._deceived.update({key: world.now for key, number in world.deceptions.items() if number})
@@ -159,6 +160,11 @@ class RobotsTruth:
             for message in moment.sent:
                 self._take_in(message)
             self.stops.settle()
+
+    def _listen(self, heard: list[Report]) -> None:
+        """Take in what the plant hears."""
+        if self.boots.mute:
+            self.boots.look(heard, asked=bool(self.world.moment.asked))
 
     def _revise(self) -> None:
         """Know the places of what cells work by now."""

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import json
 
+from arboleda.kinds.declared import Device
 from arboleda.model.commands import Command, Motion, Query, Switch
 from arboleda.model.facts import Value
-from arboleda.model.messages import OperatorAnswer, TaskChanged, TaskState, Verb
+from arboleda.model.messages import OperatorAnswer, Report, TaskChanged, TaskState, Verb
 from arboleda.model.whole_cells import whole_cell
 from arboleda.wire.hop import FromPlant
 from arboleda.wire.payloads import OrderGoal
@@ -44,7 +45,8 @@ class Truth(RobotsTruth):
         self._began: dict[str, float] = {}
         robots = [each.robot for each in self.robots.values()]
         self._telemetry = {topic(robot.mqtt, Channel.TELEMETRY): robot.name for robot in robots}
-        self._orders = {topic(robot.mqtt, Channel.ORDER): robot.name for robot in robots}
+        devices = [robot for robot in robots if isinstance(robot, Device)]
+        self._orders = {topic(robot.mqtt, Channel.ORDER): robot.name for robot in devices}
 
     def was_so(self, robot: str, fact: str, value: Value, since: float) -> bool:
         """True if a robot truly had this value of a fact at some time since `since`."""
@@ -69,8 +71,8 @@ class Truth(RobotsTruth):
         """The last command of a robot, questions left out, if it is called done."""
         return self._last.get(robot)
 
-    def _did_anything(self) -> bool:
-        return bool(self.changed or self.storage.has_news)
+    def _did_more(self) -> bool:
+        return self.storage.has_news
 
     def _forget(self) -> None:
         super()._forget()
@@ -82,11 +84,12 @@ class Truth(RobotsTruth):
         self.storage.follow(self.changed)
         if self.places.cells:
             self.places.follow(self.changed)
+        self._follow_facts()
 
-    def _look_at_plant(self) -> None:
-        if self.world.moment.heard and self.storage.cells:
-            self.storage.hear(self.world.moment.heard)
-        super()._look_at_plant()
+    def _listen(self, heard: list[Report]) -> None:
+        if self.storage.cells:
+            self.storage.hear(heard)
+        super()._listen(heard)
 
     def look(self) -> None:
         if self.done_tasks:
@@ -94,7 +97,7 @@ class Truth(RobotsTruth):
         super().look()
         for booked in self.books.ended:
             self._end(booked)
-        for passed in self.world.moment.bridged:
+        for passed in self.world.moment.bridged if self._orders else ():
             self._follow_questions(passed.events, passed.out)
         for client, publication in self.world.moment.published:
             if client and b'"respuesta"' in publication.payload and publication.topic in self._telemetry:
@@ -109,8 +112,8 @@ class Truth(RobotsTruth):
         self._last.clear()
         self.storage.restart()
 
-    def _look_at_robots(self) -> None:
-        super()._look_at_robots()
+    def _follow_facts(self) -> None:
+        """Note since when a fact is not so any more, and robots stand at a target no more."""
         now = self.world.now
         for robot in self.changed:
             name, facts = robot.robot.name, dict(robot.body.true_facts)

@@ -68,9 +68,9 @@ class ZonesTruth:
             self.meetings, self.freed, self.entries = [], [], []
         if moved:
             self._look_inside()
-        holder = self._world.plant.zones.holder
+        holders = self._world.plant.zones.holders
         for zone, before in self._holders.items():
-            if (now := holder(zone)) != before:
+            if (now := holders.get(zone)) != before:
                 self._holders[zone] = now
                 if before is not None:
                     self._freed(zone, before)
