@@ -14,7 +14,7 @@ from arboleda.campaigns.proof.instants import Instant, Mark, Side, instants
 from arboleda.campaigns.proof.kept import Kept
 from arboleda.campaigns.proof.moment import Moment, as_svg
 from arboleda.campaigns.proof.outcome import End, Outcome, outcome_from, plain
-from arboleda.campaigns.proof.proof import Proof, Proved
+from arboleda.campaigns.proof.proof import Proof, Proved, spread
 from arboleda.campaigns.proof.proof_report import unmended_lines
 from arboleda.campaigns.proof.proof_tally import ProofTally
 from arboleda.campaigns.proof.recipe_digest import recipe_digests
@@ -82,6 +82,35 @@ def test_each_form_comes_first_at_one_of_the_instants(model: PlantModel) -> None
     cell = model.cell("sis_a")
     parts = [single_faults(model, cell, AT, number=number, only=["reboot"])[0] for number in range(2)]
     assert {each.word for faults in parts for each in faults} == {"will", "no will"}
+
+
+@pytest.mark.parametrize(
+    ("count", "order"), [(0, []), (1, [0]), (2, [0, 1]), (5, [0, 4, 2, 1, 3]), (8, [0, 4, 2, 6, 1, 5, 3, 7])]
+)
+def test_what_is_spread_begins_far_apart_and_leaves_nothing_out(count: int, order: list[int]) -> None:
+    assert spread(range(count)) == order
+
+
+def test_a_short_budget_meets_each_recipe_at_several_steps(model: PlantModel) -> None:
+    proof = Proof(model=model, calm=tuple(calm_run(model, each) for each in scenarios(model)))
+    first = proof.portions[:8]
+    assert {each.part for each in first} == {0} and {proof.instant(each).level for each in first} == {0}
+    assert {proof.calm[each.scenario].scenario.recipe for each in first} == {"storage", "palletizing"}
+    assert len({(each.scenario, each.instant) for each in first}) >= 6
+
+
+def test_what_is_told_is_in_the_order_of_tasks_and_instants(model: PlantModel) -> None:
+    proof = Proof(model=model, calm=tuple(calm_run(model, each) for each in scenarios(model)))
+    proved = {
+        number: Proved(
+            number=number, outcomes=(Outcome(end=End.DONE),), rows=(0,) * proof.count(number), digest=""
+        )
+        for number in range(8)
+    }
+    cases = list(ProofTally(proof=proof, proved=proved).cases())
+    assert [(each.row, each.instant.at) for each in cases] == sorted(
+        (each.row, each.instant.at) for each in cases
+    )
 
 
 def test_a_death_of_the_plant_comes_at_each_commit_that_follows(model: PlantModel) -> None:
@@ -245,7 +274,8 @@ def test_the_shipped_plant_calls_no_task_done_whose_part_is_lost_missed_or_was_n
 ) -> None:
     calm = calm_run(model, next(scenarios(model, ["storage"])))
     proof = Proof(model=model, calm=(calm,), kinds=("no_part", "no_grip", "lost_part"))
-    begins = [number for number, each in enumerate(proof.portions) if "ra1" in proof.instant(each).what]
+    rows = [(proof.instant(each), number) for number, each in enumerate(proof.portions)]
+    begins = [number for at, number in sorted(rows, key=lambda row: row[0].at) if "ra1" in at.what]
     outcomes = [each for number in begins[::6] for each in proof.run(number).each]
     assert len(outcomes) > 10 and not any(each.goes_unnoticed or each.broken for each in outcomes)
     assert {"part_lost", "no_piece"} <= {each.cause for each in outcomes}
