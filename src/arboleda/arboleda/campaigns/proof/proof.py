@@ -66,9 +66,10 @@ class Proof:
 
     @cached_property
     def portions(self) -> list[Portion]:
-        """All portions: one form of each fault before the others, of each the beginnings of steps first.
+        """All portions: one form of each fault on the device at work first, then on others, then all other
+        forms; of each the beginnings of steps first.
 
-        Portions of one rank are spread over all tasks and instants, so that a short budget meets each of them.
+        Portions of one rank are spread over all tasks and instants, so that a short budget meets each.
         """
         ranks: dict[tuple[int, int], list[Portion]] = {}
         for *rank, portion in self._ranked():
@@ -143,7 +144,7 @@ class Proof:
 
 
 def spread(items: Sequence[T]) -> list[T]:
-    """The items in an order in which the first few are far from each other: first, middle, quarters, eighths."""
+    """The items in an order in which the first few are far apart: first, middle, quarters, eighths."""
     bits = max(len(items) - 1, 0).bit_length()
     turns = (int(f"{turn:0{bits}b}"[::-1], 2) for turn in range(2**bits))
     return [items[turn] for turn in turns if turn < len(items)]

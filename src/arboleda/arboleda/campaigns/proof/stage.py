@@ -29,6 +29,7 @@ REQUEST, AGAIN = "test-1", "test-2"  # as the first ones of a test
 PATIENCE_S = 300.0  # beyond what the task takes without a fault
 LOST_S = 30.0  # after which a request that nobody has answered is lost
 MENDED_IN_S = 0.000_5  # after a task has ended, so that a test that names the time does the same
+HEARD_S = 1.0  # after which each board has reported what is truly so, now that nothing is at fault
 GRACE_S = 30.0  # in which a cell gets ready by itself
 TRIES = 3  # times that it may go on by itself, and be held again
 STUCK = (CellState.HELD, CellState.ABORTED, CellState.STOPPED)
@@ -161,6 +162,7 @@ class Stage:
             self.world.advance(MENDED_IN_S)
             self.mended_at = self.watched.seconds
             self.watched.end_faults()
+            self.world.advance(HEARD_S)
             self.world.advance(GRACE_S, self._is_ready)
             if self.ended or self._is_stuck:
                 return
