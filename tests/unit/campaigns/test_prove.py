@@ -15,7 +15,7 @@ import pytest
 from arboleda.campaigns.plants import Plant
 from arboleda.campaigns.proof.calm import Calm, calm_run, calm_runs
 from arboleda.campaigns.proof.forks import CAN_FORK, run_all, run_one
-from arboleda.campaigns.proof.instants import Instant
+from arboleda.campaigns.proof.instants import Instant, Side
 from arboleda.campaigns.proof.outcome import End
 from arboleda.campaigns.proof.proof import Proof, Proved
 from arboleda.campaigns.proof.scenario import scenarios
@@ -312,6 +312,15 @@ def test_a_hold_in_the_very_step_in_which_a_command_ends_breaks_nothing(plant: P
     assert sim.prove("stamp", "operator_hold", at_most=None) == 1.0
 
 
+def test_a_hold_in_the_very_step_in_which_a_question_is_answered_breaks_nothing(plant: Path) -> None:
+    (plant.parent / "small.py").write_text(TESTED)
+    model = Plant(declared=loader.load(plant)).model
+    calm = calm_run(model, next(scenarios(model)))
+    (answered,) = [each for each in calm.instants if each.at == 3.2 and each.side is Side.BEFORE]
+    run = run_one(model, calm, Fault(kind="operator_hold", at=answered.at, target="bench"))
+    assert (run.outcome.words, run.outcome.broken) == ("held: held", None)
+
+
 def test_a_cell_is_ready_only_once_its_boards_have_said_what_is_truly_so(plant: Path) -> None:
     plant.write_text(CARRY)
     (plant.parent / "small.py").write_text(CARRIED)
@@ -427,6 +436,17 @@ def test_a_command_that_failed_and_is_passed_over_is_told_where_no_fact_shows_it
     plant.write_text(PLANT.replace("      test:", "      dust: {effect: process, takes_s: 1}\n      test:"))
     lenient = 'cell.fallback(cell.device("lamp").dust(), cell.wait(0.1)), cell.device("lamp").light'
     (plant.parent / "small.py").write_text(GOOD.replace('cell.device("lamp").light', lenient))
+    assert prove("--fault", "gives_up") == 0
+    assert "lamp: doing dust has failed, and was not done later" in capsys.readouterr().out
+
+
+def test_one_of_two_equal_steps_that_failed_is_told_though_the_other_was_done(
+    plant: Path, prove: Prove, capsys: pytest.CaptureFixture[str]
+) -> None:
+    plant.write_text(PLANT.replace("      test:", "      dust: {effect: process, takes_s: 2}\n      test:"))
+    lenient = 'cell.fallback(cell.device("lamp").dust(), cell.wait(0.1))'
+    twice = f'{lenient}, {lenient}, cell.device("lamp").light'
+    (plant.parent / "small.py").write_text(GOOD.replace('cell.device("lamp").light', twice))
     assert prove("--fault", "gives_up") == 0
     assert "lamp: doing dust has failed, and was not done later" in capsys.readouterr().out
 
