@@ -454,5 +454,7 @@ def test_one_of_two_equal_steps_that_failed_is_told_though_the_other_was_done(
 def test_where_nothing_was_run_it_is_not_said_that_it_held(
     plant: Path, prove: Prove, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    assert prove("--fault", "refuses", "--budget", "0s") == 2
-    assert "nothing was run" in capsys.readouterr().out
+    tests = plant.parent / "test_found.py"
+    assert prove("--fault", "refuses", "--budget", "0s", "--tests", str(tests)) == 2
+    assert "nothing was run: --budget was over before" in capsys.readouterr().out
+    assert not tests.exists()
