@@ -13,7 +13,7 @@ def assemble(cell, base=Target("bases"), lid=Target("lids")):
             work(left.visit(base, left.grip()), left.visit("nest", left.let_go(), fixture.clamp(on=True))),
             right.visit(lid, right.grip()),
         ),
-        right.visit("nest", right.let_go()),
+        right.visit("seat", right.let_go()),
         fixture.press(),
         fixture.lift(),
         left.visit("nest", left.grip(), fixture.clamp(on=False)),

@@ -29,16 +29,12 @@ OF_THE_STATION = (
     recipe(
         "The ram comes down on the arm.",
         (
-            'right.visit("nest", right.let_go()),\n        fixture.press(),',
-            'right.visit("nest", right.let_go(), fixture.press()),',
+            'right.visit("seat", right.let_go()),\n        fixture.press(),',
+            'right.visit("seat", right.let_go(), fixture.press()),',
         ),
     ),
-    recipe(
-        "It presses twice.",
-        ("        fixture.press(),\n", "        fixture.press(),\n        fixture.press(),\n"),
-    ),
     recipe("The lid is not gripped.", ("right.visit(lid, right.grip())", "right.visit(lid)")),
-    recipe("The lid is not let go of.", ('right.visit("nest", right.let_go())', 'right.visit("nest")')),
+    recipe("The lid is not let go of.", ('right.visit("seat", right.let_go())', 'right.visit("seat")')),
     recipe("The base is not let go of.", (IN, 'left.visit("nest", fixture.clamp(on=True))')),
     recipe("The finished part is not gripped.", (OUT, 'left.visit("nest", fixture.clamp(on=False))')),
     recipe("The finished part is not put down.", ('left.visit("done", left.let_go())', 'left.visit("done")')),
@@ -50,11 +46,14 @@ OF_THE_STATION = (
             'parallel(left.visit("done", left.let_go()), left.home())',
         ),
     ),
-    recipe("The right arm stays where it was.", (", right.home()),", ", cell.wait(1)),")),
     recipe("The left arm stays where it was.", ("        left.home(),\n", "")),
     plant(
         "The zone over the nest is forgotten.",
-        ("zones:\n  over_the_nest: {poses: [station nest], free_while: {fixture: {ram: up}}}\n", ""),
+        (
+            "zones:\n"
+            "  over_the_nest: {poses: [station nest, station seat], free_while: {fixture: {ram: up}}}\n",
+            "",
+        ),
     ),
     plant("The ram keeps nobody out.", (", free_while: {fixture: {ram: up}}", "")),
     plant("The zone is free while the ram is down.", ("{fixture: {ram: up}}", "{fixture: {ram: down}}")),

@@ -92,13 +92,6 @@ OF_THE_HALL = (
         ("parallel(sent(cell, 1), loaded(cell, 2, tray))", "parallel(sent(cell, 1), sent(cell, 2))"),
     ),
     recipe("The wrong bay.", ('bay = f"bay_{number}"', 'bay = f"bay_{number + 1}"')),
-    recipe(
-        "The lift is not held while the shuttle is there.",
-        (
-            'cell.using("lift", lift.up(), seen, cell.choose(seen, taken))',
-            "lift.up(), seen, cell.choose(seen, taken)",
-        ),
-    ),
     recipe("Nobody brings the lift up.", ('"lift", lift.up(), seen', '"lift", seen')),
     recipe(
         "The lift rolls out what nobody has looked at.", ('"lift", lift.up(), seen, ', '"lift", lift.up(), ')

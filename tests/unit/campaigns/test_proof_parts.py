@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from xml.etree import ElementTree as Xml
 
@@ -14,7 +15,7 @@ from arboleda.campaigns.proof.instants import Instant, Mark, Side, instants
 from arboleda.campaigns.proof.kept import Kept
 from arboleda.campaigns.proof.moment import Moment, as_svg
 from arboleda.campaigns.proof.outcome import End, Outcome, outcome_from, plain
-from arboleda.campaigns.proof.proof import Proof, Proved
+from arboleda.campaigns.proof.proof import Proof, Proved, spread
 from arboleda.campaigns.proof.proof_report import unmended_lines
 from arboleda.campaigns.proof.proof_tally import ProofTally
 from arboleda.campaigns.proof.recipe_digest import recipe_digests
@@ -72,16 +73,54 @@ def test_an_instant_is_never_after_the_event_that_it_precedes() -> None:
 def test_faults_of_an_instant_are_one_form_of_each_kind_and_target_then_all_others(
     model: PlantModel,
 ) -> None:
-    first, others = single_faults(model, model.cell("sis_a"), AT)
+    at_work, of_others, others = single_faults(model, model.cell("sis_a"), AT)
+    first = [*at_work, *of_others]
     assert len({(each.kind, each.target) for each in first}) == len(first)
     assert not set(first) & set(others)
     assert {each.at for each in (*first, *others)} == {2.0}
 
 
+def test_faults_of_the_device_whose_step_it_is_come_first(model: PlantModel) -> None:
+    of_step = replace(AT, what="ra1: moves")
+    at_work, of_others, _ = single_faults(model, model.cell("sis_a"), of_step, only=["reboot", "plant_crash"])
+    assert [each.target for each in at_work] == ["ra_1"]
+    assert {each.kind for each in of_others} == {"reboot", "plant_crash"}
+    assert "ra_1" not in {each.target for each in of_others}
+
+
 def test_each_form_comes_first_at_one_of_the_instants(model: PlantModel) -> None:
     cell = model.cell("sis_a")
-    parts = [single_faults(model, cell, AT, number=number, only=["reboot"])[0] for number in range(2)]
+    parts = [single_faults(model, cell, AT, number=number, only=["reboot"])[1] for number in range(2)]
     assert {each.word for faults in parts for each in faults} == {"will", "no will"}
+
+
+@pytest.mark.parametrize(
+    ("count", "order"), [(0, []), (1, [0]), (2, [0, 1]), (5, [0, 4, 2, 1, 3]), (8, [0, 4, 2, 6, 1, 5, 3, 7])]
+)
+def test_what_is_spread_begins_far_apart_and_leaves_nothing_out(count: int, order: list[int]) -> None:
+    assert spread(range(count)) == order
+
+
+def test_a_short_budget_meets_each_recipe_at_several_steps(model: PlantModel) -> None:
+    proof = Proof(model=model, calm=tuple(calm_run(model, each) for each in scenarios(model)))
+    first = proof.portions[:8]
+    assert {each.part for each in first} == {0} and {proof.instant(each).level for each in first} == {0}
+    assert {proof.calm[each.scenario].scenario.recipe for each in first} == {"storage", "palletizing"}
+    assert len({(each.scenario, each.instant) for each in first}) >= 6
+
+
+def test_what_is_told_is_in_the_order_of_tasks_and_instants(model: PlantModel) -> None:
+    proof = Proof(model=model, calm=tuple(calm_run(model, each) for each in scenarios(model)))
+    proved = {
+        number: Proved(
+            number=number, outcomes=(Outcome(end=End.DONE),), rows=(0,) * proof.count(number), digest=""
+        )
+        for number in range(8)
+    }
+    cases = list(ProofTally(proof=proof, proved=proved).cases())
+    assert [(each.row, each.instant.at) for each in cases] == sorted(
+        (each.row, each.instant.at) for each in cases
+    )
 
 
 def test_a_death_of_the_plant_comes_at_each_commit_that_follows(model: PlantModel) -> None:
@@ -91,9 +130,9 @@ def test_a_death_of_the_plant_comes_at_each_commit_that_follows(model: PlantMode
 
 def test_what_belongs_to_other_cells_is_left_alone() -> None:
     model = shipped()
-    first, others = single_faults(model, model.cell("sis_a"), AT)
-    assert "rb_1" not in {each.target for each in (*first, *others)}
-    assert {"ra_1", "plant", "bridge", "broker"} <= {each.target for each in (*first, *others)}
+    parts = single_faults(model, model.cell("sis_a"), AT)
+    targets = {each.target for part in parts for each in part}
+    assert "rb_1" not in targets and {"ra_1", "plant", "bridge", "broker"} <= targets
 
 
 def test_tasks_of_one_shape_have_one_scenario(model: PlantModel) -> None:
@@ -229,11 +268,12 @@ def test_more_acts_than_six_are_too_much_and_so_is_a_cell_that_is_never_ready(
 def test_the_worst_case_of_what_advice_does_not_mend_is_said(model: PlantModel) -> None:
     calm = calm_run(model, next(scenarios(model, ["palletizing"])))
     proof = Proof(model=model, calm=(calm,), kinds=("reboot",))
-    count = len(proof.faults(proof.portions[0]))
+    first = next(each for each in range(len(proof.portions)) if proof.count(each) > 1)
+    count = proof.count(first)
     outcomes = (Outcome(end=End.HELD, acts=7), Outcome(end=End.HELD, acts=None), Outcome(end=End.DONE))
     rows = (0, 1, *([2] * (count - 2)))
-    proved = Proved(number=0, outcomes=outcomes, rows=rows, digest="")
-    tally = ProofTally(proof=proof, proved={0: proved})
+    proved = Proved(number=first, outcomes=outcomes, rows=rows, digest="")
+    tally = ProofTally(proof=proof, proved={first: proved})
     assert [(case.outcome.acts, times) for case, times in tally.unmended()] == [(7, 1), (None, 1)]
     assert tally.most_acts == 7
     said = [str(line) for line in unmended_lines(tally.unmended())]
@@ -245,7 +285,8 @@ def test_the_shipped_plant_calls_no_task_done_whose_part_is_lost_missed_or_was_n
 ) -> None:
     calm = calm_run(model, next(scenarios(model, ["storage"])))
     proof = Proof(model=model, calm=(calm,), kinds=("no_part", "no_grip", "lost_part"))
-    begins = [number for number, each in enumerate(proof.portions) if "ra1" in proof.instant(each).what]
+    rows = [(proof.instant(each), number) for number, each in enumerate(proof.portions)]
+    begins = [number for at, number in sorted(rows, key=lambda row: row[0].at) if "ra1" in at.what]
     outcomes = [each for number in begins[::6] for each in proof.run(number).each]
     assert len(outcomes) > 10 and not any(each.goes_unnoticed or each.broken for each in outcomes)
     assert {"part_lost", "no_piece"} <= {each.cause for each in outcomes}

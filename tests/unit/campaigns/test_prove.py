@@ -14,8 +14,8 @@ import pytest
 
 from arboleda.campaigns.plants import Plant
 from arboleda.campaigns.proof.calm import Calm, calm_run, calm_runs
-from arboleda.campaigns.proof.forks import CAN_FORK, run_all
-from arboleda.campaigns.proof.instants import Instant
+from arboleda.campaigns.proof.forks import CAN_FORK, run_all, run_one
+from arboleda.campaigns.proof.instants import Instant, Side
 from arboleda.campaigns.proof.outcome import End
 from arboleda.campaigns.proof.proof import Proof, Proved
 from arboleda.campaigns.proof.scenario import scenarios
@@ -24,6 +24,7 @@ from arboleda.cli.main import main
 from arboleda.model.errors import ArboledaError
 from arboleda.model.plant_model import PlantModel
 from arboleda.plant_file import loader
+from arboleda.simulator.faults import Fault
 from arboleda.testing import Sim
 
 from ...lengths import length
@@ -82,6 +83,29 @@ from arboleda.recipes import recipe, work
 def stamp(cell):
     press = cell.device("press")
     return work(press.press(), press.lift())
+"""
+CARRY = """
+name: small
+uses: [small.py]
+cells:
+  bench:
+    devices:
+      arm: {kind: arm, model: scara}
+      jaw: {kind: gripper, tool_of: arm}
+    targets:
+      home:  {arm: {deg: [0, 0], mm: 0}}
+      rack:  {arm: {deg: [60, 20], mm: 80, approach_mm: 40}}
+      shelf: {arm: {deg: [-90, 20], mm: 80, approach_mm: 40}}
+"""
+CARRIED = """
+from arboleda.recipes import recipe, work
+
+
+@recipe("carry")
+def carry(cell):
+    arm, jaw = cell.devices("arm", "jaw")
+    taken = arm.visit("rack", jaw.close(width_mm=40, force_n=20))
+    return work(taken, arm.visit("shelf", jaw.open()), arm.home())
 """
 KINDS = ("reboot", "driver_alarm", "refuses")
 Prove = Callable[..., int]
@@ -200,8 +224,8 @@ def test_a_task_that_ended_as_the_plant_died_counts_as_what_was_kept_of_it(plant
     model = Plant(declared=loader.load(plant)).model
     calm = calm_run(model, next(scenarios(model)))
     last = [each for each in calm.instants if each.commits][-1]
-    (faults, others) = single_faults(model, model.cells[0], last, only=("crash_in_step",))
-    runs = run_all(model, calm, [*faults, *others], lambda: None)
+    parts = single_faults(model, model.cells[0], last, only=("crash_in_step",))
+    runs = run_all(model, calm, [each for part in parts for each in part], lambda: None)
     assert runs and {run.outcome.end for run in runs} <= {End.DONE, End.HELD}
     assert End.DONE in {run.outcome.end for run in runs}
     assert max(run.seconds for run in runs) < 120.0
@@ -286,6 +310,25 @@ def test_a_hold_in_the_very_step_in_which_a_command_ends_breaks_nothing(plant: P
     sim = Sim(plant.parent)
     sim.plant("small.yaml")
     assert sim.prove("stamp", "operator_hold", at_most=None) == 1.0
+
+
+def test_a_hold_in_the_very_step_in_which_a_question_is_answered_breaks_nothing(plant: Path) -> None:
+    (plant.parent / "small.py").write_text(TESTED)
+    model = Plant(declared=loader.load(plant)).model
+    calm = calm_run(model, next(scenarios(model)))
+    (answered,) = [each for each in calm.instants if each.at == 3.2 and each.side is Side.BEFORE]
+    run = run_one(model, calm, Fault(kind="operator_hold", at=answered.at, target="bench"))
+    assert (run.outcome.words, run.outcome.broken) == ("held: held", None)
+
+
+def test_a_cell_is_ready_only_once_its_boards_have_said_what_is_truly_so(plant: Path) -> None:
+    plant.write_text(CARRY)
+    (plant.parent / "small.py").write_text(CARRIED)
+    model = Plant(declared=loader.load(plant)).model
+    calm = calm_run(model, next(scenarios(model)))
+    fault = Fault(kind="stale_fact", at=2.0, seconds=15.0, target="jaw", word="gripped")
+    outcome = run_one(model, calm, fault).outcome
+    assert (outcome.words, outcome.broken, outcome.alone) == ("failed: deadline", None, False)
 
 
 def test_the_acts_are_counted_that_get_a_cell_ready_again(
@@ -397,8 +440,21 @@ def test_a_command_that_failed_and_is_passed_over_is_told_where_no_fact_shows_it
     assert "lamp: doing dust has failed, and was not done later" in capsys.readouterr().out
 
 
+def test_one_of_two_equal_steps_that_failed_is_told_though_the_other_was_done(
+    plant: Path, prove: Prove, capsys: pytest.CaptureFixture[str]
+) -> None:
+    plant.write_text(PLANT.replace("      test:", "      dust: {effect: process, takes_s: 2}\n      test:"))
+    lenient = 'cell.fallback(cell.device("lamp").dust(), cell.wait(0.1))'
+    twice = f'{lenient}, {lenient}, cell.device("lamp").light'
+    (plant.parent / "small.py").write_text(GOOD.replace('cell.device("lamp").light', twice))
+    assert prove("--fault", "gives_up") == 0
+    assert "lamp: doing dust has failed, and was not done later" in capsys.readouterr().out
+
+
 def test_where_nothing_was_run_it_is_not_said_that_it_held(
     plant: Path, prove: Prove, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    assert prove("--fault", "refuses", "--budget", "0s") == 2
-    assert "nothing was run" in capsys.readouterr().out
+    tests = plant.parent / "test_found.py"
+    assert prove("--fault", "refuses", "--budget", "0s", "--tests", str(tests)) == 2
+    assert "nothing was run: --budget was over before" in capsys.readouterr().out
+    assert not tests.exists()

@@ -21,7 +21,7 @@ from ..proof.calm import Calm, calm_run
 from ..proof.instants import Instant
 from ..proof.outcome import Run, plain
 from ..proof.scenario import Scenario, alone
-from ..proof.single_faults import single_faults
+from ..proof.single_faults import OTHER_FORMS, single_faults
 from ..proof.stage import ASKED_AT_S, Stage
 from .process import errand, write
 
@@ -79,8 +79,9 @@ def _played(stage: Stage, calm: Calm, faults: Sequence[Fault]) -> Run:
 def _possible(model: PlantModel, cell: Cell, instants: Sequence[Instant]) -> Iterator[dict[str, Any]]:
     """The faults to choose from, one form of each kind on each target; they begin whenever one says."""
     first = [each for each in instants if each.level == 0][:1]
-    for fault in single_faults(model, cell, first[0])[0] if first else ():
-        yield _fault(fault)
+    for each in first:
+        for part in single_faults(model, cell, each)[:OTHER_FORMS]:
+            yield from map(_fault, part)
 
 
 def _fault(fault: Fault) -> dict[str, Any]:

@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from hashlib import blake2b
+from typing import TypeVar
 
 from arboleda.model.plant_model import PlantModel
 from arboleda.simulator.faults import Fault
@@ -17,6 +18,7 @@ from .outcome import Outcome, Run
 from .scenario import Scenario
 from .single_faults import single_faults
 
+T = TypeVar("T")
 Tick = Callable[[], None]
 MOST = 32  # faults of a portion
 
@@ -64,8 +66,15 @@ class Proof:
 
     @cached_property
     def portions(self) -> list[Portion]:
-        """All portions: one form of each fault before the others, of each the beginnings of steps first."""
-        return [portion for *_, portion in sorted(self._ranked(), key=lambda each: each[:2])]
+        """All portions: one form of each fault on the device at work first, then on others, then all other
+        forms; of each the beginnings of steps first.
+
+        Portions of one rank are spread over all tasks and instants, so that a short budget meets each.
+        """
+        ranks: dict[tuple[int, int], list[Portion]] = {}
+        for *rank, portion in self._ranked():
+            ranks.setdefault((rank[0], rank[1]), []).append(portion)
+        return [each for rank in sorted(ranks) for each in spread(ranks[rank])]
 
     def instant(self, portion: Portion) -> Instant:
         """The instant at which the faults of a portion begin."""
@@ -132,6 +141,13 @@ class Proof:
         calm = self.calm[portion.scenario]
         runs = run_all(self.model, calm, self.faults(portion), tick or (lambda: None))
         return proved_by(seed, runs)
+
+
+def spread(items: Sequence[T]) -> list[T]:
+    """The items in an order in which the first few are far apart: first, middle, quarters, eighths."""
+    bits = max(len(items) - 1, 0).bit_length()
+    turns = (int(f"{turn:0{bits}b}"[::-1], 2) for turn in range(2**bits))
+    return [items[turn] for turn in turns if turn < len(items)]
 
 
 def proved_by(number: int, runs: Sequence[Run]) -> Proved:

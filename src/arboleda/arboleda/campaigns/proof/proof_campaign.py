@@ -222,6 +222,8 @@ class ProofCampaign:
         if request.tests is not None and breaches:
             proof_summary.write(request.tests, as_tests(breaches, request.plant))
             self._say(f"{request.tests} has {counted(len(breaches), 'test')}")
+        elif request.tests is not None and not request.tests.read_bytes():
+            request.tests.unlink()  # it was made to see whether that is possible
 
     def _say(self, line: str, style: str = "") -> None:
         self._console.print(Text(line, style=style), soft_wrap=True)

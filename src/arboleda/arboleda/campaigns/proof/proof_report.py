@@ -142,7 +142,8 @@ def verdict(tally: ProofTally, total: int, *, bad_calm: int) -> Text:
         what += [f"{counted(bad_calm, 'task')} without any fault"] if bad_calm else []
         return Text(f"BROKEN: {' and '.join(what)}; {of}", "bold red")
     if not runs:
-        return Text("nothing was run", "bold yellow")
+        over = ": --budget was over before the first run with a fault; give more" if total else ""
+        return Text(f"nothing was run{over}", "bold yellow")
     if runs < total:
         share = f"{runs / total:.0%}"
         said = f"HELD in {of} ({share}): a sample, beginnings of steps first; nothing is proven"

@@ -11,7 +11,7 @@ from arboleda.simulator.faults import Fault
 
 from .instants import Instant
 from .outcome import Outcome
-from .proof import Proof, Proved
+from .proof import Portion, Proof, Proved
 from .scenario import Scenario
 
 RecipeKey = tuple[str, str]  # cell, recipe
@@ -84,9 +84,9 @@ class ProofTally:
     proved: dict[int, Proved] = field(default_factory=dict)
 
     def cases(self) -> Iterator[Case]:
-        """All cases, in the order of the portions."""
-        for number, proved in sorted(self.proved.items()):
-            portion = self.proof.portions[number]
+        """All cases, task by task, of each in the order of the instants."""
+        known = [(self.proof.portions[number], proved) for number, proved in self.proved.items()]
+        for portion, proved in sorted(known, key=lambda each: _place(each[0])):
             scenario = self.proof.calm[portion.scenario].scenario
             rows = zip(self.proof.faults(portion), proved.each, strict=True)
             for fault, outcome in rows:
@@ -155,6 +155,10 @@ def shortest(cases: Iterable[Case], known: Container[Breaks] = ()) -> list[tuple
         if case.breaks is not None and case.breaks not in known:
             found.setdefault(case.breaks, []).append(case)
     return [(min(each, key=_shortness), len(each)) for each in found.values()]
+
+
+def _place(portion: Portion) -> tuple[int, int, int, int]:
+    return portion.scenario, portion.instant, portion.part, portion.first
 
 
 def _acts(case: Case) -> float:

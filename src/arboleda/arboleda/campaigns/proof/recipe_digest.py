@@ -16,7 +16,7 @@ from arboleda.recorder.preamble import PlantFiles
 from .proof_tally import RecipeKey
 from .scenario import alone
 
-FORMAT = 3  # of what is kept; another one is another digest
+FORMAT = 4  # of what is kept; another one is another digest
 PYTHON = ".py"
 BY_OTHER_NAMES = frozenset(
     {"globals", "vars", "eval", "exec", "getattr", "__dict__", "modules", "getmembers"}

@@ -10,23 +10,28 @@ from arboleda.simulator.faults.kind import NONE, Kind
 
 from .instants import Instant
 
+OF_OTHERS, OTHER_FORMS = 1, 2  # numbers of parts
+
 
 def single_faults(
     model: PlantModel, cell: Cell, instant: Instant, *, number: int = 0, only: Collection[str] = ()
 ) -> list[list[Fault]]:
-    """The faults that begin at an instant, always in the same order, in two parts.
+    """The faults that begin at an instant, always in the same order, in parts.
 
-    The first has one form of each kind on each target, another one at the instant of the next `number`; the
-    second has all other forms. Of each span both ends are taken, of each amount the largest. A kind that
-    comes at a commit comes at each of those that follow the instant at once. `only`: of these kinds.
+    The first has one form of each kind on the device whose step it is, another one at the instant of the next
+    `number`; the second the same on all other targets; the third has all other forms. Of each span both ends
+    are taken, of each amount the largest. A kind that comes at a commit comes at each of those that follow
+    the instant at once. `only`: of these kinds.
     """
     kinds = [kind for kind in possible_kinds() if not only or kind.name in only]
-    parts: list[list[Fault]] = [[], []]
+    parts: list[list[Fault]] = [[] for _ in range(OTHER_FORMS + 1)]
+    at_work = _at_work(cell, instant)
     for kind in kinds:
         for target in dict.fromkeys(kind.targets(model)):
             forms = [] if target in _elsewhere(model, cell) else _forms(kind, model, target, instant)
             for index, form in enumerate(forms):
-                parts[index != number % len(forms)].append(form)
+                part = OF_OTHERS if target not in at_work else 0
+                parts[part if index == number % len(forms) else OTHER_FORMS].append(form)
     return parts
 
 
@@ -48,6 +53,12 @@ def _amounts(kind: Kind, instant: Instant) -> list[float]:
     if kind.name in COUNTED:
         return [float(number) for number in range(1, instant.commits + 1)]
     return [0.0 if kind.amount == NONE else kind.amount[1]]
+
+
+def _at_work(cell: Cell, instant: Instant) -> frozenset[str]:
+    """The names of the device whose step has begun last."""
+    name = instant.what.partition(":")[0]
+    return frozenset(each for robot in cell.robots if robot.name == name for each in (name, robot.mqtt))
 
 
 def _elsewhere(model: PlantModel, cell: Cell) -> set[str]:

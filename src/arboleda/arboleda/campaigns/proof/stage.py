@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 
@@ -29,6 +30,7 @@ REQUEST, AGAIN = "test-1", "test-2"  # as the first ones of a test
 PATIENCE_S = 300.0  # beyond what the task takes without a fault
 LOST_S = 30.0  # after which a request that nobody has answered is lost
 MENDED_IN_S = 0.000_5  # after a task has ended, so that a test that names the time does the same
+HEARD_S = 1.0  # after which each board has reported what is truly so, now that nothing is at fault
 GRACE_S = 30.0  # in which a cell gets ready by itself
 TRIES = 3  # times that it may go on by itself, and be held again
 STUCK = (CellState.HELD, CellState.ABORTED, CellState.STOPPED)
@@ -68,7 +70,7 @@ class Stage:
         self.commands: list[str] = []
         self.asked: list[Entry] = []
         self._people = [robot.name for robot in self.cell.robots if robot.link is Link.SCREEN]
-        self._ended: dict[bool, set[str]] = {True: set(), False: set()}  # commands that were done, and not
+        self._ended: dict[bool, Counter[str]] = {True: Counter(), False: Counter()}  # commands done, and not
         self._questions: set[str] = set()  # by id, of all that persons were asked so far
         self.told: TaskChanged | None = None  # the last word on the task
         self.mended_at = 0.0  # when the fault was ended, s
@@ -161,6 +163,7 @@ class Stage:
             self.world.advance(MENDED_IN_S)
             self.mended_at = self.watched.seconds
             self.watched.end_faults()
+            self.world.advance(HEARD_S)
             self.world.advance(GRACE_S, self._is_ready)
             if self.ended or self._is_stuck:
                 return
@@ -188,12 +191,14 @@ class Stage:
         return Outcome(end=end, cause=cause, alone=self._is_ready(), untrue=untrue, broken=broken)
 
     def _left_out(self, commands: Sequence[str]) -> Iterator[str]:
-        """Sentences on commands of the run without a fault that failed and were not done later; of a plant
-        that died nobody knows them all.
+        """Sentences on commands of the run without a fault that failed and were not done as often as there;
+        of a plant that died nobody knows them all.
         """
         if self.world.starts == 1:
-            failed = self._ended[False] - self._ended[True]
-            yield from (f"{each} has failed, and was not done later" for each in commands if each in failed)
+            done, failed = self._ended[True], self._ended[False]
+            wanted = Counter(commands).items()
+            left_out = (each for each, times in wanted if failed[each] and done[each] < times)
+            yield from (f"{each} has failed, and was not done later" for each in left_out)
 
     def _false_end(self) -> tuple[str, str] | None:
         """The breach of a task that is done, and not as its recipe says; none where a board has lied."""
@@ -214,7 +219,7 @@ class Stage:
     def _look(self) -> None:
         for ended in self.watched.truth.books.ended:
             if ended.entry.cell == self.cell.name and not self.ended:
-                self._ended[ended.done].add(entry_name(ended.entry))
+                self._ended[ended.done][entry_name(ended.entry)] += 1
         entries = self.world.plant.dispatcher.ledger.entries
         for message in self.world.moment.sent:
             if isinstance(message, TaskChanged):

@@ -89,8 +89,8 @@ class Trails:
 def _said_otherwise(cell: KnownCell, trail: Trail, commands: Commands) -> Iterator[str]:
     """Sentences on steps under way of which a trail does not say whether their last command is done.
 
-    One that was cancelled and then ended in this very step may be kept as not done: whoever holds the cell
-    was heard before the report that proves it.
+    One that was cancelled, or that a hold lets end, and then ended in this very step may be kept as not
+    done: whoever holds the cell was heard before the report that proves it.
     """
     moved = [sent for sent, _ in commands.moved]
     nodes = cell.run.run.nodes
@@ -101,7 +101,8 @@ def _said_otherwise(cell: KnownCell, trail: Trail, commands: Commands) -> Iterat
         sent = commands.last.get(last["robot"])
         if sent is None or sent.command.id != step.entry.command.id:
             continue  # it gave another one since
-        if sent in moved and step.entry.cancelled_at is not None and not last["done"]:
+        awaited = step.entry.cancelled_at is not None or not step.entry.halts
+        if sent in moved and awaited and not last["done"]:
             continue
         if last["done"] is not (sent.state is State.DONE):
             yield f"of {sent} it is kept that it is {'' if last['done'] else 'not '}done"
