@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from arboleda.model.commands import Home
 from arboleda.model.messages import Verb
 from arboleda.plant_file.loader import load
 from arboleda.simulator.invariants.places import done_tasks_leave_nothing_behind
@@ -87,12 +88,26 @@ def test_what_nobody_could_know_at_the_end_of_a_task_is_not_judged_by_what_the_n
     assert places.end_is_doubtful and not places.is_doubtful
 
 
+WITH_A_LAMP = """
+name: desk
+uses: [recipes.py]
+kinds:
+  lamp: {facts: {lit: bool}, verbs: {light: {effect: switch, with: {on: bool}, sets: {lit: $on}}}}
+cells:
+  desk:
+    devices: {arm: {kind: arm, model: scara}, lamp: {kind: lamp, evidence: facts}}
+    targets: {home: {arm: {deg: [0, 0], mm: 0}}}
+"""
+
+
 def test_home_of_a_plant_is_no_matter_of_devices_that_have_no_homing(tmp_path: Path) -> None:
-    (tmp_path / "recipes.py").write_text(RECIPE, "utf-8")
-    reports_facts = PLANT.replace("{kind: rotor}", "{kind: rotor, evidence: facts}")
-    (tmp_path / "plant.yaml").write_text(reports_facts, "utf-8")
+    code = 'from arboleda.recipes import recipe\n\n@recipe("rest")\ndef rest(cell):\n'
+    (tmp_path / "recipes.py").write_text(f'{code}    return cell.device("arm").home()\n', "utf-8")
+    (tmp_path / "plant.yaml").write_text(WITH_A_LAMP, "utf-8")
     world = JudgedWorld(load(tmp_path / "plant.yaml")).world
     world.advance(1.0)
+    homed: list[str] = []
+    world.watchers.append(lambda: homed.extend(c.robot for c in world.moment.sent if isinstance(c, Home)))
     world.request_verb(Verb.HOME, "")
     world.advance(0.05)
-    assert [entry.command.robot for entry in world.plant.dispatcher.ledger.entries.values()] == ["arm"]
+    assert homed == ["arm"]
