@@ -21,7 +21,8 @@ class CellPlaces:
     meanwhile did with a hand that both share counts as if it was before. `is_doubtful` once nobody could
     know them any more, `end_is_doubtful` where that was so when that task ended: a device has lied or lost
     its power, its effector was stuck and nobody reports that, somebody took a hand's part, a hand took one
-    at a station where none was known, or two places are one to its robot. The next task begins with what is in the books then.
+    at a station where none was known, or two places are one to its robot. The next task begins with what is
+    in the books then.
     """
 
     def __init__(self, cell: Cell, robots: Mapping[str, Any]) -> None:
