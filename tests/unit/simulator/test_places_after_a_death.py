@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from arboleda.model.messages import Fact, Remember, TaskChanged, TaskState
-from arboleda.simulator.invariants.places import books_of_parts_are_true
+from arboleda.simulator.invariants.part_places import books_of_parts_are_true
 from arboleda.simulator.judged_world import BrokenInvariant, JudgedWorld
 from arboleda.simulator.world import PLANT, Fuse, Side, World
 

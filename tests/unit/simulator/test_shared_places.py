@@ -7,7 +7,7 @@ from pathlib import Path
 from arboleda.model.commands import Home
 from arboleda.model.messages import Verb
 from arboleda.plant_file.loader import load
-from arboleda.simulator.invariants.places import done_tasks_leave_nothing_behind
+from arboleda.simulator.invariants.part_places import done_tasks_leave_nothing_behind
 from arboleda.simulator.judged_world import JudgedWorld
 
 from .test_general_invariants import storing
