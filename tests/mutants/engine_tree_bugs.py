@@ -149,14 +149,14 @@ OF_PLACES = (
     bug(
         PLACES,
         "A part that was let go of lies nowhere.",
-        "                self._move(held.back(here), +1)\n        if self._places",
+        "                self._move(held.back(here), +1, hand)\n        if self._places",
         "                pass\n        if self._places",
     ),
     bug(
         PLACES,
         "A part that was taken lies there, too.",
-        "            self._move(here, -1)\n",
-        "            self._move(here, 0)\n",
+        "            self._move(here, -1, hand)\n",
+        "            self._move(here, 0, hand)\n",
     ),
     bug(
         PLACES,

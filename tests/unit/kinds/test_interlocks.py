@@ -232,3 +232,15 @@ def test_a_zone_kept_for_a_robot_that_the_plant_file_no_longer_has_is_freed_on_a
     follow(here, "tending")
     here.submit("tending machine")
     assert here.outcome().state.value == "done"
+
+
+def test_a_task_begins_as_soon_as_an_arm_is_surely_outside_though_nothing_else_happens() -> None:
+    here = Bench(with_mill(machine))
+    here.wait(1.0)
+    here.memory[Fact.QUARANTINE] = {"vise": "mill"}
+    here.crash()
+    here.submit("tending machine")
+    here.wait(0.9)
+    assert here.changes[-1].state.value == "queued"
+    here.wait(0.2)
+    assert here.changes[-1].state.value == "running"

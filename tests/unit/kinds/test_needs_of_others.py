@@ -130,6 +130,11 @@ def test_a_verb_is_refused_while_the_other_device_is_not_heard(bench: Bench) -> 
         ("jaw.close: {", "jaw.shut: {", 'bench.needs.jaw.shut: verbs of jaw are close or open, is "shut"'),
         ("jaw.close: {", "jow.close: {", 'there is no role "jow"; did you mean "jaw"?'),
         ("{reader.lid: open}", "{reader.lit: open}", 'is "reader.lit"; did you mean "reader.lid"?'),
+        (
+            "{lamp.lit: true}",
+            "{reader.lid: closed}",
+            "lid is a fact of reader itself; say that as needs: {lid",
+        ),
         ("{reader.lid: open}", "{reader.lid: ajar}", 'lid of reader must be open, closed, is "ajar"'),
         ("{reader.lid: closed}", "{oven.lid: closed}", "devices.lamp: light of lamp needs oven.lid: must be"),
         (

@@ -232,6 +232,55 @@ def test_a_cell_that_shares_a_device_has_places_of_its_own(tmp_path: Path) -> No
     assert parts() == {"left": 1, "right": 0}
 
 
+SHARE_AN_ARM = """
+name: two
+uses: [recipes.py]
+kinds:
+  hand:
+    facts: {closed: bool}
+    verbs:
+      close: {effect: switch, sets: {closed: true}, holds: part, takes_s: 0.2}
+      open:  {effect: switch, sets: {closed: false}, holds: part, takes_s: 0.2}
+shared:
+  arm: {kind: arm, model: scara}
+  hand: {kind: hand, tool_of: arm}
+cells:
+  left:
+    devices: {arm: {shared: arm}, hand: {shared: hand}, ana: {kind: person}}
+    targets: &targets
+      home: {arm: {deg: [0, 0], mm: 0}}
+      nest: {arm: {deg: [40, 20], mm: 40}}
+      bin: {arm: {deg: [-40, 20], mm: 40}}
+    places: {nest: {}, bin: {holds: 9, output: true}}
+  right:
+    devices: {arm: {shared: arm}, hand: {shared: hand}, bob: {kind: person}}
+    targets: *targets
+    places: {nest: {}}
+"""
+
+
+def test_a_person_who_sees_to_a_place_that_cells_share_has_seen_to_it_for_all_of_them(tmp_path: Path) -> None:
+    head = "from arboleda.recipes import recipe, work\n\n"
+    steps = 'arm.visit("nest", hand.close()), arm.visit("bin", hand.open())'
+    body = f'    arm, hand = cell.devices("arm", "hand")\n    return work({steps})\n'
+    (tmp_path / "recipes.py").write_text(f'{head}@recipe("clear")\ndef clear(cell):\n{body}', "utf-8")
+    (tmp_path / "plant.yaml").write_text(SHARE_AN_ARM, "utf-8")
+    bench = Bench(load(tmp_path / "plant.yaml"))
+    bench.wait(1.0)
+
+    def parts() -> dict[str, int]:
+        return {name: cell.context.places.parts("nest") for name, cell in bench.plant.cells.items()}
+
+    bench.submit("left clear")
+    assert "no part is known to be at nest" in str(bench.outcome().sentence)
+    assert "load left nest" in str(in_words(bench.plant.advice("left")[0]))
+    assert bench.operate(Verb.LOAD, "right", place="nest") is None
+    assert parts() == {"left": 1, "right": 1}
+    assert bench.operate(Verb.UNLOAD, "right", place="nest") is None
+    assert parts() == {"left": 0, "right": 0}
+    assert not bench.plant.advice("left")
+
+
 FULL = 'take("rack_1"), put("nest"), take("rack_2"), put("nest")'
 SEE = "see that lab nest is empty and say so (unload lab nest)"
 PUT = "put a part at lab nest and say so (load lab nest)"

@@ -93,6 +93,21 @@ def test_what_is_right_is_taken(tmp_path: Path, body: str) -> None:
     assert problems(tmp_path, body) == []
 
 
+def test_a_recipe_that_runs_itself_is_one_mistake_whatever_its_parameters(tmp_path: Path) -> None:
+    same = """
+@recipe("same")
+def same(cell, number: Number[0, 3]):
+    return cell.run(same, number=2)
+"""
+    code = RECIPE.replace("{body}", "return reader.close()").replace(
+        "import parallel", "import Number, parallel"
+    )
+    (tmp_path / "recipes.py").write_text(code + same)
+    found = loader.trial("plant.yaml", PLANT.encode(), tmp_path, lambda spot, doing: None)
+    (sentence,) = found.elsewhere
+    assert sentence.endswith("same runs itself without an end: same > same")
+
+
 def test_a_recipe_may_run_itself_with_less(tmp_path: Path) -> None:
     body = "return reader.close() if cell is None else cell.run(less, number=3)"
     less = """

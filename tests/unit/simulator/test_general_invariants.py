@@ -338,7 +338,7 @@ def ignores_needs_of_others(patch: Patch) -> None:
 
 def books_no_part(patch: Patch) -> None:
     """What hands do is not booked."""
-    patch.setattr(Places, "_move", lambda self, target, parts: None)
+    patch.setattr(Places, "_move", lambda self, target, parts, hand: None)
 
 
 def knows_no_place(patch: Patch) -> None:

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from arboleda.model.messages import TaskChanged, TaskState
+from arboleda.model.messages import Fact, Remember, TaskChanged, TaskState
+from arboleda.simulator.invariants.part_places import books_of_parts_are_true
 from arboleda.simulator.judged_world import BrokenInvariant, JudgedWorld
 from arboleda.simulator.world import PLANT, Fuse, Side, World
 
@@ -12,15 +13,34 @@ from .test_general_invariants import storing
 
 
 class FuseOfADoneTask(Fuse):
-    """Fuse that burns down once the plant has told that a task is done."""
+    """Fuse that burns down once the plant has told that a task is done, `booked`: and books parts."""
 
-    def __init__(self, world: World) -> None:
+    def __init__(self, world: World, *, booked: bool = False) -> None:
         super().__init__(1, Side.AFTER, world.stop_plant)
         self._world = world
+        self._booked = booked
 
     def burns(self, side: Side) -> bool:
-        said = (each for each in self._world.moment.sent if isinstance(each, TaskChanged))
-        return side is self.side and any(each.state is TaskState.DONE for each in said)
+        sent = self._world.moment.sent
+        done = [n for n, each in enumerate(sent) if isinstance(each, TaskChanged) and _is_done(each)]
+        return side is self.side and bool(done) and (not self._booked or any(map(_books, sent[done[0] :])))
+
+
+def _is_done(change: TaskChanged) -> bool:
+    return change.state is TaskState.DONE
+
+
+def _books(message: object) -> bool:
+    return isinstance(message, Remember) and message.fact is Fact.PARTS
+
+
+def test_the_books_may_be_those_of_the_next_task_already_where_people_fill_a_place() -> None:
+    world = JudgedWorld(storing(), invariants=[books_of_parts_are_true]).world
+    world.fuses.append(FuseOfADoneTask(world, booked=True))
+    world.request_task("tending forgets")
+    world.request_task("tending forgets")
+    world.advance(60.0)
+    assert not world.is_on(PLANT)
 
 
 def test_what_a_recipe_says_of_its_end_is_judged_though_its_plant_dies_as_it_tells_of_that() -> None:

@@ -11,6 +11,7 @@ from arboleda.dispatch.dispatcher import Dispatcher, was_broken_off
 from arboleda.dispatch.ledger import Entry, State
 from arboleda.dispatch.zones import NONE, Zones
 from arboleda.model.commands import Home, Question
+from arboleda.model.common_places import with_common_places
 from arboleda.model.errors import ArboledaError, IllegalTransition
 from arboleda.model.messages import Fact, Failure, Journal, OperatorRequest, Outcome, Reason, TaskState, Verb
 from arboleda.model.outside import quoted
@@ -438,9 +439,11 @@ class Operator:
         return [self._cells[scope]] if scope in self._cells else self._of_robots(robots)
 
     def _set_parts(self, parts: list[tuple[CellRun, dict[str, int]]]) -> None:
-        for cell, numbers in parts:
-            cell.context.places.set(numbers)
-        self._dispatcher.wake([cell.cell.name for cell, _ in parts])
+        said = {cell.cell.name: numbers for cell, numbers in parts}
+        everywhere = with_common_places(said, [cell.cell for cell in self._cells.values()])
+        for name, numbers in everywhere.items():
+            self._cells[name].set_parts(numbers)
+        self._dispatcher.wake([*everywhere])
 
     def _planned_answer(self, request: OperatorRequest, person: str) -> Callable[[], None]:
         """One of the answers to what is being asked; where it names a question, only to that one."""

@@ -291,7 +291,10 @@ class Dispatcher:
         belief = self.beliefs.get(report.robot)
         if belief is None or belief.drawn:
             return
+        located_at = belief.position_at
         if belief.hear_again(report):
+            if located_at < self.sure_from <= belief.position_at:  # only now `place` goes by it
+                self.ledger.changed |= self._cells_of[report.robot]
             self._prove(belief, report, now)
             return
         if belief.robot.objection(report) is not None:

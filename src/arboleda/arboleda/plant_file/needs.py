@@ -84,6 +84,11 @@ def _other(
         if device.verb_names and other != role
         for fact in device.kind.facts
     }
+    owner, _, own = name.partition(".")
+    if owner == role and own in getattr(roles[role].kind, "facts", ()):
+        kind = f"as needs: {{{own}: {shown(value)}}} of the verb in its kind, {roles[role].kind_name}"
+        document.problem(place, f"{what}{own} is a fact of {role} itself; say that {kind}", at=place)
+        return None
     if name not in known:
         there = f"must be {choice(known)}" if known else "no other device of this cell reports facts"
         document.problem(place, f"{what}{there}, is {shown(name)}{nearest(name, known)}", at=place)

@@ -178,7 +178,8 @@ class Making:
         """The same, of a recipe in it; RecipeError where it would run itself without an end."""
         running = (*self.running, (name, values))
         if running[-1] in self.running or len(running) > MOST_NESTED:
-            names = " > ".join(each for each, _ in running[-MOST_SHOWN:])
+            ring = running[running.index(running[-1]) :] if running[-1] in self.running else running
+            names = " > ".join(each for each, _ in ring[-MOST_SHOWN:])
             raise RecipeError(f"{name} runs itself without an end: {names}")
         return Making(running=running, chosen=self.chosen)
 

@@ -49,7 +49,7 @@ class Context:
         self.sensors = PieceSensors(dispatcher.beliefs, self.timing, self.time)
         self.parts = Parts(cell, dispatcher, self.devices, self.robots, self.sensors)
         self.zones = CellZones(cell, dispatcher, zones, self.devices, self.robots, self.parts, at_work)
-        self.places = Places(cell, dispatcher, self.robots)
+        self.places = Places(cell, dispatcher, self.robots, self.devices)
         guards = (CellNeeds(cell, dispatcher).objection, self.places.objection)
         self.commands = CellCommands(cell.name, dispatcher, self.time, self.zones, self.devices, guards)
         self.failures = Failures(self.parts)

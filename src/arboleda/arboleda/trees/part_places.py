@@ -13,6 +13,7 @@ from arboleda.model.messages import Fact, Failure, Reason
 from arboleda.model.plant_model import Cell, Workspace
 from arboleda.model.sentence import Phrase, Sentence
 
+from .cell_devices import CellDevices
 from .cell_robots import CellRobots
 
 EMPTY = Phrase(
@@ -72,10 +73,11 @@ class Places:
     stations of a rack are counted, and nothing is refused there.
     """
 
-    def __init__(self, cell: Cell, dispatcher: Dispatcher, robots: CellRobots) -> None:
+    def __init__(self, cell: Cell, dispatcher: Dispatcher, robots: CellRobots, devices: CellDevices) -> None:
         self._cell = cell
         self._dispatcher = dispatcher
         self._robots = robots
+        self._devices = devices
         self._places = {place.target: place for place in cell.places}
         self._by_people = {each.target: each.holds * each.supply for each in cell.places if each.by_people}
         self._rack = frozenset(place.target for place in cell.rack)
@@ -111,7 +113,7 @@ class Places:
             if grips.holding(hand) and not is_empty:
                 self._held[hand] = held
             elif hand in words:  # the plant ended before it told the hand
-                self._move(held.back(None), +1)
+                self._move(held.back(None), +1, hand)
 
     def revise(self, cell: Cell) -> None:
         """Go by another version of the cell from now on, which has the same places."""
@@ -234,7 +236,7 @@ class Places:
             here = self._target(self._hands[hand])
             held = HeldPart(target=None if here in self._rack and not self._parts[here] else here)
             self._held[hand] = held
-            self._move(here, -1)
+            self._move(here, -1, hand)
         elif handling is Handling.HELD:
             self._held[hand] = replace(held, is_sure=True)
         elif handling is Handling.TOLD_TO_LET_GO and hand in self._held:
@@ -243,15 +245,22 @@ class Places:
             self._held.pop(hand, None)
             if handling is Handling.EMPTY:
                 here = self._target(self._hands[hand]) if held.lets_go else None
-                self._move(held.back(here), +1)
+                self._move(held.back(here), +1, hand)
         if self._places or not self._noted.isdisjoint((held.target, here)):
             self._keep()
 
-    def _move(self, target: str | None, parts: int) -> None:
+    def _move(self, target: str | None, parts: int, hand: str) -> None:
+        """Count parts of a hand; those of another cell's tasks not where people see to the place for each."""
+        if target in self._by_people and not self._is_ours(hand):
+            return
         if target in self._rack:
             self._parts[target] = max(parts, 0)
         elif target in self._places:
             self._parts[target] = max(self._parts[target] + parts, 0)
+
+    def _is_ours(self, hand: str) -> bool:
+        """False while another cell has a hand that it shares with this one."""
+        return hand not in self._cell.shared or self._devices.holder(hand) in (None, self._cell.name)
 
     def _keep(self) -> None:
         """Have the books kept: `nest=1` for a place, `jaw:nest+` for a hand and where it took its part.

@@ -22,21 +22,27 @@ def parts_are_taken_and_put_where_they_can_be(look: Look) -> Iterator[str]:
 @invariant(Trigger.DONE_TASKS)
 def books_of_parts_are_true(look: Look) -> Iterator[str]:
     """Each place of a cell whose task is called done has as many parts as the plant has booked there, and
-    has kept for its next start.
+    has kept for its next start. Where the plant died as it said so, the next task may have begun in its
+    books: what people fill and empty is left out then.
     """
     for cell, task, _ in look.truth.done_tasks:
         places = look.truth.places.cells.get(cell)
         if places is None:
             continue
-        booked, kept = (
-            look.world.plant.cells[cell].context.places.counts,
-            look.world.memory.get(Fact.PARTS, {}),
-        )
-        if booked != places.parts and not places.is_doubtful:
-            yield f"{task} is called done; by the books there are {booked}, and truly {places.parts}"
-        words = {word for word in kept.get(cell, "").split() if "=" in word}
-        if words != {f"{target}={parts}" for target, parts in booked.items() if parts}:
-            yield f"{task} is called done; by the books there are {booked}, and kept is {kept.get(cell)!r}"
+        booked = look.world.plant.cells[cell].context.places.counts
+        kept = look.world.memory.get(Fact.PARTS, {}).get(cell, "")
+        known = places.parts.keys() - (places.by_people if look.moment.last_words else ())
+        wrong = {each: booked[each] for each in known if booked[each] != places.parts[each]}
+        if wrong and not places.is_doubtful:
+            truly = {each: places.parts[each] for each in wrong}
+            yield f"{task} is called done; by the books there are {wrong}, and truly {truly}"
+        parts = {target: int(number) for target, at, number in map(_parted, kept.split()) if at}
+        if any(parts.get(each, 0) != booked[each] for each in known):
+            yield f"{task} is called done; by the books there are {booked}, and kept is {kept!r}"
+
+
+def _parted(word: str) -> tuple[str, str, str]:
+    return word.partition("=")
 
 
 @invariant(Trigger.DONE_TASKS)
@@ -82,7 +88,7 @@ def recipes_end_as_they_say(look: Look) -> Iterator[str]:
 def _is_known(look: Look, cell: str) -> bool:
     """True where somebody can know what a task of the cell did."""
     if look.world.model.cell(cell).places:
-        return not look.truth.places.cells[cell].is_doubtful
+        return not look.truth.places.cells[cell].end_is_doubtful
     return look.world.last_fault_at == -math.inf and look.record.undisturbed
 
 

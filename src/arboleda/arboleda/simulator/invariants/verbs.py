@@ -8,6 +8,7 @@ from dataclasses import replace
 from arboleda.core.cell_states import CellState
 from arboleda.dispatch.ledger import OPEN, State
 from arboleda.model.commands import Command, Home, Stop, StopMode, Switch
+from arboleda.model.common_places import with_common_places
 from arboleda.model.messages import Journal, OperatorAnswer, OperatorRequest, Outcome, TaskState, Verb
 from arboleda.model.plant_model import Evidence, Link
 
@@ -125,9 +126,12 @@ def _homes_its_own(look: Look, cell: str) -> bool:
 
 
 def _not_so(look: Look, request: OperatorRequest) -> bool:
-    """True if a robot of the scope is not homed in this way, by hand or by its routine."""
+    """True if a robot of the scope is not homed in this way, by hand or by its routine.
+
+    What has no homing is left out, unless there is nothing else.
+    """
     robots = [look.world.model.robots[name] for name in look.record.scopes.robots(request.scope)]
-    robots = [robot for robot in robots if robot.link is not Link.NONE] or robots
+    robots = [robot for robot in robots if robot.homes and robot.link is not Link.NONE] or robots
     if request.by_hand:
         return any(robot.says_homed for robot in robots)
     return any(robot.evidence is not Evidence.IDS for robot in robots)
@@ -277,7 +281,7 @@ def _homed(look: Look, request: OperatorRequest) -> Iterator[str]:
 
 
 def _booked(look: Look, request: OperatorRequest) -> Iterator[str]:
-    named = look.record.scopes.parts(request)
+    named = with_common_places(look.record.scopes.parts(request), look.world.model.cells)
     for before in look.record.asked.cells:
         wanted = before.parts | named.get(before.name, {})
         booked = look.record.cells[before.name].context.places.counts

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
+from arboleda.model.common_places import with_common_places
 from arboleda.model.messages import OperatorAnswer, TaskChanged, TaskState
 from arboleda.model.plant_model import Cell, Evidence, Place, Workspace
 
@@ -16,10 +17,12 @@ from .robot import RobotTruth
 class CellPlaces:
     """True number of parts at each place of one cell. A station of a rack has one or none.
 
-    `at_begin` and `at_end` have those when its last task that is done began and ended; `is_doubtful` once
-    nobody could know them any more: a device has lied or lost its power, its effector was stuck and nobody
-    reports that, somebody took a hand's part, a hand took one at a station where none was known, or two
-    places are one to its robot. The next task begins with what is in the books then.
+    `at_begin` and `at_end` have those when its last task that is done began and ended; what another cell
+    meanwhile did with a hand that both share counts as if it was before. `is_doubtful` once nobody could
+    know them any more, `end_is_doubtful` where that was so when that task ended: a device has lied or lost
+    its power, its effector was stuck and nobody reports that, somebody took a hand's part, a hand took one
+    at a station where none was known, or two places are one to its robot. The next task begins with what is
+    in the books then.
     """
 
     def __init__(self, cell: Cell, robots: Mapping[str, Any]) -> None:
@@ -27,7 +30,8 @@ class CellPlaces:
         self.parts = {place.target: 0 for place in cell.counted}
         self.at_begin = self.at_end = dict(self.parts)
         self._began_with = dict(self.parts)
-        self.is_doubtful = False
+        self.is_doubtful = self.end_is_doubtful = False
+        self.by_people = {place.target for place in cell.counted if place.by_people}
         self._places = {place.target: place for place in cell.counted}
         self._rack = frozenset(place.target for place in cell.rack)
         self._hands = {space.hand.name: space for space in cell.spaces if space.hand.held_fact}
@@ -37,17 +41,18 @@ class CellPlaces:
         """A task begins: people have filled the supplies and emptied the outputs."""
         if self.is_doubtful:
             self.parts, self.is_doubtful = dict(booked), False
-        for place in self._places.values():
-            if place.by_people:
-                self.parts[place.target] = place.holds if place.supply else 0
+        for target in self.by_people:
+            place = self._places[target]
+            self.parts[target] = place.holds if place.supply else 0
         self._began_with = dict(self.parts)
 
     def end(self) -> None:
         """The task is done."""
         self.at_begin, self.at_end = self._began_with, dict(self.parts)
+        self.end_is_doubtful = self.is_doubtful
 
-    def follow(self, hand: RobotTruth, carrier: RobotTruth | None) -> str | None:
-        """Take in what a hand did in this step; the sentence about what cannot be."""
+    def follow(self, hand: RobotTruth, carrier: RobotTruth | None, *, is_of_others: bool) -> str | None:
+        """Take in what a hand did in this step, also for another cell; the sentence about what cannot be."""
         name = hand.robot.name
         before, now = self._held[name], _holds(hand)
         self._held[name] = now
@@ -58,11 +63,15 @@ class CellPlaces:
             self.is_doubtful |= not now or bool(found)
             return None
         place = found[0]
+        if is_of_others and place.by_people:
+            return None  # people see to it for each task
         if place.target in self._rack:
             self.is_doubtful |= now and not self.parts[place.target]
             self.parts[place.target] = 0 if now else 1
             return None
-        self.parts[place.target] += -1 if now else 1
+        moved = -1 if now else 1
+        self.parts[place.target] += moved
+        self._began_with[place.target] += moved * is_of_others
         if now and self.parts[place.target] < 0:
             return f"{name} takes hold of a part at {place.target}, where none is"
         if self.parts[place.target] > place.holds:
@@ -138,13 +147,14 @@ class PlacesTruth:
                 places.is_doubtful |= self._is_doubtful(robot)
                 if not places.has(name):
                     continue
-                found = places.follow(robot, self._robots.get(places.carrier(name)))
+                carrier = self._robots.get(places.carrier(name))
+                found = places.follow(robot, carrier, is_of_others=self._is_of_others(name, places.cell))
                 if found is not None and not places.is_doubtful and not self._released(name):
                     self.wrong.append(found)
 
     def told(self, answer: OperatorAnswer) -> None:
         """Take in what a person did before they said it: they put parts at a place, or took them out."""
-        for name, parts in self._scopes.parts(answer).items():
+        for name, parts in with_common_places(self._scopes.parts(answer), self._world.model.cells).items():
             self.cells[name].set(parts)
             self.cells[name].is_doubtful |= any(map(self._closes_or_opens, self.cells[name].tools))
 
@@ -157,6 +167,10 @@ class PlacesTruth:
             places.begin(self._world.plant.cells[places.cell.name].context.places.counts)
         elif change.state is TaskState.DONE:
             places.end()
+
+    def _is_of_others(self, hand: str, cell: Cell) -> bool:
+        """True while another cell has a hand that it shares with this one."""
+        return hand in cell.shared and self._world.plant.zones.holder(hand) not in (None, cell.name)
 
     def _closes_or_opens(self, hand: str) -> bool:
         """True in the middle of a grip: nobody knows whether a person counted that part, too."""

@@ -1,0 +1,113 @@
+"""The judge of places: what two cells do at one place, and what nobody can know."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from arboleda.model.commands import Home
+from arboleda.model.messages import Verb
+from arboleda.plant_file.loader import load
+from arboleda.simulator.invariants.part_places import done_tasks_leave_nothing_behind
+from arboleda.simulator.judged_world import JudgedWorld
+
+from .test_general_invariants import storing
+
+PLANT = """
+name: two
+uses: [recipes.py]
+kinds:
+  hand:
+    facts: {closed: bool}
+    verbs:
+      close: {effect: switch, sets: {closed: true}, holds: part, takes_s: 0.2}
+      open:  {effect: switch, sets: {closed: false}, holds: part, takes_s: 0.2}
+  rotor: {verbs: {spin: {effect: process, takes_s: 4, works_on: part}}}
+shared:
+  arm: {kind: arm, model: scara}
+  hand: {kind: hand, tool_of: arm}
+  rotor: {kind: rotor}
+cells:
+  left:
+    devices: {arm: {shared: arm}, hand: {shared: hand}, rotor: {shared: rotor}, ana: {kind: person}}
+    targets: &targets
+      home: {arm: {deg: [0, 0], mm: 0}}
+      feed: {arm: {deg: [60, 20], mm: 40}}
+      seat: {arm: {deg: [30, 20], mm: 40}}
+      bin: {arm: {deg: [-40, 20], mm: 40}}
+    places: &places {feed: {supply: true}, seat: {of: rotor}, bin: {output: true}}
+  right:
+    devices: {arm: {shared: arm}, hand: {shared: hand}, rotor: {shared: rotor}, bob: {kind: person}}
+    targets: *targets
+    places: *places
+"""
+RECIPE = """
+from arboleda.recipes import recipe, work
+
+@recipe("spin")
+def spin(cell):
+    arm, hand, rotor = cell.devices("arm", "hand", "rotor")
+    take, put = lambda at: arm.visit(at, hand.close()), lambda at: arm.visit(at, hand.open())
+    return work(take("feed"), put("seat"), arm.home(), rotor.spin(), take("seat"), put("bin"))
+"""
+
+
+def test_a_task_that_waits_for_a_device_has_not_begun_with_the_part_that_another_cell_has_there(
+    tmp_path: Path,
+) -> None:
+    (tmp_path / "recipes.py").write_text(RECIPE, "utf-8")
+    (tmp_path / "plant.yaml").write_text(PLANT, "utf-8")
+    watched = JudgedWorld(load(tmp_path / "plant.yaml"))
+    seat = watched.truth.places.cells["right"]
+    watched.world.request_task("left spin")
+    watched.world.advance(8.0)
+    assert seat.parts["seat"] == 1
+    watched.world.request_task("right spin")
+    watched.world.advance(40.0)
+    assert [task.state.value for task in watched.world.plant.intake.tasks.values()] == ["done", "done"]
+    assert seat.at_begin["seat"] == seat.at_end["seat"] == 0
+
+
+def test_people_see_to_a_place_for_the_tasks_of_each_cell(tmp_path: Path) -> None:
+    (tmp_path / "recipes.py").write_text(RECIPE, "utf-8")
+    (tmp_path / "plant.yaml").write_text(PLANT, "utf-8")
+    world = JudgedWorld(load(tmp_path / "plant.yaml")).world
+    world.request_task("left spin")
+    world.request_task("right spin")
+    world.advance(50.0)
+    assert [task.state.value for task in world.plant.intake.tasks.values()] == ["done", "done"]
+
+
+def test_what_nobody_could_know_at_the_end_of_a_task_is_not_judged_by_what_the_next_one_knows() -> None:
+    watched = JudgedWorld(storing(), invariants=[done_tasks_leave_nothing_behind])
+    watched.world.request_task("tending forgets")
+    watched.world.request_task("tending forgets")
+    watched.world.advance(1.0)
+    places = watched.truth.places.cells["tending"]
+    places.is_doubtful = True
+    watched.world.advance(10.0)
+    assert places.end_is_doubtful and not places.is_doubtful
+
+
+WITH_A_LAMP = """
+name: desk
+uses: [recipes.py]
+kinds:
+  lamp: {facts: {lit: bool}, verbs: {light: {effect: switch, with: {on: bool}, sets: {lit: $on}}}}
+cells:
+  desk:
+    devices: {arm: {kind: arm, model: scara}, lamp: {kind: lamp, evidence: facts}}
+    targets: {home: {arm: {deg: [0, 0], mm: 0}}}
+"""
+
+
+def test_home_of_a_plant_is_no_matter_of_devices_that_have_no_homing(tmp_path: Path) -> None:
+    code = 'from arboleda.recipes import recipe\n\n@recipe("rest")\ndef rest(cell):\n'
+    (tmp_path / "recipes.py").write_text(f'{code}    return cell.device("arm").home()\n', "utf-8")
+    (tmp_path / "plant.yaml").write_text(WITH_A_LAMP, "utf-8")
+    world = JudgedWorld(load(tmp_path / "plant.yaml")).world
+    world.advance(1.0)
+    homed: list[str] = []
+    world.watchers.append(lambda: homed.extend(c.robot for c in world.moment.sent if isinstance(c, Home)))
+    world.request_verb(Verb.HOME, "")
+    world.advance(0.05)
+    assert homed == ["arm"]
