@@ -15,7 +15,7 @@ kinds:
   oven:
     facts: {{tray: [up, down]}}
     verbs:
-      lower: {{effect: switch, sets: {{tray: down}}, takes_s: 2}}
+      lower: {{effect: {effect}, sets: {{tray: down}}, takes_s: 2}}
       lift: {{effect: switch, sets: {{tray: up}}, takes_s: 1}}
 cells:
   hall:
@@ -48,7 +48,7 @@ def holder(sim: Sim) -> str | None:
 @pytest.fixture
 def oven(sim: Sim, tmp_path: Path, request: pytest.FixtureRequest) -> Sim:
     """The plant while its oven is told to lower the tray."""
-    (tmp_path / "plant.yaml").write_text(PLANT.format(stop=request.param))
+    (tmp_path / "plant.yaml").write_text(PLANT.format(stop=request.param, effect="switch"))
     (tmp_path / "recipes.py").write_text(RECIPES)
     sim.plant(tmp_path / "plant.yaml")
     sim.run(1)
@@ -87,3 +87,18 @@ def test_a_zone_comes_free_where_the_device_has_forgotten_its_switch(oven: Sim) 
     assert holder(oven) == "oven"
     oven.run(10)
     assert oven.robot("oven").facts == {"tray": "up"} and holder(oven) is None
+
+
+def test_a_report_from_before_a_lost_link_frees_no_zone_that_a_motion_leads_into(
+    sim: Sim, tmp_path: Path
+) -> None:
+    (tmp_path / "plant.yaml").write_text(PLANT.format(stop="supported", effect="motion"))
+    (tmp_path / "recipes.py").write_text(RECIPES)
+    sim.plant(tmp_path / "plant.yaml")
+    sim.run(1)
+    sim.fault("delay", "oven", word="up", seconds=6, amount=2.0)  # what boards say comes two seconds late
+    sim.submit("hall shut")
+    sim.run(until=lambda: sim.cell("hall").step == "oven lower")
+    sim.run(until=lambda: not sim.robot("oven").online)
+    sim.run(until=lambda: sim.robot("oven").online)
+    assert holder(sim) == "oven"

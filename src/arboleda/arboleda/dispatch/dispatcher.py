@@ -478,7 +478,7 @@ class Dispatcher:
         if moving and self._shows_its_own_end(command) and not self._breaks_its_work(command):
             return None  # its last code may be older than the end of its last move, which was proven
         if by_hand and obstacle:
-            return self.beliefs[robot].obstacle_besides_stop(was=was)
+            obstacle = self.beliefs[robot].obstacle_besides_stop(was=was)
         return obstacle or self._unmet(command, was=was)
 
     def _busy_with(self, command: Command) -> Entry | None:
@@ -588,7 +588,7 @@ class Dispatcher:
         elif verdict.feed is Feed.REJECTED:
             self._reject(entry.command.robot, verdict.failure)
         failed = entry.state is State.FAILED and verdict.feed is not Feed.REJECTED
-        if failed and not entry.is_work and not _is_boot(verdict):
+        if failed and _may_still_come(entry, verdict):
             allowed_s = self._allowed_s(entry.command, self.timings[entry.cell])
             self.unfinished.failed(entry.command, allowed_s, now)
         if failed and entry.halts and verdict.failure and verdict.failure.reason not in KNOWN_STILL:
@@ -627,8 +627,14 @@ def was_broken_off(entry: Entry) -> bool:
     return entry.failure is None or entry.failure.reason in BROKEN_OFF
 
 
-def _is_boot(verdict: Verdict) -> bool:
-    return verdict.failure is not None and verdict.failure.reason is Reason.REBOOTED
+def _may_still_come(entry: Entry, verdict: Verdict) -> bool:
+    """True where a device may carry out a command that has failed.
+
+    A boot ends all, and work is halted; but of a link that was lost nobody knows if the command, or word of
+    its beginning, is still on its way.
+    """
+    reason = None if verdict.failure is None else verdict.failure.reason
+    return reason is Reason.LINK_LOST if entry.is_work else reason is not Reason.REBOOTED
 
 
 def _lets_go(command: Command) -> bool:

@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 from arboleda.model.commands import Command, Switch, Work
 from arboleda.model.messages import Report
-from arboleda.model.plant_model import Evidence, PlantModel, Robot
+from arboleda.model.plant_model import Evidence, MotionState, PlantModel, Robot
 
 from .evidence import QUIET_S
 
@@ -91,28 +91,29 @@ class UnderWay:
 
 
 class Unfinished:
-    """Switches that have failed at devices which zones depend on, and that may still come to their end.
+    """Commands that have failed at devices which zones depend on, and that may still come to their end.
 
-    A switch is no longer one of them once its device names it as ended, has done another one of the same
-    facts, or was heard without a fault for as long as a switch like that may take. A boot leaves none.
-    `by_device` has them, each with the time that it may take.
+    A command is no longer one of them once its device names it as ended, has done another one of the same
+    facts, or was heard without a fault for as long as a command like that may take; work no longer, either,
+    once the device has taken it and is at rest. A boot leaves none. `by_device` has them, each with the time
+    that it may take.
     """
 
     def __init__(self, model: PlantModel) -> None:
         self._devices = frozenset(name for cell in model.cells for name in cell.interlocked)
-        self.by_device: dict[str, list[tuple[Switch, float]]] = {}
+        self.by_device: dict[str, list[tuple[Switch | Work, float]]] = {}
         self._well_since: dict[str, float] = {}
 
     def failed(self, command: Command, allowed_s: float, now: float) -> None:
         """A command has failed, whatever its device goes on with."""
-        if command.robot in self._devices and isinstance(command, Switch):
+        if command.robot in self._devices and isinstance(command, (Switch, Work)):
             self.by_device.setdefault(command.robot, []).append((command, allowed_s))
             self._well_since[command.robot] = now
 
     def done(self, command: Command) -> None:
         """A command is done: it has taken the place of those that set the same."""
         facts = {name for name, _ in command.sets}
-        self._keep(command.robot, lambda switch, _: facts.isdisjoint(name for name, _ in switch.sets))
+        self._keep(command.robot, lambda other, _: facts.isdisjoint(name for name, _ in other.sets))
 
     def hear(self, report: Report, now: float, *, is_well: bool) -> bool:
         """A robot reports, well or with a fault; True where less of it is unfinished now."""
@@ -120,11 +121,19 @@ class Unfinished:
         if not is_well:
             self._well_since[report.robot] = now
         well_s = now - self._well_since[report.robot]
-        ended = (report.done, report.failed, report.rejected)
-        self._keep(report.robot, lambda switch, allowed_s: well_s < allowed_s and switch.id not in ended)
+        ended = {report.done, report.failed, report.rejected}
+        at_rest = None if report.state is MotionState.MOVING else report.accepted
+        self._keep(
+            report.robot,
+            lambda command, allowed_s: (
+                well_s < allowed_s
+                and command.id not in ended
+                and not (isinstance(command, Work) and command.id == at_rest)
+            ),
+        )
         return len(self.by_device.get(report.robot, ())) < len(before)
 
-    def _keep(self, device: str, stays: Callable[[Switch, float], bool]) -> None:
+    def _keep(self, device: str, stays: Callable[[Switch | Work, float], bool]) -> None:
         left = [each for each in self.by_device.pop(device, ()) if stays(*each)]
         if left:
             self.by_device[device] = left

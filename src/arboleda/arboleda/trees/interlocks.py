@@ -25,7 +25,7 @@ class Interlocks:
         """
         belief = self._dispatcher.beliefs[device]
         may_come = [entry.command for entry in self._dispatcher.ledger.of_robot(device)]
-        may_come += [switch for switch, _ in self._dispatcher.unfinished.by_device.get(device, ())]
+        may_come += [command for command, _ in self._dispatcher.unfinished.by_device.get(device, ())]
         return frozenset(
             each.zone
             for each in self._cell.interlocks_of(device)
