@@ -3,7 +3,7 @@
 from arboleda.recipes import Target, parallel, recipe, work
 
 
-@recipe("assemble", ends_with={"fixture.clamped": False, "fixture.ram": "up"})
+@recipe("assemble", ends_with={"fixture.clamped": False, "fixture.ram": "up", "seat": 1, "done": 1})
 def assemble(cell, base=Target("bases"), lid=Target("lids")):
     """Press a lid on a base."""
     left, right, fixture = cell.devices("left", "right", "fixture")

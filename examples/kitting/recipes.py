@@ -22,7 +22,7 @@ def kit(cell, cart=Choice(1, 2, 3), tray=Target("trays")):
     return work(loaded(cell, cart, tray), sent(cell, cart), cell.device("picker").home())
 
 
-@recipe("wave", ends_with={"lift.at": "high"})
+@recipe("wave", ends_with={"lift.at": "high", "bay_1": 1, "bay_2": 1, "bay_3": 1})
 def wave(cell, tray=Target("trays")):
     """Load all three carts, each while the one before it is on its way."""
     return work(
