@@ -9,7 +9,7 @@ from graphlib import CycleError, TopologicalSorter
 
 from arboleda.model.outside import among, quoted
 
-from . import endings, ends, names, nodes, script, target_groups, values, variable_types, variables
+from . import choices, endings, ends, names, nodes, script, target_groups, values, variable_types, variables
 from .findings import Findings, Place
 from .forest import Forest, Node
 from .markup import Attribute
@@ -52,6 +52,7 @@ def check(
     _check_loops(forest, findings)
     ends.check(forest, findings)
     target_groups.check(forest, findings)
+    choices.check(forest, findings)
     for place, name in variables.unwritten(forest, checker.kind):
         findings.warning(place, f"the variable {quoted(name)} is read, and nothing in these files writes it")
     for clash in variable_types.clashes(forest, checker.kind):

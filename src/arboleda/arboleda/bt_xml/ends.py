@@ -14,13 +14,13 @@ from arboleda.model.plant_model import Cell
 from arboleda.recipes.authoring import check_end
 from arboleda.recipes.errors import RecipeError
 
-from . import target_groups
+from . import choices, target_groups
 from .findings import Findings, Place
 from .forest import Forest, Metadata
 from .values import number, objection
 
 KEY = "ends_with"
-KEYS = (KEY, target_groups.KEY)  # of all metadata that mean something here
+KEYS = (KEY, target_groups.KEY, choices.KEY)  # of all metadata that mean something here
 HOW = "a place or a fact with its value, `nest: 1; reader.lid: open`"
 PAIR = re.compile(r"\s*([^\s:][^:]*?)\s*:\s*('[^']*'|[^\s':][^':]*?)\s*")
 BOOLS = {"true": True, "false": False}

@@ -47,16 +47,28 @@ def of_tree(forest: Forest, main: str) -> list[Port]:
 
 
 def parameter(
-    forest: Forest, main: str, port: Port, kinds: KindsOf, *, group: str | None, names_place: bool = False
+    forest: Forest,
+    main: str,
+    port: Port,
+    kinds: KindsOf,
+    *,
+    group: str | None,
+    listed: Sequence[str] | None = None,
+    names_place: bool = False,
 ) -> Parameter:
     """The recipe's parameter for a port of its main tree; `kinds`: the leaves that a cell has.
 
-    `group`: the targets of which it is one, if it says so. `names_place`: the end of the tree says how many
-    parts are there, so that it can only be a place.
+    `group`: the targets of which it is one, `listed`: all that it can be, if it says so. `names_place`: the
+    end of the tree says how many parts are there, so that it can only be a place.
     """
 
     def allowed(cell: Cell) -> _Allowed:
-        found = _allowed(port, [use.port for use in _uses(forest, kinds(cell), main, port.name, 0)])
+        uses = [use.port for use in _uses(forest, kinds(cell), main, port.name, 0)]
+        found = _allowed(port, uses)
+        if listed is not None:
+            found = _Allowed(
+                [each for each in listed if all(_takes(taking, each) for taking in (port, *uses))]
+            )
         if group is not None:
             targets = target_groups.words(cell, group)
             found = _Allowed([each for each in targets if each in found.words or not found.words])

@@ -17,7 +17,7 @@ from arboleda.recipes.nodes import WrittenNode
 from arboleda.trees import steps
 from arboleda.trees.context import Context
 
-from . import ends, leaves, parameters, runnable, target_groups
+from . import choices, ends, leaves, parameters, runnable, target_groups
 from .findings import Findings, Place
 from .forest import Forest
 from .nodes import Kind
@@ -64,9 +64,16 @@ def tree_recipe(
         return _built(name, forest, main, order, Devices(context, [], own))
 
     ending, groups = {each.what for each in end}, target_groups.of_tree(forest, main)
+    listed = choices.of_tree(forest, main)
     known = tuple(
         parameters.parameter(
-            forest, main, port, kinds, group=groups.get(port.name), names_place=port.name in ending
+            forest,
+            main,
+            port,
+            kinds,
+            group=groups.get(port.name),
+            listed=listed.get(port.name),
+            names_place=port.name in ending,
         )
         for port in parameters.of_tree(forest, main)
     )

@@ -19,8 +19,13 @@ PAIR = re.compile(r"\s*([^\s:]+)\s*:\s*([^\s:]+)\s*")
 
 def of_tree(forest: Forest, tree: str) -> dict[str, str]:
     """The groups by parameter; what cannot be read is left out, `check` finds it."""
-    pairs = (PAIR.fullmatch(text) for each in _told(forest, tree) for text in _parts(each))
-    return {pair[1]: pair[2] for pair in pairs if pair is not None}
+    return dict(pairs(forest, tree, KEY, PAIR))
+
+
+def pairs(forest: Forest, tree: str, key: str, form: re.Pattern[str]) -> Iterator[tuple[str, str]]:
+    """The parameters of a tree with what the metadata of this key say of each, as far as it can be read."""
+    found = (form.fullmatch(text) for each in _told(forest, tree, key) for text in _parts(each))
+    return ((pair[1], pair[2]) for pair in found if pair is not None)
 
 
 def words(cell: Cell, group: str) -> list[str]:
@@ -30,23 +35,28 @@ def words(cell: Cell, group: str) -> list[str]:
 
 def check(forest: Forest, findings: Findings) -> None:
     """Keep a finding for each part that cannot be read, or names what is no parameter of its tree."""
+    check_pairs(forest, findings, KEY, PAIR, HOW)
+
+
+def check_pairs(forest: Forest, findings: Findings, key: str, form: re.Pattern[str], how: str) -> None:
+    """Keep a finding for each part of the metadata of this key that has not the form, or no parameter."""
     for tree in forest.metadata:
         model = forest.models.get(tree)
         ports = (model.ports or {}).values() if model is not None else ()
         names = [each.name for each in ports if each.way is PortDirection.IN]
-        for metadata in _told(forest, tree):
+        for metadata in _told(forest, tree, key):
             for text in _parts(metadata):
-                pair = PAIR.fullmatch(text)
+                pair = form.fullmatch(text)
                 if pair is None:
-                    told = f"{KEY} of {tree}: {quoted(text.strip())} is not read; write {HOW}"
+                    told = f"{key} of {tree}: {quoted(text.strip())} is not read; write {how}"
                     findings.mistake(metadata.place, told)
                 elif pair[1] not in names:
                     known = among(pair[1], names) if names else "it has no parameter"
-                    findings.mistake(metadata.place, f"{KEY} of {tree} names {quoted(pair[1])}; {known}")
+                    findings.mistake(metadata.place, f"{key} of {tree} names {quoted(pair[1])}; {known}")
 
 
-def _told(forest: Forest, tree: str) -> Iterator[Metadata]:
-    return (each for each in forest.metadata.get(tree, ()) if each.key == KEY)
+def _told(forest: Forest, tree: str, key: str) -> Iterator[Metadata]:
+    return (each for each in forest.metadata.get(tree, ()) if each.key == key)
 
 
 def _parts(metadata: Metadata) -> Iterator[str]:

@@ -34,10 +34,15 @@ def differences(drawn: DrawnDevices, seed: int) -> list[str]:
     """Differences between what both forms of a plant do, without faults; empty where XML cannot say it."""
     if not all(map(can_be_xml, drawn.recipes)):
         return []
-    written = [loaded(replace(drawn, form=form)).model for form in (Form.PYTHON, Form.XML)]
-    texts = _texts(written[0], seed)
-    python, xml = (_Play(model, seed).play(texts) for model in written)
-    return [*_differing("task", python.ends, xml.ends), *_commands(python, xml)]
+    python, xml = (loaded(replace(drawn, form=form)).model for form in (Form.PYTHON, Form.XML))
+    return differences_of(python, xml, seed)
+
+
+def differences_of(python: PlantModel, xml: PlantModel, seed: int) -> list[str]:
+    """Differences between what two plants do, without faults, that only differ in the form of recipes."""
+    texts = _texts(python, seed)
+    one, other = (_Play(model, seed).play(texts) for model in (python, xml))
+    return [*_differing("task", one.ends, other.ends), *_commands(one, other)]
 
 
 def _texts(model: PlantModel, seed: int) -> list[str]:

@@ -292,7 +292,9 @@ class Kit:
                 f"run is given {quoted(other)}; it takes a recipe, a function with @recipe before it"
             )
         making = self._making.within(other.name, values)
-        return usable(other.function(Kit(self._context, making), **values), f"{other.name} returns", RETURNS)
+        return usable(
+            other.function(type(self)(self._context, making), **values), f"{other.name} returns", RETURNS
+        )
 
     def choose(self, asked: Step, ways: Mapping[Value, Step | Sequence[Step]]) -> Step:
         """A way for each answer to a step that asks a device or a person; another answer is a failure."""

@@ -38,6 +38,10 @@ class MakeApi(Protocol):
         """Add a recipe that carries a part: `way` has `cell`, `robot`, `start`, `end`. The draft's state."""
 
     @abstractmethod
+    def copy(self, editor: str, cell: str, recipe: str, name: str) -> Row:
+        """Add a recipe `name` that is a tree and does what one in Python does. The draft's state."""
+
+    @abstractmethod
     def begin(self, what: str, wanted: Mapping[str, Any]) -> Row:
         """Begin one of RUNS with the draft as it is now; the one before ends. Its state."""
 

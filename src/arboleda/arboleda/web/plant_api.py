@@ -108,6 +108,10 @@ class PlantApi(Protocol):
         that cannot be done. It computes a while, and asks nothing of the plant that runs."""
         return desk.drawn(self.model, cell, text, operation)
 
+    def copied(self, cell: str, recipe: str, name: str) -> str:
+        """A recipe in Python as the text of a tree `name`, as `drawn` raises and computes."""
+        return desk.copied(self.model, cell, recipe, name)
+
     def promises(self, text: str) -> list[dict[str, Any]]:
         """The promise of each cell that a task text names; raises TextError or QueueFull."""
         return self.read(lambda plant: view.promises(plant, text))

@@ -41,6 +41,18 @@ class TreeForm(_Strict):
     text: str = Described(description="The whole file.")
 
 
+class CopyForm(_Strict):
+    """Recipe in Python of a cell, and the name of its copy as a tree."""
+
+    cell: str
+    recipe: str
+    name: str = Described(pattern="^[a-z][a-z0-9_]{0,39}$")
+
+
+class TreeCopy(ResponseModel):
+    text: str = Described(description="The whole file.")
+
+
 class Nodes(ResponseModel):
     """Nodes of one sort: of a device, by its role, or of Arboleda."""
 

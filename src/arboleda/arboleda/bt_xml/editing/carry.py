@@ -48,7 +48,7 @@ def tree(cell: Cell, name: str, *, robot: str, start: str, end: str) -> str:
     grip, let_go = hand
     about = quoteattr(f"Take a part from {start} to {end}.")
     places = {"start": quoteattr(start), "end": quoteattr(end)}
-    return FORM.format(name=_tree_name(name), about=about, robot=robot, grip=grip, let_go=let_go, **places)
+    return FORM.format(name=tree_name(name), about=about, robot=robot, grip=grip, let_go=let_go, **places)
 
 
 def _hand(cell: Cell, role: str) -> tuple[str, str] | None:
@@ -88,6 +88,6 @@ def _node(role: str, verb: str, values: Mapping[str, Value]) -> str:
     return f"<{role}_{verb}{attributes}/>"
 
 
-def _tree_name(recipe: str) -> str:
+def tree_name(recipe: str) -> str:
     """The name of the tree of a recipe: "to_press" is ToPress."""
     return "".join(word.capitalize() for word in recipe.replace("-", "_").split("_"))

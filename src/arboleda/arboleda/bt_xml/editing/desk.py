@@ -5,11 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+from arboleda.core.plant import Plant
 from arboleda.model.outside import among, quoted
 from arboleda.model.plant_model import Cell, PlantModel
 
 from .. import leaves
 from ..recipe import TreeRecipe, own_nodes
+from . import copy_recipe
 from .apply import apply
 from .errors import EditError
 from .marks import marks
@@ -46,6 +48,12 @@ def drawn(model: PlantModel, cell: str, text: str, operation: Operation | None =
     after = text if operation is None else apply(text, operation)
     there = TreeText(after)
     return {"text": after, "trees": picture(there, kinds), "marks": marks(there, kinds)}
+
+
+def copied(model: PlantModel, cell: str, recipe: str, name: str) -> str:
+    """A recipe in Python as the file of a tree `name`; raises EditError for what no tree can say."""
+    where = _cell(model, cell)
+    return copy_recipe.tree(model, Plant(model, epoch=0, now=0.0).cells[where.name].context, recipe, name)
 
 
 def _cell(model: PlantModel, name: str) -> Cell:

@@ -66,6 +66,10 @@ class MakeBench(MakeApi):
         text = self._workshop.carrying(*self._desk.files, way["cell"], recipe, way)
         return self._desk.add_trees(editor, f"{recipe}{ENDING}", text)
 
+    def copy(self, editor: str, cell: str, recipe: str, name: str) -> Row:
+        text = self._workshop.copied(*self._desk.files, cell, recipe, name)
+        return self._desk.add_trees(editor, f"{name}{ENDING}", text)
+
     def begin(self, what: str, wanted: Mapping[str, Any]) -> Row:
         kept = {"kept": str(self._kept.absolute())} if what == "prove" else {}
         self._runs[what].begin(self._desk.files[1], self._plant_file(), {**wanted, **kept})

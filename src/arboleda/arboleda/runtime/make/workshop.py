@@ -75,6 +75,12 @@ class Workshop:
         """A tree in which a part is carried; `way` has `robot`, `start` and `end`."""
         return str(self._asked(base, files, "carrying", cell, name, way["robot"], way["start"], way["end"]))
 
+    def copied(self, base: PlantFiles, files: PlantFiles, cell: str, recipe: str, name: str) -> str:
+        """As `PlantApi.copied`, of the draft."""
+        with self._turns:
+            self._load(base, files)
+            return str(self._ask("copied", cell, recipe, name))
+
     def _asked(self, base: PlantFiles, files: PlantFiles, name: str, *values: Any) -> Any:
         with self._turns:
             if not self._has_devices_of(files):

@@ -78,6 +78,10 @@ class WorkshopPlant:
         """A tree in which a robot takes a part at one target to another, as XML."""
         return carry.tree(self._cell(cell), name, robot=robot, start=start, end=end)
 
+    def copied(self, cell: str, recipe: str, name: str) -> str:
+        """As `PlantApi.copied`."""
+        return desk.copied(self._read, cell, recipe, name)
+
     @property
     def _read(self) -> PlantModel:
         if self._model is None:

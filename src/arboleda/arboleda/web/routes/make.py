@@ -64,6 +64,10 @@ class Carrying(Step):
     end: Short
 
 
+class Copying(Recipe, Step):
+    name: RecipeName
+
+
 class WantedFault(BaseModel):
     model_config = ConfigDict(extra="forbid")
 
@@ -116,6 +120,12 @@ def _look(api: APIRouter, side: PlantApi) -> None:
         make, to = _make(side, request), read_body(await request.body(), Carrying)
         way = {"cell": to.cell, "robot": to.robot, "start": to.start, "end": to.end}
         return PlainJson(await run_in_threadpool(make.carry, to.editor, to.recipe, way))
+
+    @api.post("/copy", response_model=DraftState, responses=REFUSED, openapi_extra=described_body(Copying))
+    async def copy(request: Request) -> JSONResponse:
+        """Add a recipe that is a tree and does what one in Python does."""
+        make, to = _make(side, request), read_body(await request.body(), Copying)
+        return PlainJson(await run_in_threadpool(make.copy, to.editor, to.cell, to.recipe, to.name))
 
 
 def _draw(api: APIRouter, side: PlantApi) -> None:

@@ -15,7 +15,7 @@ from ..plain_json import PlainJson
 from ..plant_api import PlantApi
 from ..queries import WRONG, Answers, asked, described, described_body, read_body
 from ..schema import Sentence
-from ..tree_schema import Drawn, EditForm, Nodes, TreeFile, TreeForm, operation_of
+from ..tree_schema import CopyForm, Drawn, EditForm, Nodes, TreeCopy, TreeFile, TreeForm, operation_of
 
 DRAW = "drawing a tree"
 REFUSED: Answers = {
@@ -56,6 +56,15 @@ def routes(side: PlantApi) -> APIRouter:
         form = read_body(await request.body(), TreeForm)
         async with turn:
             return PlainJson(await run_in_threadpool(side.drawn, form.cell, form.text))
+
+    @api.post("/copy", response_model=TreeCopy, responses=REFUSED, openapi_extra=described_body(CopyForm))
+    async def copy(request: Request) -> JSONResponse:
+        """A recipe in Python as a tree that does the same; refused where no tree in XML can say it."""
+        require(request.scope["arboleda.role"], DRAW)
+        form = read_body(await request.body(), CopyForm)
+        async with turn:
+            text = await run_in_threadpool(side.copied, form.cell, form.recipe, form.name)
+            return PlainJson({"text": text})
 
     @api.post("/edit", response_model=Drawn, responses=REFUSED, openapi_extra=described_body(EditForm))
     async def edit(request: Request) -> JSONResponse:
