@@ -19,6 +19,7 @@ from .test_accessible import Eye
 pytestmark = [pytest.mark.system, pytest.mark.requires("chromium", "playwright")]
 
 OWN_TREE = Path(__file__).parents[2] / "examples/own_tree/plant.yaml"
+LAB_BENCH = OWN_TREE.parents[1] / "lab_bench/plant.yaml"
 TEXT = OWN_TREE.with_name("tend.xml").read_text()
 LAPTOP = {"viewport": {"width": 1366, "height": 900}, "locale": "en"}
 PHONE = {"viewport": {"width": 390, "height": 844}, "has_touch": True, "locale": "es"}
@@ -293,3 +294,27 @@ def test_axe_finds_nothing_on_the_editor(editor: Open, screen: dict[str, Any]) -
     page.fill("#draw-search", "go")
     eye.look("another tree, and a kind that is looked for")
     assert not eye.violations, "\n".join(eye.violations)
+
+
+def test_a_recipe_in_python_is_copied_as_a_tree_of_the_draft_and_opens(browser: Any, tmp_path: Path) -> None:
+    with running(tmp_path, "--plant", str(LAB_BENCH)) as address:
+        context = browser.new_context(**LAPTOP)
+        page = context.new_page()
+        page.set_default_timeout(PATIENCE_MS)
+        page.goto(f"{address}/?tab=draw")
+        connected(page)
+        page.select_option("#draw-python", "weigh")
+        assert page.input_value("#draw-copy") == "weigh_tree"
+        page.click("[data-draw=copy_recipe]")
+        page.wait_for_selector(row("3.1"))
+        assert page.input_value("#draw-file") == "weigh_tree"
+        assert "weigh was copied as the tree weigh_tree" in page.inner_text("#draw-note")
+        trees = httpx.get(f"{address}/api/draft").json()["trees"]
+        assert trees == ["weigh_tree.xml"]
+        page.goto(f"{address}/?tab=make")
+        connected(page)
+        page.click("[data-make-panel=cells]")
+        page.click("[data-copy-recipe=incubate]")
+        page.wait_for_selector(f"#part-draw {row('1.0.7')}")
+        assert page.input_value("#draw-file") == "incubate_tree"
+        leave(context)

@@ -7,6 +7,7 @@ from typing import Any
 
 import pytest
 
+from arboleda.bt_xml.editing.errors import EditError
 from arboleda.web.auth import Role
 from arboleda.web.draft_api import DraftRefused
 
@@ -15,8 +16,10 @@ STATE |= {"values": {}}
 CELLS = {"cells": [], "faults": [], "problems": ["plant.yaml:1:1: no"]}
 CARRY = {"editor": "ana-12345", "cell": "lab", "recipe": "to_tray", "robot": "arm", "start": "a", "end": "b"}
 FAULT = {"kind": "reboot", "at": 2.5, "seconds": 0.0, "target": "arm", "amount": 0.0, "word": "will"}
+COPY = {"editor": "ana-12345", "cell": "lab", "recipe": "weigh", "name": "weigh_tree"}
 POSTS = {
     "carry": CARRY,
+    "copy": COPY,
     "drawn/check": {"cell": "lab", "text": "<root/>"},
     "runs/try": {},
     "runs/try/end": {},
@@ -41,6 +44,12 @@ class Make:
         self.asked.append((editor, recipe, way))
         if recipe == "known":
             raise DraftRefused("'known.xml' is there already")
+        return STATE
+
+    def copy(self, editor: str, cell: str, recipe: str, name: str) -> dict[str, Any]:
+        self.asked.append((editor, cell, recipe, name))
+        if recipe == "tour":
+            raise EditError("arm.tour cannot be drawn: no node in XML does this")
         return STATE
 
     def begin(self, what: str, wanted: dict[str, Any]) -> dict[str, Any]:
@@ -78,6 +87,14 @@ def test_a_part_is_carried_by_a_new_recipe(web: Any, make: Make) -> None:
     assert web.post("/api/make/carry", json=CARRY).json() == STATE
     way = {"cell": "lab", "robot": "arm", "start": "a", "end": "b"}
     assert make.asked == [("ana-12345", "to_tray", way)]
+
+
+def test_a_recipe_in_python_is_copied_or_refused_with_why(web: Any, make: Make) -> None:
+    assert web.post("/api/make/copy", json=COPY).json() == STATE
+    assert make.asked == [("ana-12345", "lab", "weigh", "weigh_tree")]
+    answer = web.post("/api/make/copy", json=COPY | {"recipe": "tour"})
+    assert answer.status_code == 422 and "arm.tour cannot be drawn" in answer.json()["sentence"]
+    assert web.post("/api/make/copy", json=COPY | {"name": "../x"}).status_code == 422
 
 
 @pytest.mark.parametrize("name", ["", "To Tray", "../x", "9a", "x" * 41])

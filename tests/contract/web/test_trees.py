@@ -19,11 +19,15 @@ from .conftest import Plant
 OWN_TREE = Path(__file__).parents[3] / "examples/own_tree/plant.yaml"
 
 
+AGV = OWN_TREE.parents[1] / "agv/plant.yaml"
+
+
 class TreePlant(Plant):
     """Plant with a tree, which answers about trees as every plant does."""
 
     model = loader.load(OWN_TREE)
     tree_files, palette, drawn = PlantApi.tree_files, PlantApi.palette, PlantApi.drawn
+    copied = PlantApi.copied
 
 
 @pytest.fixture
@@ -100,6 +104,16 @@ def test_text_that_is_no_tree_and_a_cell_that_is_not_there_are_told(web: httpx.C
     assert "there are cell" in post(web, "check", cell="sell", text=text).json()["sentence"]
     answer = web.get("/api/trees/palette", params={"cell": "sell"})
     assert answer.status_code == 422 and "there are cell" in answer.json()["sentence"]
+
+
+def test_a_recipe_in_python_is_given_as_a_tree(web: httpx.Client, plant: Plant) -> None:
+    plant.model = loader.load(AGV)
+    made = post(web, "copy", cell="hall", recipe="fetch", name="fetch_tree").json()["text"]
+    shown = post(web, "check", cell="hall", text=made).json()
+    assert [tree["name"] for tree in shown["trees"]] == ["FetchTree"] and shown["marks"] == []
+    refused = post(web, "copy", cell="hall", recipe="fetch", name="fetch")
+    assert refused.status_code == 422 and "already" in refused.json()["sentence"]
+    assert post(web, "copy", cell="hall", recipe="fetch", name="a/b").status_code == 422
 
 
 def test_no_file_of_this_machine_is_looked_into(web: httpx.Client, tmp_path: Path) -> None:

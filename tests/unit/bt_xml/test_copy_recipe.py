@@ -143,7 +143,8 @@ def test_the_steps_around_steps_have_their_nodes(lab: Lab) -> None:
         '<Timeout msec="4000"><pump_1_pump ml="2"/></Timeout></Repeat><TryCatch><Inverter><Fallback>'
         '<pump_1_pump ml="3"/><pump_1_pump ml="4"/></Fallback></Inverter><AlwaysSuccess/></TryCatch>'
         '<Parallel success_count="-1" failure_count="1"><arm_home/><Sleep msec="1500"/></Parallel>'
-        '<arm_visit target="feed"><Sequence><arm_grip/><pump_1_pump ml="5"/></Sequence></arm_visit></Sequence>'
+        '<arm_visit target="feed"><Sequence><arm_grip/><pump_1_pump ml="5"/></Sequence></arm_visit>'
+        "</Sequence>"
     )
 
 

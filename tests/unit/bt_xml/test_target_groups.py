@@ -16,6 +16,22 @@ MODEL = """<TreeNodesModel><SubTree ID="Main"><input_port name="source"/>
 <MetadataFields><Metadata {}/></MetadataFields></SubTree></TreeNodesModel>"""
 
 
+def test_a_list_of_values_leaves_no_others(tmp_path: Path) -> None:
+    assert words(tmp_path, 'source: racks" /><Metadata values="source: rack_2, nest, moon') == ["rack_2"]
+
+
+@pytest.mark.parametrize(
+    ("values", "sentence"),
+    [
+        ("source: ,", "'source: ,' is not read; write a parameter with its values, `ml: 5, 10, 20`"),
+        ("goal: a", "values of Main names 'goal'; there are source"),
+    ],
+)
+def test_a_list_that_cannot_be_read_is_a_mistake(values: str, sentence: str) -> None:
+    (found,) = mistakes(tree("<A/>", MODEL.format(f'values="{values}"')))
+    assert sentence in found
+
+
 def words(folder: Path, targets: str) -> list[str]:
     """The values of `source`."""
     code = BRING.replace('ends_with="END"', f'targets="{targets}"')

@@ -30,6 +30,12 @@ def _bar(layout: Layout, words: Words) -> None:
             tag("select", id="draw-file")
         for act in ("undo", "redo", "download"):
             _button(words, act)
+        with tag("div", id="draw-python-box", classes="draw-acts", hidden="true"):
+            with tag("label", words("draw.python")):
+                tag("select", id="draw-python")
+            with tag("label", words("draw.copy")):
+                tag("input", id="draw-copy", type="text", maxlength="40", autocomplete="off")
+            _button(words, "copy_recipe")
         if layout.get("draft"):
             way(words("draw.to_make"), {"tab": "make"}, classes="act primary")
 

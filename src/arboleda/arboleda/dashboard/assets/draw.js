@@ -1,17 +1,16 @@
 // The editor of trees: a text that the server edits, one operation after the other, and what is shown of it.
 
 import * as acts from "./draw_acts.js";
+import * as copies from "./draw_copy.js";
 import * as form from "./draw_form.js";
 import * as palette from "./draw_palette.js";
 import * as rows from "./draw_rows.js";
-import { box, node, say, state, tree } from "./draw_state.js";
+import { ask, box, node, say, state, tree } from "./draw_state.js";
 import * as make from "./make_state.js";
 import * as question from "./question.js";
-import { answer, words } from "./shell.js";
+import { words } from "./shell.js";
 
 const NEW = '<?xml version="1.0" encoding="UTF-8"?>\n<root BTCPP_format="4" main_tree_to_execute="Main">\n  <BehaviorTree ID="Main">\n    <Sequence/>\n  </BehaviorTree>\n</root>\n';
-const RETRY_MS = 300;
-const TRIES = 10; // while the server takes no more in this second
 let line = Promise.resolve(); // one operation after the other
 let behind = false; // whether the draft has gone a step back or forward that is not shown yet
 
@@ -25,6 +24,7 @@ export function start() {
   palette.start();
   rows.start();
   form.start();
+  copies.start();
   make.onDraft(() => state.now && !behind && buttons());
 }
 
@@ -69,6 +69,27 @@ async function open(cell) {
   box("file").replaceChildren(...options, ...(ofDraft() && options.length ? [] : [new Option(words.draw_new, "")]));
   const same = ofDraft() && state.files.find(({ recipe }) => recipe === state.file);
   await openFile((same || state.files[0])?.recipe ?? "", same ? mine() : {});
+  copies.offer(cell, ofDraft());
+}
+
+// Copy the recipe in Python that is chosen as a tree, and open that.
+export function copyRecipe() {
+  return leave(box("file"), box("file").value, () => copies.copy(ofDraft()));
+}
+
+// Open a tree that the draft has now.
+export function reopened(recipe) {
+  state.file = recipe;
+  return open(state.cell);
+}
+
+// Open a file that is nowhere yet.
+export async function opened(file) {
+  state.files = [...state.files.filter(({ recipe }) => recipe !== file.recipe), file];
+  const option = [...box("file").options].find(({ value }) => value === file.recipe) ?? new Option(file.file, file.recipe);
+  box("file").prepend(option);
+  await openFile(file.recipe);
+  return state.file === file.recipe;
 }
 
 async function openFile(recipe, place = {}) {
@@ -147,20 +168,6 @@ function travel(from, to) {
     Object.assign(state, from.pop());
     draw();
   });
-}
-
-async function ask(path, body) {
-  try {
-    for (let tries = 0; ; tries++) {
-      const options = body && { method: "POST", headers: { "content-type": "application/json" }, body: JSON.stringify(body) };
-      const got = await fetch(path, options);
-      if (got.status === 429 && tries < TRIES) await new Promise((go) => setTimeout(go, RETRY_MS));
-      else if (got.ok) return await got.json();
-      else return say((await got.json()).sentence), null;
-    }
-  } catch {
-    return answer(words.not_sent, false), null;
-  }
 }
 
 // Show all of it anew; the focus stays on the node where it was in the tree.

@@ -1,6 +1,6 @@
 // What can be done to the tree that is edited: each an operation on its text, by a button, a key or a drag.
 
-import { draw, edit, redo, undo } from "./draw.js";
+import { copyRecipe, draw, edit, redo, undo } from "./draw.js";
 import { box, childPath, childrenOf, indexOf, kindOf, node, parentOf, say, state } from "./draw_state.js";
 import { words } from "./shell.js";
 
@@ -70,6 +70,7 @@ const ACTS = {
   undo,
   redo,
   download,
+  copy_recipe: copyRecipe,
   up: () => step(-1),
   down: () => step(1),
   out: () => move(outwards),

@@ -1,5 +1,7 @@
 // What the editor of trees shows now, and how nodes are found in it: by paths, `root`, `0`, `0.1`.
 
+import * as make from "./make_state.js";
+
 export const state = { cell: null, file: "", files: [], kinds: new Map(), past: [], now: null, future: [], saved: null, tree: null, path: "root", how: "into" };
 
 export const box = (id) => document.getElementById(`draw-${id}`);
@@ -11,3 +13,4 @@ export const parentOf = (path) => (path === "root" ? null : path.includes(".") ?
 export const indexOf = (path) => Number(path.slice(path.lastIndexOf(".") + 1));
 export const childPath = (path, index) => (path === "root" ? `${index}` : `${path}.${index}`);
 export const childrenOf = (path) => tree().nodes.filter((each) => parentOf(each.path) === path);
+export const ask = (path, body) => make.ask(path, body, say);

@@ -1,6 +1,7 @@
 // The cells of the draft: devices, targets with their numbers, recipes as trees, and new recipes.
 
 import { showRecipe } from "./draw.js";
+import { intoDraft } from "./draw_copy.js";
 import { ask, box, draft, element, fill, options, say, step } from "./make_state.js";
 import * as place from "./place.js";
 import { words } from "./shell.js";
@@ -102,13 +103,22 @@ function draw(cell, recipe) {
 
 function clicked({ target }) {
   const pressed = target.closest("button");
-  const { make: act, drawRecipe, outlineRecipe, removeRecipe, removePlace, newTarget, cell } = pressed?.dataset ?? {};
+  const { make: act, drawRecipe, outlineRecipe, copyRecipe, removeRecipe, removePlace, newTarget, cell } = pressed?.dataset ?? {};
   ACTS[act]?.();
   if (drawRecipe) draw(cell, drawRecipe);
   if (outlineRecipe) outline(pressed, cell, outlineRecipe);
+  if (copyRecipe) copy(cell, copyRecipe);
   if (removeRecipe) step("remove_trees", { file: removeRecipe }).then(read);
   if (removePlace) step("remove", { place: JSON.parse(removePlace) }).then(read);
   if (newTarget) add(pressed, newTarget);
+}
+
+// A recipe in Python becomes a tree of the draft, called as the field says, or after the recipe.
+async function copy(cell, recipe) {
+  const taken = draft.cells.flatMap(({ recipes }) => recipes.map(({ name }) => name));
+  const wanted = box("recipe").value.trim();
+  const name = await intoDraft(cell, recipe, taken, wanted);
+  if (name) await shownIn(name, cell);
 }
 
 function drawn({ name, devices, recipes }) {
@@ -135,7 +145,7 @@ function recipeRow(cell, { name, about, sort, file }) {
     made.append(button, " ");
   };
   if (sort === "drawn") act(words.make_draw, { drawRecipe: name }), act(words.make_remove, { removeRecipe: file });
-  else act(words.make_show, { outlineRecipe: name });
+  else act(words.make_show, { outlineRecipe: name }), act(words.make_copy, { copyRecipe: name });
   return made;
 }
 
