@@ -318,3 +318,31 @@ def test_a_recipe_in_python_is_copied_as_a_tree_of_the_draft_and_opens(browser: 
         page.wait_for_selector(f"#part-draw {row('1.0.7')}")
         assert page.input_value("#draw-file") == "incubate_tree"
         leave(context)
+
+
+def test_a_target_is_chosen_in_the_twin_by_a_click_and_by_keys(editor: Open) -> None:
+    page = editor()
+    page.click("[data-draw-tree=TakeOut]")
+    page.click(row("0"))
+    value = page.input_value("[data-port=target]")
+    page.click("[data-from-twin=target]")
+    page.wait_for_selector(f"#draw-twin [data-point='{value}'][aria-pressed=true]:focus")
+    listed = page.eval_on_selector_all(
+        "[data-port=target] option", "all => all.map(({ value }) => value).filter(Boolean)"
+    )
+    points = page.eval_on_selector_all("[data-point]", "all => all.map(({ dataset }) => dataset.point)")
+    assert sorted(points) == sorted(listed)
+    page.click("[data-point=done]")
+    labelled(page, "0", "target=done")
+    page.wait_for_selector("#draw-twin", state="hidden")
+    page.focus("[data-from-twin=target]")
+    page.keyboard.press("Enter")
+    page.wait_for_selector("[data-point=done][aria-pressed=true]:focus")
+    page.keyboard.press("Escape")
+    page.wait_for_selector("[data-from-twin=target]:focus")
+    page.keyboard.press("Enter")
+    page.wait_for_selector("[data-point=done]:focus")
+    page.keyboard.press("Shift+Tab")
+    chosen = page.evaluate("document.activeElement.dataset.point")
+    page.keyboard.press("Enter")
+    labelled(page, "0", f"target={chosen}")

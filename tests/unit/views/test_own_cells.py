@@ -117,7 +117,8 @@ def test_diagnostics_have_each_fact(bench: Bench) -> None:
 
 
 def test_nothing_is_drawn_of_what_offers_no_drawing(bench: Bench) -> None:
-    assert geometry.places(bench.plant.model) == {"robots": [], "cells": [], "parts": [], "zones": []}
+    empty = ("robots", "cells", "parts", "targets", "zones")
+    assert geometry.places(bench.plant.model) == dict.fromkeys(empty, [])
     drawn = twin_view.positions(bench.plant)
     assert (drawn["parts"], drawn["books"]["bench"]) == ({"bench": None}, {"places": {}, "carriers": {}})
 

@@ -75,6 +75,9 @@ def _form(words: Words) -> None:
             for act in ACTS:
                 _button(words, act)
         tag("div", id="draw-fields")
+        with tag("div", id="draw-twin", hidden="true", role="group", aria_label=words("draw.twin")):
+            tag("div", id="draw-twin-view", classes="twin-view")
+            tag("button", words("draw.twin_close"), type="button", id="draw-twin-close", classes="act")
         with tag("label", words("draw.name")):
             tag("input", id="draw-name", type="text", maxlength="100", autocomplete="off")
         with tag("div", classes="draw-acts"):

@@ -11,8 +11,8 @@ Row = dict[str, Any]
 
 
 def places(model: PlantModel) -> Row:
-    """Robots with their floor places and speeds, cells with grid and poses, the places of parts, zones with
-    what lies in them.
+    """Robots with their floor places and speeds, cells with grid and poses, the places of parts, the
+    targets of robots, zones with what lies in them.
 
     Robots and cells that offer no drawing are left out.
     """
@@ -26,6 +26,7 @@ def places(model: PlantModel) -> Row:
         ],
         "cells": [{"name": name, **drawing} for name, drawing in cells if drawing is not None],
         "parts": [spot for cell in model.cells for spot in _of_parts(cell)],
+        "targets": [target for cell in model.cells for target in _targets(cell)],
         "zones": [{"zone": zone, "spots": _spots(model, zone)} for zone in model.zones],
     }
 
@@ -59,6 +60,22 @@ def _of_parts(cell: Cell) -> list[Row]:
         {"cell": cell.name, "place": target, "robot": space.robot.name, "q": _joints(space, target)}
         for target, space in reached
         if space is not None
+    ]
+
+
+def _targets(cell: Cell) -> list[Row]:
+    """The targets of the drawn robots of a cell: {cell, role, name, robot, q}."""
+    return [
+        {
+            "cell": cell.name,
+            "role": role,
+            "name": name,
+            "robot": robot.name,
+            "q": _joints(cell.reach[robot.name], name),
+        }
+        for role, robot in cell.roles.items()
+        if robot.name in cell.reach and _is_drawn(cell.reach[robot.name])
+        for name in cell.reach[robot.name].targets
     ]
 
 

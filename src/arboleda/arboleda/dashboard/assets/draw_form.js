@@ -2,6 +2,7 @@
 
 import { edit } from "./draw.js";
 import { titleOf } from "./draw_rows.js";
+import * as twin from "./draw_twin.js";
 import { kindOf, node, state, tree } from "./draw_state.js";
 import { words } from "./shell.js";
 
@@ -13,12 +14,17 @@ const STATUSES = ["SUCCESS", "FAILURE", "SKIPPED"];
 const asVariable = new Set(); // "tree path name" of fields that are to become variables
 let added = null; // the name of an attribute that has no value yet
 let made = 0;
+let drawnFor = ""; // the node whose form this is
 
 const box = (id) => document.getElementById(`draw-${id}`);
 const key = (name) => `${state.tree} ${state.path} ${name}`;
 
 export function start() {
   box("fields").addEventListener("change", changed);
+  twin.start((name, value) => {
+    set(name, value);
+    box("fields").querySelector(`[data-port="${CSS.escape(name)}"]`)?.focus();
+  });
   box("fields").addEventListener("click", ({ target }) => {
     const name = target.closest("[data-variable]")?.dataset.variable;
     if (!name) return;
@@ -46,6 +52,8 @@ function set(name, value, braces = false) {
 export function draw() {
   const chosen = node();
   const held = inHand();
+  if (drawnFor !== key("")) twin.close();
+  drawnFor = key("");
   box("title").textContent = chosen ? titleOf(chosen).filter(Boolean).join(" · ") : words.draw_none;
   const kind = chosen && kindOf(chosen.kind);
   box("about").textContent = kind?.about ?? "";
@@ -60,10 +68,10 @@ export function draw() {
 function inHand() {
   const found = document.activeElement;
   if (!box("fields").contains(found)) return null;
-  const [name, value] = ["port", "variable", "more"].map((each) => [each, found.dataset[each]]).find((each) => each[1] !== undefined) ?? [];
+  const [name, value] = ["port", "variable", "more", "fromTwin"].map((each) => [each, found.dataset[each]]).find((each) => each[1] !== undefined) ?? [];
   if (!name) return null;
   const begun = found.dataset.was !== undefined && found.dataset.was !== found.value ? found.value : null;
-  return { selector: `[data-${name}="${CSS.escape(value)}"]`, begun, path: key("") };
+  return { selector: `[data-${name === "fromTwin" ? "from-twin" : name}="${CSS.escape(value)}"]`, begun, path: key("") };
 }
 
 function handBack({ selector, begun, path }) {
@@ -107,6 +115,7 @@ function field(port, value, marks) {
   if (marks.some(({ attribute }) => attribute === port.name)) input.setAttribute("aria-invalid", "true");
   line.append(label, input);
   if (port.way === "input" && (choices(port) || NUMBERS.includes(port.type))) line.append(toggle(port.name, variable));
+  if (!variable && twin.isTarget(port)) line.append(twin.button(port));
   const about = [port.about, port.default && `${words.draw_default} ${port.default}`].filter(Boolean).join("; ");
   if (about) describe(line, input, about, id);
   return line;

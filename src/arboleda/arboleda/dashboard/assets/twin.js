@@ -3,6 +3,7 @@
 import { here } from "./place.js";
 import { Plant } from "./twin_plant.js";
 import { FlatView } from "./twin_flat.js";
+import { PointsView } from "./twin_points.js";
 import { SolidView } from "./twin_solid.js";
 
 const ACK_EVERY = 5; // frames
@@ -26,6 +27,19 @@ window.arboledaTwin = {
   solid: (robot) => plant.robots.get(robot).real.root.visible && plant.robots.get(robot).painted === "solid",
   drawn: () => Object.fromEntries(plant?.drawn ?? []),
   view: () => view?.name,
+  // The plant from above in a box of another part of the page, with those of its targets as points that `of` is true of;
+  // null where it has none.
+  async points(box, { cell, of, ...choice }) {
+    const [{ THREE }, scene] = await Promise.all([import("nicegui-scene"), fetchScene()]);
+    const points = scene.targets.filter(of);
+    if (!points.length) return null;
+    const made = new Plant(THREE, scene);
+    made.paint(color());
+    if (plant) made.apply(Object.fromEntries(plant.drawn));
+    const shown = new PointsView(THREE, box, made, { points, ...choice });
+    shown.visit(cell);
+    return shown;
+  },
 };
 
 const tell = (...what) => window.emitEvent("arboleda-twin", ...what);
@@ -117,9 +131,13 @@ function newRow(list, name) {
   return row;
 }
 
-function paint() {
+function color() {
   const style = getComputedStyle(document.documentElement);
-  plant?.paint((name) => style.getPropertyValue(`--${name}`).trim());
+  return (name) => style.getPropertyValue(`--${name}`).trim();
+}
+
+function paint() {
+  plant?.paint(color());
   view?.show();
 }
 

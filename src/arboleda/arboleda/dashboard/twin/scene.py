@@ -29,6 +29,7 @@ def scene(places: Row, drawings: Mapping[str, Body]) -> Row:
         "robots": [_robot(robot, drawings[robot["name"]]) for robot in places["robots"]],
         "cells": cells,
         "places": spots,
+        "targets": [_target(target, robots, drawings) for target in places.get("targets", ())],
         "zones": zones,
         "bounds": _bounds(places, cells, spots, drawings),
     }
@@ -74,6 +75,13 @@ def _place(spot: Row, robots: Mapping[str, Row], drawings: Mapping[str, Body]) -
     """A place where parts lie, with the frame of the tool that reaches it."""
     frame = _frame(robots[spot["robot"]], drawings, spot["q"])
     return {"cell": spot["cell"], "place": spot["place"], "frame": frame}
+
+
+def _target(target: Row, robots: Mapping[str, Row], drawings: Mapping[str, Body]) -> Row:
+    """A target of a robot in a role of its cell, with the place of the tool there."""
+    frame = _frame(robots[target["robot"]], drawings, target["q"])
+    at = [round(frame[number], 4) for number in (3, 7, 11)]
+    return {"cell": target["cell"], "role": target["role"], "name": target["name"], "at": at}
 
 
 def _shelves(stations: Sequence[Sequence[float]]) -> list[Row]:
