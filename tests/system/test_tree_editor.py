@@ -332,6 +332,12 @@ def test_a_target_is_chosen_in_the_twin_by_a_click_and_by_keys(editor: Open) -> 
     )
     points = page.eval_on_selector_all("[data-point]", "all => all.map(({ dataset }) => dataset.point)")
     assert sorted(points) == sorted(listed)
+    box = page.locator("#draw-twin-view").bounding_box()
+    placed = "[...document.querySelectorAll('[data-point]')].every(({ style }) => style.transform)"
+    page.wait_for_function(f"() => {placed}")
+    for point in points:
+        spot = page.locator(f"[data-point='{point}']").bounding_box()
+        assert 0 < spot["x"] - box["x"] < box["width"] and 0 < spot["y"] - box["y"] < box["height"], point
     page.click("[data-point=done]")
     labelled(page, "0", "target=done")
     page.wait_for_selector("#draw-twin", state="hidden")

@@ -54,10 +54,14 @@ export class FlatView {
 
   // Has the whole plant, or one cell, seen.
   whole(cell) {
-    const points = this.plant.points(cell);
+    const points = this.sights(cell);
     const [[x0, x1], [y0, y1]] = ["x", "y"].map((axis) => points.map((point) => point[axis])).map((all) => [Math.min(...all) - RIM, Math.max(...all) + RIM]);
     this.box4 = [x0, -y1, x1 - x0, y1 - y0].map((value) => value * MM);
     this.frame();
+  }
+
+  sights(cell) {
+    return this.plant.points(cell);
   }
 
   visit(cell) {

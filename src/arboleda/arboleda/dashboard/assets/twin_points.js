@@ -24,6 +24,10 @@ export class PointsView extends FlatView {
     this.resizing.observe(box);
   }
 
+  sights(cell) {
+    return [...super.sights(cell), ...(this.points ?? []).map(({ at: [x, y] }) => ({ x, y }))];
+  }
+
   draw() {
     super.draw();
     const [to, { left, top }] = [this.svg.getScreenCTM(), this.box.getBoundingClientRect()];
@@ -35,7 +39,9 @@ export class PointsView extends FlatView {
       let row = down;
       while (taken.some(([a, b]) => Math.abs(a - across) < APART && Math.abs(b - row) < APART)) row += APART;
       taken.push([across, row]);
-      this.buttons[number].style.transform = `translate(${across}px, ${row}px) translate(-0.6rem, -50%)`;
+      const isRight = across > this.box.clientWidth / 2; // there its name stands on the other side
+      this.buttons[number].classList.toggle("right", isRight);
+      this.buttons[number].style.transform = `translate(${across}px, ${row}px) translate(${isRight ? "calc(0.6rem - 100%)" : "-0.6rem"}, -50%)`;
     });
   }
 
