@@ -293,6 +293,11 @@ def test_axe_finds_nothing_on_the_editor(editor: Open, screen: dict[str, Any]) -
     page.click("[data-draw-tree=Carry]")
     page.fill("#draw-search", "go")
     eye.look("another tree, and a kind that is looked for")
+    page.click("[data-draw-tree=TakeOut]")
+    page.click(row("0"))
+    page.click("[data-from-twin=target]")
+    page.wait_for_selector("[data-point=vise]:focus")
+    eye.look("targets in the twin")
     assert not eye.violations, "\n".join(eye.violations)
 
 

@@ -36,6 +36,7 @@ kinds:
     verbs:
       pump: {effect: process, with: {ml: number}, takes_s: 1}
       look: {effect: query, answers: [a, b, c, d, e, f, g], takes_s: 1}
+      see: {effect: query, answers: [a, b], takes_s: 1}
 cells:
   lab:
     devices: {arm: {kind: arm, model: scara}, pump_1: {kind: pump}, pump_2: {kind: pump}}
@@ -123,6 +124,16 @@ def test_where_a_parameter_chooses_the_device_a_switch_stands_around_that_step_a
     assert copied(lab(code)) == (
         '<Sequence><arm_go target="{to}"/><Switch2 variable="{n}" case_1="1" case_2="2">'
         '<pump_1_pump ml="7"/><pump_2_pump ml="7"/><AlwaysFailure/></Switch2></Sequence>'
+    )
+
+
+def test_the_variable_of_an_answer_is_no_parameter(lab: Lab) -> None:
+    code = "def a(cell, answer_1=Choice(5, 10)):\n    pump = cell.device('pump_1')\n    seen = pump.see()\n"
+    code += "    ways = {each: pump.pump(answer_1) for each in 'ab'}\n"
+    code += "    return work(seen, cell.choose(seen, ways))\n"
+    assert copied(lab(code)) == (
+        '<Sequence><pump_1_see answer="{answer_2}"/><Switch2 variable="{answer_2}" case_1="a" case_2="b">'
+        '<pump_1_pump ml="{answer_1}"/><pump_1_pump ml="{answer_1}"/><AlwaysFailure/></Switch2></Sequence>'
     )
 
 

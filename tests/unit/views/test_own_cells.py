@@ -118,7 +118,7 @@ def test_diagnostics_have_each_fact(bench: Bench) -> None:
 
 def test_nothing_is_drawn_of_what_offers_no_drawing(bench: Bench) -> None:
     empty = ("robots", "cells", "parts", "targets", "zones")
-    assert geometry.places(bench.plant.model) == dict.fromkeys(empty, [])
+    assert geometry.places(bench.plant.model) == {key: [] for key in empty}
     drawn = twin_view.positions(bench.plant)
     assert (drawn["parts"], drawn["books"]["bench"]) == ({"bench": None}, {"places": {}, "carriers": {}})
 

@@ -57,6 +57,24 @@ def test_a_place_is_where_the_tool_of_its_robot_takes_parts(tmp_path: Path) -> N
     assert low[0] < x < high[0] and low[1] < y < high[1] and low[2] < z < high[2]
 
 
+def test_each_target_of_a_robot_is_where_its_tool_is_there(tmp_path: Path) -> None:
+    drawn = DrawnLab(tmp_path, TO_BIN)
+    (mover,) = drawn.model.cells[0].spaces
+    found = {target["name"]: target for target in drawn.twin.scene["targets"]}
+    assert list(found) == list(mover.targets)
+    base = kinematics.floor(drawn.twin.scene["robots"][0]["at"])
+    for name, target in found.items():
+        tool = kinematics.tool(drawn.body, mover.targets[name].joints, base)
+        assert (target["cell"], target["role"]) == ("lab", "mover")
+        assert target["at"] == pytest.approx(kinematics.at(tool), abs=1e-4)
+
+
+def test_a_record_of_before_has_no_targets_to_draw(tmp_path: Path) -> None:
+    drawn = DrawnLab(tmp_path, TO_BIN)
+    before = {key: told for key, told in places(drawn.model).items() if key != "targets"}
+    assert Twin(before, {"mover": drawn.body}).scene["targets"] == []
+
+
 def test_parts_are_drawn_where_the_books_have_them_all_the_time(tmp_path: Path) -> None:
     drawn = DrawnLab(tmp_path, TO_BIN)
     drawn.bench.submit("lab try")

@@ -6,9 +6,9 @@ nodes differ with a parameter of a few words, a Switch stands around them.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from itertools import product
+from itertools import count, product
 from typing import cast
 
 from py_trees import common, composites
@@ -83,7 +83,7 @@ def _tasks(context: Context, recipe: WrittenRecipe) -> Iterator[Task]:
         except RecipeError as error:
             given = " ".join(f"{key} {shown(value)}" for key, value in values.items())
             raise EditError(f"{recipe.name} {given}: {error}") from error
-        yield {key: shown(value) for key, value in values.items()}, _whole(step)
+        yield {key: shown(value) for key, value in values.items()}, _whole(step, names)
 
 
 def _values(cell: Cell, parameter: Parameter) -> Iterator[Value]:
@@ -98,11 +98,12 @@ def _values(cell: Cell, parameter: Parameter) -> Iterator[Value]:
     yield from dict.fromkeys(map(round, found) if limits.whole else found)
 
 
-def _whole(step: Step) -> Drawn:
-    """All that a recipe returns, as nodes."""
+def _whole(step: Step, taken: Collection[str]) -> Drawn:
+    """All that a recipe returns, as nodes; `taken`: the names of variables that there are already."""
     chosen_by = [node.chosen_by for node in step.iterate() if isinstance(node, DrawnStep)]
     asked = dict.fromkeys(id(each) for each in chosen_by if each is not None)
-    return _drawn(step, {each: f"{{answer_{n}}}" for n, each in enumerate(asked, 1)})
+    free = (name for number in count(1) if (name := f"answer_{number}") not in taken)
+    return _drawn(step, {each: f"{{{name}}}" for each, name in zip(asked, free, strict=False)})
 
 
 def _drawn(step: Behaviour, answers: Mapping[int, str]) -> Drawn:
