@@ -179,6 +179,10 @@ def test_the_steps_around_steps_have_their_nodes(lab: Lab) -> None:
             "    return work(seen, cell.choose(seen, dict.fromkeys('abcdefg', ())))\n",
             "choose of pump_1.look cannot be drawn: it has 7 ways, and a Switch at most 6",
         ),
+        (
+            "def a(cell):\n    return cell.wait(cell.wait(1).seconds)\n",
+            "a: AttributeError: 'DrawnStep' object has no attribute 'seconds'",
+        ),
         ("def a(cell):\n    return cell.timeout(cell.wait(1), 0)\n", "timeout cannot be drawn: 0 ms"),
         (
             "def a(cell):\n    from py_trees.behaviours import Success\n    return work(Success('mine'))\n",

@@ -19,12 +19,12 @@ from arboleda.bt_xml.findings import Findings
 from arboleda.bt_xml.forest import Forest
 from arboleda.bt_xml.recipe import tree_recipe
 from arboleda.bt_xml.writing import Tag
+from arboleda.model.errors import ArboledaError
 from arboleda.model.facts import Value, shown
 from arboleda.model.outside import quoted
 from arboleda.model.plant_model import Cell, PlantModel
 from arboleda.model.recipe import Limits, Parameter
 from arboleda.recipes.authoring import WrittenRecipe
-from arboleda.recipes.errors import RecipeError
 from arboleda.recipes.handles import Chain, Step, usable
 from arboleda.trees.context import Context
 
@@ -80,9 +80,12 @@ def _tasks(context: Context, recipe: WrittenRecipe) -> Iterator[Task]:
         values = dict(zip(names, chosen, strict=True))
         try:
             step = usable(recipe.function(DrawingKit(context), **values), f"{recipe.name} returns")
-        except RecipeError as error:
-            given = " ".join(f"{key} {shown(value)}" for key, value in values.items())
-            raise EditError(f"{recipe.name} {given}: {error}") from error
+        except EditError:
+            raise
+        except Exception as error:  # it is user code: whatever it raises is told
+            given = "".join(f" {key} {shown(value)}" for key, value in values.items())
+            why = error if isinstance(error, ArboledaError) else f"{type(error).__name__}: {error}"
+            raise EditError(f"{recipe.name}{given}: {why}") from error
         yield {key: shown(value) for key, value in values.items()}, _whole(step, names)
 
 
