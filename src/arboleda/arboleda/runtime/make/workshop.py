@@ -75,6 +75,15 @@ class Workshop:
         """A tree in which a part is carried; `way` has `robot`, `start` and `end`."""
         return str(self._asked(base, files, "carrying", cell, name, way["robot"], way["start"], way["end"]))
 
+    def drivers(self, base: PlantFiles, files: PlantFiles, words: Mapping[str, str]) -> list[Row]:
+        """The drivers that a device of a declared kind can have, with a field for each setting."""
+        found: list[Row] = self._asked(base, files, "drivers", dict(words))
+        return found
+
+    def driver(self, base: PlantFiles, files: PlantFiles, name: str, texts: Mapping[str, str]) -> Any:
+        """The value of the key `driver` for what was written in its fields."""
+        return self._asked(base, files, "driver", name, dict(texts))
+
     def _asked(self, base: PlantFiles, files: PlantFiles, name: str, *values: Any) -> Any:
         with self._turns:
             if not self._has_devices_of(files):
