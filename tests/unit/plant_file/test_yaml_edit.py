@@ -188,7 +188,11 @@ def test_a_value_on_one_line_is_read_as_it_was(value: Any) -> None:
 
 def test_what_is_too_long_for_a_line_is_written_below_each_other() -> None:
     words = {"stopped": 0, "moving": 1, "fault": 2, "latched": 3}
-    settings = {"host": "10.0.0.2", "state": {"input": 2, "words": words}, "halt": [{"coil": 0, "value": True}]}
+    settings = {
+        "host": "10.0.0.2",
+        "state": {"input": 2, "words": words},
+        "halt": [{"coil": 0, "value": True}],
+    }
     raw = b"devices:\n  arm:   {kind: arm}\n  lamp:  {kind: lamp}\n"
     after = with_value(raw, ("devices", "door"), {"kind": "gate", "driver": {"modbus": settings}})
     assert after.decode().removeprefix(raw.decode()) == (

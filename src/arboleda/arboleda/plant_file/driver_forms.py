@@ -29,7 +29,10 @@ WHAT = {"int": "a whole number", "number": "a number", "bool": "true or false"}
 
 @dataclass(frozen=True, kw_only=True)
 class Key:
-    """Key of a driver's settings: `form` is text, int, number, bool, choice or yaml; `default` as in a file."""
+    """Key of a driver's settings: its `form` is text, int, number, bool, choice or yaml.
+
+    `default` is as in a file; empty where there is none.
+    """
 
     name: str
     form: str
@@ -50,9 +53,19 @@ class Key:
         value = _yaml(self.name, text)
         fits = FITS.get(self.form)
         is_null = value is None and self.can_be_null
-        if fits and not is_null and (not isinstance(value, fits) or isinstance(value, bool) != (bool in fits)):
+        if (
+            fits
+            and not is_null
+            and (not isinstance(value, fits) or isinstance(value, bool) != (bool in fits))
+        ):
             raise ArboledaError(f"{self.name} must be {WHAT[self.form]}, is {quoted(text)}")
         return value
+
+    def _fits(self, value: Any) -> bool:
+        fits = FITS.get(self.form)
+        if fits is None or (value is None and self.can_be_null):
+            return True
+        return isinstance(value, fits) and isinstance(value, bool) == (bool in fits)
 
 
 def forms(own: Mapping[str, DriverSpec], words: Mapping[str, str]) -> list[Row]:
@@ -116,7 +129,7 @@ def _spec(name: str, own: Mapping[str, DriverSpec]) -> DriverSpec:
         raise ArboledaError(f"{quoted(name)} is no driver that this plant can name")
     try:
         found = spec_of(point.load())
-    except (Exception, SystemExit) as error:  # noqa: BLE001 - it is user code: whatever it raises is told
+    except (Exception, SystemExit) as error:
         raise ArboledaError(plain(f"{point.value} cannot be imported: {said(error)}", LONGEST)) from error
     if found is None:
         raise ArboledaError(f"{point.value} is installed as a driver and is none")

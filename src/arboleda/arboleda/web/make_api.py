@@ -10,7 +10,7 @@ from typing import Any, Protocol
 from arboleda.bt_xml.editing.operations import Operation
 
 Row = dict[str, Any]
-RUNS = ("try", "prove", "notice")
+RUNS = ("try", "prove", "notice", "reach")
 
 
 class MakeApi(Protocol):
@@ -36,6 +36,20 @@ class MakeApi(Protocol):
     @abstractmethod
     def carry(self, editor: str, recipe: str, way: Mapping[str, str]) -> Row:
         """Add a recipe that carries a part: `way` has `cell`, `robot`, `start`, `end`. The draft's state."""
+
+    @abstractmethod
+    def drivers(self, language: str) -> list[Row]:
+        """The drivers that a device of a declared kind can have: `name`, `about`, a form for each of its
+        `keys`, and `why_not` where it cannot be used here."""
+
+    @abstractmethod
+    def add_device(self, editor: str, device: Mapping[str, Any]) -> Row:
+        """Add a device: `cell`, `role`, `kind`, its `driver` and what was written for its `settings`. The
+        draft's state."""
+
+    @abstractmethod
+    def reach(self, device: Mapping[str, Any]) -> Row:
+        """Begin to listen to such a device, as the run "reach"; `declared` has its kind if that is new."""
 
     @abstractmethod
     def begin(self, what: str, wanted: Mapping[str, Any]) -> Row:

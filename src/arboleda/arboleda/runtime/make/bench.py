@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import logging
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
 from arboleda.bt_xml.editing.operations import Operation
+from arboleda.drivers.address import address
+from arboleda.model.outside import plain
+from arboleda.model.plant_model import Robot
+from arboleda.plant_file.draft import draft_of
 from arboleda.plant_file.tree_file import ENDING
+from arboleda.plant_file.yaml_edit import EditRefused
 from arboleda.web.draft_api import DraftRefused
 from arboleda.web.languages import spoken, texts
 from arboleda.web.make_api import MakeApi, Row
@@ -17,19 +23,27 @@ from ..plant_folder import NOT_OURS, PlantFolder
 from .errands import ErrandRun, Work
 from .workshop import Workshop
 
+LOG = logging.getLogger("arboleda.operators")
 FOLDER, RESULT, KEPT = "make", "result.json", "prove"
 WORK = {
     "try": Work(module="tryout", command="simulate"),
     "prove": Work(module="proving", command="prove"),
     "notice": Work(module="noticing", command="prove"),
+    "reach": Work(module="reaching", command="check"),
 }
 
 
 class MakeBench(MakeApi):
-    """MakeBench: for threads of a server; `start` and `stop` as a part of a plant."""
+    """MakeBench: for threads of a server; `start` and `stop` as a part of a plant.
 
-    def __init__(self, folder: PlantFolder, state: Path, desk: DraftDesk) -> None:
+    `driven` are the robots that drivers of the running plant reach.
+    """
+
+    def __init__(
+        self, folder: PlantFolder, state: Path, desk: DraftDesk, driven: Callable[[], Iterable[Robot]]
+    ) -> None:
         self._folder = folder
+        self._driven = driven
         self._kept = state / KEPT
         self._desk = desk
         self._workshop = Workshop(self._plant_file)
@@ -66,6 +80,32 @@ class MakeBench(MakeApi):
         text = self._workshop.carrying(*self._desk.files, way["cell"], recipe, way)
         return self._desk.add_trees(editor, f"{recipe}{ENDING}", text)
 
+    def drivers(self, language: str) -> list[Row]:
+        return self._workshop.drivers(*self._desk.files, texts(spoken([language]), "drivers"))
+
+    def add_device(self, editor: str, device: Mapping[str, Any]) -> Row:
+        return self._desk.set(editor, _place(device), self._device(device))
+
+    def reach(self, device: Mapping[str, Any]) -> Row:
+        draft = draft_of(self._desk.files[1])
+        try:
+            if device["declared"] is not None:
+                draft = draft.with_value(("kinds", device["kind"]), device["declared"])
+            draft = draft.with_value(_place(device), self._device(device))
+        except EditRefused as error:
+            raise DraftRefused(error.sentence) from error
+        wanted = {"cell": device["cell"], "role": device["role"], "at_work": [*map(_at_work, self._driven())]}
+        self._runs["reach"].begin(draft.files, self._plant_file(), wanted)
+        LOG.info("a new device is listened to: %s, by %s", plain(device["role"]), plain(device["driver"]))
+        return self.run("reach")
+
+    def _device(self, device: Mapping[str, Any]) -> Row:
+        """The value of a device in the plant file."""
+        if not device["driver"]:
+            return {"kind": device["kind"]}
+        driver = self._workshop.driver(*self._desk.files, device["driver"], device["settings"])
+        return {"kind": device["kind"], "driver": driver}
+
     def begin(self, what: str, wanted: Mapping[str, Any]) -> Row:
         kept = {"kept": str(self._kept.absolute())} if what == "prove" else {}
         self._runs[what].begin(self._desk.files[1], self._plant_file(), {**wanted, **kept})
@@ -95,3 +135,14 @@ class MakeBench(MakeApi):
         run = self._runs[what]
         file = run.folder / name
         return file if run.state()["state"] != "running" and file.exists() else None
+
+
+def _place(device: Mapping[str, Any]) -> tuple[str, ...]:
+    return ("cells", device["cell"], "devices", device["role"])
+
+
+def _at_work(robot: Robot) -> Row:
+    """A device with a driver that runs, as plain data."""
+    assert robot.driver is not None
+    settings = address(robot.driver.settings)
+    return {"device": robot.name, "driver": robot.driver.name, "address": settings}
