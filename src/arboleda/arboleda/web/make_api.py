@@ -44,12 +44,12 @@ class MakeApi(Protocol):
 
     @abstractmethod
     def add_device(self, editor: str, device: Mapping[str, Any]) -> Row:
-        """Add a device: `cell`, `role`, `kind`, its `driver` and what was written for its `settings`. The
-        draft's state."""
+        """Add a device: `cell`, `role`, `kind`, that `declared` has if it is new, its `driver` and what was
+        written for its `settings`. The draft's state."""
 
     @abstractmethod
     def reach(self, device: Mapping[str, Any]) -> Row:
-        """Begin to listen to such a device, as the run "reach"; `declared` has its kind if that is new."""
+        """Begin to listen to such a device, as the run "reach", without adding it."""
 
     @abstractmethod
     def begin(self, what: str, wanted: Mapping[str, Any]) -> Row:

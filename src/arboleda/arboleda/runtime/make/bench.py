@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -39,11 +39,9 @@ class MakeBench(MakeApi):
     `driven` are the robots that drivers of the running plant reach.
     """
 
-    def __init__(
-        self, folder: PlantFolder, state: Path, desk: DraftDesk, driven: Callable[[], Iterable[Robot]]
-    ) -> None:
+    def __init__(self, folder: PlantFolder, state: Path, desk: DraftDesk, driven: Iterable[Robot]) -> None:
         self._folder = folder
-        self._driven = driven
+        self._at_work = [*map(_at_work, driven)]
         self._kept = state / KEPT
         self._desk = desk
         self._workshop = Workshop(self._plant_file)
@@ -84,27 +82,27 @@ class MakeBench(MakeApi):
         return self._workshop.drivers(*self._desk.files, texts(spoken([language]), "drivers"))
 
     def add_device(self, editor: str, device: Mapping[str, Any]) -> Row:
-        return self._desk.set(editor, _place(device), self._device(device))
+        return self._desk.set_all(editor, self._values(device))
 
     def reach(self, device: Mapping[str, Any]) -> Row:
-        draft = draft_of(self._desk.files[1])
         try:
-            if device["declared"] is not None:
-                draft = draft.with_value(("kinds", device["kind"]), device["declared"])
-            draft = draft.with_value(_place(device), self._device(device))
+            draft = draft_of(self._desk.files[1]).with_values(self._values(device))
         except EditRefused as error:
             raise DraftRefused(error.sentence) from error
-        wanted = {"cell": device["cell"], "role": device["role"], "at_work": [*map(_at_work, self._driven())]}
+        wanted = {"cell": device["cell"], "role": device["role"], "at_work": self._at_work}
         self._runs["reach"].begin(draft.files, self._plant_file(), wanted)
         LOG.info("a new device is listened to: %s, by %s", plain(device["role"]), plain(device["driver"]))
         return self.run("reach")
 
-    def _device(self, device: Mapping[str, Any]) -> Row:
-        """The value of a device in the plant file."""
-        if not device["driver"]:
-            return {"kind": device["kind"]}
-        driver = self._workshop.driver(*self._desk.files, device["driver"], device["settings"])
-        return {"kind": device["kind"], "driver": driver}
+    def _values(self, device: Mapping[str, Any]) -> list[tuple[tuple[str, ...], Any]]:
+        """The values in the plant file that make a device, by their places; its kind if that is new."""
+        value = {"kind": device["kind"]}
+        if device["driver"]:
+            value["driver"] = self._workshop.driver(*self._desk.files, device["driver"], device["settings"])
+        made: list[tuple[tuple[str, ...], Any]] = []
+        if device["declared"] is not None:
+            made.append((("kinds", device["kind"]), device["declared"]))
+        return [*made, (("cells", device["cell"], "devices", device["role"]), value)]
 
     def begin(self, what: str, wanted: Mapping[str, Any]) -> Row:
         kept = {"kept": str(self._kept.absolute())} if what == "prove" else {}
@@ -135,10 +133,6 @@ class MakeBench(MakeApi):
         run = self._runs[what]
         file = run.folder / name
         return file if run.state()["state"] != "running" and file.exists() else None
-
-
-def _place(device: Mapping[str, Any]) -> tuple[str, ...]:
-    return ("cells", device["cell"], "devices", device["role"])
 
 
 def _at_work(robot: Robot) -> Row:

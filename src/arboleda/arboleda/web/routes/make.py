@@ -91,14 +91,11 @@ class NewDevice(BaseModel):
     kind: DeviceName
     driver: Short = ""
     settings: dict[Short, Annotated[str, Field(max_length=20_000)]] = Field(default={}, max_length=100)
+    declared: dict[str, Any] | None = Field(default=None, description="Its kind, where that is new.")
 
 
 class AddedDevice(Step, NewDevice):
     pass
-
-
-class ReachedDevice(NewDevice):
-    declared: dict[str, Any] | None = Field(default=None, description="Its kind, where that is new.")
 
 
 class WantedFault(BaseModel):
@@ -188,16 +185,16 @@ def _device(api: APIRouter, side: PlantApi) -> None:
         "/device", response_model=DraftState, responses=REFUSED, openapi_extra=described_body(AddedDevice)
     )
     async def device(request: Request) -> JSONResponse:
-        """Add a device of a kind that the draft has, with its driver."""
+        """Add a device, with its driver, and its kind where that is new."""
         make, new = _make(side, request), read_body(await request.body(), AddedDevice)
         return PlainJson(await run_in_threadpool(make.add_device, new.editor, new.model_dump()))
 
     @api.post(
-        "/runs/reach", response_model=RunState, responses=REFUSED, openapi_extra=described_body(ReachedDevice)
+        "/runs/reach", response_model=RunState, responses=REFUSED, openapi_extra=described_body(NewDevice)
     )
     async def reach(request: Request) -> JSONResponse:
         """Listen to such a device for some seconds, in a process of its own; no command is sent to it."""
-        make, new = _make(side, request), read_body(await request.body(), ReachedDevice)
+        make, new = _make(side, request), read_body(await request.body(), NewDevice)
         return PlainJson(await run_in_threadpool(make.reach, new.model_dump()))
 
 
