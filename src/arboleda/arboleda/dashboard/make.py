@@ -149,7 +149,6 @@ def _device(words: Words) -> None:
                 _button(words, "add_fact")
                 _button(words, "add_verb")
         with tag("div", id="make-driver-form"):
-            tag("h3", words("make.field.driver"))
             with tag("div", classes="make-form"):
                 _select(words, "driver", about=True)
             tag("div", id="make-settings", classes="make-form")
