@@ -14,6 +14,7 @@ from arboleda.plant_file.loader import load
 from arboleda.plant_file.versions import Versions
 
 from ..chromium import leave
+from ..contract.drivers.modbus import ModbusWire
 from ..patience import PATIENCE_MS
 from .page import connected, running
 from .test_accessible import Eye
@@ -37,6 +38,17 @@ cells:
     targets:
       home: {loader: {deg: [0, 0], mm: 0}}
       feed: {loader: {deg: [60, 20], mm: 80, approach_mm: 40}}
+"""
+DOOR = """      door:
+        kind: gate
+        driver:
+          modbus:
+            host: 127.0.0.1
+            port: %d
+            facts: {guard: {discrete: 0, words: {open: 0, closed: 1}}}
+            verbs: {open: {write: [{holding: 0, value: 1}]}}
+            sequence: {write: {holding: 2}, accepted: {input: 2}, done: {input: 3}}
+    targets:
 """
 REST = '<root BTCPP_format="4"><BehaviorTree ID="Rest"><loader_home/></BehaviorTree></root>\n'
 LAPTOP = {"viewport": {"width": 1366, "height": 900}, "locale": "en"}
@@ -209,6 +221,50 @@ def test_a_new_device_is_declared_as_a_person_would_write_it(
     assert load(folder / "plant.yaml").cells[0].roles["door"].fact_names == ("at",)
 
 
+def test_a_new_device_with_a_driver_is_reached_before_it_is_added(
+    browser: Any, address: str, folder: Path
+) -> None:
+    wire = ModbusWire()
+    me = Person(browser, address, **LAPTOP)
+    me.panel("device")
+    me.write("#make-role", "door")
+    me.write("#make-new_kind", "gate")
+    fact, verb = "#make-facts .make-form >> nth=0 >> ", "#make-verbs .make-form >> nth=0 >> "
+    me.write(f"{fact}[data-key=fact]", "guard")
+    me.write(f"{fact}[data-key=type]", "open, closed")
+    me.write(f"{verb}[data-key=verb]", "open")
+    me.write(f"{verb}[data-key=effect]", "switch")
+    me.write(f"{verb}[data-key=sets]", "guard: open")
+    me.page.wait_for_selector("#make-driver option[value=modbus]", state="attached", timeout=LONG_MS)
+    me.page.select_option("#make-driver", "modbus")
+    me.sees("#make-setting-poll_s-about", "between two polls, 0.005 to 0.5 s. Without it: 0.05")
+    me.write("[data-setting=host]", "127.0.0.1")
+    me.write("[data-setting=port]", "far")
+    me.press("[data-make=reach]")
+    me.sees("#make-reach-state", "port must be a whole number, is 'far'")
+    me.write("[data-setting=port]", str(wire.port))
+    me.write("[data-setting=facts]", "guard: {discrete: 0, words: {open: 0, closed: 1}}")
+    me.write("[data-setting=verbs]", "open: {write: [{holding: 0, value: 1}]}")
+    me.write("[data-setting=sequence]", "write: {holding: 2}\naccepted: {input: 2}\ndone: {input: 3}")
+    try:
+        me.press("[data-make=reach]")
+        me.sees("#make-reach-state", "door is there, stopped. guard: ")
+    finally:
+        wire.close()
+    me.press("[data-make=reach]")
+    me.sees("#make-reach-state", f"door was not reached: 127.0.0.1:{wire.port} is not there")
+    assert "door" not in (folder / "plant.yaml").read_text()
+    me.press("[data-make=add_device]")
+    me.sees("#make-note", "door is in the draft, a gate")
+    me.panel("draft")
+    me.sees("#make-problems", "Nothing to object to")
+    me.press("[data-make=keep]")
+    me.press("dialog button.primary")
+    me.sees("#make-note", "version")
+    me.go()
+    assert DOOR % wire.port in (folder / "plant.yaml").read_text()
+
+
 def test_the_second_person_sees_who_edits_and_takes_over(browser: Any, address: str) -> None:
     ana = {"editor": "test-of-ana", "name": "Ana"}
     httpx.post(f"{address}/api/draft/take", json=ana).raise_for_status()
@@ -234,6 +290,9 @@ def test_axe_finds_nothing_in_any_panel(browser: Any, address: str, screen: dict
     eye = Eye(me.page)
     for panel in PANELS:
         me.panel(panel)
+        if panel == "device":
+            me.page.wait_for_selector("#make-driver option[value=modbus]", state="attached", timeout=LONG_MS)
+            me.page.select_option("#make-driver", "modbus")
         eye.look(panel)
         width = me.page.evaluate("document.documentElement.scrollWidth")
         assert width <= screen["viewport"]["width"], f"{panel} is {width} px wide"

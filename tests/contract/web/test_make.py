@@ -17,9 +17,13 @@ CELLS = {"cells": [], "faults": [], "problems": ["plant.yaml:1:1: no"]}
 CARRY = {"editor": "ana-12345", "cell": "lab", "recipe": "to_tray", "robot": "arm", "start": "a", "end": "b"}
 FAULT = {"kind": "reboot", "at": 2.5, "seconds": 0.0, "target": "arm", "amount": 0.0, "word": "will"}
 COPY = {"editor": "ana-12345", "cell": "lab", "recipe": "weigh", "name": "weigh_tree"}
+DEVICE = {"cell": "lab", "role": "door", "kind": "gate", "driver": "modbus", "settings": {"host": "10.0.0.2"}}
+DRIVER = {"name": "modbus", "about": "", "why_not": "", "keys": [{"name": "host", "form": "text"}]}
 POSTS = {
     "carry": CARRY,
     "copy": COPY,
+    "device": DEVICE | {"editor": "ana-12345"},
+    "runs/reach": DEVICE,
     "drawn/check": {"cell": "lab", "text": "<root/>"},
     "runs/try": {},
     "runs/try/end": {},
@@ -51,6 +55,18 @@ class Make:
         if recipe == "tour":
             raise EditError("arm.tour cannot be drawn: no node in XML does this")
         return STATE
+
+    def drivers(self, language: str) -> list[dict[str, Any]]:
+        self.asked.append((language,))
+        return [DRIVER]
+
+    def add_device(self, editor: str, device: dict[str, Any]) -> dict[str, Any]:
+        self.asked.append((editor, device))
+        return STATE
+
+    def reach(self, device: dict[str, Any]) -> dict[str, Any]:
+        self.asked.append(("reach", device))
+        return {"state": "running"}
 
     def begin(self, what: str, wanted: dict[str, Any]) -> dict[str, Any]:
         self.asked.append((what, wanted))
@@ -116,6 +132,35 @@ def test_a_tryout_begins_with_its_faults_and_says_how_far_it_is(web: Any, make: 
     assert web.get("/api/make/runs/try/result").json() == {"runs": 3}
 
 
+def test_drivers_have_a_form_in_the_language_of_who_asks(web: Any, make: Make) -> None:
+    assert web.get("/api/make/drivers?language=es").json() == [DRIVER]
+    assert make.asked == [("es",)]
+
+
+def test_a_device_is_added_with_its_driver(web: Any, make: Make) -> None:
+    assert web.post("/api/make/device", json=POSTS["device"]).json() == STATE
+    [(editor, device)] = make.asked
+    assert editor == "ana-12345" and DEVICE.items() <= device.items() and device["declared"] is None
+
+
+def test_a_device_is_listened_to_without_an_editor(web: Any, make: Make) -> None:
+    declared = {"facts": {"lit": "bool"}, "verbs": {}}
+    assert web.post("/api/make/runs/reach", json=DEVICE | {"declared": declared}).json()["state"] == "running"
+    assert make.asked == [("reach", DEVICE | {"declared": declared})]
+    assert web.post("/api/make/runs/reach/end").json()["state"] == "stopped"
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    [{"role": "The Door"}, {"role": ""}, {"settings": {"host": 3}}, {"settings": {"host": "x" * 20_001}}],
+)
+def test_what_is_no_device_is_refused(web: Any, make: Make, wrong: dict[str, Any]) -> None:
+    for path in ("device", "runs/reach"):
+        answer = web.post(f"/api/make/{path}", json=POSTS[path] | wrong)
+        assert answer.status_code == 422 and next(iter(wrong)) in answer.json()["sentence"]
+    assert make.asked == []
+
+
 @pytest.mark.parametrize(
     "body", [{"budget_s": 0}, {"budget_s": 601}, {"faults": [FAULT] * 3}, {"task": "x" * 201}, {"more": 1}]
 )
@@ -133,7 +178,7 @@ def test_nothing_came_of_it_yet(web: Any, make: Make) -> None:
 
 
 @pytest.mark.parametrize(
-    "path", ["cells", "recipe?cell=a&recipe=b", "palette?cell=a", "runs/try", "runs/try/result"]
+    "path", ["cells", "recipe?cell=a&recipe=b", "palette?cell=a", "drivers", "runs/try", "runs/try/result"]
 )
 def test_a_viewer_may_not_look(open_to_all: Any, make: Make, path: str) -> None:
     assert open_to_all.client(token=Role.VIEWER).get(f"/api/make/{path}").status_code == 403

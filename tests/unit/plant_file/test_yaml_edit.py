@@ -186,6 +186,22 @@ def test_a_value_on_one_line_is_read_as_it_was(value: Any) -> None:
     assert plain(after)["b"] == value and after.startswith(b"a: 1\n")
 
 
+def test_what_is_too_long_for_a_line_is_written_below_each_other() -> None:
+    words = {"stopped": 0, "moving": 1, "fault": 2, "latched": 3}
+    settings = {
+        "host": "10.0.0.2",
+        "state": {"input": 2, "words": words},
+        "halt": [{"coil": 0, "value": True}],
+    }
+    raw = b"devices:\n  arm:   {kind: arm}\n  lamp:  {kind: lamp}\n"
+    after = with_value(raw, ("devices", "door"), {"kind": "gate", "driver": {"modbus": settings}})
+    assert after.decode().removeprefix(raw.decode()) == (
+        "  door:\n    kind: gate\n    driver:\n      modbus:\n        host: 10.0.0.2\n"
+        "        state: {input: 2, words: {stopped: 0, moving: 1, fault: 2, latched: 3}}\n"
+        "        halt: [{coil: 0, value: true}]\n"
+    )
+
+
 def _can_be_text(value: Any) -> bool:
     """False where a character is none of a text file, or a number none of a plant file's."""
     try:

@@ -10,6 +10,7 @@ import pytest
 from arboleda.recorder.preamble import PlantFiles
 from arboleda.runtime.make.workshop import Workshop
 from arboleda.web.draft_api import DraftRefused
+from arboleda.web.languages import texts
 
 OWN_TREE = Path(__file__).parents[3] / "examples/own_tree/plant.yaml"
 BASE = PlantFiles(
@@ -65,3 +66,20 @@ def test_a_process_that_ended_begins_again(workshop: Workshop) -> None:
 def test_what_is_not_there_is_refused_with_a_sentence(workshop: Workshop) -> None:
     with pytest.raises(DraftRefused, match="'moon' is no recipe of cell"):
         workshop.shown(BASE, BASE, "cell", "moon")
+
+
+def test_drivers_of_the_plants_own_files_are_offered_with_those_of_arboleda() -> None:
+    folder = OWN_TREE.parents[1] / "own_driver"
+    names = ("plant.yaml", "recipes.py", "drivers/line_tcp.py")
+    files = PlantFiles(plant="plant.yaml", contents={each: (folder / each).read_bytes() for each in names})
+    workshop = Workshop(lambda: folder / "plant.yaml")
+    try:
+        known = {each["name"]: each for each in workshop.drivers(files, files, texts("en", "drivers"))}
+        assert {"line_tcp", "modbus", "mqtt"} <= known.keys() and "dobot" not in known
+        assert ("host", True) in [(each["name"], each["required"]) for each in known["line_tcp"]["keys"]]
+        told = workshop.driver(files, files, "line_tcp", {"host": "10.0.0.7", "port": "4712"})
+        assert told == {"line_tcp": {"host": "10.0.0.7", "port": 4712}}
+        with pytest.raises(DraftRefused, match="port must be a whole number"):
+            workshop.driver(files, files, "line_tcp", {"host": "10.0.0.7", "port": "far"})
+    finally:
+        workshop.stop()

@@ -7,6 +7,7 @@ import socket
 import threading
 from collections.abc import Sequence
 from contextlib import suppress
+from dataclasses import replace
 
 from arboleda.adapters.device_feed import taking
 from arboleda.drivers.dobot.machine import (
@@ -53,6 +54,11 @@ class Dobot:
         self._selector.register(self._woken, selectors.EVENT_READ)
         self._thread = threading.Thread(target=self._run, name=f"dobot {devices[0].name}", daemon=True)
         self._thread.start()
+
+    def listen(self, devices: Sequence[Robot], hear: Hear, clock: Clock) -> None:
+        """The same without asking for control, which others may have."""
+        self._settings = replace(self._settings, request_control=False)
+        self.start(devices, hear, clock)
 
     def send(self, command: Command) -> None:
         for message in self._step([CommandRequest(command=command)]):

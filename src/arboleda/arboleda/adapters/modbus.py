@@ -6,6 +6,7 @@ import logging
 import threading
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from arboleda.drivers import Clock, Command, Hear, NotSent, Report, Robot, driver, lost
@@ -176,6 +177,11 @@ class Modbus:
         self._line = LINES.take(self._settings)
         self._poller = threading.Thread(target=self._poll, name=f"modbus {self._name}", daemon=True)
         self._poller.start()
+
+    def listen(self, devices: Sequence[Robot], hear: Hear, clock: Clock) -> None:
+        """The same without a heartbeat: to the PLC nobody is there."""
+        self._settings = replace(self._settings, heartbeat=None)
+        self.start(devices, hear, clock)
 
     def send(self, command: Command) -> None:
         line = self._line

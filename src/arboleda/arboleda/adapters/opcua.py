@@ -12,6 +12,7 @@ from collections.abc import Iterable, Sequence
 from concurrent.futures import Future
 from concurrent.futures import TimeoutError as TooLate
 from contextlib import suppress
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from arboleda.drivers import Clock, Command, Hear, NotSent, Report, Robot, Stop, driver, lost
@@ -87,6 +88,11 @@ class OpcUa:
         self._loop = asyncio.new_event_loop()
         self._thread = threading.Thread(target=self._run, name=f"opcua {self._name}", daemon=True)
         self._thread.start()
+
+    def listen(self, devices: Sequence[Robot], hear: Hear, clock: Clock) -> None:
+        """The same without a heartbeat: to the PLC nobody is there."""
+        self._settings = replace(self._settings, heartbeat=None)
+        self.start(devices, hear, clock)
 
     def send(self, command: Command) -> None:
         if self._client is None:

@@ -148,8 +148,14 @@ def _device(words: Words) -> None:
             with tag("div", classes="draw-acts"):
                 _button(words, "add_fact")
                 _button(words, "add_verb")
+        with tag("div", id="make-driver-form"):
+            with tag("div", classes="make-form"):
+                _select(words, "driver", about=True)
+            tag("div", id="make-settings", classes="make-form")
         with tag("div", classes="make-form"):
             _button(words, "add_device", classes="act primary")
+            _button(words, "reach")
+        tag("p", words("make.reach_how"), id="make-reach-state", role="status", classes="hint")
 
 
 _BUILD = {"draft": _draft, "cells": _cells, "try": _try, "prove": _prove, "device": _device}

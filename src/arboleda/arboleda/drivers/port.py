@@ -64,6 +64,14 @@ class Driver(Protocol):
 
 
 @runtime_checkable
+class Listens(Protocol):
+    """Driver that writes something by itself once it is started, and can begin without that."""
+
+    def listen(self, devices: Sequence[Robot], hear: Hear, clock: Clock) -> None:
+        """The same as `start`, but nothing is written to the devices, and nobody's control is taken."""
+
+
+@runtime_checkable
 class FitsDevice(Protocol):
     """Settings of a driver that can check themselves against a device."""
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import posixpath
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import PurePosixPath
 from typing import Any
@@ -41,7 +41,14 @@ class Draft:
 
     def with_value(self, place: Place, value: Any) -> Draft:
         """The draft with a plain value at a place of the plant file, such as `cells.lab.targets.nest`."""
-        return self._with_plant(with_value(self._plant_text, place, value))
+        return self.with_values([(place, value)])
+
+    def with_values(self, values: Iterable[tuple[Place, Any]]) -> Draft:
+        """The draft with several values, in one step."""
+        text = self._plant_text
+        for place, value in values:
+            text = with_value(text, place, value)
+        return self._with_plant(text)
 
     def without(self, place: Place) -> Draft:
         """The draft without a key of the plant file."""

@@ -10,6 +10,7 @@ from importlib.resources import files
 from pathlib import Path
 from typing import NamedTuple
 
+from arboleda.drivers.port import DriverSpec
 from arboleda.model.errors import ConfigError
 from arboleda.model.plant_model import Cell, ForeignCommands, MqttVersion, PlantModel, Robot, Timing
 from arboleda.model.recipe import Recipe
@@ -55,9 +56,15 @@ def load_with_offers(path: Path | None = None) -> tuple[PlantModel, Misses]:
     return parsed.plant, parsed.missed
 
 
+def load_with_drivers(path: Path | None = None) -> tuple[PlantModel, Mapping[str, DriverSpec]]:
+    """The same plant, and by name the drivers that files of its own bring."""
+    parsed = _parsed(*_content(path), recipes=True)
+    return parsed.plant, parsed.drivers
+
+
 def load_recorded(path: Path | None = None) -> tuple[PlantModel, Recording | None]:
     """The same plant, and the beginning of its record; None if its file says `record: off`."""
-    plant, document, _ = _parsed(*_content(path), recipes=True)
+    plant, document, *_ = _parsed(*_content(path), recipes=True)
     if document.value(RECORD) == OFF:
         return plant, None
     reports = document.has(REPORTS) and document.value(REPORTS) == ON
@@ -70,7 +77,7 @@ def load_with_files(path: Path | None = None, *, runs: bool = False) -> tuple[Pl
     With `runs` it is for a plant that runs in this process: Python that it has imported is not run again, and
     is a problem where it is another now.
     """
-    plant, document, _ = _parsed(*_content(path), recipes=True, runs=runs)
+    plant, document, *_ = _parsed(*_content(path), recipes=True, runs=runs)
     return plant, _files(document)
 
 
@@ -90,15 +97,17 @@ class _Parsed(NamedTuple):
     plant: PlantModel
     document: Document
     missed: Misses
+    drivers: Mapping[str, DriverSpec]
 
 
 def _parsed(name: str, content: bytes, folder: Path | None, *, recipes: bool, runs: bool = False) -> _Parsed:
     document = Document(name, content, folder, runs=runs)
     document.files[(folder or Path()) / Path(name).name] = content
     missed: Misses = {}
+    brings: Mapping[str, DriverSpec] = {}
     if recipes:
         code = brought(document, content)
-        missed = code.missed
+        missed, brings = code.missed, code.used.drivers
         plant = drivers.with_drivers(document, _plant(document, code.used, code.offered), code.used)
     elif own_kinds.needs_python(document):
         plant = _named(document)
@@ -107,7 +116,7 @@ def _parsed(name: str, content: bytes, folder: Path | None, *, recipes: bool, ru
     document.finish()
     if plant is None:
         raise ConfigError((f"{document.name}: the file cannot be read as a plant",))
-    return _Parsed(plant, document, missed)
+    return _Parsed(plant, document, missed, brings)
 
 
 def _files(document: Document) -> PlantFiles:

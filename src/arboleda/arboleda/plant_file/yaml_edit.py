@@ -12,7 +12,7 @@ from typing import Any
 from arboleda.model.errors import ArboledaError
 
 from .document import Place, dotted
-from .yaml_flow import flow, key_text
+from .yaml_flow import block, flow, key_text
 from .yaml_marks import YamlFault, parse
 from .yaml_spans import Key, Span, Style, spans
 
@@ -191,8 +191,9 @@ class _Cut:
         line = self.text[self._line_start(first) : first]
         if span.is_list:
             return self._put(at, at, f"{self.newline}{line.rpartition('-')[0]}- {entry}")
-        padded = f"{key_text(str(key))}:".ljust(self._width(span) - 1)
-        return self._put(at, at, f"{self.newline}{' ' * len(line)}{padded} {flow(value)}")
+        padded, indent = f"{key_text(str(key))}:".ljust(self._width(span) - 1), " " * len(line)
+        written = block(padded, value, indent, self.newline)
+        return self._put(at, at, f"{self.newline}{indent}{written}")
 
     def _width(self, span: Span) -> int:
         """Characters from key to value where a person has put the values below each other, else 0."""

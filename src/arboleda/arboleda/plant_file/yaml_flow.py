@@ -1,4 +1,4 @@
-"""Plain values as YAML on one line, such that `yaml_marks` reads the same values again."""
+"""Plain values as YAML, such that `yaml_marks` reads the same values again."""
 
 from __future__ import annotations
 
@@ -9,8 +9,10 @@ from typing import Any
 
 from .yaml_marks import scalar
 
-WORD = re.compile(r"[A-Za-z$][A-Za-z0-9_.$/-]*", re.ASCII)
+WORD = re.compile(r"[A-Za-z$][A-Za-z0-9_.$/-]*|[0-9]+(\.[0-9]+){2,3}", re.ASCII)
 KEY = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.-]*", re.ASCII)
+WIDEST = 110  # characters of a line that people read
+STEP = "  "
 
 
 def flow(value: Any) -> str:
@@ -20,6 +22,22 @@ def flow(value: Any) -> str:
     if isinstance(value, list | tuple):
         return "[" + ", ".join(map(flow, value)) + "]"
     return _word(value) if isinstance(value, str) else _plain(value)
+
+
+def block(head: str, value: Any, indent: str, newline: str) -> str:
+    """An entry of a mapping as a person writes it: on one line, or below each other what would be too long.
+
+    `head` is its key with the colon, `indent` what stands before it on its line.
+    """
+    line = f"{head} {flow(value)}"
+    if len(indent) + len(line) <= WIDEST or not (value and isinstance(value, dict | list)):
+        return line
+    inner = indent + STEP
+    if isinstance(value, dict):
+        rows = [block(f"{key_text(key)}:", each, inner, newline) for key, each in value.items()]
+    else:
+        rows = [f"- {flow(each)}" for each in value]
+    return newline.join([head.rstrip(), *(f"{inner}{row}" for row in rows)])
 
 
 def key_text(key: str) -> str:

@@ -265,7 +265,7 @@ class App:
         )
         self._draft = DraftDesk(self._folder, state, process, work_by=versions.work_by)
         self._versions = versions
-        self._make = MakeBench(self._folder, state, self._draft)
+        self._make = MakeBench(self._folder, state, self._draft, self.model.driven)
 
     def _keep_files(self, recording: Recording | None) -> None:
         """Keep what this start is made of, for `arboleda apply`; without a record that is not known."""

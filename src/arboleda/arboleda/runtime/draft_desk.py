@@ -5,7 +5,7 @@ from __future__ import annotations
 import logging
 import shutil
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from datetime import datetime, timezone
 from pathlib import Path, PurePosixPath
@@ -97,6 +97,12 @@ class DraftDesk(DraftApi):
 
     def set(self, editor: str, place: Place, value: Any) -> State:
         return self._step(editor, lambda draft: draft.with_value(tuple(place), value))
+
+    def set_all(self, editor: str, values: Sequence[tuple[Place, Any]]) -> State:
+        """The same as `set` for several values, in one step."""
+        return self._step(
+            editor, lambda draft: draft.with_values((tuple(place), value) for place, value in values)
+        )
 
     def remove(self, editor: str, place: Place) -> State:
         return self._step(editor, lambda draft: draft.without(tuple(place)))

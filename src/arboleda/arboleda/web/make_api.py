@@ -10,7 +10,7 @@ from typing import Any, Protocol
 from arboleda.bt_xml.editing.operations import Operation
 
 Row = dict[str, Any]
-RUNS = ("try", "prove", "notice")
+RUNS = ("try", "prove", "notice", "reach")
 
 
 class MakeApi(Protocol):
@@ -40,6 +40,20 @@ class MakeApi(Protocol):
     @abstractmethod
     def copy(self, editor: str, cell: str, recipe: str, name: str) -> Row:
         """Add a recipe `name` that is a tree and does what one in Python does. The draft's state."""
+
+    @abstractmethod
+    def drivers(self, language: str) -> list[Row]:
+        """The drivers that a device of a declared kind can have: `name`, `about`, a form for each of its
+        `keys`, and `why_not` where it cannot be used here."""
+
+    @abstractmethod
+    def add_device(self, editor: str, device: Mapping[str, Any]) -> Row:
+        """Add a device: `cell`, `role`, `kind`, that `declared` has if it is new, its `driver` and what was
+        written for its `settings`. The draft's state."""
+
+    @abstractmethod
+    def reach(self, device: Mapping[str, Any]) -> Row:
+        """Begin to listen to such a device, as the run "reach", without adding it."""
 
     @abstractmethod
     def begin(self, what: str, wanted: Mapping[str, Any]) -> Row:

@@ -13,7 +13,7 @@ from .names import is_loopback
 
 API, LOGIN, LOGOUT, METRICS = "/api/", "/login", "/logout", "/metrics"
 DRAFT_TREES = "/api/draft/set_trees"
-TREES = ("/api/trees/", "/api/make/drawn/")
+TREES = ("/api/trees/", "/api/make/drawn/", "/api/make/device", "/api/make/runs/reach")
 STOP = re.compile(r"/api/(plant|cells/[^/]+|plants(/[^/]+)?)/stop")
 JOG = re.compile(r"/api/teach/[^/]+/jog")
 READS = {"GET", "HEAD"}

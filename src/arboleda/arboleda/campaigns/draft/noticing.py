@@ -16,10 +16,9 @@ from arboleda.bt_xml.editing.operations import Insert, NewNode, Operation, Wrap
 from arboleda.bt_xml.findings import Findings
 from arboleda.bt_xml.recipe import TreeRecipe, tree_recipe
 from arboleda.core import text
-from arboleda.model.errors import ArboledaError, ConfigError
+from arboleda.model.errors import ArboledaError
 from arboleda.model.facts import Value, shown
 from arboleda.model.plant_model import PlantModel
-from arboleda.plant_file import loader
 from arboleda.simulator.faults import Fault
 
 from ..proof.calm import Calm, calm_run
@@ -51,10 +50,7 @@ class Check:
 def main() -> None:
     """Run the errand of this process."""
     with errand() as given:
-        try:
-            model = loader.load(given.shade.plant_file)
-        except ConfigError as error:
-            raise ArboledaError("\n".join(map(given.shade.renamed, error.problems))) from None
+        model, _ = given.plant()
         write(given.folder / RESULT, noticed(model, given.wanted))
 
 

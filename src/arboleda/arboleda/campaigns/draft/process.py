@@ -12,9 +12,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from arboleda.model.errors import ArboledaError
+from arboleda.model.errors import ArboledaError, ConfigError
+from arboleda.model.plant_model import PlantModel
 from arboleda.model.sentence import in_json
-from arboleda.plant_file import draft_check
+from arboleda.plant_file import draft_check, loader
 from arboleda.plant_file.draft_check import Shade
 from arboleda.recorder.preamble import PlantFiles
 
@@ -28,6 +29,13 @@ class Errand:
     shade: Shade
     folder: Path
     wanted: dict[str, Any]
+
+    def plant(self) -> tuple[PlantModel, PlantFiles]:
+        """The draft as a plant, and the files that were read for it; ArboledaError with all its problems."""
+        try:
+            return loader.load_with_files(self.shade.plant_file)
+        except ConfigError as error:
+            raise ArboledaError("\n".join(map(self.shade.renamed, error.problems))) from None
 
 
 def say(**what: Any) -> None:

@@ -10,9 +10,6 @@ from typing import Any
 
 from rich.console import Console
 
-from arboleda.model.errors import ArboledaError, ConfigError
-from arboleda.plant_file import loader
-
 from ..proof.outcome import End
 from ..proof.proof_campaign import ProofCampaign, ProofRequest
 from ..proof.proof_lines import ProofLines
@@ -27,10 +24,7 @@ SCREEN = 110  # columns of the text
 def main() -> None:
     """Run the errand of this process."""
     with errand() as given:
-        try:
-            loader.load(given.shade.plant_file)
-        except ConfigError as error:
-            raise ArboledaError("\n".join(map(given.shade.renamed, error.problems))) from None
+        given.plant()
         prove(given)
 
 

@@ -7,9 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from arboleda.core import text
-from arboleda.model.errors import ArboledaError, ConfigError
 from arboleda.model.plant_model import Cell, PlantModel
-from arboleda.plant_file import loader
 from arboleda.plant_file.urdf import robot_urdf
 from arboleda.recorder.preamble import PlantFiles
 from arboleda.simulator.faults import KINDS, Fault
@@ -32,10 +30,7 @@ MOST_INSTANTS = 400  # to choose from
 def main() -> None:
     """Run the errand of this process."""
     with errand() as given:
-        try:
-            model, files = loader.load_with_files(given.shade.plant_file)
-        except ConfigError as error:
-            raise ArboledaError("\n".join(map(given.shade.renamed, error.problems))) from None
+        model, files = given.plant()
         found = tried(model, files, given.wanted, given.folder)
         write(given.folder / LAYOUT, _layout(alone(model, found["cell"])))
         write(given.folder / RESULT, found)

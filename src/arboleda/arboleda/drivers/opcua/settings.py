@@ -48,8 +48,8 @@ class Settings:
     url: str
     security: Literal["none", "sign", "sign_and_encrypt"] = "sign_and_encrypt"
     secrets: str = "ARBOLEDA_OPCUA"
-    user: str | None = None
-    password: str | None = None
+    user: str | None = field(default=None, metadata={"hidden": True})
+    password: str | None = field(default=None, metadata={"hidden": True})
     publish_s: float = 0.05
     timeout_s: float = 0.5
     state: Variable | None = None

@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import logging
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
 from arboleda.bt_xml.editing.operations import Operation
+from arboleda.drivers.address import address
+from arboleda.model.outside import plain
+from arboleda.model.plant_model import Robot
+from arboleda.plant_file.draft import draft_of
 from arboleda.plant_file.tree_file import ENDING
+from arboleda.plant_file.yaml_edit import EditRefused
 from arboleda.web.draft_api import DraftRefused
 from arboleda.web.languages import spoken, texts
 from arboleda.web.make_api import MakeApi, Row
@@ -17,19 +23,25 @@ from ..plant_folder import NOT_OURS, PlantFolder
 from .errands import ErrandRun, Work
 from .workshop import Workshop
 
+LOG = logging.getLogger("arboleda.operators")
 FOLDER, RESULT, KEPT = "make", "result.json", "prove"
 WORK = {
     "try": Work(module="tryout", command="simulate"),
     "prove": Work(module="proving", command="prove"),
     "notice": Work(module="noticing", command="prove"),
+    "reach": Work(module="reaching", command="check"),
 }
 
 
 class MakeBench(MakeApi):
-    """MakeBench: for threads of a server; `start` and `stop` as a part of a plant."""
+    """MakeBench: for threads of a server; `start` and `stop` as a part of a plant.
 
-    def __init__(self, folder: PlantFolder, state: Path, desk: DraftDesk) -> None:
+    `driven` are the robots that drivers of the running plant reach.
+    """
+
+    def __init__(self, folder: PlantFolder, state: Path, desk: DraftDesk, driven: Iterable[Robot]) -> None:
         self._folder = folder
+        self._at_work = [*map(_at_work, driven)]
         self._kept = state / KEPT
         self._desk = desk
         self._workshop = Workshop(self._plant_file)
@@ -70,6 +82,32 @@ class MakeBench(MakeApi):
         text = self._workshop.copied(*self._desk.files, cell, recipe, name)
         return self._desk.add_trees(editor, f"{name}{ENDING}", text)
 
+    def drivers(self, language: str) -> list[Row]:
+        return self._workshop.drivers(*self._desk.files, texts(spoken([language]), "drivers"))
+
+    def add_device(self, editor: str, device: Mapping[str, Any]) -> Row:
+        return self._desk.set_all(editor, self._values(device))
+
+    def reach(self, device: Mapping[str, Any]) -> Row:
+        try:
+            draft = draft_of(self._desk.files[1]).with_values(self._values(device))
+        except EditRefused as error:
+            raise DraftRefused(error.sentence) from error
+        wanted = {"cell": device["cell"], "role": device["role"], "at_work": self._at_work}
+        self._runs["reach"].begin(draft.files, self._plant_file(), wanted)
+        LOG.info("a new device is listened to: %s, by %s", plain(device["role"]), plain(device["driver"]))
+        return self.run("reach")
+
+    def _values(self, device: Mapping[str, Any]) -> list[tuple[tuple[str, ...], Any]]:
+        """The values in the plant file that make a device, by their places; its kind if that is new."""
+        value = {"kind": device["kind"]}
+        if device["driver"]:
+            value["driver"] = self._workshop.driver(*self._desk.files, device["driver"], device["settings"])
+        made: list[tuple[tuple[str, ...], Any]] = []
+        if device["declared"] is not None:
+            made.append((("kinds", device["kind"]), device["declared"]))
+        return [*made, (("cells", device["cell"], "devices", device["role"]), value)]
+
     def begin(self, what: str, wanted: Mapping[str, Any]) -> Row:
         kept = {"kept": str(self._kept.absolute())} if what == "prove" else {}
         self._runs[what].begin(self._desk.files[1], self._plant_file(), {**wanted, **kept})
@@ -99,3 +137,10 @@ class MakeBench(MakeApi):
         run = self._runs[what]
         file = run.folder / name
         return file if run.state()["state"] != "running" and file.exists() else None
+
+
+def _at_work(robot: Robot) -> Row:
+    """A device with a driver that runs, as plain data."""
+    assert robot.driver is not None
+    settings = address(robot.driver.settings)
+    return {"device": robot.name, "driver": robot.driver.name, "address": settings}

@@ -81,6 +81,15 @@ class Workshop:
             self._load(base, files)
             return str(self._ask("copied", cell, recipe, name))
 
+    def drivers(self, base: PlantFiles, files: PlantFiles, words: Mapping[str, str]) -> list[Row]:
+        """The drivers that a device of a declared kind can have, with a field for each setting."""
+        found: list[Row] = self._asked(base, files, "drivers", dict(words))
+        return found
+
+    def driver(self, base: PlantFiles, files: PlantFiles, name: str, texts: Mapping[str, str]) -> Any:
+        """The value of the key `driver` for what was written in its fields."""
+        return self._asked(base, files, "driver", name, dict(texts))
+
     def _asked(self, base: PlantFiles, files: PlantFiles, name: str, *values: Any) -> Any:
         with self._turns:
             if not self._has_devices_of(files):

@@ -13,11 +13,12 @@ from arboleda.bt_xml.editing.operations import Operation
 from arboleda.bt_xml.recipe import TreeRecipe
 from arboleda.core import text
 from arboleda.core.plant import Plant
+from arboleda.drivers.port import DriverSpec
 from arboleda.model.errors import ArboledaError, ConfigError
 from arboleda.model.outside import quoted
 from arboleda.model.plant_model import Cell, PlantModel, Robot
 from arboleda.model.recipe import Recipe
-from arboleda.plant_file import draft_check, loader
+from arboleda.plant_file import draft_check, driver_forms, loader
 from arboleda.recipes.authoring import WrittenRecipe
 from arboleda.recorder.preamble import PlantFiles
 from arboleda.simulator.faults import ON_ONE_HOST
@@ -32,6 +33,7 @@ class WorkshopPlant:
 
     def __init__(self) -> None:
         self._model: PlantModel | None = None
+        self._drivers: Mapping[str, DriverSpec] = {}  # of its own files
         self._open = ExitStack()  # the folder that the plant was read in
 
     def load(self, files: PlantFiles, plant_file: Path) -> tuple[str, ...]:
@@ -39,7 +41,7 @@ class WorkshopPlant:
         opened = ExitStack()
         shade = opened.enter_context(draft_check.shaded(files, plant_file))
         try:
-            self._model = loader.load(shade.plant_file)
+            self._model, self._drivers = loader.load_with_drivers(shade.plant_file)
         except ConfigError as error:
             opened.close()
             return tuple(map(shade.renamed, error.problems))
@@ -81,6 +83,14 @@ class WorkshopPlant:
     def copied(self, cell: str, recipe: str, name: str) -> str:
         """As `PlantApi.copied`."""
         return desk.copied(self._read, cell, recipe, name)
+
+    def drivers(self, words: Mapping[str, str]) -> list[Row]:
+        """The drivers that a device of a declared kind can have, with a field for each setting."""
+        return driver_forms.forms(self._drivers, words)
+
+    def driver(self, name: str, texts: Mapping[str, str]) -> Any:
+        """The value of the key `driver` for what was written in its fields."""
+        return driver_forms.written(name, texts, self._drivers)
 
     @property
     def _read(self) -> PlantModel:

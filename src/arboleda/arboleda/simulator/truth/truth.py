@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 
-from arboleda.kinds.declared import Device
 from arboleda.model.commands import Command, Motion, Query, Switch
 from arboleda.model.facts import Value
 from arboleda.model.messages import OperatorAnswer, Report, TaskChanged, TaskState, Verb
@@ -45,8 +44,7 @@ class Truth(RobotsTruth):
         self._began: dict[str, float] = {}
         robots = [each.robot for each in self.robots.values()]
         self._telemetry = {topic(robot.mqtt, Channel.TELEMETRY): robot.name for robot in robots}
-        devices = [robot for robot in robots if isinstance(robot, Device)]
-        self._orders = {topic(robot.mqtt, Channel.ORDER): robot.name for robot in devices}
+        self._orders = {topic(robot.mqtt, Channel.ORDER): robot.name for robot in robots if robot.verb_names}
 
     def was_so(self, robot: str, fact: str, value: Value, since: float) -> bool:
         """True if a robot truly had this value of a fact at some time since `since`."""

@@ -20,8 +20,10 @@ from ..schema import ResponseModel
 from ..tree_schema import Drawn, EditForm, Nodes, TreeForm, operation_of
 from .draft import MAY, REFUSED, SHIPPED, DraftState, RecipeName, Step
 
-What = Literal["try", "prove", "notice"]
+What = Literal["try", "prove", "notice", "reach"]
+Simulated = Literal["try", "prove", "notice"]
 Short = Annotated[str, Field(max_length=200)]
+DeviceName = Annotated[str, Field(pattern="^[a-z][a-z0-9_]{0,31}$", examples=["door"])]
 
 
 class DraftCells(ResponseModel):
@@ -68,6 +70,38 @@ class Copying(Recipe, Step):
     name: RecipeName
 
 
+class Language(BaseModel):
+    model_config = ConfigDict(extra="forbid")
+
+    language: Short = FIRST
+
+
+class DriverRow(ResponseModel):
+    """Driver that a device of a declared kind can have."""
+
+    name: str
+    about: str
+    why_not: str = Field(description="Empty where it can be used here.")
+    keys: list[dict[str, Any]] = Field(description="Name, form, choices, required, default, about.")
+
+
+class NewDevice(BaseModel):
+    """Device with its driver; none: its board speaks by itself. Settings are texts, nested ones YAML."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    cell: Short
+    role: DeviceName
+    kind: DeviceName
+    driver: Short = ""
+    settings: dict[Short, Annotated[str, Field(max_length=20_000)]] = Field(default={}, max_length=100)
+    declared: dict[str, Any] | None = Field(default=None, description="Its kind, where that is new.")
+
+
+class AddedDevice(Step, NewDevice):
+    pass
+
+
 class WantedFault(BaseModel):
     model_config = ConfigDict(extra="forbid")
 
@@ -97,6 +131,7 @@ def routes(side: PlantApi) -> APIRouter:
     api = APIRouter(prefix="/api/make")
     _look(api, side)
     _draw(api, side)
+    _device(api, side)
     _run(api, side)
     return api
 
@@ -149,6 +184,30 @@ def _draw(api: APIRouter, side: PlantApi) -> None:
         return PlainJson(await run_in_threadpool(make.drawn, form.cell, form.text, operation))
 
 
+def _device(api: APIRouter, side: PlantApi) -> None:
+    @api.get("/drivers", response_model=list[DriverRow], responses=REFUSED, openapi_extra=described(Language))
+    async def drivers(request: Request) -> JSONResponse:
+        """The drivers that a device of a declared kind can have, with a form for each of their settings."""
+        make, wanted = _make(side, request), asked(request, Language)
+        return PlainJson(await run_in_threadpool(make.drivers, wanted.language))
+
+    @api.post(
+        "/device", response_model=DraftState, responses=REFUSED, openapi_extra=described_body(AddedDevice)
+    )
+    async def device(request: Request) -> JSONResponse:
+        """Add a device, with its driver, and its kind where that is new."""
+        make, new = _make(side, request), read_body(await request.body(), AddedDevice)
+        return PlainJson(await run_in_threadpool(make.add_device, new.editor, new.model_dump()))
+
+    @api.post(
+        "/runs/reach", response_model=RunState, responses=REFUSED, openapi_extra=described_body(NewDevice)
+    )
+    async def reach(request: Request) -> JSONResponse:
+        """Listen to such a device for some seconds, in a process of its own; no command is sent to it."""
+        make, new = _make(side, request), read_body(await request.body(), NewDevice)
+        return PlainJson(await run_in_threadpool(make.reach, new.model_dump()))
+
+
 def _run(api: APIRouter, side: PlantApi) -> None:
     @api.get("/runs/{what}", response_model=RunState, responses=REFUSED)
     async def run(request: Request, what: What) -> JSONResponse:
@@ -158,7 +217,7 @@ def _run(api: APIRouter, side: PlantApi) -> None:
     @api.post(
         "/runs/{what}", response_model=RunState, responses=REFUSED, openapi_extra=described_body(Wanted)
     )
-    async def begin(request: Request, what: What) -> JSONResponse:
+    async def begin(request: Request, what: Simulated) -> JSONResponse:
         """Begin with the draft as it is now, in a process that everything else of the plant goes before."""
         make, wanted = _make(side, request), read_body(await request.body(), Wanted)
         return PlainJson(await run_in_threadpool(make.begin, what, wanted.model_dump()))
