@@ -25,6 +25,16 @@ class Found:
     faults: tuple[Fault, ...] = ()
 
 
+DOWN_AND_UP = """
+from arboleda.recipes import recipe, work
+
+
+@recipe("do_1")
+def do_1(cell):
+    mill = cell.device("mill")
+    return work(mill.put(to="down"), mill.put(to="up"))
+"""
+
 FOUND = {
     "a shared arm was judged by the targets of another cell that have the same names": Found(
         file="""
@@ -119,6 +129,37 @@ def do_1(cell):
     return work([ana.ask(f"Is part {number} good?", ["sí", "no"], at_most_s=900) for number in range(8)])
 """
         },
+    ),
+    "a board that lies about its boot comes to the end of a switch that a boot would have ended": Found(
+        faults=(Fault(kind="lying_telemetry", at=20.5, seconds=1.0, target="mill", word="arranque", seed=1),),
+        file="""
+            name: drawn_50020
+            uses: [recipes.py]
+            kinds:
+              one:
+                facts: {level: [up, down]}
+                verbs: {put: {effect: switch, with: {to: [up, down]}, sets: {level: $to}, takes_s: 4}}
+            cells: {cell: {devices: {mill: {kind: one}, eye: {kind: camera}}}}
+            zones:
+              mouth: {free_while: {mill: {level: up}}, held_while: {eye: [look]}}
+        """,
+        beside={"recipes.py": DOWN_AND_UP},
+    ),
+    "a board that lies about what it has taken is told its step again after a start": Found(
+        faults=(
+            Fault(kind="plant_crash", at=35.0, target="plant"),
+            Fault(kind="lying_telemetry", at=35.3, seconds=10.0, target="mill", word="ack", seed=6),
+        ),
+        file="""
+            name: drawn_50085
+            uses: [recipes.py]
+            kinds:
+              one:
+                facts: {level: [up, down]}
+                verbs: {put: {effect: switch, with: {to: [up, down]}, sets: {level: $to}, takes_s: 10}}
+            cells: {cell: {devices: {mill: {kind: one}}, on_restart: go_on}}
+        """,
+        beside={"recipes.py": DOWN_AND_UP},
     ),
 }
 

@@ -24,6 +24,7 @@ from ..lengths import sample
 from ..unit.kinds.lab import model as bench
 from ..unit.kinds.tending import plant
 from ..unit.kinds.test_examples import EXAMPLES
+from ..unit.kinds.test_interlocks import with_mill
 from ..unit.kinds.test_people import attended
 from .restarts import ENDED, restart
 
@@ -65,6 +66,12 @@ def late(cell: Kit):  # type: ignore[no-untyped-def]
 def wave(cell: Kit):  # type: ignore[no-untyped-def]
     left, jaw = cell.devices("left", "jaw")
     return work(jaw.open(), left.go("feed_2"), left.home())
+
+
+@recipe("behind_a_door")
+def behind_a_door(cell: Kit):  # type: ignore[no-untyped-def]
+    left, mill = cell.devices("left", "mill")
+    return work(mill.close(), mill.open(), left.visit("vise"), left.home())
 
 
 def sent(rig: Rig) -> list[str]:
@@ -211,6 +218,17 @@ def test_the_zone_of_an_arm_stays_its_own() -> None:
     assert rig.plant.zones.holder("vise") == "left"
     resumed(rig, "tending")
     assert rig.wait(30.0, until=lambda: state(rig) is TaskState.DONE)
+
+
+@pytest.mark.parametrize("verb", ["close", "open"])
+def test_the_zone_of_a_machine_is_given_back_once_its_door_is_open(verb: str) -> None:
+    rig = begin(with_mill(behind_a_door), "tending behind_a_door")
+    assert rig.wait(20.0, until=lambda: f"mill {verb}" in sent(rig))
+    assert rig.plant.zones.holder("vise") == "mill"
+    restart(rig, bridge=False)
+    resumed(rig, "tending")
+    assert rig.wait(30.0, until=lambda: state(rig) is TaskState.DONE)
+    assert rig.plant.zones.holder("vise") is None
 
 
 def test_a_time_out_counts_from_the_word_to_go_on() -> None:

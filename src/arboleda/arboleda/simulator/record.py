@@ -559,8 +559,12 @@ class Record:
         for leaf in cell.leaves:
             entry = leaf.entry if isinstance(leaf, Act) else None
             if entry is not None and entry.command.id in sent:
-                step = Step(run.task.id, turn_of(leaf), entry.command, self._start, cell.retries)
-                self.starts.gave(step)
+                board = self.world.model.robots[entry.command.robot].mqtt
+                misled = self.world.deceptions[board, "ack"] > 0
+                path = turn_of(leaf)
+                self.starts.gave(
+                    Step(run.task.id, path, entry.command, self._start, cell.retries, misled=misled)
+                )
 
     def _on_command(self, command: Command) -> None:
         known = self.robots[command.robot]

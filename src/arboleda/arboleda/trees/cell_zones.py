@@ -227,7 +227,7 @@ class CellZones:
         return holder in self._cell.interlocked and zone not in self.interlocks.occupied_by(holder)
 
     def forsake(self) -> None:
-        """Give back what machines hold for a task that cannot go on, where they are not in the way."""
+        """Give back what machines hold for a task, where neither they nor their commands are in the way."""
         self.interlocks.reserved = {}
         for machine in self._cell.interlocked:
             self.leave(machine)

@@ -87,7 +87,6 @@ class Context:
 
     def settle(self) -> None:
         """Believe the devices again about all that was under way when an earlier start ended."""
-        self.zones.interlocks.reserved = {}
         self.parts.settle()
 
     def note(self, answer: TaskAnswer) -> None:

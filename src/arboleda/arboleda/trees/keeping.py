@@ -111,6 +111,7 @@ class Keeping:
         found = walk.judge(self._context)
         self._context.settle()
         walk.go_on(found)
+        self._context.zones.forsake()  # its steps have given their commands, and need no more than those
 
     def end(self) -> None:
         """The task has ended, or goes on without its work."""

@@ -29,7 +29,7 @@ TASKS = 2000  # tasks that are followed; older ones are dropped
 class Step:
     """A command that a step of a task gave: `start` is the number of the plant's start, `path` the step's
     place in the tree with the turn of what repeats it; `retries` is how often an operator had steps of its
-    cell tried again by then.
+    cell tried again by then. `misled`: its board may have lied by then about the commands that it had taken.
     """
 
     task: str
@@ -37,6 +37,7 @@ class Step:
     command: Command
     start: int
     retries: int
+    misled: bool
 
 
 class Starts:
@@ -122,7 +123,7 @@ class Starts:
     def _carry_out(self, step: Step) -> None:
         done = self._done.setdefault((step.task, step.command.robot), [])
         before = [each for each in done if each.path == step.path and each.start < step.start]
-        if before and not _may_be_repeated(done, before[-1], step):
+        if before and not step.misled and not _may_be_repeated(done, before[-1], step):
             self._again(step, before[-1])
         done.append(step)
         if len(self._done) > TASKS:

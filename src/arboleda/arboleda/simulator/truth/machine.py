@@ -105,7 +105,7 @@ class MachineTruth(RobotTruth):
         self.by_hand = self._put_right
         self.swerved = False  # of several things that it does, one may end
         given = [(act, self._command(act.goal)) for act in self.acts]
-        self.overdue = self._switched_late(before)
+        self._look_at_switches(before)
         switches = [(command, self._now_us) for _, command in given if isinstance(command, Switch)]
         self._switches = [*reversed(switches), *self._switches][:KEPT]
         self._follow_work(was_moving, given)
@@ -127,12 +127,14 @@ class MachineTruth(RobotTruth):
         elif not self.moving:
             self.work = None
 
-    def _switched_late(self, before: Facts) -> bool:
-        """True where a fact has changed that the last switch of it was to change long ago."""
+    def _look_at_switches(self, before: Facts) -> None:
+        """Note when the last switch of a fact that has changed was given, and whether that was long ago."""
+        self.overdue, self.switched_from = False, None
         for switch, given_us in self._switches:
             if any(self.facts[name] != before[name] for name, _ in switch.sets):
-                return self._now_us - given_us > GIVEN_UP * 1e6 * (switch.at_most_s or 0.0)
-        return False
+                self.overdue = self._now_us - given_us > GIVEN_UP * 1e6 * (switch.at_most_s or 0.0)
+                self.switched_from = given_us / 1e6
+                return
 
     @property
     def _ended_in_time(self) -> bool:

@@ -60,6 +60,7 @@ class RobotTruth:
     cut_short = False  # it ended work that goes on through a stop, and nothing explains that
     unbidden = False  # what moved it in this step was none of its goals
     overdue = False  # in this step it switched so late that nobody counts on that any more
+    switched_from: float | None = None  # when it was given the switch that changed a fact in this step, s
     let_go = False  # in this step it let go of what it held, by itself and with its power on
     worked_from: float | None = None  # for a machine that reports only ends: when it began to move, s
 

@@ -87,7 +87,8 @@ class RobotsTruth:
     def mistaken(self, robot: RobotTruth) -> bool:
         """True if the plant may be told a wrong place of a robot: it is `unseen`, its board lies, a report
         from before an earlier start moved it comes late, or it says that it stands still while it moves; for
-        a machine also if it has said so since it began to move, or does something long after its time.
+        a machine also if it has said so since it began to move, does something long after its time, or has
+        lied about its boot since it was given the switch that it did: a boot would have ended that.
         """
         if self.world.now < self._late_until and robot.robot.name in self._late:
             return True
@@ -95,6 +96,8 @@ class RobotsTruth:
         if from_s is None and robot.moving:
             from_s = self.world.now
         if from_s is not None and self.deceived_since(board, "state", from_s):
+            return True
+        if robot.switched_from is not None and self.deceived_since(board, "boot", robot.switched_from):
             return True
         lies = self.deceived_since(board, robot.PLACE, self.world.now)
         return robot.overdue or lies or self.unseen(robot)
