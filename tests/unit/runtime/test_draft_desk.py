@@ -36,7 +36,10 @@ class Checker:
     """Checks files as it is told to."""
 
     def __init__(self, check: Callable[[PlantFiles, Path], Checked]) -> None:
-        self.check = check
+        self._check = check
+
+    def check(self, files: PlantFiles, plant_file: Path, *, waits: bool) -> Checked:
+        return self._check(files, plant_file)
 
     def stop(self) -> None: ...
 

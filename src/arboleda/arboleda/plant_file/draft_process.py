@@ -30,14 +30,19 @@ class CheckProcess:
     """Check process: one check at a time, for any thread; `stop` ends it."""
 
     def __init__(self) -> None:
-        self._turns = threading.Lock()
+        self._turns = threading.Condition()
         self._run: subprocess.Popen[bytes] | None = None
+        self._has_next = False
         self._ended = False
 
-    def check(self, files: PlantFiles, plant_file: Path) -> Checked:
-        """The same as `draft_check.check`, without the plant. It waits; ArboledaError if no answer comes."""
+    def check(self, files: PlantFiles, plant_file: Path, *, waits: bool) -> Checked:
+        """The same as `draft_check.check`, without the plant. It waits; ArboledaError if no answer comes.
+
+        While another check is under way, one that `waits` begins after it, and all others are refused: so
+        no more than two threads of a server are kept.
+        """
         request = {"plant_file": str(plant_file), "plant": files.plant, "contents": _texts(files.contents)}
-        run = self._start()
+        run = self._start(waits=waits)
         try:
             said, _ = run.communicate(json.dumps(request).encode(), AT_MOST_S)
         except (OSError, subprocess.TimeoutExpired):
@@ -45,7 +50,9 @@ class CheckProcess:
         finally:
             run.kill()
             run.communicate()
-            self._run = None
+            with self._turns:
+                self._run = None
+                self._turns.notify_all()
         return _answer(said, files.plant)
 
     def stop(self) -> None:
@@ -54,10 +61,15 @@ class CheckProcess:
             self._ended = True
             if self._run is not None:
                 self._run.kill()
+            self._turns.notify_all()
 
-    def _start(self) -> subprocess.Popen[bytes]:
+    def _start(self, *, waits: bool) -> subprocess.Popen[bytes]:
         command = [sys.executable, "-I", "-c", START, json.dumps(sys.path)]
         with self._turns:
+            if waits and not self._has_next:
+                self._has_next = True
+                self._turns.wait_for(lambda: self._ended or self._run is None, AT_MOST_S)
+                self._has_next = False
             if self._ended or self._run is not None:
                 raise ArboledaError(ENDING if self._ended else BUSY)
             pipe = subprocess.PIPE
