@@ -55,7 +55,9 @@ def _port(port: Port) -> Tag:
 
 def _lines(tag: Tag, depth: int) -> list[str]:
     margin = INDENT * depth
-    head = " ".join([tag.name, *(f'{name}="{_value(value)}"' for name, value in tag.attributes.items())])
+    head = " ".join(
+        [tag.name, *(f'{name}="{attribute_value(value)}"' for name, value in tag.attributes.items())]
+    )
     if tag.children:
         inner = [line for child in tag.children for line in _lines(child, depth + 1)]
         return [f"{margin}<{head}>", *inner, f"{margin}</{tag.name}>"]
@@ -64,6 +66,6 @@ def _lines(tag: Tag, depth: int) -> list[str]:
     return [f"{margin}<{head}/>"]
 
 
-def _value(text: str) -> str:
+def attribute_value(text: str) -> str:
     """A value as an attribute: line ends are written as references, as readers turn others into blanks."""
     return escape(text).replace("&#x27;", "'").replace("\n", "&#10;").replace("\t", "&#9;")

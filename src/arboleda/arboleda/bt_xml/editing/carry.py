@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from xml.sax.saxutils import quoteattr
 
+from arboleda.bt_xml.writing import attribute_value
 from arboleda.kinds.declared import Device, DeviceVerb, FactType, Slot
 from arboleda.model.errors import ArboledaError
 from arboleda.model.facts import Value, shown
@@ -46,8 +46,8 @@ def tree(cell: Cell, name: str, *, robot: str, start: str, end: str) -> str:
         if target not in there:
             raise ArboledaError(f"{quoted(target)} is no target of {robot}; {among(target, [*there])}")
     grip, let_go = hand
-    about = quoteattr(f"Take a part from {start} to {end}.")
-    places = {"start": quoteattr(start), "end": quoteattr(end)}
+    about = _in_quotes(f"Take a part from {start} to {end}.")
+    places = {"start": _in_quotes(start), "end": _in_quotes(end)}
     return FORM.format(name=tree_name(name), about=about, robot=robot, grip=grip, let_go=let_go, **places)
 
 
@@ -84,10 +84,14 @@ def _middle(type: FactType) -> Value:
 
 
 def _node(role: str, verb: str, values: Mapping[str, Value]) -> str:
-    attributes = "".join(f" {name}={quoteattr(shown(value))}" for name, value in values.items())
+    attributes = "".join(f" {name}={_in_quotes(shown(value))}" for name, value in values.items())
     return f"<{role}_{verb}{attributes}/>"
 
 
 def tree_name(recipe: str) -> str:
     """The name of the tree of a recipe: "to_press" is ToPress."""
     return "".join(word.capitalize() for word in recipe.replace("-", "_").split("_"))
+
+
+def _in_quotes(text: str) -> str:
+    return f'"{attribute_value(text)}"'
