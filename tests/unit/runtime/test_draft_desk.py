@@ -36,10 +36,7 @@ class Checker:
     """Checks files as it is told to."""
 
     def __init__(self, check: Callable[[PlantFiles, Path], Checked]) -> None:
-        self._check = check
-
-    def check(self, files: PlantFiles, plant_file: Path, *, waits: bool) -> Checked:
-        return self._check(files, plant_file)
+        self.check = check
 
     def stop(self) -> None: ...
 

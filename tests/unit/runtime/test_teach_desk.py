@@ -61,7 +61,7 @@ OF_SIX |= {"deg: [60, 20], mm: 80, approach_mm: 40": "deg: [60, 20, 0, 0, 0, 0]"
 class Unchecked:
     """Finds nothing wrong with any files."""
 
-    def check(self, files: PlantFiles, plant_file: Path, *, waits: bool) -> Checked:
+    def check(self, files: PlantFiles, plant_file: Path) -> Checked:
         return Checked(read=files)
 
     def stop(self) -> None: ...

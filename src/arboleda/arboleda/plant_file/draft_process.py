@@ -30,19 +30,14 @@ class CheckProcess:
     """Check process: one check at a time, for any thread; `stop` ends it."""
 
     def __init__(self) -> None:
-        self._turns = threading.Condition()
+        self._turns = threading.Lock()
         self._run: subprocess.Popen[bytes] | None = None
-        self._has_next = False
         self._ended = False
 
-    def check(self, files: PlantFiles, plant_file: Path, *, waits: bool) -> Checked:
-        """The same as `draft_check.check`, without the plant. It waits; ArboledaError if no answer comes.
-
-        While another check is under way, one that `waits` begins after it, and all others are refused: so
-        no more than two threads of a server are kept.
-        """
+    def check(self, files: PlantFiles, plant_file: Path) -> Checked:
+        """The same as `draft_check.check`, without the plant. It waits; ArboledaError if no answer comes."""
         request = {"plant_file": str(plant_file), "plant": files.plant, "contents": _texts(files.contents)}
-        run = self._start(waits=waits)
+        run = self._start()
         try:
             said, _ = run.communicate(json.dumps(request).encode(), AT_MOST_S)
         except (OSError, subprocess.TimeoutExpired):
@@ -50,9 +45,7 @@ class CheckProcess:
         finally:
             run.kill()
             run.communicate()
-            with self._turns:
-                self._run = None
-                self._turns.notify_all()
+            self._run = None
         return _answer(said, files.plant)
 
     def stop(self) -> None:
@@ -61,15 +54,10 @@ class CheckProcess:
             self._ended = True
             if self._run is not None:
                 self._run.kill()
-            self._turns.notify_all()
 
-    def _start(self, *, waits: bool) -> subprocess.Popen[bytes]:
+    def _start(self) -> subprocess.Popen[bytes]:
         command = [sys.executable, "-I", "-c", START, json.dumps(sys.path)]
         with self._turns:
-            if waits and not self._has_next:
-                self._has_next = True
-                self._turns.wait_for(lambda: self._ended or self._run is None, AT_MOST_S)
-                self._has_next = False
             if self._ended or self._run is not None:
                 raise ArboledaError(ENDING if self._ended else BUSY)
             pipe = subprocess.PIPE

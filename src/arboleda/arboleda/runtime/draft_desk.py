@@ -47,7 +47,7 @@ WorkBy = Callable[[Version, Checked, str], State]
 class Checker(Protocol):
     """Process that checks files as if they were in a folder, until `stop`."""
 
-    def check(self, files: PlantFiles, plant_file: Path, *, waits: bool) -> Checked: ...
+    def check(self, files: PlantFiles, plant_file: Path) -> Checked: ...
     def stop(self) -> None: ...
 
 
@@ -122,7 +122,7 @@ class DraftDesk(DraftApi):
     def check(self) -> State:
         with self._turns:
             files = self._opened().files
-        found = self._process.check(files, self._folder.ours, waits=False)
+        found = self._process.check(files, self._folder.ours)
         return {"problems": found.problems, "warnings": found.warnings}
 
     def keep(self, editor: str, note: str) -> State:
@@ -190,7 +190,7 @@ class DraftDesk(DraftApi):
             self._must_edit(editor)
             draft = self._opened()
             self._must_fit(draft)
-        found = self._process.check(draft.files, self._folder.ours, waits=True)
+        found = self._process.check(draft.files, self._folder.ours)
         if found.problems:
             return found, None
         with self._turns:
