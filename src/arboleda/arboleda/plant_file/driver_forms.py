@@ -137,7 +137,7 @@ def _spec(name: str, own: Mapping[str, DriverSpec]) -> DriverSpec:
 
 
 def _about(spec: DriverSpec) -> str:
-    """What the author says of the settings, else of the driver."""
+    """Description of the settings by their author, else of the driver."""
     for each in (spec.settings, spec.made_by):
         text = (each.__doc__ or "").strip() if isinstance(each, type) else ""
         if text and not text.startswith(f"{each.__name__}("):  # as dataclasses write it themselves

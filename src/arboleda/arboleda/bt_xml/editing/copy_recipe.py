@@ -68,7 +68,7 @@ def tree(model: PlantModel, context: Context, recipe: str, name: str) -> str:
 
 
 def _tasks(context: Context, recipe: WrittenRecipe) -> Iterator[Task]:
-    """What is drawn for each task."""
+    """Drawings, one for each task."""
     known = [[*_values(context.cell, each)] for each in recipe.parameters]
     many = 1
     for each in known:
@@ -210,7 +210,7 @@ def _tag(node: Drawn) -> Tag:
 
 
 def _metadata(cell: Cell, recipe: WrittenRecipe) -> Iterator[tuple[str, str]]:
-    """What the model says of the end, and of the values of parameters."""
+    """Metadata of the model: the end, and the values of parameters."""
     yield "ends_with", "; ".join(f"{what}: {_ending(value)}" for what, value in recipe.ends_with)
     groups: dict[str, str] = {}
     lists: dict[str, str] = {}

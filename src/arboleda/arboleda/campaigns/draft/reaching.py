@@ -46,7 +46,7 @@ def main() -> None:
 
 
 def reached(device: Robot, at_work: Sequence[Mapping[str, Any]], seconds: float) -> Row:
-    """What came of listening to a device for that long: `reached`, its `state` and `facts` as it says them,
+    """Outcome of listening to a device for that long: `reached`, its `state` and `facts` as it says them,
     the facts that are `missing`, else `why` not. `at_work` are devices with drivers that run: `device`,
     `driver`, `address`. ArboledaError where nothing may be opened."""
     use = device.driver
