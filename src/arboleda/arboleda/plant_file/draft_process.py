@@ -20,18 +20,20 @@ from .recipe_trial import PATH
 
 START = PATH + "from arboleda.plant_file import draft_process; draft_process.main()"
 AT_MOST_S = 300.0
+IN_LINE = 4  # checks that may wait: each keeps a thread of the server
 KINDNESS = 10  # that of `nice`: whatever the plant does comes first
 NO_ANSWER = "the draft could not be checked, its check gave no answer; `arboleda check` says more"
-BUSY = "the draft is being checked already; try again in some seconds"
+BUSY = "too many checks of the draft are waiting; try again in some seconds"
 ENDING = "the draft is not checked any more: the plant ends"
 
 
 class CheckProcess:
-    """Check process: one check at a time, for any thread; `stop` ends it."""
+    """Check process: one check at a time, for any thread; others wait in line. `stop` ends it."""
 
     def __init__(self) -> None:
-        self._turns = threading.Lock()
+        self._turns = threading.Condition()
         self._run: subprocess.Popen[bytes] | None = None
+        self._waiting = 0
         self._ended = False
 
     def check(self, files: PlantFiles, plant_file: Path) -> Checked:
@@ -45,7 +47,9 @@ class CheckProcess:
         finally:
             run.kill()
             run.communicate()
-            self._run = None
+            with self._turns:
+                self._run = None
+                self._turns.notify()
         return _answer(said, files.plant)
 
     def stop(self) -> None:
@@ -54,10 +58,15 @@ class CheckProcess:
             self._ended = True
             if self._run is not None:
                 self._run.kill()
+            self._turns.notify_all()
 
     def _start(self) -> subprocess.Popen[bytes]:
         command = [sys.executable, "-I", "-c", START, json.dumps(sys.path)]
         with self._turns:
+            if self._run is not None and self._waiting < IN_LINE:
+                self._waiting += 1
+                self._turns.wait_for(lambda: self._ended or self._run is None, AT_MOST_S)
+                self._waiting -= 1
             if self._ended or self._run is not None:
                 raise ArboledaError(ENDING if self._ended else BUSY)
             pipe = subprocess.PIPE

@@ -10,11 +10,12 @@ import { all, words } from "./shell.js";
 
 const CHECK_MS = 1200; // after the last change
 const LOOK_MS = 5000; // what others do
-const WAIT_MS = 1500; // while another check is under way
+const WAIT_MS = 1500; // while another check is under way, or too many wait
 const PANEL = "arboleda_make_panel"; // where this browser tab was last, also before it looked at a record
 const FIRST = "draft";
 let shown = false;
 let checked = null; // the changes that were checked last
+let checking = false; // this page has asked, and waits
 let timer = null;
 
 export function start() {
@@ -79,7 +80,10 @@ function drawn() {
   lines("changes", state.changes.length ? state.changes : [words.make_no_change]);
   for (const name of ["restart", "waiting"]) lines(name, state[name]), (box(`${name}-box`).hidden = !state[name].length);
   const now = state.changes.join("\n");
-  if (now !== checked) clearTimeout(timer), (timer = setTimeout(check, CHECK_MS));
+  if (now === checked) return;
+  clearTimeout(timer);
+  timer = setTimeout(check, CHECK_MS);
+  lines("problems", [words.make_checking]);
 }
 
 const button = (act) => document.querySelector(`#make [data-make="${act}"]`);
@@ -89,8 +93,11 @@ const lines = (id, rows) => box(id).replaceChildren(...rows.map((text) => elemen
 // What `check` says of the draft; one at a time, and the last change counts.
 async function check() {
   clearTimeout(timer);
+  if (checking) return void (timer = setTimeout(check, WAIT_MS));
   const now = draft.state.changes.join("\n");
+  checking = true;
   const found = await ask("/api/draft/check", {}, () => {});
+  checking = false;
   if (!found) return void (timer = setTimeout(check, WAIT_MS));
   checked = now;
   draft.problems = found.problems;
