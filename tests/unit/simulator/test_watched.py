@@ -7,10 +7,10 @@ from itertools import pairwise
 
 import pytest
 
-from arboleda.model.messages import SystemStart
+from arboleda.model.messages import SystemStart, Verb
 from arboleda.simulator.faults import Fault
 from arboleda.simulator.invariants.invariant import Look, Trigger, invariant
-from arboleda.simulator.judged_world import BrokenInvariant, JudgedWorld
+from arboleda.simulator.judged_world import STAYS_S, BrokenInvariant, JudgedWorld
 from arboleda.testing import shipped
 
 
@@ -82,6 +82,16 @@ def test_what_never_comes_to_rest_is_a_breach() -> None:
     with pytest.raises(BrokenInvariant, match="nothing_muted: ra_1"):
         watched.come_to_rest()
     assert watched.seconds >= 600.0
+
+
+def test_nothing_is_at_rest_while_a_message_is_held_back() -> None:
+    watched = JudgedWorld(shipped("sis_a"), invariants=[])
+    watched.world.advance(1.0)
+    watched.begin(Fault(kind="partition", at=0.0, seconds=8.0, target="ra_1", word="down, held"))
+    watched.world.request_verb(Verb.STOP, "sis_a")
+    watched.world.advance(1.0)
+    watched.come_to_rest()
+    assert watched.seconds >= 9.0 + STAYS_S
 
 
 def test_a_fault_of_later_does_not_begin_at_rest() -> None:
