@@ -156,11 +156,13 @@ def test_a_target_is_made_here_and_gone_to(screen: Open, address: str, folder: P
     page = screen()
     begin(page)
     page.fill("[aria-label='New target']", "nest")
+    page.select_option("[aria-label='Zone of the target']", "inside")
     page.click("button:text-is('Here')")
     page.wait_for_function("document.querySelector('#teach-note').textContent.includes('nest is here now')")
     draft = httpx.get(f"{address}/api/draft").json()
     here = turned(address)
     assert draft["values"]["cells"]["cell"]["targets"]["nest"]["loader"]["deg"][0] == here
+    assert draft["values"]["zones"]["inside"]["poses"] == ["cell press", "cell nest"]
     assert "nest" not in yaml.safe_load((folder / "plant.yaml").read_text())["cells"]["cell"]["targets"]
     hold(page, PLUS, lambda: turned(address) > here + 1)
     page.mouse.up()

@@ -142,6 +142,7 @@ def test_the_state_has_all_that_can_be_told(lab: Lab) -> None:
     assert {(each["name"], each["robot"]) for each in state["targets"]} == {
         (name, robot) for name in ("home", "nest") for robot in ("loader", "cart")
     }
+    assert state["zones"] == ["inside"]
     assert state["teaching"]["teacher"] == "ana" and state["drafts"]
 
 

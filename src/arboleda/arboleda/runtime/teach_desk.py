@@ -62,7 +62,9 @@ class TeachDesk(TeachApi):
         targets = taught_targets.targets(self._model().cell(cell), values)
         axes = {each["name"]: self._draws(each["name"]) for each in found["devices"]}
         devices = [{**each, "axes": axes[each["name"]]} for each in found["devices"]]
-        return {**found, "devices": devices, "targets": targets, "drafts": self._draft is not None}
+        zones = [str(each) for each in (values or {}).get("zones") or {}]
+        drafts = self._draft is not None
+        return {**found, "devices": devices, "targets": targets, "zones": zones, "drafts": drafts}
 
     def press(self, cell: str, button: Button) -> State:
         robot = self._robot(cell, button.robot)

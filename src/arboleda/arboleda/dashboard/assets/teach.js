@@ -76,22 +76,22 @@ async function look() {
   draw(said);
 }
 
-function draw({ teaching, refusal, devices, targets, drafts }) {
+function draw({ teaching, refusal, devices, targets, zones, drafts }) {
   const isMine = teaching !== null && mine()?.session === teaching.session;
   box("begin").disabled = teaching !== null || refusal !== null;
   box("end").disabled = teaching === null;
   if (teaching === null && refusal) say(refusal);
-  const now = JSON.stringify(devices.map(({ name, joints, verbs, nodes }) => [name, joints, verbs, nodes]));
-  if (now !== shape) build(devices, targets);
+  const now = JSON.stringify([zones, ...devices.map(({ name, joints, verbs, nodes }) => [name, joints, verbs, nodes])]);
+  if (now !== shape) build(devices, targets, zones);
   shape = now;
   for (const each of devices) drawn.get(each.name).show(each);
   for (const each of drawn.values()) each.offer(targets);
   for (const each of box("devices").querySelectorAll("button, input, select")) each.disabled = !isMine || (!drafts && each.matches(".teach-keep"));
 }
 
-function build(devices, targets) {
+function build(devices, targets, zones) {
   const acts = { step, here };
-  drawn = new Map(devices.map((each) => [each.name, device.draw(each, targets, acts)]));
+  drawn = new Map(devices.map((each) => [each.name, device.draw(each, targets, zones, acts)]));
   box("devices").replaceChildren(...[...drawn.values()].map((each) => each.box));
 }
 
@@ -112,9 +112,9 @@ function heard({ sentence, teaching, robot }, { number }) {
   else if (teaching.trouble) say(teaching.trouble);
 }
 
-async function here({ name }, target, approach) {
+async function here({ name }, target, approach, zone) {
   const person = box("name").value.trim();
-  const how = Number.isFinite(approach) ? { approach_mm: approach } : {};
+  const how = { zone, ...(Number.isFinite(approach) ? { approach_mm: approach } : {}) };
   const said = await ask(`/api/teach/${encodeURIComponent(cell)}/here`, { robot: name, target, editor: editor(), name: person, ...how });
   if (!said) return said;
   taught = { cell, targets: [...(taught?.cell === cell ? taught.targets : []).filter((each) => each !== target), target].slice(-2) };

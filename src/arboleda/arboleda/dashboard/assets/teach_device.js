@@ -6,8 +6,9 @@ const words = window.arboledaPage.words;
 const MOTIONS = ["x", "y", "z"];
 const filled = (text, values) => text.replace(/\{(\w+)\}/g, (_, name) => values[name]);
 
-// `step()` is null where a button goes on and on, else so many degrees or mm; `here` makes a target.
-export function draw(device, targets, { step, here }) {
+// `step()` is null where a button goes on and on, else so many degrees or mm; `here` makes a target, in one of the
+// `zones` if that is chosen.
+export function draw(device, targets, zones, { step, here }) {
   const box = made("section", { className: "box teach-device" });
   box.setAttribute("aria-label", device.name);
   box.append(made("h3", { textContent: device.name === device.role ? device.name : `${device.name} (${device.role})` }));
@@ -19,7 +20,7 @@ export function draw(device, targets, { step, here }) {
   box.append(...rows.map(({ row }) => row));
   if (device.axes) box.append(along(state, step));
   if (device.nodes) box.append(nodes(state));
-  const chosen = device.joints.length || device.nodes ? places(state, targets, here) : null;
+  const chosen = device.joints.length || device.nodes ? places(state, targets, zones, here) : null;
   if (chosen) box.append(chosen.row);
   box.append(...verbs(device));
   return { box, show, offer: (found) => chosen?.offer(found) };
@@ -112,7 +113,7 @@ function nodes({ device }) {
   return row;
 }
 
-function places({ device }, targets, here) {
+function places({ device }, targets, zones, here) {
   const row = group("teach-places", words.teach_targets);
   const select = made("select");
   select.setAttribute("aria-label", words.teach_target);
@@ -125,9 +126,14 @@ function places({ device }, targets, here) {
   });
   const approach = made("input", { type: "number", min: 0, step: 1, placeholder: words.teach_approach, className: "teach-approach" });
   approach.setAttribute("aria-label", words.teach_approach);
+  const zone = made("select", { className: "teach-zone" });
+  zone.setAttribute("aria-label", words.teach_zone);
+  zone.append(new Option(words.teach_no_zone, ""), ...zones.map((each) => new Option(filled(words.teach_in_zone, { zone: each }), each)));
   const keep = act(words.teach_here, words.teach_here_does);
-  keep.addEventListener("click", () => here(device, name.value.trim() || select.value, approach.valueAsNumber).then((done) => done && (name.value = "")));
-  row.append(select, go, name, ...(device.joints.some(({ unit }) => unit === "mm") ? [approach] : []), keep);
+  const emptied = (done) => done && (name.value = zone.value = "");
+  keep.addEventListener("click", () => here(device, name.value.trim() || select.value, approach.valueAsNumber, zone.value).then(emptied));
+  const slides = device.joints.some(({ unit }) => unit === "mm");
+  row.append(select, go, name, ...(slides ? [approach] : []), ...(zones.length ? [zone] : []), keep);
   let known = [];
   offer(targets);
   return { row, offer };
