@@ -15,6 +15,7 @@ import pytest
 from arboleda.runtime.state import find_running
 
 from ..patience import PATIENCE_S
+from .page import until
 
 pytestmark = pytest.mark.system
 
@@ -22,7 +23,7 @@ EXAMPLE = Path(__file__).parents[2] / "examples/own_tree"
 VISE = ("cells", "cell", "targets", "vise", "loader")
 
 
-def test_what_changed_since_the_start_is_said_and_the_next_start_has_it(
+def test_what_changed_since_the_start_is_said_and_a_restart_at_rest_has_it(
     arboleda: Callable[..., Any], tmp_path: Path
 ) -> None:
     plant = copied(tmp_path)
@@ -35,11 +36,12 @@ def test_what_changed_since_the_start_is_said_and_the_next_start_has_it(
     assert "kinds.mill.verbs.run.takes_s: from 20 to 25" in applied.output
     assert "this needs a restart" in applied.output
     assert at_work(arboleda, plant) == ["  1  "]
-    assert up.interrupt() == 0
-    again = arboleda("up", "--no-ros", "--plant", str(plant))
-    again.wait_for("HTTP API")
+    again = arboleda("apply", "--plant", str(plant), "--yes", "--restart")
+    assert again.wait() == 0 and "restarts with it once all its cells rest" in again.output, again.output
+    until(lambda: up.output.count("HTTP API: ") == 2)
+    assert "all its cells rest" in up.output
     assert at_work(arboleda, plant) == ["  2  "]
-    assert again.interrupt() == 0
+    assert up.interrupt() == 0
 
 
 def test_a_draft_over_http_is_checked_and_kept_and_the_next_start_has_it(

@@ -214,6 +214,8 @@ def test_a_new_device_is_declared_as_a_person_would_write_it(
     me.press("[data-make=keep]")
     me.press("dialog button.primary")
     me.sees("#make-note", "version")
+    me.press("dialog button.primary")  # the plant restarts: a device joins its cell at a start
+    me.page.wait_for_selector("[data-robots=cell] :text('door')", state="attached", timeout=LONG_MS)
     me.go()
     text = (folder / "plant.yaml").read_text()
     assert re.search(r"^      door: +\{kind: gate\}$", text, re.MULTILINE)

@@ -64,6 +64,7 @@ def test_the_description_has_every_route_and_what_it_takes_and_gives(web: httpx.
         "/api/draft/trees",
         "/api/versions",
         "/api/versions/{number}/put",
+        "/api/versions/restart",
         *(f"/api/draft/{step}" for step in DRAFT_STEPS),
         *(f"/api/teach/{{cell}}{path}" for path in ("", "/jog", "/here")),
         *(f"/api/make/{path}" for path in MAKE_PATHS),

@@ -10,6 +10,7 @@ from arboleda.web.auth import Role
 from arboleda.web.draft_api import DraftRefused
 
 LIST = {"at_work": {"number": None, "at": "2026"}, "versions": [], "cells": []}
+LIST |= {"restart": {"by": "", "can": True}}
 ANSWER = {"version": 3, "problems": [], "warnings": [], "cells": {"lab": "now"}, "restart": []}
 BODY = {"name": "Ana"}
 
@@ -19,6 +20,7 @@ class Kept:
 
     def __init__(self) -> None:
         self.put_to_work: list[tuple[int, str]] = []
+        self.restarts: list[tuple[str, bool]] = []
         self.refusal = ""
 
     def listed(self) -> dict[str, Any]:
@@ -29,6 +31,10 @@ class Kept:
             raise DraftRefused(self.refusal)
         self.put_to_work.append((number, by))
         return ANSWER
+
+    def restart(self, by: str, *, wanted: bool) -> dict[str, Any]:
+        self.restarts.append((by, wanted))
+        return LIST
 
 
 @pytest.fixture
@@ -49,6 +55,13 @@ def test_one_is_put_to_work_by_somebody(web: Any, kept: Kept) -> None:
 def test_a_viewer_puts_none_to_work(open_to_all: Any, kept: Kept) -> None:
     answer = open_to_all.client(token=Role.VIEWER).post("/api/versions/3/put", json=BODY)
     assert answer.status_code == 403 and "operator" in answer.json()["sentence"] and kept.put_to_work == []
+
+
+def test_a_restart_is_wanted_by_an_operator_and_called_off(web: Any, open_to_all: Any, kept: Kept) -> None:
+    assert web.post("/api/versions/restart", json=BODY).json() == LIST
+    assert web.post("/api/versions/restart", json=BODY | {"wanted": False}).status_code == 200
+    assert web.post("/api/versions/restart", json=BODY | {"wanted": 1}).status_code == 422
+    assert kept.restarts == [("Ana", True), ("Ana", False)]
 
 
 def test_a_refusal_is_a_conflict_with_its_sentence(web: Any, kept: Kept) -> None:

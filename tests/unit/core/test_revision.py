@@ -7,9 +7,18 @@ from typing import Any
 
 import pytest
 
+from arboleda.core import reasons
 from arboleda.core.plant import Plant
 from arboleda.kinds.joints import MoveJoints
-from arboleda.model.messages import CellRevised, Revision, RevisionAnswer, TaskChanged, TaskState, Verb
+from arboleda.model.messages import (
+    CellRevised,
+    RestartRequest,
+    Revision,
+    RevisionAnswer,
+    TaskChanged,
+    TaskState,
+    Verb,
+)
 from arboleda.model.plant_model import Cell, PlantModel, Pose, Retry, Timing
 from arboleda.model.recipe import Recipe
 from arboleda.model.revision import RevisionName
@@ -209,3 +218,38 @@ def test_a_replay_over_a_change_in_the_middle_is_the_same_to_the_last_bit() -> N
     assert ignorant == []
     blind = [*replayed(plant_of(plant.beginning, model), steps)]
     assert blind[-1].difference is not None
+
+
+def wish(rig: Rig, *, wanted: bool) -> None:
+    rig.tell(RestartRequest(at=rig.now, by="Ana", wanted=wanted))
+
+
+def test_a_restart_waits_for_the_task_at_work_and_no_other_begins(rig: Rig) -> None:
+    first, second = (rig.submit("sis_a 0B 0").task for _ in range(2))
+    rig.wait(1.0)
+    wish(rig, wanted=True)
+    assert not rig.plant.may_restart
+    assert rig.wait(200.0, until=lambda: ended(rig, first))
+    rig.wait(5.0)
+    assert rig.plant.may_restart and rig.plant.intake.tasks[second].state is TaskState.QUEUED
+    why = reasons.of_waiting(rig.plant.cells["sis_a"])
+    assert "restarts once all its cells rest" in str(why)
+
+
+def test_a_restart_that_is_not_wanted_any_more_has_the_next_task_begin(rig: Rig) -> None:
+    wish(rig, wanted=True)
+    task = rig.submit("sis_a 0B 0").task
+    rig.wait(5.0)
+    assert rig.plant.intake.tasks[task].state is TaskState.QUEUED and rig.plant.may_restart
+    wish(rig, wanted=False)
+    rig.wait(1.0)
+    assert rig.plant.intake.tasks[task].state is TaskState.RUNNING and not rig.plant.may_restart
+
+
+def test_a_cell_that_is_taught_keeps_a_restart_waiting(rig: Rig) -> None:
+    assert rig.operate(Verb.TEACH, "sis_a", teacher="ana") is None
+    wish(rig, wanted=True)
+    assert not rig.plant.may_restart
+    assert rig.operate(Verb.AUTOMATIC, "sis_a") is None
+    rig.wait(1.0)
+    assert rig.plant.may_restart

@@ -22,7 +22,8 @@ def listed(number: int | None) -> dict[str, Any]:
         {"cell": "lab", "version": 2, "following": None, "when": "now"},
         {"cell": "line", "version": 1, "following": 2, "when": "when task t-1-1 has ended"},
     ]
-    return {"at_work": {"number": number, "at": AT}, "versions": rows, "cells": cells}
+    restart = {"by": "", "can": False}
+    return {"at_work": {"number": number, "at": AT}, "versions": rows, "cells": cells, "restart": restart}
 
 
 def test_the_last_version_comes_first_and_the_one_at_work_has_no_way_back() -> None:
@@ -47,3 +48,12 @@ def test_what_no_version_has_is_said_to_be_of_the_start() -> None:
     face = versions.face(listed(None), words("en"))
     assert face["now"].startswith("At work is what the plant was started with at 2026")
     assert all(each["back"] for each in face["rows"])
+
+
+def test_a_restart_is_offered_where_it_can_be_had_and_called_off_where_somebody_wants_it() -> None:
+    assert versions.face(listed(2), words("en"))["restart"] is None
+    offered = versions.face(listed(2) | {"restart": {"by": "", "can": True}}, words("en"))["restart"]
+    assert (offered["button"], offered["wanted"]) == ("Restart once all cells rest", False)
+    wanted = versions.face(listed(2) | {"restart": {"by": "ana", "can": True}}, words("en"))["restart"]
+    assert wanted["said"].startswith("The plant restarts once all its cells rest, as ana wants.")
+    assert (wanted["button"], wanted["wanted"]) == ("Do not restart", True)

@@ -64,9 +64,8 @@ def test_more_checks_than_may_wait_are_refused_at_once(
 ) -> None:
     monkeypatch.setattr(draft_process, "IN_LINE", 0)
     process = CheckProcess()
-    with slow_check(process, tmp_path / "gate"):
-        with pytest.raises(ArboledaError, match="too many checks"):
-            process.check(FILES, FOLDER / "plant.yaml")
+    with slow_check(process, tmp_path / "gate"), pytest.raises(ArboledaError, match="too many checks"):
+        process.check(FILES, FOLDER / "plant.yaml")
 
 
 def test_who_waits_for_a_check_hears_that_the_plant_ends(tmp_path: Path) -> None:

@@ -23,3 +23,10 @@ def test_a_number_that_is_no_version_is_refused_with_those_that_are(tmp_path: Pa
     desk = VersionDesk(folder, tmp_path / "state", never, as_it_runs=never, check=never)
     with pytest.raises(DraftRefused, match=r"there is no version 77 .*; kept: none"):
         desk.put(77, "ana")
+
+
+def test_a_plant_that_nobody_would_start_again_does_not_restart(tmp_path: Path) -> None:
+    folder = PlantFolder(tmp_path / "plant.yaml", tmp_path / "state")
+    desk = VersionDesk(folder, tmp_path / "state", never, as_it_runs=never, check=never)
+    with pytest.raises(DraftRefused, match="is restarted by who started it"):
+        desk.restart("ana", wanted=True)

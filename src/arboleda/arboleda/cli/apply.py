@@ -30,13 +30,20 @@ NOT_SHIPPED = (
 NOT_TAKEN = 1
 RESTART = (
     "the plant that runs goes on as it is, and has it from its next start on; so has the next leader of"
-    " two, as after `arboleda handover`"
+    " two, as after `arboleda handover`; `--restart`, or the page, has it restart once all its cells rest"
 )
+RESTARTS = "the plant that runs restarts with it once all its cells rest; until then no further task begins"
 Back = Annotated[
     int | None,
     typer.Option("--back", metavar="N", min=1, help="Bring version N back: its plant file and its trees."),
 ]
 Note = Annotated[str, typer.Option("--note", metavar="TEXT", help="A line that is kept with the version.")]
+Restart = Annotated[
+    bool,
+    typer.Option(
+        "--restart", help="Where a change needs it, have the plant restart once all its cells rest."
+    ),
+]
 Yes = Annotated[bool, typer.Option("--yes", help="Do not ask.")]
 
 
@@ -57,7 +64,12 @@ class _Base:
 
 
 def apply(
-    plant: PlantFile = None, back: Back = None, note: Note = "", yes: Yes = False, state: StateFolder = None
+    plant: PlantFile = None,
+    back: Back = None,
+    note: Note = "",
+    restart: Restart = False,
+    yes: Yes = False,
+    state: StateFolder = None,
 ) -> None:
     """Check a plant file and all that it uses, show what is another than what is at work, and put it to work.
 
@@ -95,7 +107,7 @@ def apply(
         _print(f"version {number} is kept; the next start of the plant has it")
         return
     _print(f"version {number} is kept")
-    _put_to_work(number, plant, state)
+    _put_to_work(number, plant, state, restarts=restart)
 
 
 def versions(plant: PlantFile = None, state: StateFolder = None) -> None:
@@ -185,17 +197,20 @@ def _keep(kept: Versions, base: _Base, version: Version) -> int:
     return kept.keep(replace(version, by=getpass.getuser())).number
 
 
-def _put_to_work(number: int, plant: Path | None, state: Path | None) -> None:
+def _put_to_work(number: int, plant: Path | None, state: Path | None, *, restarts: bool) -> None:
     """Have the plant that runs take a version, and print when each cell does; status 1 if it does not."""
+    reached = client(plant, state)
     try:
-        answer = client(plant, state).put_to_work(number, getpass.getuser())
+        answer = reached.put_to_work(number, getpass.getuser())
+        if answer["restart"] and restarts:
+            reached.restart_at_rest(getpass.getuser())
     except ArboledaError as error:
         _print(f"the plant that runs goes on as it is, and has it from its next start on: {error}")
         raise typer.Exit(NOT_TAKEN) from error
     for line in answer["restart"]:
         _print(f"  {line}")
     if answer["restart"]:
-        _print(RESTART)
+        _print(RESTARTS if restarts else RESTART)
         return
     for cell, when in answer["cells"].items():
         _print(f"  {cell} takes it {when}")

@@ -87,6 +87,10 @@ class PlantClient:
         path = f"/api/versions/{version}/put"
         return self._ask("POST", path, {"name": name}, repeatable=True, within_s=CHECKED_S)
 
+    def restart_at_rest(self, name: str) -> None:
+        """Have the plant restart once all its cells rest; Refused where it cannot restart itself."""
+        self._ask("POST", "/api/versions/restart", {"name": name}, repeatable=True)
+
     def outcome(self, act: int) -> dict[str, Any]:
         """The row of an act once it has ended; after FOLLOWED_S as it is then."""
         until = time.monotonic() + FOLLOWED_S

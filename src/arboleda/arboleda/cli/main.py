@@ -29,11 +29,12 @@ from arboleda.plant_file.urdf import robot_urdf
 from arboleda.plant_file.versions import Versions
 from arboleda.recorder.errors import NoRecord
 from arboleda.recorder.preamble import Recording
+from arboleda.runtime import invocation
 from arboleda.runtime.alarm_options import alarm_options
 from arboleda.runtime.rate import check_rate
 from arboleda.runtime.state import find_running, holder
 from arboleda.runtime.web_options import WebOptions
-from arboleda.web.names import listen_address, public_origin
+from arboleda.web.names import DEFAULT_PORT, listen_address, public_origin
 
 from . import (
     apply,
@@ -275,9 +276,18 @@ def up(
     demo: DemoOption = False,
 ) -> None:
     """Run the plant until Ctrl-C; tasks come from here, `arboleda submit` or ROS 2 (/task_request)."""
+    before = invocation.port_before()
+    if before is not None:
+        tasks = []  # they were given at the first start
     model, recording = _model(plant, tasks or [])
     shown = _Certificates(tls_cert, tls_key, broker_tls=broker_tls, broker_ca=broker_ca)
-    web = WebOptions(host=host, port=port, public_url=public_url, tls=shown.by_web)
+    web = WebOptions(
+        host=host,
+        port=port,
+        public_url=public_url,
+        tls=shown.by_web,
+        usual_port=before or DEFAULT_PORT,
+    )
     options = _options(broker, broker_host, broker_users, shown, rate, state, store, web, recording)
     options = replace(options, groot2=groot2, demo=demo, plant_file=plant)
     _run(model, tasks or [], options, boards=boards, ros=ros, lan=ros_lan, stay=True, standby=standby)
@@ -631,6 +641,7 @@ def _run(
         notes=(*options.notes, *without_ros),
         page=stay,
         keeps_waiting=stay,
+        restarts=stay and not standby,
         firmware=boards is Boards.LINUX,
     )
     parts, console = set(PARTS) - left_out, Console(highlight=False)
@@ -646,7 +657,10 @@ def _run(
             raise typer.Exit from None
     else:
         app = build(model, parts, options)
-    raise typer.Exit(session.Session(app, tasks, console, stay=stay, patience_s=patience_s).run())
+    status = session.Session(app, tasks, console, stay=stay, patience_s=patience_s).run()
+    if app.restart_wanted:
+        invocation.restart(app.port)
+    raise typer.Exit(status)
 
 
 def _on_boards(model: PlantModel, recording: Recording | None) -> tuple[PlantModel, Recording | None]:

@@ -91,6 +91,7 @@ class CellRun:
         self.teaching_over: Callable[[CellRun, Teaching, Sentence], None] = lambda run, teaching, why: None
         self.dirty = False
         self.closed = False
+        self.awaits_restart = False  # no further task begins before that
         self.following: NextVersion | None = None  # while it has not taken it
         self.version: RevisionName | None = None  # the one that it took while the plant ran
         self.goes_on: GoesOn | None = None  # how it gets out of a hold by itself, after an absence
@@ -142,11 +143,15 @@ class CellRun:
         if self.following is not None and self.is_between_tasks:
             self._revise(self.following)
             did = True
-        if self.queue and self.state is CellState.IDLE and not self.closed and self.not_ready is None:
+        if self.queue and self.state is CellState.IDLE and self._may_begin:
             self._start(self.queue.popleft())
             did = True
         self.dirty = False
         return did
+
+    @property
+    def _may_begin(self) -> bool:
+        return not self.closed and not self.awaits_restart and self.not_ready is None
 
     def teach(self, teaching: Teaching) -> None:
         """Begin its manual mode: its queue pauses, and no task starts before the end of that."""
@@ -295,6 +300,10 @@ class CellRun:
             self.become(Cause.ABANDON)
         if held or not self.run.recovering:
             self._recover()
+
+    def await_restart(self, *, wanted: bool) -> None:
+        """Begin no further task, or go on with them where no restart is wanted any more."""
+        self.awaits_restart, self.dirty = wanted, True
 
     def close(self, *, drops_waiting: bool) -> None:
         """The plant ends: what runs is halted and stays as it is for the next start, no other task starts.

@@ -878,10 +878,14 @@ BY_VERB = Phrase("teach.by_verb", "by the operator")()
 BY_OPERATOR = Phrase("task.cancelled_by_operator", "cancelled by the operator")
 BY_CLIENT = Phrase("task.cancelled_by_client", "cancelled by the client")
 PUT_TO_WORK = Phrase("act.put_to_work", "version {number} was put to work by {by}: {changes}")
+RESTART_WANTED = Phrase("act.restart_wanted", "{by} has the plant restart once all its cells rest")
+RESTART_UNWANTED = Phrase("act.restart_unwanted", "{by} does not have the plant restart any more")
 ACTS_TOLD = {
     phrase.key: phrase
     for phrase in (
         PUT_TO_WORK,
+        RESTART_WANTED,
+        RESTART_UNWANTED,
         *DO.values(),
         *ENDED.values(),
         DECLARED_HOMED,

@@ -34,6 +34,7 @@ from arboleda.model.messages import (
     Reason,
     Remember,
     Report,
+    RestartRequest,
     Revision,
     RevisionAnswer,
     Shutdown,
@@ -59,7 +60,14 @@ from .cell import CellRun, NextVersion
 from .cell_states import CellState
 from .choosing import PastTimes, Prospect, best, prospect
 from .intake import CUT_OFF, Intake, gone
-from .operator import NO_SCOPE, PUT_TO_WORK, Operator, VerbRefusal
+from .operator import (
+    NO_SCOPE,
+    PUT_TO_WORK,
+    RESTART_UNWANTED,
+    RESTART_WANTED,
+    Operator,
+    VerbRefusal,
+)
 from .teaching import NOT_TAUGHT, OTHER_TEACHES, Teaching
 
 HEARTBEAT_S = 0.25
@@ -103,6 +111,7 @@ class Plant:
         memory = memory or {}
         self._builders = recipes or {}
         self.versions = {**(versions or {})}
+        self.restart_by = ""  # who wants a restart once all cells rest
         self.model = model
         self.epoch = epoch
         self.now = now
@@ -245,6 +254,11 @@ class Plant:
         runs = self.cells.values()
         ended = all(run.tree is None or (run.closed and run.state is CellState.HELD) for run in runs)
         return not self.dispatcher.ledger.entries and ended
+
+    @property
+    def may_restart(self) -> bool:
+        """True where a restart is wanted, and it would cut nothing short: no task, command or teaching."""
+        return self.restart_by != "" and self.at_rest and not any(run.teaching for run in self.cells.values())
 
     def sleepers(self) -> list[str]:
         """Cells whose tree runs with nothing left to wake it; anything here is a defect."""
@@ -661,6 +675,15 @@ class Plant:
     def _use(self, model: PlantModel) -> None:
         self.model = self.dispatcher.model = model
 
+    def _on_restart_request(self, event: RestartRequest) -> None:
+        by = plain(event.by) or "-"
+        self.restart_by = by if event.wanted else ""
+        self._changes += 1
+        for name, cell in self.cells.items():
+            self._guard(name, partial(cell.await_restart, wanted=event.wanted))
+        did = RESTART_WANTED if event.wanted else RESTART_UNWANTED
+        self.dispatcher.outbox.append(Journal(verb=None, scope="", cell=None, sentence=did(by=by)))
+
     def _on_shutdown(self, event: Shutdown) -> None:
         self.intake.closed = True
         self._changes += 1  # a cell may be held by it that had told nobody anything
@@ -721,4 +744,5 @@ HANDLERS: dict[type, Callable[[Plant, Any], None]] = {
     Interference: Plant._on_interference,
     Shutdown: Plant._on_shutdown,
     Revision: Plant._on_revision,
+    RestartRequest: Plant._on_restart_request,
 }

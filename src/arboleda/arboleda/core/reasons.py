@@ -10,6 +10,9 @@ from .cell import STOPPED, CellRun
 from .cell_states import CellState
 
 ENDING = Phrase("plant.ending", "the plant is ending")
+RESTARTS = Phrase(
+    "plant.restarts", "the plant restarts once all its cells rest; until then no other task begins"
+)
 BUSY = Phrase("cell.busy", "{cell} is busy")
 STANDS = Phrase("cell.stands", "{cell} is {state}; {next}")
 STANDS_BECAUSE = Phrase("cell.stands_because", "{cell} is {state} ({why}); {next}")
@@ -41,7 +44,7 @@ def of_waiting(run: CellRun) -> Sentence | None:
     if run.state is CellState.EXECUTE:
         return BUSY(cell=name)
     if run.state is CellState.IDLE:
-        return run.not_ready
+        return RESTARTS() if run.awaits_restart else run.not_ready
     if run.trouble is None or run.state is CellState.HELD:
         return of_hold(run) or STANDS(cell=name, state=run.state.said, next=_next(run))
     why = run.trouble.sentence
@@ -54,6 +57,8 @@ def of_hindrance(run: CellRun) -> Sentence | None:
     """
     if run.state is not CellState.EXECUTE:
         return of_waiting(run)
+    if run.awaits_restart:
+        return RESTARTS()
     if (obstacle := run.readiness.obstacle_at_work()) is not None:
         return obstacle
     return run.queue.why_paused if run.queue.paused else None

@@ -14,5 +14,8 @@ def build(words: Words) -> None:
         tag("h2", words("versions.title"))
         tag("p", id="versions-now", classes="fact")
         tag("ul", id="versions-cells")
+        with tag("p", id="versions-restart", hidden="true"):
+            tag("span", classes="hint")
+            tag("button", type="button", classes="act")
         tag("ul", id="versions", aria_label=words("versions.list"))
         tag("p", id="versions-said", role="status", classes="hint")

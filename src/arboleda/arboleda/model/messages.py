@@ -491,6 +491,18 @@ class Revision:
     request: str | None = None
 
 
+@dataclass(frozen=True, kw_only=True)
+class RestartRequest:
+    """Somebody wants the plant to start anew once its cells rest, or does not want that any more.
+
+    Until then no further task begins. `by` is who asks, for people who read of it.
+    """
+
+    at: float
+    by: str
+    wanted: bool = True
+
+
 Event = (
     Jog
     | Report
@@ -501,4 +513,5 @@ Event = (
     | Interference
     | Shutdown
     | Revision
+    | RestartRequest
 )

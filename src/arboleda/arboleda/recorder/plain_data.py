@@ -26,6 +26,7 @@ from arboleda.model.messages import (
     Reason,
     Receipt,
     Report,
+    RestartRequest,
     Revision,
     Shutdown,
     TaskAnswer,
@@ -57,6 +58,7 @@ EVENTS: dict[str, type[Any]] = {
         LateDeparture,
         Interference,
         Shutdown,
+        RestartRequest,
         Revision,
     )
 }
@@ -293,6 +295,7 @@ READERS: dict[type, dict[str, Reader]] = {
     Interference: {"sentence": sentence_from},
     Shutdown: {},
     Revision: {"version": _version},
+    RestartRequest: {},
     RevisionName: {},
     KeptTask: {
         "state": TaskState,

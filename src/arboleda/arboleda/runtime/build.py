@@ -20,6 +20,7 @@ from arboleda import __version__
 from arboleda.adapters import clock, descriptors
 from arboleda.adapters.broker_login import MQTT_PORT, Credentials, address
 from arboleda.core.operator import ACTS_TOLD
+from arboleda.core.plant import Plant
 from arboleda.model.errors import ArboledaError, StartError
 from arboleda.model.messages import TaskChanged
 from arboleda.model.plant_model import Link, MqttVersion, PlantModel
@@ -99,6 +100,7 @@ class Options:
     page: bool = True  # the API needs none, and a page takes a second to load
     recording: Recording | None = None  # None: no record is written
     plant_file: Path | None = None  # None: the shipped one, which nobody changes
+    restarts: bool = False  # whoever runs it starts it again, where `App.restart_wanted`
     demo: bool = False  # tasks that never end, and faults, of a plant on virtual boards
     groot2: bool | None = None  # whether trees are shown to Groot2; None: where the plant file says so
     notes: tuple[str, ...] = ()  # what else a person should know of this start
@@ -147,6 +149,8 @@ class App:
             self._open_desks(state, options, virtual=options.recording.virtual)
         self._over = threading.Event()
         self._callbacks: list[Callable[[], None]] = []
+        self.restart_wanted = False  # somebody wants it, and nothing is at work any more
+        self.port = 0  # of the HTTP API, once it listens
         self._trouble: ArboledaError | None = None
         self._started: list[Part] = []
         self._garbage = Garbage()
@@ -208,6 +212,12 @@ class App:
         for callback in self._callbacks:
             callback()
 
+    def _look_for_restart(self, plant: Plant) -> None:
+        if plant.may_restart and not self.restart_wanted:
+            self.restart_wanted = True
+            LOG.warning("the plant restarts, as %s wants: all its cells rest", plant.restart_by)
+            self.end()
+
     def when_over(self, callback: Callable[[], None]) -> None:
         """Call back at the end of `wait`, too; from any thread, before `start`."""
         self._callbacks.append(callback)
@@ -261,7 +271,12 @@ class App:
 
         process = CheckProcess()
         versions = VersionDesk(
-            self._folder, state, lambda: self.plant, as_it_runs=as_it_runs, check=process.check
+            self._folder,
+            state,
+            lambda: self.plant,
+            as_it_runs=as_it_runs,
+            check=process.check,
+            restarts=options.restarts and self._store.renew_s is None,
         )
         self._draft = DraftDesk(self._folder, state, process, work_by=versions.work_by)
         self._versions = versions
@@ -383,7 +398,7 @@ class App:
                 drops_waiting=not self._keeps_waiting,
             )
             self.orchestrator.diagnoses.append(self._pace.diagnosis)
-            self.orchestrator.observers.append(self._garbage.stepped)
+            self.orchestrator.observers += [self._garbage.stepped, self._look_for_restart]
             self._parts += self._recorder(epoch, self.orchestrator, options)
             self._parts.append(Periodic("place", self._looks(), self._crash))  # also while the plant ends
             times = CellTimes(self._store, self.model.history_days)
@@ -440,6 +455,7 @@ class App:
         self.end()
 
     def _announce(self, port: int, *, host: str, guarded: bool, certificate: str) -> None:
+        self.port = port
         self._state.announce(port, host=host, guarded=guarded, certificate=certificate)
         try:
             self._store.announce(self._web_options.origin(port, self._own_address))

@@ -1,9 +1,13 @@
-"""Commands that a sentence names, written as the person who started this process would type them."""
+"""Command line of this process: as a person would type it again, and started again in its place."""
 
 from __future__ import annotations
 
+import os
 import shutil
 import sys
+from typing import NoReturn
+
+RESTARTED = "ARBOLEDA_RESTARTED"  # the port of the page before, in the environment of a restarted process
 
 
 def command() -> str:
@@ -14,3 +18,22 @@ def command() -> str:
 def python() -> str:
     """The Python that Arboleda is installed in."""
     return "python" if shutil.which("arboleda") else sys.executable
+
+
+def restart(port: int) -> NoReturn:
+    """Start this process again in its own place, with the same command line and process number.
+
+    `port`: that of its page, which a page that is open comes back to.
+    """
+    sys.stdout.flush()
+    sys.stderr.flush()
+    os.environ[RESTARTED] = str(port)
+    os.execv(sys.executable, [sys.executable, *sys.orig_argv[1:]])
+
+
+def port_before() -> int | None:
+    """The port of a process that `restart` has started, None for any other; asked once, as its children have
+    none.
+    """
+    port = os.environ.pop(RESTARTED, "")
+    return int(port) if port.isdecimal() else None

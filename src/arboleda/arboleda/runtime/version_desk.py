@@ -33,6 +33,9 @@ LOG = logging.getLogger("arboleda.operators")
 PATIENCE_S = 30.0  # for the answer of the plant, which waits for its disk
 UNKNOWN = "this plant does not keep what it was started with (record: off), so nothing can be compared"
 MEANWHILE = "its files were changed while it was put to work; `arboleda apply` shows what they have now"
+NO_RESTART = (
+    "this plant is restarted by who started it; one that `arboleda up` runs alone can be restarted from here"
+)
 SAME = "the files are as they are at work"
 NOW, AFTER_TASK, AT_REST = "now", "when task {task} has ended", "when it rests"
 AFTER_TEACHING = "when nobody teaches it any more; `automatic {cell}` ends that"
@@ -43,6 +46,7 @@ class VersionDesk(VersionsApi):
     """VersionDesk: one version at a time, for threads of a server and for a signal; they wait for each other.
 
     `as_it_runs` makes of a plant as its files have it the one that runs here, at its rate and on its boards.
+    `restarts`: whoever runs the plant starts it again where that is wanted.
     """
 
     def __init__(
@@ -53,12 +57,14 @@ class VersionDesk(VersionsApi):
         *,
         as_it_runs: Callable[[PlantModel], PlantModel],
         check: Check,
+        restarts: bool = False,
     ) -> None:
         self._folder = folder
         self._state = state
         self._plant = plant
         self._as_it_runs = as_it_runs
         self._check = check
+        self._restarts = restarts
         self._turns = threading.Lock()
 
     def listed(self) -> State:
@@ -67,8 +73,17 @@ class VersionDesk(VersionsApi):
         known = [] if kept is None else kept.all()
         number = next((each.number for each in reversed(known) if each.digest == started.digest), None)
         rows = [_row(each, is_at_work=each.number == number) for each in known]
-        cells = self._plant().loop.read(_cells)
-        return {"at_work": {"number": number, "at": started.at}, "versions": rows, "cells": cells}
+        cells, by = self._plant().loop.read(lambda plant: (_cells(plant), plant.restart_by))
+        restart = {"by": by, "can": self._restarts}
+        now = {"number": number, "at": started.at}
+        return {"at_work": now, "versions": rows, "cells": cells, "restart": restart}
+
+    def restart(self, by: str, *, wanted: bool) -> State:
+        if not self._restarts:
+            raise DraftRefused(NO_RESTART)
+        found = self.listed()  # a plant at rest restarts as soon as it hears of it
+        self._plant().restart_at_rest(by, wanted=wanted)
+        return found | {"restart": {"by": by if wanted else "", "can": True}}
 
     def at_work(self) -> Version:
         """The files at work; DraftRefused where that is not known."""

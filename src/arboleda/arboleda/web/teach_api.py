@@ -67,7 +67,7 @@ class TeachApi(Protocol):
 
     @abstractmethod
     def state(self, cell: str) -> State:
-        """Teacher, the reason why nobody may begin now, the devices with their commands, the targets and the zones."""
+        """Teacher, why nobody may begin now, the devices with their commands, the targets and the zones."""
 
     @abstractmethod
     def press(self, cell: str, button: Button) -> State:

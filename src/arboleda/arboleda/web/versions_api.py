@@ -13,11 +13,19 @@ class VersionsApi(Protocol):
 
     @abstractmethod
     def listed(self) -> State:
-        """`at_work`, `versions` oldest first, and `cells` with what each works by and what it waits for."""
+        """`at_work`, `versions` oldest first, `cells` with what each works by and what it waits for, and
+        `restart`: `by` whom one is wanted ("": by nobody), and whether it `can` be had here.
+        """
 
     @abstractmethod
     def put(self, number: int, by: str) -> State:
         """Put a kept version to work, and bring its files back where they are others now: its `version`, the
         `cells` and when each takes it, and what of it needs a `restart`; or the `problems` for which nothing
         was changed. It waits for seconds.
+        """
+
+    @abstractmethod
+    def restart(self, by: str, *, wanted: bool) -> State:
+        """Have the plant restart with the files that are in their place, once all its cells rest: until then
+        no further task begins. Not `wanted`: no more. It answers as `listed` does.
         """

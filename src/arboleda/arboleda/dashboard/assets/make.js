@@ -4,7 +4,7 @@ import * as cells from "./make_cells.js";
 import * as device from "./make_device.js";
 import * as proof from "./make_prove.js";
 import * as tryout from "./make_try.js";
-import { ask, box, draft, editor, element, fill, isMine, knownName, look, onDraft, say, step, take, there } from "./make_state.js";
+import { ask, box, draft, editor, element, fill, isMine, knownName, look, name, onDraft, say, step, take, there } from "./make_state.js";
 import * as question from "./question.js";
 import { all, words } from "./shell.js";
 
@@ -129,4 +129,13 @@ async function keep() {
   say(kept.version === null ? words.make_not_kept : applied(kept));
   if (kept.version === null) open("draft");
   await look();
+  if (kept.restart.length) await offerRestart();
+}
+
+// What no cell can take while the plant runs: the plant restarts once all its cells rest, if that is wanted.
+async function offerRestart() {
+  const versions = await ask("/api/versions", null);
+  if (!versions?.restart.can || !(await question.confirmed(words.make_restart_now))) return;
+  const asked = await ask("/api/versions/restart", { name: name(), wanted: true });
+  if (asked) say(words.make_restarting);
 }

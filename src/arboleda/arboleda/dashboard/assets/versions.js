@@ -12,6 +12,7 @@ export function start() {
   openAnew();
   setInterval(() => seen() && show(), EVERY_MS);
   part("versions").addEventListener("click", back);
+  part("versions-restart").querySelector("button").addEventListener("click", restart);
 }
 
 // A page from before a cell took another version offers the recipes of before: it is opened anew.
@@ -29,6 +30,7 @@ export async function show() {
   part("versions-box").hidden = false;
   part("versions-now").textContent = found.now;
   part("versions-cells").replaceChildren(...found.cells.map(line));
+  offer(found.restart);
   if (JSON.stringify(found.rows) === part("versions").dataset.shown) return; // a button keeps the focus
   part("versions").dataset.shown = JSON.stringify(found.rows);
   part("versions").replaceChildren(...found.rows.map(row));
@@ -56,15 +58,38 @@ function row({ number, title, lines, back: label }) {
   return item;
 }
 
+// A restart takes what cells cannot take while the plant runs.
+function offer(found) {
+  const box = part("versions-restart");
+  box.hidden = !found;
+  if (!found) return;
+  const [said, button] = box.children;
+  said.textContent = `${found.said} `;
+  button.textContent = found.button;
+  button.dataset.wanted = !found.wanted;
+}
+
+async function restart({ target }) {
+  target.disabled = true;
+  const answer = await post("restart", { name: part("versions-box").dataset.by, wanted: target.dataset.wanted === "true" });
+  target.disabled = false;
+  const said = answer && (await answer.json().catch(() => null));
+  part("versions-said").textContent = answer?.ok ? "" : (said?.sentence ?? part("versions-box").dataset.lost);
+  show();
+}
+
+function post(way, asked) {
+  const options = { method: "POST", headers: { "content-type": "application/json" }, body: JSON.stringify(asked) };
+  return fetch(`/api/versions/${way}`, options).catch(() => null);
+}
+
 async function back(event) {
   const button = event.target.closest("button[data-number]");
   if (!button) return;
   const { by, sure } = part("versions-box").dataset;
   if (!confirm(`${button.textContent}: ${sure}`)) return;
   button.disabled = true;
-  const body = JSON.stringify({ name: by });
-  const options = { method: "POST", headers: { "content-type": "application/json" }, body };
-  const answer = await fetch(`/api/versions/${button.dataset.number}/put`, options).catch(() => null);
+  const answer = await post(`${button.dataset.number}/put`, { name: by });
   button.disabled = false;
   const said = answer && (await answer.json().catch(() => null));
   part("versions-said").textContent = said ? (answer.ok ? told(said) : said.sentence) : part("versions-box").dataset.lost;

@@ -13,7 +13,26 @@ def face(listed: dict[str, Any], words: Words) -> dict[str, Any]:
     now = words("versions.started", at=at) if number is None else words("versions.now", number=number, at=at)
     later = [each for each in listed["cells"] if each["following"] is not None]
     cells = [words("versions.later", cell=each["cell"], number=each["following"]) for each in later]
-    return {"now": now, "cells": cells, "rows": [_row(each, words) for each in reversed(listed["versions"])]}
+    restart = _restart(listed["restart"], words)
+    return {
+        "now": now,
+        "cells": cells,
+        "restart": restart,
+        "rows": [_row(each, words) for each in reversed(listed["versions"])],
+    }
+
+
+def _restart(restart: dict[str, Any], words: Words) -> dict[str, Any] | None:
+    """What is said of a restart and the button for it; None where the plant cannot restart itself."""
+    if not restart["can"]:
+        return None
+    by = restart["by"]
+    said = words("versions.restarts", by=by) if by else words("versions.restart_how")
+    return {
+        "said": said,
+        "wanted": bool(by),
+        "button": words(f"versions.{'no_restart' if by else 'restart'}"),
+    }
 
 
 def _row(version: dict[str, Any], words: Words) -> dict[str, Any]:

@@ -5,14 +5,15 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 
-from arboleda.model.messages import Event, OperatorRequest, Revision, Shutdown, TaskRequest
+from arboleda.model.messages import Event, OperatorRequest, RestartRequest, Revision, Shutdown, TaskRequest
 from arboleda.model.plant_model import Evidence, Link
 from arboleda.recorder.troubles import ALARM, BOOT, BRIDGE, Trouble
 from arboleda.simulator.network import keeps_its_place
 from arboleda.simulator.world import World
 from arboleda.wire.transport import Publication
 
-INPUTS = (TaskRequest, OperatorRequest, Shutdown, Revision)  # what comes from people; devices are virtual
+# What comes from people; devices are virtual.
+INPUTS = (TaskRequest, OperatorRequest, Shutdown, Revision, RestartRequest)
 ONE_RESTART_S = 1.0  # all robots of a bridge report its restart
 INSIDE_S = 0.001  # a silence begins after one report and ends before another
 TOO_LATE_S = 1e6  # a last will that nobody waits for

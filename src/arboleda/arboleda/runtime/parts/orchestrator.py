@@ -41,6 +41,7 @@ from arboleda.model.messages import (
     Outcome,
     Remember,
     Report,
+    RestartRequest,
     Revision,
     RevisionAnswer,
     Shutdown,
@@ -314,6 +315,10 @@ class Orchestrator:
             Revision(at=clock.seconds(), version=put.version, by=put.by, changes=put.changes, request=token)
         )
         return answer
+
+    def restart_at_rest(self, by: str, *, wanted: bool) -> None:
+        """Have no further task begin, so that the plant can be restarted; or have them begin again."""
+        self.hear(RestartRequest(at=clock.seconds(), by=by, wanted=wanted))
 
     def _take(self, request: OperatorRequest) -> None:
         """Give the plant an operator's request; a stop does not wait until the plant's thread is free."""

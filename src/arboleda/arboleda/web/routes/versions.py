@@ -32,6 +32,12 @@ class PutRequest(BaseModel):
     )
 
 
+class RestartWish(PutRequest):
+    """Body of a wish for a restart, or of its end."""
+
+    wanted: bool = Field(default=True, description="False: the restart is not wanted any more.")
+
+
 class VersionRow(ResponseModel):
     number: int
     at: str = Field(description="In UTC, ISO 8601.")
@@ -53,10 +59,16 @@ class CellVersion(ResponseModel):
     when: str = Field(description="now, or when which task has ended.")
 
 
+class Restart(ResponseModel):
+    by: str = Field(description="Who wants one once all cells rest; empty: nobody.")
+    can: bool = Field(description="Whether the plant can restart itself here.")
+
+
 class VersionList(ResponseModel):
     at_work: AtWork
     versions: list[VersionRow] = Field(description="Oldest first.")
     cells: list[CellVersion]
+    restart: Restart
 
 
 def routes(side: PlantApi) -> APIRouter:
@@ -76,6 +88,17 @@ def routes(side: PlantApi) -> APIRouter:
         require(request.scope["arboleda.role"], MAY)
         desk, told = _versions(side), read_body(await request.body(), PutRequest)
         return PlainJson(await run_in_threadpool(lambda: desk.put(number, told.name)))
+
+    wish = {"requestBody": {"content": {"application/json": {"schema": RestartWish.model_json_schema()}}}}
+
+    @api.post("/restart", response_model=VersionList, responses=REFUSED, openapi_extra=wish)
+    async def restart(request: Request) -> JSONResponse:
+        """Restart the plant with its files as they are now, once all its cells rest; until then no further
+        task begins.
+        """
+        require(request.scope["arboleda.role"], MAY)
+        desk, told = _versions(side), read_body(await request.body(), RestartWish)
+        return PlainJson(await run_in_threadpool(lambda: desk.restart(told.name, wanted=told.wanted)))
 
     return api
 
