@@ -137,8 +137,10 @@ def _recorded(plant: Plant, now: float, events: tuple[Any, ...], messages: tuple
 
 
 def from_http() -> Iterator[Act]:
-    """A task from its HTTP request to its first command, in a plant that keeps it."""
-    model = _model(1, dwell_s=0)
+    """A task from its HTTP request to its first command, in a plant that keeps it; by the clock of this
+    machine, which may be so busy that a report is old by then.
+    """
+    model = _model(1, dwell_s=0, stale_after_s=3600.0)
     with Store(IN_MEMORY) as store:
         port = Port()
         plant = WholePlant(model, EPOCH, _crash, store)

@@ -24,6 +24,7 @@ from arboleda.model.messages import (
     Reason,
     Receipt,
     Report,
+    RestartRequest,
     Revision,
     Shutdown,
     TaskAnswer,
@@ -137,6 +138,7 @@ STRATEGIES = {
         changes=st.just(("one", "dos")),
         request=WORD,
     ),
+    RestartRequest: st.builds(RestartRequest, at=NUMBERS, by=TEXTS, wanted=st.booleans()),
 }
 
 
