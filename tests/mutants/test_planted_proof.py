@@ -9,9 +9,9 @@ import pytest
 from ..lengths import length
 from .planted_proof import MOST, sighted
 from .proof_bug import PLANTS, ProofBug
-from .proof_bugs import BY_FAULTS, NOT_FOUND, PROOF_BUGS
+from .proof_bugs import BY_FAULTS, EQUAL, NOT_FOUND, PROOF_BUGS
 
-FOUND = [bug for bug in PROOF_BUGS if (bug.plant, bug.about) not in NOT_FOUND]
+FOUND = [bug for bug in PROOF_BUGS if (bug.plant, bug.about) not in {**NOT_FOUND, **EQUAL}]
 AT_ONCE = [bug for bug in FOUND if (bug.plant, bug.about) not in BY_FAULTS]
 
 
@@ -27,5 +27,5 @@ def test_there_are_many_bugs_of_each_plant_and_most_are_found() -> None:
     known = {(bug.plant, bug.about) for bug in PROOF_BUGS}
     assert len(known) == len(PROOF_BUGS) >= 60
     assert {plant for plant, _ in known} == set(PLANTS)
-    assert {*NOT_FOUND, *BY_FAULTS} <= known
-    assert len(FOUND) / len(PROOF_BUGS) > 0.92
+    assert {*NOT_FOUND, *EQUAL, *BY_FAULTS} <= known
+    assert len(FOUND) / (len(PROOF_BUGS) - len(EQUAL)) >= 0.95

@@ -73,24 +73,27 @@ def test_an_instant_is_never_after_the_event_that_it_precedes() -> None:
 def test_faults_of_an_instant_are_one_form_of_each_kind_and_target_then_all_others(
     model: PlantModel,
 ) -> None:
-    at_work, of_others, others = single_faults(model, model.cell("sis_a"), AT)
-    first = [*at_work, *of_others]
+    *firsts, others = single_faults(model, model.cell("sis_a"), AT)
+    first = [each for part in firsts for each in part]
     assert len({(each.kind, each.target) for each in first}) == len(first)
     assert not set(first) & set(others)
     assert {each.at for each in (*first, *others)} == {2.0}
 
 
-def test_faults_of_the_device_whose_step_it_is_come_first(model: PlantModel) -> None:
-    of_step = replace(AT, what="ra1: moves")
-    at_work, of_others, _ = single_faults(model, model.cell("sis_a"), of_step, only=["reboot", "plant_crash"])
-    assert [each.target for each in at_work] == ["ra_1"]
-    assert {each.kind for each in of_others} == {"reboot", "plant_crash"}
+def test_faults_of_the_device_whose_step_it_is_come_first_and_of_those_the_ones_in_its_work(
+    model: PlantModel,
+) -> None:
+    of_step, kinds = replace(AT, what="ra1: moves"), ["reboot", "plant_crash", "no_grip"]
+    of_work, of_board, of_others, _ = single_faults(model, model.cell("sis_a"), of_step, only=kinds)
+    assert [(each.kind, each.target) for each in of_work] == [("no_grip", "ra_1")]
+    assert [(each.kind, each.target) for each in of_board] == [("reboot", "ra_1")]
+    assert {each.kind for each in of_others} >= {"reboot", "plant_crash"}
     assert "ra_1" not in {each.target for each in of_others}
 
 
 def test_each_form_comes_first_at_one_of_the_instants(model: PlantModel) -> None:
     cell = model.cell("sis_a")
-    parts = [single_faults(model, cell, AT, number=number, only=["reboot"])[1] for number in range(2)]
+    parts = [single_faults(model, cell, AT, number=number, only=["reboot"])[2] for number in range(2)]
     assert {each.word for faults in parts for each in faults} == {"will", "no will"}
 
 

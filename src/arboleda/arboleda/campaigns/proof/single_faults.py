@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Collection
 
 from arboleda.model.plant_model import Cell, PlantModel
-from arboleda.simulator.faults import COUNTED, OF_CRASHES, ON_ONE_HOST, Fault
+from arboleda.simulator.faults import COUNTED, OF_CRASHES, OF_WORK, ON_ONE_HOST, Fault
 from arboleda.simulator.faults.kind import NONE, Kind
 
 from .instants import Instant
 
-OF_OTHERS, OTHER_FORMS = 1, 2  # numbers of parts
+OF_ITS_WORK, OF_ITS_BOARD, OF_OTHERS, OTHER_FORMS = range(4)  # numbers of parts
 
 
 def single_faults(
@@ -18,10 +18,11 @@ def single_faults(
 ) -> list[list[Fault]]:
     """The faults that begin at an instant, always in the same order, in parts.
 
-    The first has one form of each kind on the device whose step it is, another one at the instant of the next
-    `number`; the second the same on all other targets; the third has all other forms. Of each span both ends
-    are taken, of each amount the largest. A kind that comes at a commit comes at each of those that follow
-    the instant at once. `only`: of these kinds.
+    The first has one form of each kind in which the device whose step it is does its work badly, another one
+    at the instant of the next `number`; the second the same of its board, its line and the people at it; the
+    third of all other targets; the fourth has all other forms. Of each span both ends are taken, of each
+    amount the largest. A kind that comes at a commit comes at each of those that follow the instant at once.
+    `only`: of these kinds.
     """
     kinds = [kind for kind in possible_kinds() if not only or kind.name in only]
     parts: list[list[Fault]] = [[] for _ in range(OTHER_FORMS + 1)]
@@ -30,9 +31,14 @@ def single_faults(
         for target in dict.fromkeys(kind.targets(model)):
             forms = [] if target in _elsewhere(model, cell) else _forms(kind, model, target, instant)
             for index, form in enumerate(forms):
-                part = OF_OTHERS if target not in at_work else 0
+                part = _part(kind.name) if target in at_work else OF_OTHERS
                 parts[part if index == number % len(forms) else OTHER_FORMS].append(form)
     return parts
+
+
+def _part(kind: str) -> int:
+    """The part of a kind of fault of the device whose step it is."""
+    return OF_ITS_WORK if kind in OF_WORK else OF_ITS_BOARD
 
 
 def possible_kinds() -> list[Kind]:

@@ -27,6 +27,7 @@ __all__ = [
     "OF_DEVICES",
     "OF_HOSTS",
     "OF_PLACES",
+    "OF_WORK",
     "ON_ONE_HOST",
     "Fault",
     "Kind",
@@ -51,6 +52,9 @@ KINDS: dict[str, Kind] = {kind.name: kind for family in FAMILIES for kind in fam
 
 OF_DEVICES = tuple(kind.name for kind in devices.KINDS)
 """The kinds that befall devices of declared kinds alone: nobody in the packaged plants and in drawn ones."""
+
+OF_WORK = tuple(kind.name for family in (devices, effectors, sensors) for kind in family.KINDS)
+"""The kinds in which a device or an effector does its work badly, or says so falsely."""
 
 OF_PLACES = ("operator_load",)
 """The kinds that befall cells with places alone, which the packaged plants have not."""
