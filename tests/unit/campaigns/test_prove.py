@@ -14,6 +14,7 @@ import pytest
 
 from arboleda.campaigns.plants import Plant
 from arboleda.campaigns.proof.calm import Calm, calm_run, calm_runs
+from arboleda.campaigns.proof.course import course_of
 from arboleda.campaigns.proof.forks import CAN_FORK, run_all, run_one
 from arboleda.campaigns.proof.instants import Instant, Side
 from arboleda.campaigns.proof.outcome import End
@@ -218,6 +219,26 @@ def test_forks_do_the_same_as_runs_from_the_beginning(plant: Path) -> None:
     faults = proof.faults(proof.portions[3])
     forked = run_all(proof.model, calm, faults, lambda: None, forks=True)
     assert faults and forked == run_all(proof.model, calm, faults, lambda: None, forks=False)
+
+
+@pytest.mark.parametrize("recipe", [STAMP, STAMP.replace("press.lift()", "cell.wait(8), press.lift()")])
+def test_runs_that_end_as_soon_as_the_rest_is_known_have_the_outcomes_of_whole_ones(
+    plant: Path, recipe: str
+) -> None:
+    (plant.parent / "small.yaml").write_text(PRESS)
+    (plant.parent / "small.py").write_text(recipe)
+    model = Plant(declared=loader.load(plant)).model
+    calm = calm_run(model, next(scenarios(model)))
+    course, back = course_of(model, calm), 0
+    for number, instant in enumerate(length(calm.instants[::7], whole=calm.instants)):
+        parts = single_faults(model, model.cells[0], instant, number=number)
+        faults = [each for part in parts for each in part][:: length(9, whole=1)]
+        whole = run_all(model, calm, faults, lambda: None)
+        short = run_all(model, calm, faults, lambda: None, course=course)
+        assert [each.outcome for each in short] == [each.outcome for each in whole]
+        back += sum(each.joined_at is not None for each in short)
+        assert sum(each.seconds for each in short) < sum(each.seconds for each in whole)
+    assert back > 0
 
 
 def test_a_task_that_ended_as_the_plant_died_counts_as_what_was_kept_of_it(plant: Path) -> None:

@@ -111,8 +111,10 @@ class JudgedWorld:
         for number in list(self._ends):
             self._end(number)
 
-    def come_to_rest(self) -> None:
-        """End all faults, let everything come to rest, and judge that it does so and stays at rest."""
+    def come_to_rest(self, until: Callable[[], bool] = lambda: False) -> None:
+        """End all faults, let everything come to rest, and judge that it does so and stays at rest, for some
+        time or `until` it is known to.
+        """
         self._rests += 1
         self.end_faults()
         tasks = self._look.record.tasks.open
@@ -122,7 +124,7 @@ class JudgedWorld:
             if len(tasks) < open_tasks:
                 open_tasks, end = len(tasks), self.seconds + REST_S
         self._raise(self._judges.at_the_end(self._look))
-        self.world.advance(STAYS_S)
+        self.world.advance(STAYS_S, until)
         self._raise(self._judges.at_the_end(self._look))
 
     def _is_delivered(self) -> bool:

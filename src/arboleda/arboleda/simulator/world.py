@@ -9,6 +9,7 @@ from dataclasses import dataclass, field, replace
 from enum import Enum
 from heapq import heappop, heappush
 from itertools import count
+from operator import itemgetter
 from typing import TYPE_CHECKING, Any
 
 from arboleda.core.leaving import SENT_TOO_LATE, is_too_late, late_departure, leaves_unkept
@@ -402,6 +403,17 @@ class World:
         self._stalled = {process: until + seconds for process, until in self._stalled.items()}
         for line in self._lines():
             line.skip(seconds)
+
+    @property
+    def to_come(self) -> list[tuple[float, Callable[[Any], None], Any]]:
+        """The calls that are to be made, in order, each with its time and its argument."""
+        return [(at, *call) for at, _, *call in sorted(self._agenda, key=itemgetter(0, 1))]
+
+    @property
+    def is_quiet(self) -> bool:
+        """True if every process runs, and no message is under way."""
+        running = not self._off and not self._stalled
+        return running and all(line.is_clear(self.now) for line in self._lines())
 
     @property
     def awake_s(self) -> float:

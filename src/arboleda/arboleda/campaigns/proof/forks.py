@@ -12,6 +12,7 @@ from arboleda.model.plant_model import PlantModel
 from arboleda.simulator.faults import Fault
 
 from .calm import Calm
+from .course import Course, rejoin
 from .outcome import Run
 from .stage import AllForked, Stage
 
@@ -21,28 +22,50 @@ CAN_FORK = hasattr(os, "fork")
 
 
 def run_all(
-    model: PlantModel, calm: Calm, faults: Sequence[Fault], tick: Tick, *, forks: bool = CAN_FORK
+    model: PlantModel,
+    calm: Calm,
+    faults: Sequence[Fault],
+    tick: Tick,
+    *,
+    forks: bool = CAN_FORK,
+    course: Course | None = None,
 ) -> list[Run]:
-    """A run for each of the faults, which all begin at one instant; the same with forks and without."""
-    return run_groups(model, calm, [(fault,) for fault in faults], tick, forks=forks)
+    """A run for each of the faults, which all begin at one instant; the same with forks and without.
+
+    With the `course` of the calm run each ends as soon as it is known how it goes on.
+    """
+    return run_groups(model, calm, [(fault,) for fault in faults], tick, forks=forks, course=course)
 
 
 def run_groups(
-    model: PlantModel, calm: Calm, groups: Sequence[Faults], tick: Tick, *, forks: bool = CAN_FORK
+    model: PlantModel,
+    calm: Calm,
+    groups: Sequence[Faults],
+    tick: Tick,
+    *,
+    forks: bool = CAN_FORK,
+    course: Course | None = None,
 ) -> list[Run]:
     """The same for groups of faults that befall one run: their first ones all begin at one instant."""
     if forks and groups:
-        return _forked(model, calm, groups, tick)
+        return _forked(model, calm, groups, tick, course)
     runs = []
     for faults in groups:
-        runs.append(run_one(model, calm, *faults))
+        runs.append(run_one(model, calm, *faults, course=course))
         tick()
     return runs
 
 
-def run_one(model: PlantModel, calm: Calm, *faults: Fault) -> Run:
-    """One run from its beginning."""
-    return run_on(Stage(model, calm.scenario), calm, *faults)
+def run_one(model: PlantModel, calm: Calm, *faults: Fault, course: Course | None = None) -> Run:
+    """One run from its beginning; without a `course` to its end, whatever is known of that."""
+    return run_on(_stage(model, calm, course), calm, *faults)
+
+
+def _stage(model: PlantModel, calm: Calm, course: Course | None) -> Stage:
+    stage = Stage(model, calm.scenario, waits=course is None)
+    if course is not None:
+        rejoin(stage, course)
+    return stage
 
 
 def run_on(stage: Stage, calm: Calm, *faults: Fault) -> Run:
@@ -55,8 +78,10 @@ def _play(stage: Stage, calm: Calm, faults: Faults, begin: Callable[[], None]) -
     return stage.play(at, begin, expected=calm.state, commands=calm.commands, lasts_s=calm.lasts_s)
 
 
-def _forked(model: PlantModel, calm: Calm, groups: Sequence[Faults], tick: Tick) -> list[Run]:
-    stage = Stage(model, calm.scenario)
+def _forked(
+    model: PlantModel, calm: Calm, groups: Sequence[Faults], tick: Tick, course: Course | None
+) -> list[Run]:
+    stage = _stage(model, calm, course)
     forks = _Forks(stage, groups, tick)
     try:
         run = _play(stage, calm, groups[0], forks.begin)

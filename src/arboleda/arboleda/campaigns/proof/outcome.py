@@ -57,7 +57,7 @@ class Outcome:
 @dataclass(frozen=True, kw_only=True)
 class Run:
     """One run: its outcome, its trace as one hash, and its times in s: when the fault was mended at the
-    latest, when the attendant came, and when it was over.
+    latest, when the attendant came, and when it was over; `joined_at`: from when on it was as the calm one.
     """
 
     outcome: Outcome
@@ -65,6 +65,7 @@ class Run:
     mended_at: float
     attended_at: float
     seconds: float
+    joined_at: float | None = None
 
 
 def plain(outcome: Outcome) -> dict[str, Any]:

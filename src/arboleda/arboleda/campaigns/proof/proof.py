@@ -12,6 +12,7 @@ from arboleda.model.plant_model import PlantModel
 from arboleda.simulator.faults import Fault
 
 from .calm import Calm
+from .course import Course, course_of
 from .forks import run_all
 from .instants import Instant
 from .outcome import Outcome, Run
@@ -66,8 +67,8 @@ class Proof:
 
     @cached_property
     def portions(self) -> list[Portion]:
-        """All portions: one form of each fault on the device at work first, then on others, then all other
-        forms; of each the beginnings of steps first.
+        """All portions: one form of each fault in the work of the device at work first, then of its board,
+        then on others, then all other forms; of each the beginnings of steps first.
 
         Portions of one rank are spread over all tasks and instants, so that a short budget meets each.
         """
@@ -93,6 +94,16 @@ class Proof:
     def number(self, name: str) -> int:
         """The number of the portion of this name; KeyError where there is none."""
         return self._numbers[name]
+
+    def _course(self, row: int) -> Course:
+        """The course of the calm run of this number."""
+        if row not in self._courses:
+            self._courses[row] = course_of(self.model, self.calm[row])
+        return self._courses[row]
+
+    @cached_property
+    def _courses(self) -> dict[int, Course]:
+        return {}
 
     @cached_property
     def _numbers(self) -> dict[str, int]:
@@ -139,7 +150,8 @@ class Proof:
         """Run all faults of the portion of this number."""
         portion = self.portions[seed]
         calm = self.calm[portion.scenario]
-        runs = run_all(self.model, calm, self.faults(portion), tick or (lambda: None))
+        tick, course = tick or (lambda: None), self._course(portion.scenario)
+        runs = run_all(self.model, calm, self.faults(portion), tick, course=course)
         return proved_by(seed, runs)
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
+from hashlib import blake2b
 
 from arboleda.core.cell import CellRun
 from arboleda.core.cell_states import CellState
@@ -23,6 +24,7 @@ from arboleda.simulator.world import PLANT
 from .end_state import EndState, differences, end_state, heard_facts, stated
 from .outcome import IS_DONE, End, Outcome, Run
 from .scenario import Scenario, alone
+from .standstill import Standstill
 
 ASKED_AT_S = 2.0  # when somebody asks for the task: everybody is connected by then
 ENDS_AS_SAID = recipes_end_as_they_say.name  # which the simulator asks of calm runs, and of places
@@ -46,11 +48,21 @@ class AllForked(BaseException):
     """Raised where all that is to befall a task does so in forks of this process."""
 
 
+class Rejoined(Exception):
+    """Raised where a run is again as the calm one: `run` is that."""
+
+    def __init__(self, run: Run) -> None:
+        super().__init__("as without a fault")
+        self.run = run
+
+
 class Stage:
     """Stage: a task in its plant; `play` has something begin at its time, and returns what came of it.
 
     `state` is what was so when the task was done, `stated` what its recipe says of that; `commands` are those
     that its cell has given by then. `asked` are the persons who were asked something in the last step.
+    `on_its_way` is called after each step until the task has ended. `waits`: it goes on for its whole time
+    also where it is known that nothing happens any more.
     """
 
     def __init__(
@@ -60,9 +72,11 @@ class Stage:
         *,
         keep: bool = False,
         make_plant: Callable[..., Plant] | None = None,
+        waits: bool = False,
     ) -> None:
         self.watched = JudgedWorld(alone(model, scenario.cell), keep=keep, make_plant=make_plant)
         self.world = self.watched.world
+        self._standstill = None if waits else Standstill(self.watched)
         self.cell = model.cell(scenario.cell)
         self.state: EndState = {}
         self.stated: EndState = {}
@@ -74,7 +88,8 @@ class Stage:
         self._questions: set[str] = set()  # by id, of all that persons were asked so far
         self.told: TaskChanged | None = None  # the last word on the task
         self.mended_at = 0.0  # when the fault was ended, s
-        self._began, self._lost_from = False, 0.0
+        self.on_its_way: Callable[[], None] = lambda: None
+        self.began, self._lost_from = False, 0.0
         self._task, self._request = scenario.task, REQUEST
         self._attendant: Attendant | None = None
         self._acts: int | None = None  # of the attendant, when the cell was ready first
@@ -111,8 +126,11 @@ class Stage:
             self._work(lasts_s + PATIENCE_S)
             outcome, attended_at = self._outcome(expected, commands), self.watched.seconds
             self._attendant = Attendant(self.world, seed=0)
-            self.watched.come_to_rest()
+            self.watched.come_to_rest(self._stands_still)
             outcome = replace(outcome, acts=0 if outcome.alone else self._acts)
+        except Rejoined as rejoined:
+            digest = _hashed(self.watched.trace.digest, rejoined.run.digest)
+            return replace(rejoined.run, digest=digest, joined_at=self.watched.seconds)
         except BrokenInvariant as broken:
             outcome = self._broken(outcome, broken)
         except Exception as error:  # noqa: BLE001 - that none escapes is one of the invariants
@@ -140,6 +158,12 @@ class Stage:
             return "" if told else "nobody takes it"
         return f"{told.state.value}: {told.sentence}"
 
+    @property
+    def done(self) -> object:
+        """All that was commanded and done so far, and the last word on the task."""
+        ended = {done: dict(each) for done, each in self._ended.items()}
+        return tuple(self.commands), ended, None if self.told is None else self.told.state
+
     def befall(self, faults: Sequence[Fault]) -> None:
         """Have the first of these faults begin now, the others at their time if the task is at work then."""
         self.watched.begin(faults[0])
@@ -151,7 +175,7 @@ class Stage:
             self.watched.begin(fault)
 
     def _begin(self, begin: Callable[[], None]) -> None:
-        self._began, self._lost_from = True, self.world.now + LOST_S
+        self.began, self._lost_from = True, self.world.now + LOST_S
         begin()
 
     def _work(self, at_most_s: float) -> None:
@@ -164,17 +188,21 @@ class Stage:
             self.mended_at = self.watched.seconds
             self.watched.end_faults()
             self.world.advance(HEARD_S)
-            self.world.advance(GRACE_S, self._is_ready)
+            self.world.advance(GRACE_S, lambda: self._is_ready() or self._stands_still())
             if self.ended or self._is_stuck:
                 return
 
     def _is_over(self) -> bool:
         lost = self.told is None and self.world.now >= self._lost_from
-        return self._began and (self.ended or self._is_stuck or lost)
+        self.on_its_way()
+        return self.began and (self.ended or self._is_stuck or lost)
 
     @property
     def _is_stuck(self) -> bool:
         return self.run.state in STUCK and not self.run.goes_on
+
+    def _stands_still(self) -> bool:
+        return self._standstill is not None and self._standstill.lasts
 
     def _is_ready(self) -> bool:
         run = self.run
@@ -259,6 +287,10 @@ class Stage:
             self.state = end_state(self.watched, self.cell)
             self.heard = heard_facts(self.watched, self.cell)
             self.stated = stated(self.cell, order.recipe, order.values)
+
+
+def _hashed(*digests: str) -> str:
+    return blake2b("".join(digests).encode(), digest_size=16).hexdigest()
 
 
 def entry_name(entry: Entry) -> str:

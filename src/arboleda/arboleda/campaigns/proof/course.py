@@ -1,0 +1,70 @@
+"""Course of a calm run: how its world was every now and then, to know the runs that come back to it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from arboleda.model.plant_model import PlantModel
+
+from .calm import Calm
+from .likeness import likeness
+from .outcome import Run
+from .stage import ASKED_AT_S, Rejoined, Stage
+
+EVERY_S = 0.5
+LOOKS = (1.0, 4.0)  # s after a fault: each look costs as much as 3 s of a run
+
+
+@dataclass(frozen=True, kw_only=True)
+class Course:
+    """Course of a calm run: its likeness by the time of the world, and what had been done by then."""
+
+    run: Run
+    points: Mapping[float, tuple[bytes, object]]
+
+
+def course_of(model: PlantModel, calm: Calm) -> Course:
+    """The course of a calm run, which is run again for it."""
+    stage = Stage(model, calm.scenario)
+    points: dict[float, tuple[bytes, object]] = {}
+
+    def look() -> None:
+        if not points or stage.world.now >= max(points) + EVERY_S:
+            points[stage.world.now] = (likeness(stage.world), _done(stage))
+
+    stage.on_its_way = look
+    stage.play(ASKED_AT_S, lambda: None, expected=calm.state, commands=calm.commands, lasts_s=calm.lasts_s)
+    return Course(run=calm.run, points=points)
+
+
+def rejoin(stage: Stage, course: Course) -> None:
+    """Have a run end as the calm one as soon as nothing is left of its fault.
+
+    Its world is then as it was there at that time, and the same was done: so what follows is the same. Who
+    judges excuses more after a fault, not less.
+    """
+    waits = [*LOOKS]
+
+    def look() -> None:
+        point = course.points.get(stage.world.now)
+        if not waits or point is None or not _is_over(stage, waits[0]) or _done(stage) != point[1]:
+            return
+        if likeness(stage.world) == point[0]:
+            raise Rejoined(course.run)
+        del waits[0]
+
+    stage.on_its_way = look
+
+
+def _is_over(stage: Stage, since_s: float) -> bool:
+    """True if the fault has ended so long ago, and nobody lies or is held any more."""
+    world = stage.world
+    kept_up = world.faults_active or any(world.deceptions.values()) or any(world.holds.values())
+    return stage.began and not kept_up and world.now >= world.last_fault_at + since_s
+
+
+def _done(stage: Stage) -> object:
+    """What was done so far, and how many reports were heard of each robot: a quick look before the other."""
+    beliefs = stage.world.plant.dispatcher.beliefs.values()
+    return stage.done, stage.world.starts, [each.reports for each in beliefs]

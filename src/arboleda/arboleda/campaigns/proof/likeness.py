@@ -1,0 +1,130 @@
+"""Likeness of a world: all that it refers to and that what follows may depend on, as one hash."""
+
+from __future__ import annotations
+
+import functools
+import types
+from collections import deque
+from collections.abc import Hashable, Iterator
+from enum import Enum
+from hashlib import blake2b
+from itertools import count
+from random import Random
+from typing import Any
+
+from py_trees.behaviour import Behaviour
+
+from arboleda.core.plant import Plant
+from arboleda.dispatch.belief import Belief
+from arboleda.dispatch.dispatcher import Dispatcher
+from arboleda.kinds.declared import DeviceKind
+from arboleda.model.plant_model import Cell, PlantModel, Robot
+from arboleda.model.recipe import Recipe
+from arboleda.model.sentence import Phrase
+from arboleda.simulator.network import Line
+from arboleda.simulator.world import World
+from arboleda.wire.board import Board as BridgedBoard
+from arboleda.wire.bridge import Bridge
+
+NOTHING: frozenset[str] = frozenset()
+PLAIN = (type(None), bool, int, float, str, bytes, Enum)
+STATIC = (PlantModel, Cell, Robot, Recipe, DeviceKind, Phrase, type, types.ModuleType)
+"""What the plant file and the code say: the same in all runs of a process."""
+LEFT_OUT: dict[type, frozenset[str]] = {
+    World: frozenset(
+        {
+            "watchers",  # who only looks: the stage and the judges
+            "before_asking",
+            "moment",  # empty between two steps
+            "faults_active",  # asked by whoever compares
+            "last_fault_at",  # for judges: how much they excuse
+            "deceptions",
+            "holds",
+            "_agenda",  # said by `to_come`
+            "_agenda_no",  # the order of what is to come at one time, which that keeps
+        }
+    ),
+    Plant: frozenset({"_changes", "revisions"}),  # numbers that say to a page that there is something new
+    Dispatcher: frozenset({"version"}),
+    Belief: frozenset({"rate_hz", "_counted"}),  # how often a board speaks, which is shown and no more
+    Bridge: frozenset({"_strays"}),  # what was refused, for people
+    BridgedBoard: frozenset({"counters"}),
+    Behaviour: frozenset({"id"}),  # drawn anew for each tree
+    Line: frozenset({"busy_until"}),  # said as how long that still is
+}
+"""Attributes by class that say nothing of what follows, and why. All others count."""
+
+
+def likeness(world: World) -> bytes:
+    """Two worlds of one process with equal hashes do the same from now on, if the same is done to them."""
+    hashed = blake2b(world.now.hex().encode(), digest_size=16)
+    found: list[Any] = [world, world.to_come]  # kept, so that no other object gets the number of one of them
+    numbers = {id(each): number for number, each in enumerate(found)}
+    for whole in found:  # which grows meanwhile
+        words: list[Hashable] = []
+        for part in _parts(whole, world.now):
+            if isinstance(part, PLAIN):
+                words.append(part)
+            elif isinstance(part, STATIC):
+                words.append(_name(part))
+            elif id(part) in numbers:
+                words.append((numbers[id(part)],))
+            else:
+                numbers[id(part)] = len(found)
+                found.append(part)
+                words.append(type(part).__qualname__)
+        hashed.update(repr(words).encode())
+    return hashed.digest()
+
+
+def _name(static: Any) -> str:
+    names = (getattr(static, name, None) for name in ("key", "name", "__qualname__"))
+    return str(next((name for name in names if name), type(static).__name__))
+
+
+def _parts(whole: Any, now: float) -> Iterator[Any]:
+    """All that something refers to itself, in an order of its own."""
+    if isinstance(whole, dict):
+        for pair in whole.items():
+            yield from pair
+    elif isinstance(whole, list | tuple | deque):
+        yield from whole
+    elif isinstance(whole, set | frozenset):
+        yield from sorted(map(repr, whole))
+    elif isinstance(whole, types.FunctionType):
+        yield whole.__qualname__
+        yield from (cell.cell_contents for cell in whole.__closure__ or ())
+    elif isinstance(whole, types.MethodType):
+        yield from (whole.__func__.__qualname__, whole.__self__)
+    elif isinstance(whole, functools.partial):
+        yield from (whole.func, whole.args, whole.keywords)
+    elif isinstance(whole, types.GeneratorType):
+        frame = whole.gi_frame
+        yield from (whole.__qualname__, -1 if frame is None else frame.f_lasti)
+        yield from () if frame is None else frame.f_locals.values()
+    elif isinstance(whole, count | Random):
+        yield repr(whole) if isinstance(whole, count) else whole.getstate()
+    elif isinstance(whole, Line):
+        yield max(0.0, whole.busy_until - now)
+    slots, left_out = _attributes(type(whole))
+    for name in slots:
+        if hasattr(whole, name):
+            yield from (name, getattr(whole, name))
+    for name, value in getattr(whole, "__dict__", {}).items():
+        if name not in left_out:
+            yield from (name, value)
+
+
+@functools.cache
+def _attributes(kind: type) -> tuple[tuple[str, ...], frozenset[str]]:
+    """The slots of a class and its bases that count, and the names that do not.
+
+    Python has private slots under another name.
+    """
+    found, left_out = [], NOTHING.union(*(LEFT_OUT.get(base, NOTHING) for base in kind.__mro__))
+    for base in kind.__mro__:
+        slots = getattr(base, "__slots__", ())
+        for name in (slots,) if isinstance(slots, str) else slots:
+            is_private = name.startswith("__") and not name.endswith("__")
+            found.append(f"_{base.__name__.lstrip('_')}{name}" if is_private else name)
+    return tuple(name for name in found if name not in {*left_out, "__dict__", "__weakref__"}), left_out
