@@ -72,7 +72,7 @@ class Board:
             order, _ = self._work
             self._work = None
             self._facts |= VERBS[order["verbo"]].get("sets") or order["valores"]
-            self._note(order, hecho=order["seq"])
+            self._note(order, hecho=order["seq"], ficha_hecho=order.get("ficha"))
         if self._query is not None and self._query[1] <= now:
             order, _ = self._query
             self._query = None
@@ -134,7 +134,8 @@ class Board:
             self._refuse(word, seq, epoch)
             return
         self._recent.append(seq)
-        self._ids["ack"], self._alive_at = seq, self._now
+        self._keep(ack=seq, ficha_ack=said.get("ficha") if channel == "orden" else None)
+        self._alive_at = self._now
         if said.get("paro") == 0:
             self._latched = False
         elif channel == "orden":
@@ -189,8 +190,12 @@ class Board:
 
     def _note(self, order: dict[str, Any], **ids: Any) -> None:
         if order["epoca"] == self._epoch:  # one of an older epoch is nobody's news any more
-            self._ids |= ids
+            self._keep(**ids)
         self.say()
+
+    def _keep(self, **ids: Any) -> None:
+        """Say this from now on; None: no more."""
+        self._ids = {key: each for key, each in {**self._ids, **ids}.items() if each is not None}
 
     def _refuse(self, word: str, seq: int | None, epoch: int | None) -> None:
         ours = seq is not None and (word == "viejo" or self._epoch in (None, epoch))
@@ -210,6 +215,7 @@ def read(channel: str, payload: bytes) -> dict[str, Any]:
     elif channel == "orden":
         named(said.get("verbo"))
         whole(said.get("visto", 0), UINT32)
+        named(said.get("ficha", "-"), 12)
         values = said.setdefault("valores", {})
         if not isinstance(values, dict):
             raise Bad("valores is no object")
@@ -247,8 +253,8 @@ def whole(value: Any, top: int) -> None:
         raise Bad("no whole number")
 
 
-def named(value: Any) -> None:
-    if not isinstance(value, str) or not NAME.fullmatch(value):
+def named(value: Any, longest: int = 32) -> None:
+    if not isinstance(value, str) or len(value) > longest or not NAME.fullmatch(value):
         raise Bad("no name")
 
 

@@ -227,8 +227,7 @@ void Board::act(const Message& goal) {
 
 void Board::take_up(Job job, const Message& goal) {
     job_ = job;
-    job_seq_ = goal.seq;
-    job_epoch_ = goal.epoch;
+    job_goal_ = goal;
 }
 
 void Board::move(const Message& goal) {
@@ -267,7 +266,7 @@ void Board::stop(bool latch) {
 
 void Board::finish() {
     if (job_ != Job::kNone) {
-        receipts_.finish(job_seq_, job_epoch_);
+        receipts_.finish(job_goal_);
         homed_ = homed_ || job_ == Job::kHome;
     }
     job_ = Job::kNone;

@@ -78,8 +78,7 @@ private:
     Watch watch_;  // over its moves: ramp to a stop
     Receipts receipts_;
     Job job_ = Job::kNone;  // what counts as done when the axes come to rest
-    MaybeNumber job_seq_;
-    MaybeNumber job_epoch_;
+    Message job_goal_;  // the command that it is
     uint64_t now_us_ = 0;
     uint32_t boot_id_ = 0;
     uint32_t refusals_ = 0;

@@ -56,18 +56,24 @@ void facts(Writer& writer, const Device& device, const double* values) {
     writer.close('}');
 }
 
-}  // namespace
-
-size_t encode(const Device& device, const DeviceTelemetry& said, char* buffer, size_t capacity) {
+size_t encode(const Device& device, const DeviceTelemetry& said, bool tokens, char* buffer, size_t capacity) {
     Writer writer(buffer, capacity);
     writer.integer("estado", static_cast<uint32_t>(said.state));
     writer.integer("seq", said.number);
-    write_receipts(writer, said.receipts.numbers());
+    write_receipts(writer, said.receipts.numbers(), tokens);
     writer.integer("arranque", said.boot_id);
     answer(writer, device, said.receipts.answer());
     failures(writer, said.receipts);
     facts(writer, device, said.facts);
     return writer.finish();
+}
+
+}  // namespace
+
+// A device that says much has room for all but the tokens.
+size_t encode(const Device& device, const DeviceTelemetry& said, char* buffer, size_t capacity) {
+    const size_t size = encode(device, said, true, buffer, capacity);
+    return size > 0 ? size : encode(device, said, false, buffer, capacity);
 }
 
 }  // namespace arboleda

@@ -2,6 +2,7 @@
 
 #include "decimal.h"
 #include "json.h"
+#include "unicode.h"
 
 namespace arboleda {
 
@@ -61,7 +62,7 @@ bool stamped_well(const Message& message) {
     return message.channel == Channel::kBeat || message.seq.known == message.epoch.known;
 }
 
-// A stop is never too late, and a beat is no command: whatever stands there is not for them.
+// A stop is never too late nor of a step, and a beat is no command: whatever stands there is not for them.
 bool may_be_late(Channel channel) { return channel != Channel::kStop && channel != Channel::kBeat; }
 
 }  // namespace
@@ -75,6 +76,18 @@ bool read_stamp(const Object& object, Message* message) {
 }
 
 bool read_heard(const Object& object, Message* message) { return optional(object, "visto", &message->heard); }
+
+bool read_token(const Object& object, Message* message) {
+    Value value;
+    if (!object.find("ficha", &value)) {
+        return true;
+    }
+    if (value.kind != Kind::kWord || !is_name(value.text, kTokenBytes)) {
+        return false;
+    }
+    copy_ascii(value.text, message->token.text);
+    return true;
+}
 
 const char* channel_name(Channel channel) { return kChannelNames[static_cast<uint8_t>(channel)]; }
 
@@ -95,8 +108,8 @@ Message decode(Channel channel, const uint8_t* bytes, size_t size, bool retained
         message.epoch.known = message.well_formed && integer(object, "epoca", UINT32_MAX, &message.epoch.value);
         return message;
     }
-    const bool heard = !may_be_late(channel) || read_heard(object, &message);
-    message.well_formed = stamped_well(message) && heard && body(object, axes, &message);
+    const bool labels = !may_be_late(channel) || (read_heard(object, &message) && read_token(object, &message));
+    message.well_formed = stamped_well(message) && labels && body(object, axes, &message);
     return message;
 }
 

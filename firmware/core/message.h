@@ -22,6 +22,13 @@ struct MaybeNumber {
     uint32_t value = 0;
 };
 
+constexpr size_t kTokenBytes = 12;
+
+// Which step of which task a command is, for the board to echo; empty where it has none.
+struct Token {
+    char text[kTokenBytes + 1] = "";
+};
+
 struct Message {
     Channel channel = Channel::kBeat;
     bool well_formed = false;  // else only `seq` and `epoch` count, as far as they could be read
@@ -29,6 +36,7 @@ struct Message {
     MaybeNumber seq;
     MaybeNumber epoch;
     MaybeNumber heard;  // the board's last telemetry that who commands had heard; not of a stop or a beat
+    Token token;        // neither of them has one
     double q_deg[kMostAxes] = {};
     bool on = false;
     Stop stop = Stop::kHalt;
@@ -41,6 +49,9 @@ bool read_stamp(const Object& object, Message* message);
 
 // `visto`; false where it is there and none.
 bool read_heard(const Object& object, Message* message);
+
+// `ficha`; false where it is there and none.
+bool read_token(const Object& object, Message* message);
 
 // The message that these bytes are for a board with so many axes; retained as the broker flagged it.
 Message decode(Channel channel, const uint8_t* bytes, size_t size, bool retained, uint8_t axes);

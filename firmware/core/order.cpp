@@ -20,22 +20,11 @@ Text plain(const char* zero_terminated) {
     return text;
 }
 
-bool within(uint32_t point, char first, char last) {
-    return point >= static_cast<uint32_t>(first) && point <= static_cast<uint32_t>(last);
-}
-
-bool in_name(uint32_t point) {
-    return within(point, 'A', 'Z') || within(point, 'a', 'z') || within(point, '0', '9') || point == '_' ||
-           point == '.' || point == '-';
-}
-
 // Outside ASCII only the plant knows what can be printed.
 bool in_text(uint32_t point) {
     const bool half = point >= 0xD800 && point <= 0xDFFF;  // of a pair, without the other
-    return (within(point, ' ', '~') && point != '"' && point != '\\') || (point > 0xA0 && !half);
+    return (point >= ' ' && point <= '~' && point != '"' && point != '\\') || (point > 0xA0 && !half);
 }
-
-bool is_name(Text text) { return text.size > 0 && consists_of(text, kLongest, in_name); }
 
 bool number(const Value& value, double* read) {
     return real(value.text, kLargest * 8, read) &&
@@ -103,7 +92,7 @@ public:
     // False: no device would take it.
     bool read() {
         Value verb;
-        if (!object_.find("verbo", &verb) || verb.kind != Kind::kWord || !is_name(verb.text)) {
+        if (!object_.find("verbo", &verb) || verb.kind != Kind::kWord || !is_name(verb.text, kLongest)) {
             return false;
         }
         order_.known = find_verb(verb.text);
@@ -135,7 +124,7 @@ private:
         }
         for (size_t at = 0; at < inner.count(); ++at) {
             double number = 0.0;
-            if (!is_name(inner.key(at)) || !is_value(inner.value(at), &number)) {
+            if (!is_name(inner.key(at), kLongest) || !is_value(inner.value(at), &number)) {
                 return false;
             }
         }
@@ -176,7 +165,8 @@ Order decode_order(const Device& device, const uint8_t* bytes, size_t size, bool
         return order;
     }
     const bool stamped = order.head.seq.known == order.head.epoch.known;
-    order.head.well_formed = stamped && read_heard(object, &order.head) && Reader(device, object, &order).read();
+    order.head.well_formed = stamped && read_heard(object, &order.head) && read_token(object, &order.head) &&
+                             Reader(device, object, &order).read();
     order.known = order.known && order.head.well_formed;
     return order;
 }

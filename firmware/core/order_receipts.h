@@ -26,7 +26,7 @@ public:
     bool repeats(const Message& order) const;
     Refusal objection(const Message& order);
     void accept(const Message& order);
-    void finish(const Message& order) { numbers_.finish(order.seq, order.epoch); }
+    void finish(const Message& order) { numbers_.finish(order); }
     void refuse(Refusal refusal, MaybeNumber seq, MaybeNumber epoch) { numbers_.refuse(refusal, seq, epoch); }
     void answered(const Message& order, uint8_t verb, uint8_t choice);
     void fail(const Message& order, const char* word);

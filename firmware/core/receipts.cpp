@@ -58,9 +58,15 @@ Refusal Receipts::objection(const Message& goal) {
     return goal.epoch.value == epoch_.value && newer ? Refusal::kNone : Refusal::kOld;
 }
 
-void Receipts::finish(MaybeNumber seq, MaybeNumber epoch) {
-    if (same(epoch, epoch_)) {
-        finished_ = seq;
+void Receipts::accept(const Message& goal) {
+    accepted_ = goal.seq;
+    accepted_token_ = goal.token;
+}
+
+void Receipts::finish(const Message& goal) {
+    if (same(goal.epoch, epoch_)) {
+        finished_ = goal.seq;
+        finished_token_ = goal.token;
     }
 }
 

@@ -14,15 +14,25 @@ void maybe(Writer& writer, const char* key, MaybeNumber number) {
     }
 }
 
+void maybe(Writer& writer, const char* key, const char* token) {
+    if (token[0] != '\0') {
+        writer.word(key, token);
+    }
+}
+
 }  // namespace
 
-void write_receipts(Writer& writer, const Receipts& receipts) {
+void write_receipts(Writer& writer, const Receipts& receipts, bool tokens) {
     maybe(writer, "epoca_ack", receipts.epoch());
     if (receipts.least().known && !(receipts.epoch().known && receipts.epoch().value == receipts.least().value)) {
         writer.integer("epoca_min", receipts.least().value);
     }
     maybe(writer, "ack", receipts.accepted());
     maybe(writer, "hecho", receipts.finished());
+    if (tokens) {
+        maybe(writer, "ficha_ack", receipts.accepted_token());
+        maybe(writer, "ficha_hecho", receipts.finished_token());
+    }
     if (receipts.refusal() != Refusal::kNone) {
         writer.word("rechazo", refusal_word(receipts.refusal()));
         writer.integer("rechazo_seq", receipts.refused());
@@ -33,7 +43,7 @@ namespace {
 
 void ids(Writer& writer, const Telemetry& said) {
     writer.integer("seq", said.number);
-    write_receipts(writer, said.receipts);
+    write_receipts(writer, said.receipts, true);
     writer.integer("arranque", said.boot_id);
     writer.integer("ref", said.homed ? 1 : 0);
     writer.integer("efector", said.effector ? 1 : 0);

@@ -29,7 +29,8 @@ struct Telemetry {
 
 class Writer;
 
-void write_receipts(Writer& writer, const Receipts& receipts);  // `epoca_ack` to `rechazo_seq`
+// `epoca_ack` to `rechazo_seq`; tokens only where there is room for them.
+void write_receipts(Writer& writer, const Receipts& receipts, bool tokens);
 
 // Compact JSON in `buffer`; its length, or 0 where it does not fit.
 size_t encode(const Telemetry& said, char* buffer, size_t capacity);

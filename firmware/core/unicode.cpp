@@ -87,6 +87,15 @@ uint32_t decode(Text text, size_t* at) {
     return 0x10000 + ((point - 0xD800) << 10) + (low - 0xDC00);
 }
 
+bool within(uint32_t point, char first, char last) {
+    return point >= static_cast<uint32_t>(first) && point <= static_cast<uint32_t>(last);
+}
+
+bool in_name(uint32_t point) {
+    return within(point, 'A', 'Z') || within(point, 'a', 'z') || within(point, '0', '9') || point == '_' ||
+           point == '.' || point == '-';
+}
+
 size_t size_in_utf8(uint32_t point) {
     size_t form = 0;
     while (form < 3 && point >= kForms[form + 1].least) {
@@ -117,6 +126,15 @@ bool consists_of(Text text, size_t longest, bool (*is_one)(uint32_t)) {
         }
     }
     return true;
+}
+
+bool is_name(Text text, size_t longest) { return text.size > 0 && consists_of(text, longest, in_name); }
+
+void copy_ascii(Text text, char* out) {
+    for (size_t at = 0; at < text.size;) {
+        *out++ = static_cast<char>(decode(text, &at));
+    }
+    *out = '\0';
 }
 
 bool same_text(Text one, Text other) {

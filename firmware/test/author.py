@@ -28,6 +28,13 @@ class Ear:
     def reboot(self) -> None:
         self._told = 1
 
+    def token(self) -> dict[str, object]:
+        """`ficha`, or nothing of it."""
+        kind = self._chance.choices(("none", "good", "bad"), (40, 55, 5))[0]
+        good = "".join(self._chance.choices("az09AZ_.-", k=self._chance.randint(1, 12)))
+        bad = self._chance.choice(("", "0123456789abc", 7, None, "a b", "\u00e9"))
+        return {} if kind == "none" else {"ficha": good if kind == "good" else bad}
+
     def heard(self) -> dict[str, object]:
         """`visto`, mostly of late, or nothing of it."""
         kind = self._chance.choices(("none", "late", "long ago", "to come", "bad"), (45, 40, 6, 5, 4))[0]
@@ -72,7 +79,8 @@ class AnyAuthor(ABC):
         return event
 
     def _message_on(self, channel: str) -> str:
-        raw = json.dumps({**self._body(channel), **self._stamp(channel), **self._ear.heard()}).encode()
+        labels = {**self._stamp(channel), **self._ear.heard(), **self._ear.token()}
+        raw = json.dumps({**self._body(channel), **labels}).encode()
         if self.chance.random() < 0.05:
             raw = self._damaged(raw)
         retained = int(self.chance.random() < 0.04)

@@ -35,6 +35,7 @@ class Decoded(ctypes.Structure):
         ("q_deg", ctypes.c_double * JOINTS),
         ("on", ctypes.c_int),
         ("stop", ctypes.c_int),
+        ("token", ctypes.c_char * 13),
     )
 
 

@@ -22,6 +22,7 @@ class DecodedOrder(ctypes.Structure):
         ("heard", ctypes.c_uint32),
         ("verb", ctypes.c_int),
         ("value", ctypes.c_double),
+        ("token", ctypes.c_char * 13),
     )
 
 

@@ -150,13 +150,15 @@ struct Decoded {
     double q_deg[kMostAxes];
     int on;
     int stop;
+    char token[kTokenBytes + 1];
 };
 
 void arboleda_decode(int channel, const uint8_t* bytes, size_t size, int axes, Decoded* out) {
     const Message message = decode(static_cast<Channel>(channel), bytes, size, false, static_cast<uint8_t>(axes));
     *out = {message.well_formed, message.seq.known,   message.epoch.known, message.heard.known,
             message.seq.value,   message.epoch.value, message.heard.value, {},
-            message.on,          static_cast<int>(message.stop)};
+            message.on,          static_cast<int>(message.stop), {}};
+    memcpy(out->token, message.token.text, sizeof out->token);
     memcpy(out->q_deg, message.q_deg, sizeof out->q_deg);
 }
 

@@ -113,12 +113,14 @@ struct DecodedOrder {
     uint32_t heard;
     int verb;
     double value;
+    char token[kTokenBytes + 1];
 };
 
 void arboleda_decode_order(const uint8_t* bytes, size_t size, DecodedOrder* out) {
     const Order order = decode_order(kDevice, bytes, size, false);
     const Message& head = order.head;
     *out = {head.well_formed, order.known,      head.seq.known,   head.epoch.known, head.heard.known,
-            head.seq.value,   head.epoch.value, head.heard.value, order.verb,       order.values[0]};
+            head.seq.value,   head.epoch.value, head.heard.value, order.verb,       order.values[0],  {}};
+    memcpy(out->token, head.token.text, sizeof out->token);
 }
 }

@@ -241,6 +241,32 @@ TEST(what_else_is_against_a_late_move_is_said_first) {
     CHECK(bench.last.receipts.refusal() == Refusal::kNotHomed);
 }
 
+TEST(the_tokens_of_the_last_accepted_and_the_last_done_command_are_echoed) {
+    Bench bench;
+    bench.send(Channel::kJoints, R"({"q1":45,"q2":45,"q3":90,"seq":1,"epoca":5,"ficha":"0a3f9x001a01"})");
+    bench.run(9 * kSecondUs);
+    bench.send(Channel::kEffector, R"({"efector":1,"seq":2,"epoca":5,"ficha":"0a3f9x001b01"})");
+    CHECK(strcmp(bench.last.receipts.accepted_token(), "0a3f9x001b01") == 0);
+    CHECK(strcmp(bench.last.receipts.finished_token(), "0a3f9x001a01") == 0);
+    CHECK(bench.last.receipts.finished().value == 1);
+}
+
+TEST(a_command_without_a_token_takes_the_place_of_the_one_before) {
+    Bench bench;
+    bench.send(Channel::kEffector, R"({"efector":1,"seq":1,"epoca":5,"ficha":"0a3f9x001b01"})");
+    bench.send(Channel::kStop, R"({"paro":2,"seq":2,"epoca":5,"ficha":"0a3f9x001b01"})");
+    CHECK(bench.last.receipts.accepted().value == 2 && bench.last.receipts.accepted_token()[0] == '\0');
+}
+
+TEST(a_refused_command_and_another_epoch_leave_no_token_of_theirs) {
+    Bench bench;
+    bench.send(Channel::kEffector, R"({"efector":1,"seq":1,"epoca":5,"ficha":"0a3f9x001b01"})");
+    bench.send(Channel::kJoints, R"({"q1":999,"q2":45,"q3":90,"seq":2,"epoca":5,"ficha":"0a3f9x001c01"})");
+    CHECK(strcmp(bench.last.receipts.accepted_token(), "0a3f9x001b01") == 0);
+    bench.send(Channel::kJoints, R"({"q1":999,"q2":45,"q3":90,"seq":1,"epoca":6,"ficha":"0a3f9x001c01"})");
+    CHECK(!bench.last.receipts.accepted().known && bench.last.receipts.accepted_token()[0] == '\0');
+}
+
 TEST(who_heard_a_board_before_it_was_away_has_to_hear_it_again) {
     Bench bench;
     bench.run(kSecondUs);

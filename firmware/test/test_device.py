@@ -92,6 +92,7 @@ def same(raw: bytes) -> bool:
     stamp = ((ours.seq, ours.has_seq), (ours.epoch, ours.has_epoch), (ours.heard, ours.has_heard))
     read = [number if known else None for number, known in stamp]
     assert read == [plant.seq, plant.epoch, plant.heard], raw
+    assert (ours.token.decode() or None) == plant.token, raw
     command = MachineBody(valve().kind).command(plant)
     assert bool(ours.known) is (command is not None), raw
     if command is not None and command.values:

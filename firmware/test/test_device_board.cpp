@@ -315,4 +315,18 @@ TEST(the_fullest_report_of_the_press_fits) {
     CHECK(size > 300 && encode(kDevice, said, buffer, size) == size && encode(kDevice, said, buffer, size - 1) == 0);
 }
 
+TEST(tokens_are_told_where_there_is_room_for_them) {
+    DeviceBench bench;
+    bench.order(R"({"verbo":"open","seq":1,"epoca":5,"ficha":"0a3f9x001a01"})");
+    bench.run(2 * kSecondUs);
+    CHECK(strcmp(bench.last.receipts.numbers().accepted_token(), "0a3f9x001a01") == 0);
+    CHECK(strcmp(bench.last.receipts.numbers().finished_token(), "0a3f9x001a01") == 0);
+    char buffer[kMessageBytes + 1] = {};
+    const size_t size = encode(kDevice, bench.last, buffer, kMessageBytes);
+    CHECK(strstr(buffer, R"("ficha_ack":"0a3f9x001a01","ficha_hecho":"0a3f9x001a01")") != nullptr);
+    memset(buffer, 0, sizeof buffer);
+    const size_t without = encode(kDevice, bench.last, buffer, size - 1);
+    CHECK(without > 0 && without < size && strstr(buffer, "ficha") == nullptr);
+}
+
 }  // namespace arboleda

@@ -40,7 +40,7 @@ def ours(channel: str, raw: bytes, axes: int) -> tuple | None:
     body = {"juntas": tuple(said.q_deg[:axes]), "efector": bool(said.on), "paro": said.stop}.get(channel)
     seq = said.seq if said.has_seq and channel != "latido" else None
     heard = said.heard if said.has_heard else None
-    return body, seq, said.epoch if said.has_epoch else None, heard
+    return body, seq, said.epoch if said.has_epoch else None, heard, said.token.decode() or None
 
 
 def theirs(channel: str, raw: bytes, axes: int) -> tuple | None:
@@ -56,7 +56,8 @@ def theirs(channel: str, raw: bytes, axes: int) -> tuple | None:
         body = said.on
     elif isinstance(said, StopGoal):
         body = said.mode.value
-    return body, None if isinstance(said, Beat) else said.seq, said.epoch, getattr(said, "heard", None)
+    labels = (getattr(said, "heard", None), getattr(said, "token", None))
+    return body, None if isinstance(said, Beat) else said.seq, said.epoch, *labels
 
 
 @pytest.mark.parametrize(("channel", "raw", "axes"), rows("messages.json", "accepted.json"))
@@ -87,6 +88,7 @@ PIECES = (
         b"\x7f",
         b"\xef\xbb\xbf",
     ),
+    *(b'"ficha":"0a",', b'"ficha":"0123456789abc",', b'"ficha":7,', b'"ficha":"\\u0041",'),
     *(b'"visto":7,', b'"visto":7.0,', b'"visto":null,', b'"visto":4294967296,'),
     *(b'"q1"', b'"\\u0071\\u0031"', b'"q1":1', b'"":[{"":{}}]', b'"\\ud83d\\ude00":1,"\xf0\x9f\x98\x80":1'),
     *(

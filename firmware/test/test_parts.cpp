@@ -47,9 +47,10 @@ Telemetry fullest() {
     said.homed = said.effector = said.has_piece_sensor = said.piece = true;
     Message goal;
     goal.seq = goal.epoch = {true, UINT32_MAX};
+    memcpy(goal.token.text, "0123456789ab", sizeof goal.token.text);
     said.receipts.objection(goal);
     said.receipts.accept(goal);
-    said.receipts.finish(goal.seq, goal.epoch);
+    said.receipts.finish(goal);
     said.receipts.refuse(Refusal::kRetained, goal.seq, goal.epoch);
     return said;
 }

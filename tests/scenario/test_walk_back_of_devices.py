@@ -254,14 +254,8 @@ def test_work_that_a_machine_finishes_by_itself_is_not_begun_again() -> None:
     assert sent(rig).count("oven bake") == 1
 
 
-@pytest.mark.parametrize(
-    ("reached", "why"),
-    [
-        (0, "pump has taken commands of which this plant knows nothing"),
-        (1, "pump proves neither that it has done this nor that it has not"),
-    ],
-)
-def test_what_a_power_cut_made_the_plant_forget_is_not_begun_again(reached: int, why: str) -> None:
+@pytest.mark.parametrize("reached", [0, 1])
+def test_what_a_power_cut_made_the_plant_forget_is_not_begun_again(reached: int) -> None:
     rig = begin(load(EXAMPLES / "lab_bench" / "plant.yaml"), "bench weigh 20")
     assert rig.wait(10.0, until=lambda: "pump dispense" in sent(rig))
     rig.cut_power(reached)
@@ -272,7 +266,7 @@ def test_what_a_power_cut_made_the_plant_forget_is_not_begun_again(reached: int,
     rig.wait(10.0)
     if rig.operate(Verb.RESUME, "bench") is not None:
         held = str(reasons.of_hold(rig.plant.cells["bench"]))
-        assert why in held
+        assert "pump proves neither that it has done this nor that it has not" in held
     rig.wait(20.0)
     assert sent(rig).count("pump dispense") == 1
 

@@ -20,7 +20,7 @@ COMMANDS = [
     FollowPath(id="7-2", robot="rm_sis_a", heard=4294967295, nodes=(0, 3, 4)),
     SetEffector(id="7-3", robot="ra1", heard=0, on=True),
     Home(id="7-4", robot="ra1", heard=12),
-    Home(id="7-5", robot="ra1"),
+    Home(id="7-5", robot="ra1", token="0a3f9x001a01"),
     Stop(id="7-6", robot="ra1", mode=StopMode.HALT),
 ]
 

@@ -23,7 +23,14 @@ from arboleda.model.plant_model import MotionState, Robot
 from arboleda.wire import order
 from arboleda.wire.hop import COMMAND, ORDER, PLAIN, kind_of, loses_its_id
 from arboleda.wire.joints import joint_names
-from arboleda.wire.status import from_heard_labels, from_label, to_heard_label, to_label
+from arboleda.wire.status import (
+    from_heard_labels,
+    from_label,
+    from_token_labels,
+    to_heard_label,
+    to_label,
+    to_token_label,
+)
 
 COPY = "copy"  # the label of what the topic `command` carries, too; there, of what is copied
 
@@ -79,13 +86,14 @@ def command_message(command: Command, *, copy: bool = False) -> Float32MultiArra
 def labelled_message(robot: Robot, command: Command, *, copied: bool) -> Float32MultiArray | String:
     """A command for the robot's topic of all commands.
 
-    It carries the id, the telemetry that the plant had heard of the robot, and whether its plain topic has a
-    copy.
+    It carries the id, the telemetry that the plant had heard of the robot, what its board is to echo, and
+    whether its plain topic has a copy.
     """
     if isinstance(robot, Device):
         return String(data=order.write(command, copied=copied))
     heard = () if command.heard is None else (to_heard_label(command.heard),)
-    more = (*((COPY,) if copied else ()), *heard)
+    token = () if command.token is None else (to_token_label(command.token),)
+    more = (*((COPY,) if copied else ()), *heard, *token)
     return _labelled(command.id, _values(command), PLAIN[kind_of(command)], *more)
 
 
@@ -116,7 +124,7 @@ def labelled_command(robot: Robot, message: Float32MultiArray | String) -> tuple
     if not given.id:
         first = ascii(labels[0])[:40]
         raise PayloadError(f"{robot.name}: the first label is {first}; id=<command id> is needed")
-    given = replace(given, heard=from_heard_labels(labels[2:]))
+    given = replace(given, heard=from_heard_labels(labels[2:]), token=from_token_labels(labels[2:]))
     return given, COPY in labels[2:] and loses_its_id(given)
 
 

@@ -17,8 +17,9 @@ from arboleda.model.plant_model import Evidence
 from arboleda.recipes.storage_layout import StorageLayout
 from arboleda.sim.arm import ArmBody
 from arboleda.sim.board import Board
+from arboleda.sim.body import BodyReport
 from arboleda.testing import shipped
-from arboleda.wire.payloads import Beat, EffectorGoal, Goal, HomeGoal, JointsGoal, StopGoal
+from arboleda.wire.payloads import Beat, EffectorGoal, Goal, HomeGoal, JointsGoal, StopGoal, Telemetry
 from arboleda.wire.transport import Delivery
 
 from .conformance_trial import Trial, wrong
@@ -212,6 +213,31 @@ class Strict(Board):
             super().receive(now_us, delivery)
 
 
+class Tokenless(Board):
+    """Knows no tokens, as boards of before."""
+
+    def _telemetry(self, told: BodyReport) -> Telemetry:
+        return replace(super()._telemetry(told), ack_token=None, done_token=None)
+
+
+class Mixing(Board):
+    """Goes on with the token of the last command that had one."""
+
+    kept: str | None = None
+
+    def _telemetry(self, told: BodyReport) -> Telemetry:
+        said = super()._telemetry(told)
+        self.kept = said.ack_token or self.kept
+        return replace(said, ack_token=self.kept)
+
+
+class Muddled(Board):
+    """Says of what is done the number, and the token of nothing."""
+
+    def _telemetry(self, told: BodyReport) -> Telemetry:
+        return replace(super()._telemetry(told), done_token=None)
+
+
 def truncating(robot: Arm, body: ArmBody, **how: Any) -> Board:
     return Board(robot, Truncating(robot, start=robot.reference, pickups=()), **how)
 
@@ -232,6 +258,8 @@ BAD = [
     pytest.param(Hasty, {"late"}, Evidence.JOINTS, id="finds everything late"),
     pytest.param(Trusting, {"late"}, Evidence.JOINTS, id="takes what nobody can have heard"),
     pytest.param(Strict, {"late"}, Evidence.JOINTS, id="finds a stop late"),
+    pytest.param(Mixing, {"token"}, Evidence.JOINTS, id="mixes tokens"),
+    pytest.param(Muddled, {"token"}, Evidence.JOINTS, id="no token of what is done"),
     pytest.param(Dropping, {"effector"}, Evidence.JOINTS, id="effector never on"),
 ]
 
@@ -247,6 +275,13 @@ def test_a_board_that_knows_no_visto_is_told_what_to_build_and_what_it_costs_not
     found = wrong(trial(Patient))["late"]
     assert "with tarde" in found
     assert "remember which seq it told when; without that, what has waited moves it" in found
+
+
+def test_a_board_that_knows_no_tokens_keeps_its_level_and_the_check_is_left_out() -> None:
+    judge = trial(Tokenless)
+    assert wrong(judge) == {}
+    assert [each.check.name for each in judge.findings if each.untried] == ["token"]
+    assert judge.reached is Evidence.IDS
 
 
 def test_a_board_that_says_only_its_code_reaches_state() -> None:

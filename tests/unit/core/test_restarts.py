@@ -91,7 +91,7 @@ def test_what_is_kept_of_a_step_that_was_proven_done_stays_kept_until_the_task_h
     step = Act("run", context, lambda id: None, "running")  # type: ignore[arg-type, return-value]
     step.restore({"tries": 0, "left": False, "last": {**last, "before": [1, 5, 5], "number": [1, 6]}})
     step.status, step.proven = Status.RUNNING, True
-    assert step.kept() == {"tries": 0, "left": False, "last": step.last}
+    assert step.kept() == {"tries": 0, "left": False, "last": step.last, "given": 0}
 
 
 def test_a_stop_is_kept_until_its_cell_is_reset_and_no_longer() -> None:

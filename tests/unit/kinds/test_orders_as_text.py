@@ -28,11 +28,22 @@ HALT = Stop(id="7-2", robot="station", mode=StopMode.HALT)
     ("command", "copied", "text"),
     [
         (WARM, False, {"id": "7-1", "verb": "warm", "values": {"celsius": 40.5}}),
+        (
+            replace(WARM, heard=512, token="0a3f9x001a01"),
+            False,
+            {
+                "id": "7-1",
+                "verb": "warm",
+                "values": {"celsius": 40.5},
+                "heard": 512,
+                "token": "0a3f9x001a01",
+            },
+        ),
         (GO, False, {"verb": "go", "values": {}}),
         (HALT, False, {"id": "7-2", "stop": 2}),
         (HALT, True, {"id": "7-2", "stop": 2, "copied": 1}),
     ],
-    ids=["work", "of somebody else", "halt", "halt with a copy"],
+    ids=["work", "work of a step", "of somebody else", "halt", "halt with a copy"],
 )
 def test_a_command_comes_back_from_its_text(command: Command, copied: bool, text: dict[str, object]) -> None:
     written = order.write(command, copied=copied)

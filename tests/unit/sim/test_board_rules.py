@@ -425,3 +425,27 @@ def test_a_stop_is_never_too_late(bench):
     move(bench, 1)
     bench.send(BOARD, Channel.STOP, b'{"paro":2,"seq":2,"epoca":%d,"visto":0}' % EPOCH)
     assert (refusal(bench), bench.last(BOARD).ack) == ((None, None), 2)
+
+
+def test_the_tokens_of_the_last_accepted_and_the_last_done_command_are_echoed(bench):
+    goal = JointsGoal(q=(45.0, 9.0, 0.0), seq=1, epoch=EPOCH, token="0a3f9x001a01")
+    bench.send(BOARD, Channel.JOINTS, goal)
+    assert (bench.last(BOARD).ack_token, bench.last(BOARD).done_token) == ("0a3f9x001a01", None)
+    bench.run(5)
+    bench.send(BOARD, Channel.EFFECTOR, EffectorGoal(on=True, seq=2, epoch=EPOCH, token="b"))
+    assert (bench.last(BOARD).ack_token, bench.last(BOARD).done_token) == ("b", "0a3f9x001a01")
+
+
+def test_a_command_without_a_token_takes_the_place_of_the_one_before(bench):
+    bench.send(BOARD, Channel.EFFECTOR, EffectorGoal(on=True, seq=1, epoch=EPOCH, token="b"))
+    stop(bench, 2)
+    assert (bench.last(BOARD).ack, bench.last(BOARD).ack_token) == (2, None)
+
+
+def test_a_refused_command_and_another_epoch_leave_no_token_of_theirs(bench):
+    far = JointsGoal(q=(999.0, 9.0, 0.0), seq=2, epoch=EPOCH, token="far")
+    bench.send(BOARD, Channel.EFFECTOR, EffectorGoal(on=True, seq=1, epoch=EPOCH, token="b"))
+    bench.send(BOARD, Channel.JOINTS, far)
+    assert bench.last(BOARD).ack_token == "b"
+    bench.send(BOARD, Channel.JOINTS, JointsGoal(q=far.q, seq=1, epoch=EPOCH + 1, token="far"))
+    assert (bench.last(BOARD).ack, bench.last(BOARD).ack_token) == (None, None)

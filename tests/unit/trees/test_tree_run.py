@@ -32,7 +32,7 @@ class Commands:
 
     sent = 0
 
-    def send(self, *_: Any) -> Any:
+    def send(self, *_: Any, **__: Any) -> Any:
         self.sent += 1
         return SimpleNamespace(open=True, left=True, too_early=False, failure=None)
 

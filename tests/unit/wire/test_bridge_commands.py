@@ -11,6 +11,7 @@ from arboleda.kinds.arm import SetEffector
 from arboleda.kinds.joints import MoveJoints
 from arboleda.kinds.mobile import FollowPath
 from arboleda.model.commands import Home, Stop, StopMode
+from arboleda.model.messages import Tokens
 from arboleda.model.plant_model import Evidence, MotionState
 from arboleda.wire.hop import FromPlant
 from arboleda.wire.payloads import Beat, EffectorGoal, HomeGoal, JointsGoal, PathGoal, StopGoal
@@ -199,6 +200,20 @@ def test_a_command_names_the_telemetry_that_the_plant_had_heard(linked, sent) ->
     linked.tell()
     (_, (_, goal)) = sent(linked.order(replace(move(1), heard=1)))
     assert goal.heard == 1
+
+
+def test_a_command_carries_its_token_and_a_stop_none(linked, sent) -> None:
+    (_, (_, goal)) = sent(linked.order(replace(move(1), token="0a3f9x001a01")))
+    assert goal.token == "0a3f9x001a01"
+    ((_, halt),) = sent(linked.order(Stop(id="7-2", robot="ra1", mode=StopMode.HALT, token="0a3f9x001a01")))
+    assert isinstance(halt, StopGoal)
+
+
+def test_what_a_board_echoes_is_reported_with_its_numbers(linked, reports) -> None:
+    (said,) = reports(linked.tell(seq=2, ack_epoch=5, ack=8, done=7, ack_token="b", done_token="a"))
+    assert said.tokens == Tokens(accepted="b", done="a")
+    (said,) = reports(linked.tell(seq=3, ack=9, ack_token=None, done_token=None))
+    assert said.tokens is None
 
 
 def test_for_who_names_none_a_command_names_what_the_bridge_had_heard(linked, sent) -> None:

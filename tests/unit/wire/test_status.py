@@ -12,16 +12,26 @@ from hypothesis import strategies as st
 from arboleda.kinds.arm import SetEffector
 from arboleda.kinds.joints import MoveJoints
 from arboleda.model.errors import PayloadError
-from arboleda.model.messages import Receipt, Report
+from arboleda.model.messages import Receipt, Report, Tokens
 from arboleda.model.plant_model import MotionState
 from arboleda.model.sentence import OWN
 from arboleda.testing import shipped
 from arboleda.wire import rejections
-from arboleda.wire.status import STALE, Status, from_label, from_status, to_label, to_status
+from arboleda.wire.status import (
+    STALE,
+    Status,
+    from_label,
+    from_status,
+    from_token_labels,
+    to_label,
+    to_status,
+    to_token_label,
+)
 
 ROBOTS = shipped("sis_a").robots
 UINT = st.integers(0, 2**32 - 1)
 IDS = st.none() | st.from_regex(r"[0-9]{1,10}-[0-9]{1,6}", fullmatch=True)
+TOKEN = st.none() | st.from_regex(r"[A-Za-z0-9_.-]{1,12}", fullmatch=True)
 FLAG = st.none() | st.booleans()
 SAID = {
     "epoch": st.none() | UINT,
@@ -31,6 +41,7 @@ SAID = {
     "state": st.none() | st.sampled_from(MotionState),
     "homed": FLAG,
     "receipt": st.none() | st.builds(Receipt, UINT, UINT, st.none() | UINT),
+    "tokens": st.none() | st.builds(Tokens, TOKEN, TOKEN),
 }
 ON = SetEffector(id="", robot="ra1", on=True)
 FAR = MoveJoints(id="", robot="ra1", q=(9.0, 0.0, 0.0))
@@ -187,3 +198,10 @@ def test_what_a_sentence_is_made_of_is_read_up_to_2000_characters(characters: in
     values = {**status.values, "foreign_said": json.dumps(OBEYED.data()).ljust(characters)}
     report = from_status(0.0, ROBOTS["ra1"], replace(status, values=values))
     assert report.foreign == (OBEYED if read else OWN(text=str(OBEYED)))
+
+
+def test_a_token_is_one_of_the_further_labels_of_a_command() -> None:
+    assert from_token_labels(["copied", "heard=7", to_token_label("0a3f9x001a01")]) == "0a3f9x001a01"
+    assert from_token_labels(["heard=7"]) is None
+    with pytest.raises(PayloadError, match="token"):
+        from_token_labels(["token=of thirteen"])

@@ -23,6 +23,7 @@ from arboleda.trees.context import Context
 from arboleda.trees.keeping import Keeping
 from arboleda.trees.leaves import title_of
 from arboleda.trees.part_places import trouble_in
+from arboleda.trees.step_token import hash_of
 from arboleda.trees.tree_run import TreeRun, path_of
 from arboleda.trees.walk_back import NO_PART
 
@@ -194,7 +195,7 @@ class CellRun:
     def walk_back(self, task: Task, kept: str) -> None:
         """Hold a task that was at work when an earlier start ended, until a person says how it goes on."""
         self.task, self.queue.paused, self.state = task, True, CellState.HELD
-        self.context.answers = task.answers
+        self.context.answers, self.context.commands.task = task.answers, hash_of(task.id)
         self.context.time.pause()
         self.stranded = self.keeping.revive(task.order, kept)
         trail = self.keeping.walk.trail if self.keeping.walk else None
@@ -475,7 +476,7 @@ class CellRun:
         self.task, self._cancelling, self._recovers_anew = task, False, False
         self.in_vain.clear()
         self.place_trouble = None
-        self.context.answers = task.answers
+        self.context.answers, self.context.commands.task = task.answers, hash_of(task.id)
         self.become(Cause.TASK)
         task.become(TaskState.RUNNING, self.context.time.plant_now)
         self._changed(task)
@@ -553,7 +554,7 @@ class CellRun:
 
     def _finish(self, task: Task, state: TaskState) -> None:
         self.task = self.stranded = self.awaits = None
-        self.context.answers = []
+        self.context.answers, self.context.commands.task = [], None
         self.keeping.end()
         task.become(state, self.context.time.plant_now)
         self._changed(task)

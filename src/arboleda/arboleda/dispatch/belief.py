@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 from arboleda.model.commands import Position
 from arboleda.model.facts import Facts, Value
-from arboleda.model.messages import BUILT_IN, Failure, Reason, Receipt, Report
+from arboleda.model.messages import BUILT_IN, Failure, Reason, Receipt, Report, Tokens
 from arboleda.model.plant_model import Evidence, Link, MotionState, Robot
 from arboleda.model.sentence import Phrase, Sentence
 
@@ -93,6 +93,7 @@ class Belief:
         self.piece: bool | None = None
         self.piece_boot: int | None = None  # the boot in which it said whether a piece is there
         self.receipt: Receipt | None = None
+        self.tokens: Tokens | None = None  # of the commands in `receipt`
         self.facts: dict[str, Value] = {}
         self.lost: Sentence | None = None  # why there is no link
         self.facts_no = 0  # the report that changed one of them last
@@ -133,6 +134,8 @@ class Belief:
         for name, value in zip(MERGED, _merged(report), strict=True):
             if value is not None:
                 setattr(self, name, value)
+        if report.receipt is not None:
+            self.tokens = report.tokens  # of these very numbers
         if report.facts:
             self._merge_facts(report.facts)
         self.position = self.position_in(self)

@@ -138,10 +138,12 @@ class Dispatcher:
         *,
         by_hand: bool = False,
         barrier: Barrier = _unbarred,
+        token: str | None = None,
     ) -> Entry:
         """Give a command its id and let it go, unless its robot is not ready for one or `barrier` objects.
 
-        By hand, on an operator's word, an effector is opened even while its arm is stopped.
+        By hand, on an operator's word, an effector is opened even while its arm is stopped. A board that
+        numbers its commands echoes `token`.
         """
         command = make(id=self._new_id())
         deadline = now + self._allowed_s(command, self.timings[cell])
@@ -165,7 +167,7 @@ class Dispatcher:
             self.effectors.command(command)
         elif isinstance(command, Motion):
             self._forget_place(command.robot)
-        self._leave(command)
+        self._leave(command, token)
         return entry
 
     def objection(self, make: Make, *, barrier: Barrier = _unbarred) -> Failure | None:
@@ -436,11 +438,11 @@ class Dispatcher:
     def _stop(self, robot: str, mode: StopMode) -> None:
         self._leave(Stop(id=self._new_id(), robot=robot, mode=mode))
 
-    def _leave(self, command: Command) -> None:
+    def _leave(self, command: Command, token: str | None = None) -> None:
         if self.model.robots[command.robot].link in UNSENT:
             return
         heard = None if isinstance(command, Stop) else self.beliefs[command.robot].number
-        self.outbox.append(command if heard is None else replace(command, heard=heard))
+        self.outbox.append(command if heard is None else replace(command, heard=heard, token=token))
         self.under_way.left(command)
         self.unnamed.left(command)
 

@@ -9,7 +9,7 @@ from .facts import Facts
 
 GO, GRIP, LET_GO = "go", "grip", "let_go"
 """The names of a robot's own commands in a plant file."""
-LABELS = ("id", "heard")  # what a command carries on its way beside what it was made with
+LABELS = ("id", "heard", "token")  # what a command carries on its way beside what it was made with
 Position = tuple[float, ...] | int
 """Where a robot is, as its kind reports it: the joints of an arm, the node of a mobile robot."""
 
@@ -38,6 +38,8 @@ class Command:
     heard: int | None = None
     """The number of the last telemetry of the robot's board that the plant had heard when it gave this; None
     where that has none."""
+    token: str | None = None
+    """What its board is to echo: which step of which task it is; None where it is of none."""
 
     @property
     def word(self) -> str:

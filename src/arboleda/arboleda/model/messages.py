@@ -306,6 +306,13 @@ class Receipt(NamedTuple):
     done: int | None = None
 
 
+class Tokens(NamedTuple):
+    """The tokens of the last commands that a board accepted and did, as its commands carried them."""
+
+    accepted: str | None = None
+    done: str | None = None
+
+
 @dataclass(frozen=True, kw_only=True)
 class Report:
     """Report of a robot, in SI units; None stands for what it does not report.
@@ -315,8 +322,8 @@ class Report:
     command ids, the last of each; `refusal` is the word that came with `rejected`. `failed` is the last
     command that the robot itself gave up, `failure` its word for why; `answered` is the last query that it
     answered, with `answer`. `receipt` is what its board says of numbers, which outlive the start of plant and
-    bridge. `facts` are what it reports beside the fields here. `lost` says why there is no
-    link, where whoever reports that knows it. `foreign_refused` and
+    bridge, and `tokens` what it echoes of those very commands. `facts` are what it reports beside the fields
+    here. `lost` says why there is no link, where whoever reports that knows it. `foreign_refused` and
     `foreign_obeyed` count commands of others since the bridge's start, `foreign` tells of the last one.
     `number` is that of the telemetry behind it, which its board counts from its boot on.
     """
@@ -342,6 +349,7 @@ class Report:
     piece: bool | None = None
     facts: Facts | None = None
     receipt: Receipt | None = None
+    tokens: Tokens | None = None
     lost: Sentence | None = None
     foreign_refused: int | None = None
     foreign_obeyed: int | None = None

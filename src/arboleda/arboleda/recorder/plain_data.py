@@ -32,6 +32,7 @@ from arboleda.model.messages import (
     TaskAnswer,
     TaskRequest,
     TaskState,
+    Tokens,
     Undelivered,
     Verb,
 )
@@ -252,6 +253,10 @@ def _said_value(data: Any) -> Value:
     return value
 
 
+def _tokens(data: Any) -> Tokens:
+    return Tokens(*data)
+
+
 def _receipt(data: Any) -> Receipt:
     return Receipt(*data)
 
@@ -286,7 +291,13 @@ def _answers(data: Any) -> tuple[TaskAnswer, ...]:
 
 Reader = Callable[[Any], Any]
 READERS: dict[type, dict[str, Reader]] = {
-    Report: {"state": MotionState, "receipt": _receipt, "lost": sentence_from, "foreign": sentence_from},
+    Report: {
+        "state": MotionState,
+        "receipt": _receipt,
+        "tokens": _tokens,
+        "lost": sentence_from,
+        "foreign": sentence_from,
+    },
     TaskRequest: {"kept": _kept},
     OperatorRequest: {"verb": Verb},
     Jog: {},

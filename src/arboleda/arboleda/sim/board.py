@@ -335,6 +335,8 @@ class Board:
             least_epoch=receipts.least if receipts.least != receipts.epoch else None,
             ack=receipts.accepted,
             done=receipts.finished,
+            ack_token=receipts.accepted_token,
+            done_token=receipts.finished_token,
             refusal=receipts.refusal,
             refused_seq=receipts.refused,
             boot_id=self.boot_id,

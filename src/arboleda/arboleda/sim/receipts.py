@@ -6,7 +6,7 @@ from collections import deque
 
 from arboleda.model.facts import Value
 from arboleda.wire import epochs
-from arboleda.wire.payloads import FAILURES_KEPT, Goal
+from arboleda.wire.payloads import FAILURES_KEPT, Goal, StopGoal
 
 UNKNOWN_SEQ = 0  # senders count from 1
 
@@ -15,8 +15,8 @@ class Receipts:
     """Numbers of the last accepted, finished and refused command, the last answer, and the last few failures.
 
     All count only for `epoch`. `least` is the oldest epoch that still counts: that of the newest heartbeat or
-    command. `told` has all of the numbers. `known` is the number of accepted commands that are recognised if
-    they come twice.
+    command. The tokens are those that the accepted and the finished one carried. `told` has all of these.
+    `known` is the number of accepted commands that are recognised if they come twice.
     """
 
     def __init__(self, *, known: int = 1) -> None:
@@ -28,6 +28,8 @@ class Receipts:
         self.epoch = self.least = epoch
         self.accepted: int | None = None
         self.finished: int | None = None
+        self.accepted_token: str | None = None
+        self.finished_token: str | None = None
         self.refusal: str | None = None
         self.refused: int | None = None
         self.answer: tuple[int, Value] | None = None
@@ -46,6 +48,8 @@ class Receipts:
             self.refused,
             self.answer,
             given_up,
+            self.accepted_token,
+            self.finished_token,
         )
 
     def hear(self, epoch: int) -> bool:
@@ -80,6 +84,7 @@ class Receipts:
 
     def accept(self, goal: Goal) -> None:
         self.accepted = goal.seq
+        self.accepted_token = None if isinstance(goal, StopGoal) else goal.token
         self._recent.append(goal.seq)
         self._note()
 
@@ -87,6 +92,7 @@ class Receipts:
         """Note that a motion ended by itself; one of an older epoch no longer matters."""
         if goal.epoch == self.epoch:
             self.finished = goal.seq
+            self.finished_token = None if isinstance(goal, StopGoal) else goal.token
             self._note()
 
     def answered(self, goal: Goal, answer: Value) -> None:

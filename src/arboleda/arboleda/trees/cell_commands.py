@@ -13,10 +13,14 @@ from arboleda.model.sentence import Sentence
 from .cell_devices import CellDevices
 from .cell_time import CellTime
 from .cell_zones import CellZones
+from .step_token import ATTEMPTS, MOST_STEPS
 
 
 class CellCommands:
-    """Sender of one cell. `sent` counts its commands; `used` are the robots that the task has commanded."""
+    """Sender of one cell. `sent` counts its commands; `used` are the robots that the task has commanded.
+
+    `task` is the hash of the task's id, by which boards echo its steps; None where none runs.
+    """
 
     def __init__(
         self,
@@ -29,6 +33,7 @@ class CellCommands:
     ) -> None:
         self.sent = 0
         self.used: set[str] = set()
+        self.task: str | None = None
         self._cell = cell
         self._dispatcher = dispatcher
         self._time = time
@@ -36,11 +41,16 @@ class CellCommands:
         self._devices = devices
         self._guards = guards
 
-    def send(self, make: Make, doing: Sentence) -> Entry:
-        """Send the command that `make(id=...)` returns; an already failed entry where it may not leave."""
+    def send(self, make: Make, doing: Sentence, *, step: int | None = None, attempt: int = 0) -> Entry:
+        """Send the command that `make(id=...)` returns; an already failed entry where it may not leave.
+
+        `step` is the number of its node, `attempt` how often that has given it.
+        """
         self.sent += 1
-        now = self._time.plant_now
-        entry = self._dispatcher.send(make, self._cell, doing, now, barrier=self._objection)
+        now, token = self._time.plant_now, None
+        if self.task is not None and step is not None and step < MOST_STEPS:
+            token = f"{self.task}{step:04x}{attempt % ATTEMPTS:02x}"
+        entry = self._dispatcher.send(make, self._cell, doing, now, barrier=self._objection, token=token)
         if not isinstance(entry.command, Query):
             self.used.add(entry.command.robot)
         return entry

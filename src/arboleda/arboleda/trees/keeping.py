@@ -69,9 +69,9 @@ class Keeping:
     def revive(self, order: Order, kept: str) -> Sentence | None:
         """Take over a task that was at work; why it cannot go on at its step."""
         try:
-            self.walk = WalkBack(Trail.read(kept), ())
+            self.walk = WalkBack(Trail.read(kept), (), ())
         except ValueError:
-            self.walk = WalkBack(NOTHING_KEPT, ())
+            self.walk = WalkBack(NOTHING_KEPT, (), ())
             return UNREADABLE()
         found = self.walk.trail
         if found.recovers:
@@ -95,7 +95,7 @@ class Keeping:
                 step.begin_anew()
             if isinstance(step, Act) and step.last is not None and step.last["effect"] == trail.SWITCH:
                 self._context.parts.leave_unsettled(step.last["robot"], sets=dict(step.last["sets"]))
-        self.walk = WalkBack(found, begun)
+        self.walk = WalkBack(found, begun, self._run.nodes)
         return found.stranded
 
     def judge(self) -> Finding:

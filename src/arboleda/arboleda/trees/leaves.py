@@ -59,6 +59,7 @@ class Leaf(Keeps, Behaviour):
     """A leaf of ours: `title` is its name as a sentence, `told` its feedback message, `last_failure` that of
     its last failure, kept when py_trees has forgotten the status. `began` is when one that takes its time
     began last in this start of the plant, in s of the cell's time. `uses`: its robot, where cells share that.
+    `proven`: what it waits for is known to have come true.
     """
 
     title: Sentence
@@ -66,6 +67,7 @@ class Leaf(Keeps, Behaviour):
     last_failure: Sentence | None = None
     uses: str | None = None
     began = -math.inf
+    proven = False
 
     def __init__(self, name: Sentence | str) -> None:
         super().__init__(str(name))
@@ -117,6 +119,7 @@ class Act(Leaf):
     tick; what it returns fails the command at once. So does an effector that opened unbidden while it held
     a part. `then`, where given, is called once the command is done.
     `last` is what an earlier start of the plant has kept of the command; `proven`: it is known to be done.
+    `number_in_tree` is that of its node, `given_times` how often the command was given in this task.
     """
 
     ends_unkept = True
@@ -146,20 +149,32 @@ class Act(Leaf):
         self.left_before = False  # the same before it was given last
         self.last: Mapping[str, Any] | None = None
         self.proven = False
+        self.number_in_tree: int | None = None
+        self.given_times = 0
+        self.given_earlier: Mapping[str, Any] | None = None  # by an earlier start
         self.tries = 0
         self.again_at: float | None = None
         self.patient_until = 0.0
 
     def initialise(self) -> None:
-        self.tries, self.left, self.last, self.proven = 0, False, None, False
+        earlier, self.given_earlier = self.given_earlier, None
+        self.tries, self.left, self.last, self.proven = 0, earlier is not None, None, False
         self.began = self.time.now
-        self.send()
+        if earlier is None or not earlier["done"]:
+            self.send()
+        else:
+            self.entry, self.last, self.proven, self.told = None, earlier, True, self.doing
+
+    def take_up(self, earlier: Mapping[str, Any], attempt: int) -> None:
+        """Begin, once it is its turn, with the command that an earlier start has given, as its board says."""
+        self.given_earlier, self.given_times = earlier, attempt
+        self.context.commands.used.add(earlier["robot"])
 
     def kept(self) -> Mapping[str, Any] | None:
         if self.status is not Status.RUNNING:
             return None
         last = self.last if self.entry is None else command_kept(self.entry)
-        return {"tries": self.tries, "left": self.left_before, "last": last}
+        return {"tries": self.tries, "left": self.left_before, "last": last, "given": self.given_times}
 
     @property
     def waits(self) -> bool:
@@ -168,6 +183,7 @@ class Act(Leaf):
 
     def restore(self, state: Mapping[str, Any]) -> None:
         self.tries, self.left, self.last = state["tries"], state["left"], state["last"]
+        self.given_times = state.get("given", 0)
         self.told = self.doing
 
     def begin_anew(self) -> None:
@@ -181,7 +197,9 @@ class Act(Leaf):
         self._give()
 
     def _give(self) -> None:
-        self.entry = self.context.commands.send(self.anew if self.left else self.make, self.doing)
+        make, attempt = self.anew if self.left else self.make, self.given_times + 1
+        self.entry = self.context.commands.send(make, self.doing, step=self.number_in_tree, attempt=attempt)
+        self.given_times += self.entry.left
         self.left_before, self.left = self.left, self.left or self.entry.left
         if self.entry.too_early:
             self.time.wake_at(self.patient_until)
@@ -269,7 +287,8 @@ class Dwell(Leaf):
         self.time.wake_at(self.until)
 
     def update(self) -> Status:
-        return Status.SUCCESS if self.time.now >= self.until else Status.RUNNING
+        over, self.proven = self.proven or self.time.now >= self.until, False
+        return Status.SUCCESS if over else Status.RUNNING
 
 
 class Announce(Leaf):
@@ -340,7 +359,8 @@ class Await(Leaf):
         self.time.wake_at(self.until)
 
     def update(self) -> Status:
-        if self.arrived():
+        if self.arrived() or self.proven:
+            self.proven = False
             return Status.SUCCESS
         if self.time.now < self.until:
             return Status.RUNNING

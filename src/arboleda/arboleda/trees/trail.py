@@ -63,17 +63,17 @@ class Knowledge(NamedTuple):
         """As it is now."""
         return cls(boot=belief.boot_id, receipt=belief.receipt, more=more, bridge=belief.epoch)
 
-    def explains(self, now: Receipt | None) -> bool:
-        """True where it can have got there by the commands that were under way, and no others."""
-        before = self.receipt
+    def explains(self, now: Receipt | None, *, others: int = 0) -> bool:
+        """True where the commands that were under way, and so many others at most, can have led there."""
+        before, most = self.receipt, self.more + others
         if now == before:
             return True
         if now is None:
             return False
         if before is not None and now.epoch == before.epoch:
-            return 0 <= now.accepted - before.accepted <= self.more
+            return 0 <= now.accepted - before.accepted <= most
         # it counted from 1; a later bridge had commands of a later start, whose steps a power cut has undone
-        return now.epoch == self.bridge and now.accepted <= self.more
+        return now.epoch == self.bridge and now.accepted <= most
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -59,7 +59,10 @@ class TreeRun:
         self.tree, self.nodes = tree, nodes_of(tree)
         keepers = [(number, node) for number, node in enumerate(self.nodes) if isinstance(node, Keeps)]
         self.keepers = [(number, node) for number, node in keepers if type(node).kept is not Keeps.kept]
-        self._acts = [node for node in self.nodes if isinstance(node, Act)]
+        acts = [(number, node) for number, node in enumerate(self.nodes) if isinstance(node, Act)]
+        for number, act in acts:
+            act.number_in_tree = number
+        self._acts = [act for _, act in acts]
         self._recoveries = [node for node in self.nodes if node.name == steps.RECOVERY]
 
     def tick(self) -> Status:

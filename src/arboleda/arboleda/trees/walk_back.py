@@ -2,7 +2,9 @@
 
 Only a board that numbers commands can prove it: of the same boot, it has taken none that this plant does not
 know of, so whatever was done before is as it was left. Its last command is done, was never taken, or was a
-move that stopped on its way, which is given anew as after a hold. Anything else is for a person to judge.
+move that stopped on its way, which is given anew as after a hold. After a power cut it may have taken one
+more, of which nothing was kept: where it echoes that this is the very next step, the steps before have ended
+well. Anything else is for a person to judge.
 """
 
 from __future__ import annotations
@@ -12,14 +14,19 @@ from dataclasses import dataclass
 from enum import Enum
 from typing import Any
 
+from py_trees.behaviour import Behaviour
+
 from arboleda.dispatch.belief import Belief
+from arboleda.dispatch.ledger import Entry
 from arboleda.model.grips import Grip
-from arboleda.model.messages import Failure, Reason
+from arboleda.model.messages import Failure, Reason, Receipt
 from arboleda.model.sentence import Phrase, Sentence
 
 from .context import Context
-from .leaves import Act
-from .trail import MOTION, OTHER, QUERY, SWITCH, Keeps, Trail
+from .leaves import Act, Leaf, Note
+from .step_token import ATTEMPTS, StepToken
+from .succession import PASSED, steps_between
+from .trail import MOTION, OTHER, QUERY, SWITCH, Keeps, Trail, command_kept
 
 STILL_MOVING = Phrase("walk.still_moving", "{robot} is still moving")
 NOT_SAID = Phrase("walk.not_said", "{robot} has not said yet what became of its last command")
@@ -55,6 +62,7 @@ class Finding:
     failure: Failure | None = None
     stranded: Sentence | None = None
     fates: Mapping[Keeps, Fate]
+    echo: Echo | None = None
 
 
 @dataclass(frozen=True)
@@ -66,15 +74,29 @@ class Trouble:
     stranded: Sentence | None = None
 
 
+@dataclass(frozen=True, kw_only=True)
+class Echo:
+    """A command of which nothing was kept, by the token that its board echoes: the step that gave it, at
+    which attempt, its record, and the steps that were `passed` on the way there.
+    """
+
+    step: Act
+    attempt: int
+    last: Mapping[str, Any]
+    passed: Sequence[Leaf]
+
+
 class WalkBack:
-    """A task between its trail and the word of a person; `begun` are the steps that were under way.
+    """A task between its trail and the word of a person; `begun` are the steps that were under way, `nodes`
+    those of its tree.
 
     `due`: when it has to be judged anew although no device says more, s of the plant's time.
     """
 
-    def __init__(self, trail: Trail, begun: Sequence[Keeps]) -> None:
+    def __init__(self, trail: Trail, begun: Sequence[Keeps], nodes: Sequence[Behaviour]) -> None:
         self.trail = trail
         self.begun = begun
+        self._nodes = nodes
         self.due: float | None = None
         self._displaced: dict[str, int | None] = {}  # the boots after which devices have to be put right
         self._heard_since: float | None = None  # since when all of its devices are heard and stand still
@@ -84,6 +106,7 @@ class WalkBack:
         names = [name for name in self.trail.known if context.devices.has(name)]
         beliefs = {name: context.robots.belief(name) for name in names}
         troubles: dict[str, Trouble] = {}
+        echoes: dict[str, Echo] = {}
         self.due = None
         for name, belief in beliefs.items():
             if belief.displaced:
@@ -93,50 +116,111 @@ class WalkBack:
                 waits = obstacle.sentence if obstacle else STILL_MOVING(robot=name)
                 self._heard_since = None
                 return Finding(waits=waits, fates={})
-            if (trouble := self._changed(belief)) is not None:
+            if (echo := self._echo(belief, context.commands.task)) is not None:
+                echoes[name] = echo
+            if (trouble := self._changed(belief, echo)) is not None:
                 troubles[name] = trouble
+        if len(echoes) > 1:  # of two nobody knows which came first
+            troubles |= {name: _more(name) for name in echoes}
         if self._heard_since is None:
             self._heard_since = context.time.plant_now
         settled_at = self._heard_since + context.timing.effector_timeout_s
         early = context.time.plant_now < settled_at
+        echo = next(iter(echoes.values()), None)
         fates: dict[Keeps, Fate] = {}
-        for step in self.begun:
-            if isinstance(step, Act) and step.last is not None:
-                name = str(step.last["robot"])
-                belief = context.robots.belief(name)
-                fates[step] = Fate.UNPROVEN if name in troubles else fate(step.last, belief)
-                if fates[step] is Fate.UNPROVEN and early and name not in troubles:
-                    self.due = settled_at
-                    return Finding(waits=NOT_SAID(robot=name), fates={})
-                if fates[step] is Fate.UNPROVEN:
-                    troubles.setdefault(name, Trouble(Reason.INTERRUPTED, UNPROVEN(robot=name)))
+        if echo is not None and echo.step not in self.begun:
+            fates = dict.fromkeys(self.begun, Fate.DONE)
+        for step, last in self._last_commands(echo):
+            name = str(last["robot"])
+            belief = context.robots.belief(name)
+            fates[step] = Fate.UNPROVEN if name in troubles else fate(last, belief)
+            if fates[step] is Fate.UNPROVEN and early and name not in troubles:
+                self.due = settled_at
+                return Finding(waits=NOT_SAID(robot=name), fates={})
+            if fates[step] is Fate.UNPROVEN:
+                troubles.setdefault(name, Trouble(Reason.INTERRUPTED, UNPROVEN(robot=name)))
         worst = sorted(troubles.values(), key=lambda each: each.stranded is None)
         if not worst:
-            return Finding(fates=fates)
+            return Finding(fates=fates, echo=echo)
         failure = Failure(reason=worst[0].reason, sentence=worst[0].sentence)
-        return Finding(failure=failure, stranded=worst[0].stranded, fates=fates)
+        return Finding(failure=failure, stranded=worst[0].stranded, fates=fates, echo=echo)
+
+    def _last_commands(self, echo: Echo | None) -> list[tuple[Act, Mapping[str, Any]]]:
+        """The steps that were under way, with the records of their last commands."""
+        if echo is not None:
+            return [(echo.step, echo.last)]
+        acts = [step for step in self.begun if isinstance(step, Act)]
+        return [(act, act.last) for act in acts if act.last is not None]
 
     def go_on(self, finding: Finding) -> None:
         """Go on after what is done; all else that was under way begins anew."""
         for step in self.begun:
             known = finding.fates.get(step)
-            if isinstance(step, Act):
+            if isinstance(step, Leaf):
                 step.proven = known is Fate.DONE
+            if isinstance(step, Act):
                 step.left = step.left or known not in (None, Fate.UNTAKEN)
             if known is not Fate.DONE:
                 step.begin_anew()
+        echo = finding.echo
+        if echo is not None and echo.step not in self.begun:
+            for leaf in echo.passed:
+                leaf.proven = True
+            done = finding.fates.get(echo.step) is Fate.DONE
+            echo.step.take_up({**echo.last, "done": done}, echo.attempt)
 
-    def _changed(self, belief: Belief) -> Trouble | None:
+    def _echo(self, belief: Belief, task: str | None) -> Echo | None:
+        """The one command that a device has taken beside the known ones, where it is the next step's."""
+        known, now, said = self.trail.known[belief.robot.name], belief.receipt, belief.tokens
+        if now is None or said is None or said.accepted is None or len(self.begun) != 1:
+            return None
+        if not self._is_numbered(belief) or belief.boot_id != known.boot:
+            return None
+        if known.explains(now) or not known.explains(now, others=1):
+            return None
+        token = StepToken.read(said.accepted)
+        if token is None or token.task != task or token.step >= len(self._nodes):
+            return None
+        if now.done == now.accepted and said.done != said.accepted:
+            return None
+        step = self._nodes[token.step]
+        return self._echo_of(step, token, belief.robot.name, now) if isinstance(step, Act) else None
+
+    def _echo_of(self, step: Act, token: StepToken, robot: str, now: Receipt) -> Echo | None:
+        """The same, of the step that its token names; None where it is not the one at which the task stands,
+        tried once more, nor the one after that.
+        """
+        (before,) = self.begun
+        given = {"before": None, "number": now[:2], "done": False}
+        kept = before.last if isinstance(before, Act) else {}
+        if kept is None or kept.get("effect") == QUERY or not isinstance(before, (Act, *PASSED)):
+            return None  # it gave nothing yet, its answer was not kept, or it takes something
+        if before is step:
+            attempt = step.given_times + 1
+            if token.attempt != attempt % ATTEMPTS or kept["robot"] != robot:
+                return None
+            return Echo(step=step, attempt=attempt, last={**kept, **given}, passed=())
+        passed = steps_between(before, step)
+        last = {**_record_of(step), **given}
+        if passed is None or last.get("robot") != robot:
+            return None
+        if last["grips"] and any(type(leaf) is Note for leaf in passed):
+            return None  # where the part comes from is noted by an empty hand
+        return Echo(step=step, attempt=token.attempt, last=last, passed=passed)
+
+    def _changed(self, belief: Belief, echo: Echo | None) -> Trouble | None:
         """Why what a device had done by then may be so no more."""
         name = belief.robot.name
         grip, holds = self.trail.grips.get(name), belief.held_in(belief)
+        if echo is not None:
+            grip = Grip.SWITCHING if echo.last["grips"] is not None else grip
         if grip == Grip.ON and holds is False:
             return Trouble(Reason.PART_LOST, LOST(robot=name), NO_PART(arm=name))
-        if name not in self.trail.used:
+        if echo is None and name not in self.trail.used:
             return self._moved(belief) or self._told_more(belief)
         if not self._is_numbered(belief):
             return Trouble(Reason.INTERRUPTED, NO_NUMBERS(robot=name))
-        if (more := self._told_more(belief)) is not None:
+        if echo is None and (more := self._told_more(belief)) is not None:
             return more
         if grip is not None and holds is None:
             return Trouble(Reason.INTERRUPTED, UNPROVEN(robot=name))
@@ -161,7 +245,7 @@ class WalkBack:
                 belief.displaced = True
             return Trouble(Reason.REBOOTED, BOOTED(robot=name))
         if not known.explains(belief.receipt):
-            return Trouble(Reason.INTERRUPTED, MORE(robot=name), NOBODY_KNOWS())
+            return _more(name)
         return None
 
     def _moved(self, belief: Belief) -> Trouble | None:
@@ -172,6 +256,19 @@ class WalkBack:
         if here is not None and belief.robot.motion.stands_at(here, begun):
             return None
         return Trouble(Reason.INTERRUPTED, MOVED(robot=belief.robot.name), NOBODY_KNOWS())
+
+
+def _more(robot: str) -> Trouble:
+    return Trouble(Reason.INTERRUPTED, MORE(robot=robot), NOBODY_KNOWS())
+
+
+def _record_of(step: Act) -> Mapping[str, Any]:
+    """The record of a step's command, as it would be given now; empty where nobody can tell."""
+    try:
+        command = step.make(id="")
+    except Exception:  # noqa: BLE001 - a recipe may be user code, and count on what it has done by then
+        return {}
+    return command_kept(Entry(command, cell="", doing=step.doing, sent_at=0.0, deadline=0.0)) or {}
 
 
 def fate(last: Mapping[str, Any], belief: Belief) -> Fate:

@@ -8,7 +8,7 @@ from functools import lru_cache
 from arboleda.model.commands import Command, Stop, StopMode, Work, needs_clear
 from arboleda.model.errors import PayloadError
 from arboleda.model.facts import Facts
-from arboleda.model.messages import Receipt, Report
+from arboleda.model.messages import Receipt, Report, Tokens
 from arboleda.model.plant_model import Evidence, MotionState, Robot
 from arboleda.model.sentence import NOTHING, Phrase, Sentence
 
@@ -327,12 +327,13 @@ class Board:
             self._motion.stopping = True
         return [publication]
 
-    def _stamp(self, command: Command, seq: int) -> dict[str, int | None]:
-        """The numbers of a command, and of the telemetry that its sender had heard."""
+    def _stamp(self, command: Command, seq: int) -> dict[str, int | str | None]:
+        """The numbers of a command, its token, and the number of the telemetry that its sender had heard."""
         if self.robot.evidence is not Evidence.IDS:
             return {"seq": None, "epoch": None}
-        stamp: dict[str, int | None] = {"seq": seq, "epoch": self.labels.epoch}
+        stamp: dict[str, int | str | None] = {"seq": seq, "epoch": self.labels.epoch}
         if not isinstance(command, Stop):
+            stamp["token"] = command.token
             stamp["heard"] = self.link.number if command.heard is None else command.heard
         return stamp
 
@@ -368,6 +369,7 @@ class Board:
             failed=failed,
             failure=failure,
             receipt=_receipt(said),
+            tokens=_tokens(said),
             number=said.seq,
         )
 
@@ -404,6 +406,12 @@ def _receipt(said: Telemetry) -> Receipt | None:
     if said.ack_epoch is None or said.ack is None:
         return None
     return Receipt(said.ack_epoch, said.ack, said.done)
+
+
+def _tokens(said: Telemetry) -> Tokens | None:
+    if said.ack_token is None and said.done_token is None:
+        return None
+    return Tokens(said.ack_token, said.done_token)
 
 
 @lru_cache(maxsize=256)

@@ -72,10 +72,10 @@ class Form:
         way = self.way(kind)
         return self.missing.get(kind, "formato") if way is None else way.refusal(robot, command)
 
-    def goal(self, robot: Robot, command: Command, **stamp: int | None) -> tuple[Channel, Goal]:
+    def goal(self, robot: Robot, command: Command, **stamp: int | str | None) -> tuple[Channel, Goal]:
         """The channel and payload of a command that `refusal` accepted; `stamp` has its `seq` and `epoch`.
 
-        For all commands but a stop, `stamp` also has `heard`.
+        For all commands but a stop, `stamp` also has `heard` and `token`.
         """
         way = self.way(type(command))
         assert way is not None

@@ -74,7 +74,7 @@ def loses_its_id(command: Command) -> bool:
 
 def without_id(command: Command) -> Command:
     """The command without the data that a plain topic of UInt8 cannot carry."""
-    return replace(command, id="", heard=None)
+    return replace(command, id="", heard=None, token=None)
 
 
 def shown(command: Command) -> str:

@@ -1,6 +1,7 @@
 """The text of a device's topic `order`: a verb with its values, or a stop, with the id of the command.
 
-`{"id": "7-1", "verb": "run", "values": {"program": 1001}, "heard": 512}`, `{"id": "7-2", "stop": 2}`.
+`{"id": "7-1", "verb": "run", "values": {"program": 1001}, "heard": 512, "token": "0a3f9x001201"}`,
+`{"id": "7-2", "stop": 2}`.
 What has no id is of somebody else. All commands of a device go on this one topic, so that no stop overtakes
 what it ends.
 """
@@ -23,6 +24,7 @@ def write(command: Command, *, copied: bool = False) -> str:
     if isinstance(command, VerbCall):
         said |= {"verb": command.verb, "values": dict(command.values)}
         said |= {} if command.heard is None else {"heard": command.heard}
+        said |= {} if command.token is None else {"token": command.token}
     elif isinstance(command, Stop):
         said |= {"stop": int(command.mode)}
     else:
@@ -45,4 +47,4 @@ def read(device: Device, text: str) -> tuple[Command, bool]:
         command = device.kind.command(id=id, robot=device.name, verb=verb, values=values)
     except UseError as error:
         raise PayloadError(str(error)) from error
-    return replace(command, heard=fields.optional("heard")), False
+    return replace(command, heard=fields.optional("heard"), token=fields.token("token")), False

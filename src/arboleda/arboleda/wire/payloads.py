@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable
 from functools import cache, lru_cache
+from typing import Any
 
 from arboleda.model.commands import StopMode
 from arboleda.model.errors import PayloadError
@@ -57,6 +58,8 @@ DEVICE_REFUSALS = frozenset({"viejo", "retenido", "tarde", "formato", "paro", "o
 DEVICE = 0  # `axes` of a device of a declared kind: it has facts instead
 FAILURES_KEPT = 3  # of a device; as many may end unseen before telemetry arrives again
 
+TOKENS = frozenset({"ficha", "ficha_ack", "ficha_hecho"})
+
 MAX_ANGLE_DEG = 1e6  # far beyond any robot, and exact enough for a board's binary32
 FOREIGN_TO_ARMS = ("an arm", "nodo")
 FOREIGN_TO_MOBILES = ("a mobile robot", "efector", "pieza", "q1_mov")
@@ -79,11 +82,20 @@ def decode(channel: Channel, raw: bytes, *, axes: int | None) -> Payload:
 
 
 def encode(payload: Payload) -> bytes:
-    """Compact JSON of at most 512 bytes, angles with 4 decimals; PayloadError if that is impossible."""
+    """Compact JSON of at most 512 bytes, angles with 4 decimals; PayloadError if that is impossible.
+
+    Tokens are left out where there is no room for them.
+    """
     if isinstance(payload, Presence):
         return b"1" if payload.online else b"0"
     body = _WRITERS[type(payload)](payload)
-    return strict.write({key: value for key, value in body.items() if value is not None})
+    said = {key: value for key, value in body.items() if value is not None}
+    try:
+        return strict.write(said)
+    except PayloadError:
+        if TOKENS.isdisjoint(said):
+            raise
+        return strict.write({key: value for key, value in said.items() if key not in TOKENS})
 
 
 def angles(q: tuple[float, ...]) -> bytes:
@@ -114,8 +126,8 @@ def _stamp(fields: strict.Fields) -> dict[str, int | None]:
     return {"seq": fields.optional("seq"), "epoch": fields.optional("epoca")}
 
 
-def _stamp_in_time(fields: strict.Fields) -> dict[str, int | None]:
-    return {**_stamp(fields), "heard": fields.optional("visto")}
+def _stamp_in_time(fields: strict.Fields) -> dict[str, Any]:
+    return {**_stamp(fields), "heard": fields.optional("visto"), "token": fields.token("ficha")}
 
 
 @cache
@@ -190,6 +202,8 @@ def _telemetry(fields: strict.Fields, axes: int | None) -> Telemetry:
         homed=fields.flag("ref"),
         effector=fields.flag("efector"),
         piece=fields.flag("pieza"),
+        ack_token=fields.token("ficha_ack"),
+        done_token=fields.token("ficha_hecho"),
     )
 
 
@@ -215,6 +229,8 @@ def _telemetry_of_device(fields: strict.Fields) -> Telemetry:
         answer=fields.shown_fact("respuesta"),
         answered_seq=fields.optional("respuesta_seq"),
         failures=fields.named("fallos", FAILURES_KEPT),
+        ack_token=fields.token("ficha_ack"),
+        done_token=fields.token("ficha_hecho"),
     )
 
 
@@ -241,8 +257,8 @@ def _angle(key: str, value: float) -> float:
 def _stamped(body: dict[str, object], goal: Goal) -> dict[str, object]:
     if (goal.seq is None) != (goal.epoch is None):
         raise PayloadError("seq and epoca go together")
-    heard = None if isinstance(goal, StopGoal) else goal.heard
-    return {**body, "seq": goal.seq, "epoca": goal.epoch, "visto": heard}
+    body = {**body, "seq": goal.seq, "epoca": goal.epoch}
+    return body if isinstance(goal, StopGoal) else {**body, "visto": goal.heard, "ficha": goal.token}
 
 
 def _telemetry_body(said: Telemetry) -> dict[str, object]:
@@ -259,6 +275,8 @@ def _telemetry_body(said: Telemetry) -> dict[str, object]:
         "epoca_min": said.least_epoch,
         "ack": said.ack,
         "hecho": said.done,
+        "ficha_ack": said.ack_token,
+        "ficha_hecho": said.done_token,
         "rechazo": said.refusal,
         "rechazo_seq": said.refused_seq,
         "arranque": said.boot_id,

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 
 from arboleda.model.errors import PayloadError
 from arboleda.model.facts import Facts, Value
-from arboleda.model.messages import Receipt, Report
+from arboleda.model.messages import Receipt, Report, Tokens
 from arboleda.model.outside import quoted
 from arboleda.model.plant_model import MotionState, Robot
 from arboleda.model.sentence import OWN, Sentence, from_data
@@ -27,6 +27,7 @@ from .strict import UINT32
 OK, WARN, ERROR, STALE = range(4)  # levels of diagnostic_msgs/DiagnosticStatus
 _LABEL = "id="
 _HEARD = "heard="
+_TOKEN = "token="
 NUMBER = "number"  # the last key of a status, but for those on commands of others
 NUMBER_DIGITS = len(str(UINT32))
 _FLOAT = re.compile(r"-?\d+(\.\d+)?([eE][-+]?\d+)?", re.ASCII)
@@ -100,6 +101,17 @@ def from_heard_labels(labels: Iterable[str]) -> int | None:
     """The number in the `heard` label among further ones; None without, PayloadError for an invalid one."""
     said = next((label for label in labels if label.startswith(_HEARD)), None)
     return None if said is None else _count("heard", said[len(_HEARD) :])
+
+
+def to_token_label(token: str) -> str:
+    """The label of what the board is to echo: `token=<token>`."""
+    return f"{_TOKEN}{token}"
+
+
+def from_token_labels(labels: Iterable[str]) -> str | None:
+    """The token in the `token` label among further ones; None without, PayloadError for an invalid one."""
+    said = next((label for label in labels if label.startswith(_TOKEN)), None)
+    return None if said is None else _token(said[len(_TOKEN) :])
 
 
 def _name(robot: Robot) -> str:
@@ -201,6 +213,19 @@ def _receipt(key: str, text: str) -> Receipt:
     return Receipt(_count(key, epoch), _count(key, accepted), _count(key, done[0]) if done else None)
 
 
+def _token(text: str) -> str:
+    return strict.name("token", text, strict.LONGEST_TOKEN)
+
+
+def _tokens(key: str, text: str) -> Tokens:
+    accepted, _, done = text.partition(",")
+    return Tokens(*[_token(each) if each else None for each in (accepted, done)])
+
+
+def _write_tokens(tokens: Tokens) -> str:
+    return ",".join(token or "" for token in tokens)
+
+
 def _write_receipt(receipt: Receipt) -> str:
     return ",".join(str(number) for number in receipt if number is not None)
 
@@ -246,6 +271,7 @@ _ROWS: dict[str, tuple[str, Callable[[str, str], object], Callable[..., str]]] =
     "piece": ("piece", _flag, _write_flag),
     "facts": ("facts", _facts, _write_facts),
     "receipt": ("receipt", _receipt, _write_receipt),
+    "tokens": ("tokens", _tokens, _write_tokens),
     "foreign_refused": ("foreign_refused", _count, str),
     "foreign_obeyed": ("foreign_obeyed", _count, str),
     NUMBER: ("number", _count, written_number),

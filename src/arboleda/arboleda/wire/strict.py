@@ -17,6 +17,7 @@ UINT32 = 2**32 - 1
 LARGEST = 1e9  # of a fact that is a number
 LONGEST = 32  # characters of a name, and bytes of a text
 LONGEST_WORD = 16  # length of a word for a reason
+LONGEST_TOKEN = 12  # of a command: which step of which task it is
 TEXT_RULE = (
     f"at most {LONGEST} bytes of printable characters without double quotes and backslashes are allowed, "
     "where an accented letter takes 2 bytes, and one of other scripts up to 4"
@@ -160,6 +161,10 @@ class Fields:
 
     def name(self, key: str) -> str:
         return name(key, self._get(key))
+
+    def token(self, key: str) -> str | None:
+        """The token of a command, which may be absent."""
+        return name(key, self._values[key], LONGEST_TOKEN) if key in self._values else None
 
     def matching(self, key: str, check: Callable[[str, str], str]) -> str:
         """A text that `check`, called with key and text, accepts."""

@@ -22,6 +22,7 @@ class JointsGoal:
     seq: int | None
     epoch: int | None
     heard: int | None = None
+    token: str | None = None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -32,6 +33,7 @@ class PathGoal:
     seq: int | None
     epoch: int | None
     heard: int | None = None
+    token: str | None = None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -42,6 +44,7 @@ class EffectorGoal:
     seq: int | None
     epoch: int | None
     heard: int | None = None
+    token: str | None = None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -60,6 +63,7 @@ class HomeGoal:
     seq: int | None
     epoch: int | None
     heard: int | None = None
+    token: str | None = None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -71,6 +75,7 @@ class OrderGoal:
     seq: int | None
     epoch: int | None
     heard: int | None = None
+    token: str | None = None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -88,7 +93,7 @@ class Telemetry:
     `seq` counts telemetry since boot. `least_epoch`, sent if it is above `ack_epoch`, is the oldest epoch
     whose commands count. `ack`, `done` and `refused_seq` are command seqs of `ack_epoch`; so are
     `answered_seq`, of the last query that a device answered, and those in `failures`, the last few commands
-    that it gave up, oldest first.
+    that it gave up, oldest first. `ack_token` and `done_token` are the tokens of `ack` and `done`.
     """
 
     state: MotionState
@@ -109,6 +114,8 @@ class Telemetry:
     answered_seq: int | None = None
     failures: tuple[tuple[int, str], ...] | None = None
     least_epoch: int | None = None
+    ack_token: str | None = None
+    done_token: str | None = None
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -43,7 +43,7 @@ class ArmBench(Bench[ArmTelemetry]):
     def place(self) -> tuple[int, ...]:
         return self.steps
 
-    def goal(self, steps: tuple[int, ...], **numbers: int) -> Send:
+    def goal(self, steps: tuple[int, ...], **numbers: int | str) -> Send:
         """A target in motor steps."""
         degrees = zip(steps, self.step_deg, strict=True)
         q = {f"q{at + 1}": round(count * step, 4) for at, (count, step) in enumerate(degrees)}
@@ -85,6 +85,8 @@ class ArmBench(Bench[ArmTelemetry]):
             refusal=fields.word("rechazo", REFUSALS) if "rechazo" in fields else None,
             refused=fields.optional("rechazo_seq"),
             boot_id=fields.optional("arranque"),
+            ack_token=fields.token("ficha_ack"),
+            done_token=fields.token("ficha_hecho"),
             homed=fields.flag("ref"),
             effector=fields.flag("efector"),
         )

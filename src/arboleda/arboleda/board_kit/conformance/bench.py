@@ -63,6 +63,8 @@ class BoardTelemetry:
     refusal: str | None
     refused: int | None
     boot_id: int | None
+    ack_token: str | None
+    done_token: str | None
 
     @property
     def place(self) -> tuple[Any, ...] | None:

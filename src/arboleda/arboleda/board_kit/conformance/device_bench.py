@@ -53,7 +53,7 @@ class DeviceBench(Bench[DeviceTelemetry]):
     def place(self) -> tuple[tuple[str, Value], ...]:
         return self.last.firm if self.said else ()
 
-    def order(self, told: VerbCall, **numbers: int) -> Send:
+    def order(self, told: VerbCall, **numbers: int | str) -> Send:
         """The order of a verb with its values."""
         values = {"valores": dict(told.values)} if told.values else {}
         return self.send(Channel.ORDER, verbo=told.verb, **values, **numbers)
@@ -105,6 +105,8 @@ class DeviceBench(Bench[DeviceTelemetry]):
             refusal=said.refusal,
             refused=said.refused_seq,
             boot_id=said.boot_id,
+            ack_token=said.ack_token,
+            done_token=said.done_token,
             facts=said.facts,
             firm=tuple((name, value) for name, value in self.facts.items() if self._is_firm(name)),
             answer=said.answer,

@@ -14,6 +14,7 @@ from .procedures import (
     accepted,
     answer,
     demand,
+    echoes_tokens,
     numbered_reports,
     only_in_time,
     refused,
@@ -100,6 +101,12 @@ def late(bench: DeviceBench) -> Steps:
     """An order that names in visto what it told over 2 s ago is refused with tarde; paro never is."""
     told = yield from lead_to(bench, _any, "verb")
     yield from only_in_time(bench, lambda heard: bench.order(told, visto=heard))
+
+
+def token(bench: DeviceBench) -> Steps:
+    """The ficha of an order is echoed with ack and with hecho, and by no number of another command."""
+    told = yield from lead_to(bench, _any, "verb")
+    yield from echoes_tokens(bench, lambda ficha: bench.order(told, ficha=ficha))
 
 
 def words(bench: DeviceBench) -> Steps:

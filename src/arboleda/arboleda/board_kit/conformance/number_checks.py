@@ -11,6 +11,7 @@ from .procedures import (
     accepted,
     answer,
     demand,
+    echoes_tokens,
     numbered_reports,
     only_in_time,
     refused,
@@ -100,6 +101,11 @@ def retained(bench: ArmBench) -> Steps:
 def late(bench: ArmBench) -> Steps:
     """A goal that names in visto what it told over 2 s ago is refused with tarde; paro never is."""
     yield from only_in_time(bench, lambda heard: bench.goal(bench.away(0.05), visto=heard))
+
+
+def token(bench: ArmBench) -> Steps:
+    """The ficha of a goal is echoed with ack and with hecho, and by no number of another command."""
+    yield from echoes_tokens(bench, lambda ficha: bench.goal(bench.away(0.05), ficha=ficha))
 
 
 def words(bench: ArmBench) -> Steps:

@@ -14,6 +14,7 @@ ANSWER_S = 2.0
 BACK_S = 10.0  # so long it may take to connect again
 NOTHING_S = 0.4  # so long a board that does nothing is watched
 LATE_S = 2.5  # after so long what it told is no news, by far
+TOKEN = "0a3f97001a01"
 NOT_YET_TOLD = 100_000  # so many reports on
 WAITED = (
     ". That visto names what it told more than 2 s ago: the command waited in a broker, or in a connection "
@@ -126,6 +127,20 @@ def only_in_time(bench: Bench[Any], command: Callable[[int], Send]) -> Steps:
     yield from refused(bench, command(bench.last.number + NOT_YET_TOLD), "tarde")
     yield from accepted(bench, stop(bench, 2, visto=heard))
     yield from accepted(bench, command(bench.last.number))
+
+
+def echoes_tokens(bench: Bench[Any], command: Callable[[str], Send]) -> Steps:
+    """The token of a command comes back with its number, at its end as well, and a stop leaves none."""
+    yield from accepted(bench, command(TOKEN))
+    if bench.last.ack_token is None:
+        raise CheckSkipped("it echoes no ficha, which a board need not")
+    demand(bench.last.ack_token == TOKEN, f"ficha_ack is {bench.last.ack_token}, and not {TOKEN}")
+    number = bench.seq
+    done = yield Wait(seconds=bench.patience_s, until=lambda: bench.last.done == number)
+    echoed = bench.last.done_token
+    demand(not done or echoed == TOKEN, f"hecho is {number}, and ficha_hecho is {echoed}, not {TOKEN}")
+    yield from accepted(bench, stop(bench, 2))
+    demand(bench.last.ack_token is None, "ack is that of paro, and ficha_ack still that of a command before")
 
 
 def refused_as_retained(bench: Bench[Any], message: Send, what: str) -> Steps:

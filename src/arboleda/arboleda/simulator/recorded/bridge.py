@@ -335,7 +335,7 @@ class _Board:
             self._still_since = at
 
     def expect_copy(self, at: float, command: Command) -> None:
-        plain = replace(command, id="", heard=None)
+        plain = replace(command, id="", heard=None, token=None)
         early = next((each for each in self._early if each[1] == plain), None)
         if early is None:
             self._copies.append((at, plain))
@@ -508,6 +508,8 @@ class _Board:
             self._say(COMMANDS, f"{command} left as {body}")
         if command.heard is not None and self._by_ids and body.get("visto") != command.heard:
             self._say(COMMANDS, f"{command} left as {body}, which names other telemetry than the plant did")
+        if self._by_ids and body.get("ficha", command.token) != command.token:
+            self._say(COMMANDS, f"{command} left as {body}, which carries another token")
         if publication.qos < 1:
             self._say(COMMANDS, f"{command} left with QoS {publication.qos}")
         self._number_of(command.id, publication, place)

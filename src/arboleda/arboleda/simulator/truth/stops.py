@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Mapping
+from typing import Any
 
 from arboleda.model.commands import Command, needs_clear
 from arboleda.model.messages import Fact, OperatorAnswer, Remember, Verb
@@ -92,8 +93,8 @@ def robots_of(model: PlantModel, scope: str) -> list[str]:
 
 def is_order_of(goal: Goal, robot: Robot, command: Command) -> bool:
     """True if a goal on the wire is this command."""
-    stamp = {"seq": goal.seq, "epoch": goal.epoch}
-    stamp |= {} if isinstance(goal, StopGoal) else {"heard": goal.heard}
+    stamp: dict[str, Any] = {"seq": goal.seq, "epoch": goal.epoch}
+    stamp |= {} if isinstance(goal, StopGoal) else {"heard": goal.heard, "token": goal.token}
     _, expected = form_of(robot).goal(robot, command, **stamp)
     if isinstance(goal, JointsGoal) and isinstance(expected, JointsGoal):
         return all(abs(a - b) < ROUNDING_DEG for a, b in zip(goal.q, expected.q, strict=True))
