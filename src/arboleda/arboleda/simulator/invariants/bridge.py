@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from ..recorded.bridge import BEATS, COMMANDS, REPORTS
+from ..recorded.motions import BEATS
+from ..recorded.passed_commands import COMMANDS
+from ..recorded.reported_telemetry import REPORTS
 from .invariant import Look, Trigger, invariant
 
 
