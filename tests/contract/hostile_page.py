@@ -18,9 +18,9 @@ from arboleda.store.task_rows import TaskQuery, TaskRow
 from arboleda.testing import Rig, shipped
 from arboleda.views import view
 from arboleda.views.oee import KeptFigures, Oee, oee
-from arboleda.web.auth import Door
-from arboleda.web.guard import Guard
-from arboleda.web.names import names_for
+from arboleda.web.access.auth import Door
+from arboleda.web.access.guard import Guard
+from arboleda.web.access.names import names_for
 from arboleda.web.server import Server
 
 EVIL = sys.argv[1]

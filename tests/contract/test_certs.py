@@ -14,7 +14,7 @@ from typing import Any
 import pytest
 
 from arboleda.cli import main
-from arboleda.web.names import own_addresses
+from arboleda.web.access.names import own_addresses
 
 pytestmark = pytest.mark.requires("cryptography")
 

@@ -30,7 +30,7 @@ from arboleda.recorder.cause import Cause
 from arboleda.recorder.incident import Incident
 from arboleda.runtime.standby.waiting_room import waiting_page
 from arboleda.testing.plants import shipped
-from arboleda.web import login
+from arboleda.web.access import login
 
 app = FastAPI()
 app.include_router(login.routes())

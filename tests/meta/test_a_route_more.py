@@ -14,9 +14,9 @@ from fastapi import APIRouter
 from fastapi.responses import JSONResponse
 from pydantic import Field
 
-from ..plain_json import PlainJson
+from ..schema.plain_json import PlainJson
 from ..plant_api import PlantApi
-from ..schema import ResponseModel
+from ..schema.bodies import ResponseModel
 
 
 class Waiting(ResponseModel):
@@ -45,7 +45,7 @@ from arboleda.runtime.parts.local_plant import LocalPlant
 from arboleda.testing.plants import shipped
 from arboleda.testing.rig import Rig
 from arboleda.web.api import make_app
-from arboleda.web.openapi import render
+from arboleda.web.schema.openapi import render
 
 rig = Rig(shipped())
 for text in ("sis_a 0B 7", "sis_a 1C 2", "sis_a 0B 3"):

@@ -36,8 +36,8 @@ from arboleda.testing.plants import shipped
 from arboleda.testing.rig import Rig
 from arboleda.views import view
 from arboleda.web.api import make_app, verb_arguments, verb_of
-from arboleda.web.auth import Role, allowed
-from arboleda.web.openapi import render
+from arboleda.web.access.auth import Role, allowed
+from arboleda.web.schema.openapi import render
 from arboleda_ros.verbs import VerbServices
 
 rig, services, page = Rig(shipped()), [], io.StringIO()

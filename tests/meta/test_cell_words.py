@@ -17,7 +17,7 @@ from arboleda.dashboard.wording import LANGUAGES, SENTENCES, tree_of, words
 from arboleda.model.sentence import Phrase
 from arboleda.testing import Rig, shipped
 from arboleda.views import view
-from arboleda.web.schema import Cell
+from arboleda.web.schema.bodies import Cell
 
 ROOT = Path(__file__).parents[2]
 STANDINGS = ("blocked", "paused")

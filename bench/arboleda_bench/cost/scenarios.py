@@ -35,8 +35,8 @@ from arboleda.store.sqlite import IN_MEMORY, Store
 from arboleda.store.task_rows import TaskHistory
 from arboleda.views import view
 from arboleda.views.remembered import RestingCells
+from arboleda.web.access.auth import Role
 from arboleda.web.api import make_app
-from arboleda.web.auth import Role
 
 from .. import plants
 from ..obedient import EPOCH, Yard, command_in, is_over

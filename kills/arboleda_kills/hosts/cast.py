@@ -18,7 +18,7 @@ import httpx
 
 from arboleda.runtime import tokens
 from arboleda.runtime.state import find_running
-from arboleda.web.auth import Role
+from arboleda.web.access.auth import Role
 
 from ..database import DATABASE, PASSWORD, USER, Server
 from ..processes import PATIENCE_S, Boards, Plant, paths

@@ -28,7 +28,7 @@ from arboleda.runtime.log_file import LogFile
 from arboleda.runtime.log_queue import log_to
 from arboleda.runtime.waiting import raise_at_signals
 from arboleda.runtime.web_options import WebOptions
-from arboleda.web.names import LOCAL
+from arboleda.web.access.names import LOCAL
 
 from . import missing_libraries
 from .link import Link, connect

@@ -23,10 +23,10 @@ from arboleda.store.task_rows import TaskQuery, TaskRow
 from arboleda.testing import shipped
 from arboleda.views.oee import KeptFigures, Oee, Run, Work, oee
 from arboleda.web import limits
+from arboleda.web.access.auth import Door, Role
+from arboleda.web.access.guard import Guard
+from arboleda.web.access.names import names_for
 from arboleda.web.api import make_app
-from arboleda.web.auth import Door, Role
-from arboleda.web.guard import Guard
-from arboleda.web.names import names_for
 from arboleda.web.server import SecondLoop, Server
 
 from ...patience import PATIENCE_S

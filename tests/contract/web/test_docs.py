@@ -7,7 +7,7 @@ import re
 import httpx
 
 from arboleda.model.messages import Verb
-from arboleda.web import openapi
+from arboleda.web.schema import openapi
 
 DRAFT_STEPS = (
     "take",

@@ -6,8 +6,8 @@ from typing import Any
 
 import pytest
 
-from arboleda.web.auth import Role
-from arboleda.web.draft_api import DraftRefused
+from arboleda.web.access.auth import Role
+from arboleda.web.desks.draft import DraftRefused
 
 VALUE = [1, {"b": None}]
 STATE = {"file": "plant.yaml", "editor": None, "changes": [], "waiting": [], "undo": 0, "redo": 0}

@@ -25,7 +25,7 @@ from arboleda.runtime.standby.waiting_room import WaitingRoom
 from arboleda.runtime.state import StateDir
 from arboleda.runtime.tokens import TOKENS as FILE
 from arboleda.runtime.web_options import WebOptions
-from arboleda.web.auth import Role
+from arboleda.web.access.auth import Role
 
 from ...patience import SOON_S
 from .conftest import QUEUED, TASK, TOKENS, VIEW, Plant, Web

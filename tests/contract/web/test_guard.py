@@ -10,7 +10,7 @@ import pytest
 
 from arboleda.model.messages import Verb
 from arboleda.web import limits
-from arboleda.web.auth import Role
+from arboleda.web.access.auth import Role
 
 from .conftest import TOKENS, VIEW
 

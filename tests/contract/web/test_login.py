@@ -5,8 +5,9 @@ from __future__ import annotations
 import pytest
 
 from arboleda.model.errors import StartError
-from arboleda.web import auth, limits
-from arboleda.web.auth import Door, Role
+from arboleda.web import limits
+from arboleda.web.access import auth
+from arboleda.web.access.auth import Door, Role
 
 from .conftest import TOKENS
 

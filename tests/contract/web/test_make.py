@@ -8,8 +8,8 @@ from typing import Any
 import pytest
 
 from arboleda.bt_xml.editing.errors import EditError
-from arboleda.web.auth import Role
-from arboleda.web.draft_api import DraftRefused
+from arboleda.web.access.auth import Role
+from arboleda.web.desks.draft import DraftRefused
 
 STATE = {"file": "plant.yaml", "editor": None, "changes": [], "waiting": [], "undo": 0, "redo": 0}
 STATE |= {"values": {}}

@@ -20,9 +20,9 @@ from arboleda.model.messages import OperatorAnswer, Verb
 from arboleda.runtime.endpoints import Place
 from arboleda.site.reach import ANSWER_S, NO_ANSWER
 from arboleda.site.watch import NOT_SEEN, NOT_STOPPED, STANDS_BY, STOPPED, STOPPED_ALL, Site
-from arboleda.web.auth import Door, Role
-from arboleda.web.guard import Guard
-from arboleda.web.names import names_for
+from arboleda.web.access.auth import Door, Role
+from arboleda.web.access.guard import Guard
+from arboleda.web.access.names import names_for
 from arboleda.web.server import Server
 
 from ...patience import PATIENCE_S, SOON_S

@@ -13,8 +13,8 @@ from websockets.exceptions import ConnectionClosed, InvalidStatus
 from websockets.sync.client import ClientConnection, connect
 
 from arboleda.web import limits
-from arboleda.web.auth import LOCAL, Role
-from arboleda.web.guard import Sockets
+from arboleda.web.access.auth import LOCAL, Role
+from arboleda.web.access.guard import Sockets
 
 from .conftest import TOKENS, Web
 

@@ -20,7 +20,7 @@ from starlette.types import Receive, Scope, Send
 
 from arboleda.model.messages import OperatorAnswer, Verb
 from arboleda.web import server
-from arboleda.web.auth import Role
+from arboleda.web.access.auth import Role
 from arboleda.web.server import Server
 
 from .conftest import TOKENS, VIEW, Plant, Web

@@ -12,7 +12,7 @@ import httpx
 import pytest
 
 from arboleda.web import limits, server
-from arboleda.web.auth import Role
+from arboleda.web.access.auth import Role
 
 from .conftest import TASK, VIEW, Plant, Web
 

@@ -6,8 +6,8 @@ from typing import Any
 
 import pytest
 
-from arboleda.web.auth import Role
-from arboleda.web.teach_api import Along, Button, Target, TeachRefused
+from arboleda.web.access.auth import Role
+from arboleda.web.desks.teach import Along, Button, Target, TeachRefused
 
 STATE = {"cell": "sis_a", "teaching": None, "refusal": None, "devices": [], "targets": [], "drafts": True}
 PRESSED = {"teaching": None, "robot": {"name": "ra1"}}

@@ -22,7 +22,7 @@ from arboleda.cli.client import PlantClient
 from arboleda.model.errors import ArboledaError
 from arboleda.runtime.state import StateDir
 from arboleda.web import server
-from arboleda.web.auth import Role
+from arboleda.web.access.auth import Role
 
 from ...patience import PATIENCE_S, SOON_S
 from ..conftest import Authority

@@ -11,7 +11,7 @@ import pytest
 
 from arboleda.plant_file import loader
 from arboleda.web import limits
-from arboleda.web.auth import Role
+from arboleda.web.access.auth import Role
 from arboleda.web.plant_api import PlantApi
 
 from .conftest import Plant

@@ -6,8 +6,8 @@ from typing import Any
 
 import pytest
 
-from arboleda.web.auth import Role
-from arboleda.web.draft_api import DraftRefused
+from arboleda.web.access.auth import Role
+from arboleda.web.desks.draft import DraftRefused
 
 LIST = {"at_work": {"number": None, "at": "2026"}, "versions": [], "cells": []}
 LIST |= {"restart": {"by": "", "can": True}}

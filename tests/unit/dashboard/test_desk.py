@@ -17,7 +17,7 @@ from arboleda.dashboard.wording import words
 from arboleda.model.messages import OperatorAnswer, Outcome, Verb
 from arboleda.model.sentence import OWN
 from arboleda.model.verbs import Arguments
-from arboleda.web.auth import Role
+from arboleda.web.access.auth import Role
 
 WHY = OWN(text="jaw: it is stuck")
 

@@ -15,7 +15,7 @@ from arboleda.recorder.preamble import PlantFiles
 from arboleda.runtime import at_work
 from arboleda.runtime.draft_desk import DraftDesk
 from arboleda.runtime.plant_folder import PlantFolder
-from arboleda.web.draft_api import DraftRefused
+from arboleda.web.desks.draft import DraftRefused
 
 AT = "2026-11-25T20:00:00+00:00"
 ANA, BEN = "ana-12345", "ben-12345"

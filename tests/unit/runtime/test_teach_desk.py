@@ -24,8 +24,8 @@ from arboleda.runtime.draft_desk import DraftDesk
 from arboleda.runtime.plant_folder import PlantFolder
 from arboleda.runtime.teach_desk import TeachDesk
 from arboleda.testing import Rig
-from arboleda.web.draft_api import DraftRefused
-from arboleda.web.teach_api import Along, Button, Target, TeachRefused
+from arboleda.web.desks.draft import DraftRefused
+from arboleda.web.desks.teach import Along, Button, Target, TeachRefused
 
 BEAT_S = 0.05
 EDITOR = {"editor": "ana-12345", "name": "Ana"}

@@ -14,7 +14,7 @@ from arboleda.model.errors import StartError
 from arboleda.runtime import tokens
 from arboleda.runtime.state import StateDir
 from arboleda.runtime.tokens import TOKENS, TokenFile
-from arboleda.web.auth import Role
+from arboleda.web.access.auth import Role
 
 
 def test_tokens_are_made_once_long_and_for_their_owner_only(tmp_path: Path) -> None:

@@ -9,7 +9,7 @@ import pytest
 
 from arboleda.runtime.plant_folder import PlantFolder
 from arboleda.runtime.version_desk import VersionDesk
-from arboleda.web.draft_api import DraftRefused
+from arboleda.web.desks.draft import DraftRefused
 
 
 def never(*_: Any) -> Any:

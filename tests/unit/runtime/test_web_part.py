@@ -14,7 +14,7 @@ from arboleda.model.messages import TaskChanged, TaskState
 from arboleda.runtime.parts.local_plant import LocalPlant
 from arboleda.runtime.web_options import WebOptions
 from arboleda.store.task_rows import TaskHistory
-from arboleda.web.names import names_for
+from arboleda.web.access.names import names_for
 
 NO_HISTORY = TaskHistory(Path("none"))
 

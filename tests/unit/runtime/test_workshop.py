@@ -9,7 +9,7 @@ import pytest
 
 from arboleda.recorder.preamble import PlantFiles
 from arboleda.runtime.make.workshop import Workshop
-from arboleda.web.draft_api import DraftRefused
+from arboleda.web.desks.draft import DraftRefused
 from arboleda.web.languages import texts
 
 OWN_TREE = Path(__file__).parents[3] / "examples/own_tree/plant.yaml"

@@ -23,7 +23,7 @@ from arboleda.model.plant_model import Link, PlantModel
 from arboleda.plant_file import loader
 from arboleda.plant_file.user_file import read_bytes
 from arboleda.runtime import invocation
-from arboleda.web.names import own_addresses, own_names
+from arboleda.web.access.names import own_addresses, own_names
 
 from . import mosquitto_files
 from .plant_options import PlantFile

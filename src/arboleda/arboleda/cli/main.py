@@ -34,7 +34,7 @@ from arboleda.runtime.alarm_options import alarm_options
 from arboleda.runtime.rate import check_rate
 from arboleda.runtime.state import find_running, holder
 from arboleda.runtime.web_options import WebOptions
-from arboleda.web.names import DEFAULT_PORT, listen_address, public_origin
+from arboleda.web.access.names import DEFAULT_PORT, listen_address, public_origin
 
 from . import (
     apply,

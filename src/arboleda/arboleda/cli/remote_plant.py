@@ -13,7 +13,7 @@ from arboleda.runtime import tokens
 from arboleda.runtime.endpoints import Place, with_tokens
 from arboleda.runtime.standby.leader import LeaderInfo, of_leader
 from arboleda.runtime.stores import leadership_of
-from arboleda.web.auth import Role
+from arboleda.web.access.auth import Role
 
 from .line import FarLine
 

@@ -11,7 +11,7 @@ from arboleda.model.errors import StartError
 from arboleda.runtime.state import state_root
 from arboleda.runtime.stores import refuse_without_library
 from arboleda.runtime.web_options import WebOptions
-from arboleda.web.names import listen_address, public_origin
+from arboleda.web.access.names import listen_address, public_origin
 
 if TYPE_CHECKING:  # they take a while to load, and only who shows a page needs them
     from arboleda.adapters.server_tls import ServerTls

@@ -9,7 +9,7 @@ import typer
 from arboleda.model.errors import StartError
 from arboleda.runtime import tokens
 from arboleda.runtime.state import LOCK
-from arboleda.web.auth import Role
+from arboleda.web.access.auth import Role
 
 from .plant_options import PlantFile, StateFolder, located
 

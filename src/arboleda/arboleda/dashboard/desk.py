@@ -18,7 +18,7 @@ from arboleda.model.messages import Outcome, Verb
 from arboleda.model.sentence import Sentence, in_json
 from arboleda.model.verbs import Arguments, as_text, lasting
 from arboleda.store.task_rows import PAGE
-from arboleda.web.auth import SUBMIT, allowed
+from arboleda.web.access.auth import SUBMIT, allowed
 
 from . import demo
 from .feed import Feed

@@ -8,7 +8,7 @@ from collections.abc import Callable
 from nicegui import Client
 from nicegui.events import GenericEventArguments
 
-from arboleda.web.auth import Role
+from arboleda.web.access.auth import Role
 
 from .wording import Words
 

@@ -12,7 +12,7 @@ from nicegui import Client, app, ui
 
 from arboleda.store.oee_rows import OeeQuery
 from arboleda.store.task_rows import TaskQuery
-from arboleda.web.auth import Role
+from arboleda.web.access.auth import Role
 
 from . import (
     demo,

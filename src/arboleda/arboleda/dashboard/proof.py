@@ -6,7 +6,7 @@ from fastapi import FastAPI, HTTPException, Request
 from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import HTMLResponse, Response
 
-from arboleda.web.auth import require
+from arboleda.web.access.auth import require
 
 from .page_api import PageApi
 from .reports import POLICY

@@ -9,7 +9,7 @@ from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import HTMLResponse, Response
 
 from arboleda.model.errors import ArboledaError
-from arboleda.web import login
+from arboleda.web.access import login
 
 from .page_api import PageApi
 from .shell import language_of

@@ -12,8 +12,8 @@ from fastapi import FastAPI, Request
 from nicegui import Client, app, ui
 
 from arboleda.model.errors import StartError
+from arboleda.web.access.auth import Role
 from arboleda.web.api import refuse
-from arboleda.web.auth import Role
 from arboleda.web.languages import spoken
 
 from . import trees

@@ -18,10 +18,10 @@ from arboleda.plant_file.urdf import robot_urdf
 from arboleda.runtime.parts.records import Records
 from arboleda.runtime.waiting import interruptible, until, until_interrupted
 from arboleda.views import view
+from arboleda.web.access.auth import Door
+from arboleda.web.access.guard import Guard
+from arboleda.web.access.names import LOCAL, names_for
 from arboleda.web.api import own_up, refuse
-from arboleda.web.auth import Door
-from arboleda.web.guard import Guard
-from arboleda.web.names import LOCAL, names_for
 from arboleda.web.server import Server
 
 if TYPE_CHECKING:

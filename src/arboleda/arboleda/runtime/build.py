@@ -28,7 +28,7 @@ from arboleda.model.sentence import OWN, Sentence, from_data
 from arboleda.plant_file.draft_process import CheckProcess
 from arboleda.recorder.preamble import Beginning, Recording
 from arboleda.store.plant_memory import JournalEntry, PlantMemory, Superseded
-from arboleda.web.names import other_address
+from arboleda.web.access.names import other_address
 
 from . import at_work
 from .alarm_options import AlarmOptions

@@ -23,7 +23,7 @@ from arboleda.plant_file.versions import Version, Versions, version_of
 from arboleda.plant_file.yaml_edit import EditRefused
 from arboleda.plant_file.yaml_marks import parse
 from arboleda.recorder.preamble import PlantFiles
-from arboleda.web.draft_api import DraftApi, DraftRefused, Place, State
+from arboleda.web.desks.draft import DraftApi, DraftRefused, Place, State
 
 from . import at_work
 from .plant_folder import NOT_OURS, PlantFolder

@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING
 
 from arboleda.model.errors import ArboledaError, ConfigError
 from arboleda.plant_file.user_file import read_text
-from arboleda.web.auth import Role
-from arboleda.web.names import public_origin
+from arboleda.web.access.auth import Role
+from arboleda.web.access.names import public_origin
 
 from . import tokens
 from .state import Running, find_running, running_plants

@@ -9,7 +9,7 @@ from pathlib import Path
 from arboleda.model.errors import StartError
 from arboleda.plant_file.draft_check import root_of
 from arboleda.plant_file.versions import Version, Versions
-from arboleda.web.draft_api import DraftRefused
+from arboleda.web.desks.draft import DraftRefused
 
 OWN = "files"  # in the state directory
 NOT_OURS = "these files cannot be changed where they are; make them your own first"

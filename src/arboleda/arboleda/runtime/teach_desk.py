@@ -16,8 +16,8 @@ from arboleda.model.messages import Jog
 from arboleda.model.plant_model import PlantModel, Robot
 from arboleda.plant_file.urdf import robot_urdf
 from arboleda.views import view
-from arboleda.web.draft_api import DraftApi
-from arboleda.web.teach_api import Along, Button, State, Target, TeachApi, TeachRefused
+from arboleda.web.desks.draft import DraftApi
+from arboleda.web.desks.teach import Along, Button, State, Target, TeachApi, TeachRefused
 
 from . import taught_devices, taught_targets, tool_path
 

@@ -9,7 +9,7 @@ from collections.abc import Collection
 from pathlib import Path
 
 from arboleda.model.errors import StartError
-from arboleda.web.auth import Role
+from arboleda.web.access.auth import Role
 
 from .state import replace_file
 

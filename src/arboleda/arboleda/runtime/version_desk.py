@@ -22,8 +22,8 @@ from arboleda.plant_file.draft_check import Checked
 from arboleda.plant_file.restart import needing_restart
 from arboleda.plant_file.versions import Version, Versions, version_of, whole
 from arboleda.recorder.preamble import PlantFiles
-from arboleda.web.draft_api import DraftRefused, State
-from arboleda.web.versions_api import VersionsApi
+from arboleda.web.desks.draft import DraftRefused, State
+from arboleda.web.desks.versions import VersionsApi
 
 from . import at_work
 from .parts.orchestrator import Orchestrator, PutToWork

@@ -7,8 +7,15 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from arboleda.web.auth import Door
-from arboleda.web.names import DEFAULT_PORT, EVERY_NETWORK, LOCAL, is_loopback, listen_address, url_host
+from arboleda.web.access.auth import Door
+from arboleda.web.access.names import (
+    DEFAULT_PORT,
+    EVERY_NETWORK,
+    LOCAL,
+    is_loopback,
+    listen_address,
+    url_host,
+)
 
 from . import tokens
 

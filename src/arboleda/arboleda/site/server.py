@@ -14,11 +14,11 @@ from arboleda.runtime import tokens
 from arboleda.runtime.endpoints import Find
 from arboleda.runtime.waiting import interruptible, until, until_interrupted
 from arboleda.runtime.web_options import WebOptions
-from arboleda.web import login
+from arboleda.web.access import login
+from arboleda.web.access.auth import Door
+from arboleda.web.access.guard import Guard
+from arboleda.web.access.names import names_for
 from arboleda.web.api import own_up, refuse
-from arboleda.web.auth import Door
-from arboleda.web.guard import Guard
-from arboleda.web.names import names_for
 from arboleda.web.server import Server
 
 from .watch import Site

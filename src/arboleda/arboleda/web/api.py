@@ -29,16 +29,16 @@ from arboleda.model.outside import plain, quoted
 from arboleda.model.verbs import Arguments, from_text
 from arboleda.store.task_rows import COMMAND, HTTP, TaskRow, answers_of, choice_of, table, unchecked_of
 
-from . import limits, login, metrics, openapi, stream
-from .auth import SUBMIT, Forbidden, require
-from .draft_api import DraftRefused
+from . import limits, stream
+from .access import login
+from .access.auth import SUBMIT, Forbidden, require
+from .desks.draft import DraftRefused
 from .limits import LATER_S
-from .plain_json import PlainJson, explained
 from .plant_api import COMMAND_LINE, PlantApi
-from .queries import WRONG, Answers, asked, described
-from .request import is_api
+from .request import METRICS, is_api
 from .routes import routers as looks
-from .schema import (
+from .schema import openapi
+from .schema.bodies import (
     Act,
     Done,
     KeptTask,
@@ -50,6 +50,8 @@ from .schema import (
     TaskText,
     VerbArguments,
 )
+from .schema.plain_json import PlainJson, explained
+from .schema.queries import WRONG, Answers, asked, described
 
 
 class NotFound(BaseRoute):
@@ -108,6 +110,7 @@ ACCEPTED: Answers = {
     }
 }
 CONFLICT: Answers = {409: {"model": Sentence, "description": "The plant does not do this now."}}
+PROMETHEUS = "text/plain; version=0.0.4; charset=utf-8"
 NO_ACT: Answers = {404: {"model": Sentence, "description": "The plant does not know this act (any more)."}}
 UNKNOWN: Answers = {404: {"model": Sentence, "description": "There is no such task."}}
 
@@ -132,7 +135,7 @@ def make_app(
     app.add_exception_handler(HTTPException, refuse)
     app.add_exception_handler(Exception, own_up)
     routers = [routes(side), *looks(side), stream.routes(side, streams), login.routes(), openapi.routes(app)]
-    routers += [metrics.routes(counts)] if counts is not None else []
+    routers += [_metrics(counts)] if counts is not None else []
     for router in routers:
         app.include_router(router, responses=OTHERS)
     app.router.routes.append(NotFound([route for router in routers for route in router.routes]))
@@ -144,6 +147,18 @@ def _read_routes(app: FastAPI) -> None:
     """Have FastAPI read the included routes now, and not while somebody waits for the first answer."""
     for route in app.routes:
         route.matches({"type": "http", "method": "GET", "path": "", "root_path": "", "headers": []})
+
+
+def _metrics(counts: Callable[[], bytes]) -> APIRouter:
+    """Register the route for Prometheus; `counts` may wait for the plant."""
+    api = APIRouter()
+
+    @api.get(METRICS, response_class=PlainTextResponse)
+    async def metrics() -> PlainTextResponse:
+        """Counts and states in the text format of Prometheus."""
+        return PlainTextResponse(await run_in_threadpool(counts), media_type=PROMETHEUS)
+
+    return api
 
 
 def routes(side: PlantApi) -> APIRouter:

@@ -20,11 +20,11 @@ from arboleda.store.task_rows import TaskQuery, TaskRow
 from arboleda.views import forms, view
 from arboleda.views.oee import Oee
 
-from .draft_api import DraftApi
+from .desks.draft import DraftApi
+from .desks.make import MakeApi
+from .desks.teach import TeachApi
+from .desks.versions import VersionsApi
 from .languages import spoken, texts
-from .make_api import MakeApi
-from .teach_api import TeachApi
-from .versions_api import VersionsApi
 
 PLANT = "arboleda-plant"  # header by which a client names the plant it means
 COMMAND_LINE = "arboleda"  # the User-Agent of our own command, before its version

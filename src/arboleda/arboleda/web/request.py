@@ -9,7 +9,7 @@ from starlette.datastructures import MutableHeaders
 from starlette.responses import JSONResponse, Response
 from starlette.types import Message, Scope, Send
 
-from .names import is_loopback
+from .access.names import is_loopback
 
 API, LOGIN, LOGOUT, METRICS = "/api/", "/login", "/logout", "/metrics"
 DRAFT_TREES = "/api/draft/set_trees"

@@ -24,8 +24,8 @@ from arboleda.adapters.rate_limit import RateLimit
 from arboleda.model.errors import StartError
 
 from . import limits
-from .auth import LOCAL
-from .names import DEFAULT_PORT
+from .access.auth import LOCAL
+from .access.names import DEFAULT_PORT
 from .request import READS, RequestHead
 
 if TYPE_CHECKING:  # slow to load, and needed for TLS only

@@ -13,7 +13,7 @@ from arboleda.model.sentence import in_json
 from arboleda.testing.plants import shipped
 from arboleda.views import view
 from arboleda.web import stream
-from arboleda.web.schema import Snapshot
+from arboleda.web.schema.bodies import Snapshot
 from arboleda.web.stream import Reader, changed
 
 

@@ -5,7 +5,14 @@ from __future__ import annotations
 import pytest
 
 from arboleda.model.errors import StartError
-from arboleda.web.names import is_address, is_loopback, listen_address, names_for, public_origin, url_host
+from arboleda.web.access.names import (
+    is_address,
+    is_loopback,
+    listen_address,
+    names_for,
+    public_origin,
+    url_host,
+)
 
 
 @pytest.mark.parametrize(("host", "near"), [("127.0.0.1", True), ("127.9.9.9", True), ("::1", True)])

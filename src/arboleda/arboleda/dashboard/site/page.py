@@ -12,9 +12,9 @@ from nicegui import Client, app, ui
 
 from arboleda.model.errors import PayloadError
 from arboleda.model.messages import Verb
+from arboleda.web.access.auth import SUBMIT, allowed, require
 from arboleda.web.api import task_asked
-from arboleda.web.auth import SUBMIT, allowed, require
-from arboleda.web.schema import TaskText
+from arboleda.web.schema.bodies import TaskText
 
 from .. import header, shell
 from ..frames import Background, Frames

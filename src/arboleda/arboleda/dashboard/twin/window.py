@@ -12,7 +12,7 @@ from nicegui import Client, ui
 from nicegui.events import GenericEventArguments
 
 from arboleda.model.errors import ArboledaError
-from arboleda.web.auth import require
+from arboleda.web.access.auth import require
 
 from . import bodies
 from .show import Show

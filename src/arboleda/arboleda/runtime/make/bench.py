@@ -14,9 +14,9 @@ from arboleda.model.plant_model import Robot
 from arboleda.plant_file.draft import draft_of
 from arboleda.plant_file.tree_file import ENDING
 from arboleda.plant_file.yaml_edit import EditRefused
-from arboleda.web.draft_api import DraftRefused
+from arboleda.web.desks.draft import DraftRefused
+from arboleda.web.desks.make import MakeApi, Row
 from arboleda.web.languages import spoken, texts
-from arboleda.web.make_api import MakeApi, Row
 
 from ..draft_desk import DraftDesk
 from ..plant_folder import NOT_OURS, PlantFolder

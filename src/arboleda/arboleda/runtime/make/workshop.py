@@ -15,7 +15,7 @@ from arboleda.bt_xml.editing.operations import Operation
 from arboleda.model.errors import ArboledaError
 from arboleda.plant_file.recipe_trial import PATH
 from arboleda.recorder.preamble import PlantFiles
-from arboleda.web.draft_api import DraftRefused
+from arboleda.web.desks.draft import DraftRefused
 
 START = PATH + "from arboleda.runtime.make import workshop_process; workshop_process.main()"
 PATIENCE_S = 120.0  # of one answer

@@ -16,7 +16,7 @@ from typing import Any
 
 from arboleda.model.errors import StartError
 from arboleda.model.messages import TaskState
-from arboleda.web.names import LOCAL, is_loopback
+from arboleda.web.access.names import LOCAL, is_loopback
 
 LOG = logging.getLogger(__name__)
 START_S = 20.0

@@ -17,11 +17,11 @@ from arboleda.store.oee_rows import OeeQuery
 from arboleda.store.task_rows import History, TaskQuery, TaskRow
 from arboleda.views import view
 from arboleda.views.oee import Oee
-from arboleda.web.draft_api import DraftApi
-from arboleda.web.make_api import MakeApi
+from arboleda.web.desks.draft import DraftApi
+from arboleda.web.desks.make import MakeApi
+from arboleda.web.desks.teach import TeachApi
+from arboleda.web.desks.versions import VersionsApi
 from arboleda.web.plant_api import Found, PlantApi, Snapshot
-from arboleda.web.teach_api import TeachApi
-from arboleda.web.versions_api import VersionsApi
 
 from ..teach_desk import TeachDesk
 from .orchestrator import GLANCE_S, Orchestrator

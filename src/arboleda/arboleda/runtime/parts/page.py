@@ -16,8 +16,8 @@ from arboleda.plant_file.urdf import robot_urdf
 from arboleda.recorder.errors import NoRecord
 from arboleda.store.task_rows import History
 from arboleda.views import view
-from arboleda.web.draft_api import DraftApi
-from arboleda.web.versions_api import VersionsApi
+from arboleda.web.desks.draft import DraftApi
+from arboleda.web.desks.versions import VersionsApi
 
 from ..make.bench import MakeBench
 from .local_plant import LocalPlant

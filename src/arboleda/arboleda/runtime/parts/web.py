@@ -11,9 +11,9 @@ from urllib.parse import urlencode
 from fastapi import FastAPI
 
 from arboleda.web import limits
+from arboleda.web.access.guard import Guard
+from arboleda.web.access.names import DEFAULT_PORT, is_loopback, names_for
 from arboleda.web.api import make_app
-from arboleda.web.guard import Guard
-from arboleda.web.names import DEFAULT_PORT, is_loopback, names_for
 from arboleda.web.server import SecondLoop, Server
 
 from .. import tokens

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from arboleda.model.errors import StartError
 from arboleda.model.outside import plain
-from arboleda.web.names import is_near_only, public_origin
+from arboleda.web.access.names import is_near_only, public_origin
 
 if TYPE_CHECKING:
     from arboleda.store.postgres.leadership import Leader

@@ -15,7 +15,7 @@ from arboleda.core.leading import LOOK_S
 from arboleda.model.errors import ArboledaError, StartError
 from arboleda.model.plant_model import PlantModel
 from arboleda.store.plant_memory import OtherLeader
-from arboleda.web.names import other_address
+from arboleda.web.access.names import other_address
 from arboleda.wire.status import OK, WARN
 
 from ..build import App, Options, build

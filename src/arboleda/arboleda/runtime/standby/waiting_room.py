@@ -12,10 +12,11 @@ from starlette.requests import Request
 from starlette.responses import HTMLResponse, JSONResponse, Response
 from starlette.routing import Route
 
-from arboleda.web import limits, login
-from arboleda.web.guard import Guard
+from arboleda.web import limits
+from arboleda.web.access import login
+from arboleda.web.access.guard import Guard
+from arboleda.web.access.names import names_for
 from arboleda.web.languages import LANGUAGES, texts
-from arboleda.web.names import names_for
 from arboleda.web.request import API
 from arboleda.web.server import Server
 

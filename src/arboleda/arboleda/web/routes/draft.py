@@ -13,12 +13,12 @@ from starlette.exceptions import HTTPException
 
 from arboleda.bt_xml.markup import LARGEST
 
-from ..auth import require
-from ..draft_api import DraftApi, State
-from ..plain_json import PlainJson
+from ..access.auth import require
+from ..desks.draft import DraftApi, State
 from ..plant_api import PlantApi
-from ..queries import Answers, read_body
-from ..schema import ResponseModel, Sentence
+from ..schema.bodies import ResponseModel, Sentence
+from ..schema.plain_json import PlainJson
+from ..schema.queries import Answers, read_body
 
 MAY = "editing a draft"
 SHIPPED = "This plant has no file that could be changed; `arboleda new` writes one of your own."

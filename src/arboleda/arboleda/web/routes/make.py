@@ -10,14 +10,14 @@ from fastapi.responses import FileResponse, JSONResponse, Response
 from pydantic import BaseModel, ConfigDict, Field
 from starlette.exceptions import HTTPException
 
-from ..auth import require
+from ..access.auth import require
+from ..desks.make import MakeApi
 from ..languages import FIRST
-from ..make_api import MakeApi
-from ..plain_json import PlainJson
 from ..plant_api import PlantApi
-from ..queries import asked, described, described_body, read_body
-from ..schema import ResponseModel
-from ..tree_schema import Drawn, EditForm, Nodes, TreeForm, operation_of
+from ..schema.bodies import ResponseModel
+from ..schema.plain_json import PlainJson
+from ..schema.queries import asked, described, described_body, read_body
+from ..schema.trees import Drawn, EditForm, Nodes, TreeForm, operation_of
 from .draft import MAY, REFUSED, SHIPPED, DraftState, RecipeName, Step
 
 What = Literal["try", "prove", "notice", "reach"]

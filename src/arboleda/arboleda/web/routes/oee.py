@@ -9,10 +9,10 @@ from pydantic import BaseModel, ConfigDict, Field, FiniteFloat
 
 from arboleda.store.oee_rows import OeeQuery
 
-from ..plain_json import PlainJson
 from ..plant_api import PlantApi
-from ..queries import WRONG, asked, described
-from ..schema import ResponseModel
+from ..schema.bodies import ResponseModel
+from ..schema.plain_json import PlainJson
+from ..schema.queries import WRONG, asked, described
 
 
 class OeeFilter(BaseModel):

@@ -6,10 +6,10 @@ from fastapi import APIRouter, Request
 from fastapi.responses import JSONResponse
 from pydantic import BaseModel, ConfigDict, Field
 
-from ..plain_json import PlainJson
 from ..plant_api import PlantApi
-from ..queries import WRONG, asked, described
-from ..schema import ResponseModel
+from ..schema.bodies import ResponseModel
+from ..schema.plain_json import PlainJson
+from ..schema.queries import WRONG, asked, described
 
 
 class PromiseFilter(BaseModel):

@@ -6,9 +6,9 @@ from fastapi import APIRouter
 from fastapi.responses import JSONResponse
 from pydantic import Field
 
-from ..plain_json import PlainJson
 from ..plant_api import PlantApi
-from ..schema import ResponseModel
+from ..schema.bodies import ResponseModel
+from ..schema.plain_json import PlainJson
 
 
 class Parameter(ResponseModel):

@@ -11,12 +11,12 @@ from fastapi.responses import JSONResponse
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 from starlette.exceptions import HTTPException
 
-from .. import teach_api
-from ..auth import require
-from ..plain_json import PlainJson, explained
+from ..access.auth import require
+from ..desks import teach
 from ..plant_api import PlantApi
-from ..queries import Answers, read_body
-from ..schema import ResponseModel, Sentence, Teaching
+from ..schema.bodies import ResponseModel, Sentence, Teaching
+from ..schema.plain_json import PlainJson, explained
+from ..schema.queries import Answers, read_body
 
 MAY = "teaching"
 REFUSED: Answers = {
@@ -64,9 +64,9 @@ class ButtonState(_Request):
             raise ValueError("exactly one of goal, along and verb is needed")
         return self
 
-    def button(self) -> teach_api.Button:
-        along = None if self.along is None else teach_api.Along(**self.along.model_dump())
-        return teach_api.Button(**self.model_dump(exclude={"along"}), along=along)
+    def button(self) -> teach.Button:
+        along = None if self.along is None else teach.Along(**self.along.model_dump())
+        return teach.Button(**self.model_dump(exclude={"along"}), along=along)
 
 
 class NewTarget(_Request):
@@ -124,19 +124,19 @@ def routes(side: PlantApi) -> APIRouter:
         """Make a target in the draft where a robot stands now, or move one there."""
         desk = _desk(side, request)
         told = read_body(await request.body(), NewTarget)
-        return await _answered(lambda: desk.here(cell, teach_api.Target(**told.model_dump())))
+        return await _answered(lambda: desk.here(cell, teach.Target(**told.model_dump())))
 
     return api
 
 
-async def _answered(act: Callable[[], teach_api.State]) -> JSONResponse:
+async def _answered(act: Callable[[], teach.State]) -> JSONResponse:
     try:
         return PlainJson(await run_in_threadpool(act))
-    except teach_api.TeachRefused as refused:
+    except teach.TeachRefused as refused:
         return PlainJson(explained({"sentence": refused.sentence}), status_code=409)
 
 
-def _desk(side: PlantApi, request: Request) -> teach_api.TeachApi:
+def _desk(side: PlantApi, request: Request) -> teach.TeachApi:
     require(request.scope["arboleda.role"], MAY)
     if side.teach is None:
         raise HTTPException(404, "This plant is not taught from here.")

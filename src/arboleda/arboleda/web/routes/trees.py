@@ -9,13 +9,13 @@ from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import JSONResponse
 from pydantic import BaseModel, ConfigDict
 
-from ..auth import require
+from ..access.auth import require
 from ..languages import FIRST
-from ..plain_json import PlainJson
 from ..plant_api import PlantApi
-from ..queries import WRONG, Answers, asked, described, described_body, read_body
-from ..schema import Sentence
-from ..tree_schema import CopyForm, Drawn, EditForm, Nodes, TreeCopy, TreeFile, TreeForm, operation_of
+from ..schema.bodies import Sentence
+from ..schema.plain_json import PlainJson
+from ..schema.queries import WRONG, Answers, asked, described, described_body, read_body
+from ..schema.trees import CopyForm, Drawn, EditForm, Nodes, TreeCopy, TreeFile, TreeForm, operation_of
 
 DRAW = "drawing a tree"
 REFUSED: Answers = {

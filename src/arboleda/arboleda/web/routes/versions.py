@@ -10,12 +10,12 @@ from fastapi.responses import JSONResponse
 from pydantic import BaseModel, ConfigDict, Field
 from starlette.exceptions import HTTPException
 
-from ..auth import require
-from ..plain_json import PlainJson
+from ..access.auth import require
+from ..desks.versions import VersionsApi
 from ..plant_api import PlantApi
-from ..queries import read_body
-from ..schema import ResponseModel
-from ..versions_api import VersionsApi
+from ..schema.bodies import ResponseModel
+from ..schema.plain_json import PlainJson
+from ..schema.queries import read_body
 from .draft import REFUSED, SHIPPED, AppliedDraft
 
 MAY = "putting a version to work"

@@ -10,7 +10,7 @@ from pydantic import BaseModel, ValidationError
 from arboleda.model.errors import PayloadError
 from arboleda.model.outside import quoted
 
-from .schema import Sentence
+from .bodies import Sentence
 
 Query = TypeVar("Query", bound=BaseModel)
 Answers = dict[int | str, dict[str, Any]]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from abc import abstractmethod
 from typing import Protocol
 
-from .draft_api import State
+from .draft import State
 
 
 class VersionsApi(Protocol):

@@ -12,12 +12,12 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from arboleda.model.outside import quoted
 
-from . import limits
+from .. import limits
+from ..limits import Buckets
+from ..plant_api import PLANT
+from ..request import LOGIN, ClientGone, HttpError, RequestHead, with_headers
 from .auth import LOCAL, Door, Login
-from .limits import Buckets
 from .names import Names
-from .plant_api import PLANT
-from .request import LOGIN, ClientGone, HttpError, RequestHead, with_headers
 
 
 async def whole_body(asked: RequestHead, receive: Receive) -> Receive:

@@ -11,7 +11,7 @@ from pydantic import Field as Described
 from arboleda.bt_xml.editing import operations
 from arboleda.bt_xml.editing.operations import NewNode, Operation
 
-from .schema import ResponseModel
+from .bodies import ResponseModel
 
 OPERATIONS: dict[str, type] = {
     "insert": operations.Insert,

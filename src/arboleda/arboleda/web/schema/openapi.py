@@ -13,7 +13,7 @@ from fastapi.responses import HTMLResponse, JSONResponse
 from arboleda.model.messages import Verb
 from arboleda.views.verb_words import ABOUT, argument_names, scope_words
 
-from .login import page
+from ..access.login import page
 
 Schema = dict[str, Any]
 VERB = Verb.__name__

@@ -10,9 +10,9 @@ from urllib.parse import parse_qsl
 from fastapi import APIRouter, Request
 from fastapi.responses import HTMLResponse, RedirectResponse, Response
 
+from ..languages import spoken, texts
+from ..request import LOGIN, LOGOUT, RequestHead, cookie_name
 from .auth import SESSION_S
-from .languages import spoken, texts
-from .request import LOGIN, LOGOUT, RequestHead, cookie_name
 
 STYLE = """
 :root { color-scheme: light dark; font: 16px/1.5 system-ui, sans-serif; }
