@@ -17,7 +17,6 @@ from typing import Any
 
 from arboleda.adapters import clock
 from arboleda.adapters.broker_login import Address
-from arboleda.adapters.mqtt import MqttClient, NotConnected
 from arboleda.model.plant_model import PlantModel
 from arboleda.plant_file import loader
 from arboleda.recipes.storage_layout import StorageLayout
@@ -25,11 +24,10 @@ from arboleda.runtime.loop import Loop
 from arboleda.runtime.rate import at_rate
 from arboleda.sim.arm import ArmBody
 from arboleda.sim.board import Board
-from arboleda.sim.devices import Devices, FromBoard, ToBoard
-from arboleda.wire.payloads import Goal, Presence, StopGoal, encode
-from arboleda.wire.topics import Channel, topic
-from arboleda.wire.transport import Publication
+from arboleda.sim.devices import Devices, FromBoard
+from arboleda.wire.payloads import Goal, StopGoal
 
+from .board_clients import BoardClients, forget_unsent
 from .deeds import ALONE, PICK_UP, Deed, Did
 from .steady import unix_s
 
@@ -100,17 +98,21 @@ class Boards:
     def __init__(self, model: PlantModel) -> None:
         self._watched = WatchedDevices(model)
         self._model = model
-        self._clients: dict[str, MqttClient] = {}
+        self._clients = BoardClients(self._watched.devices, lambda event: self.loop.post(event))
         self.loop: Loop[Any, Any] = Loop(
-            "boards", self._watched, self._send, on_send_error=_lost, on_step=lambda *_: self._tell()
+            "boards",
+            self._watched,
+            self._clients.send,
+            on_send_error=forget_unsent,
+            on_step=lambda *_: self._tell(),
         )
 
     def act(self, line: dict[str, Any]) -> None:
         """Carry out one line of the input."""
         if "broker" in line:
-            self._leave()
+            self._clients.leave()
             if broker := line["broker"]:
-                self._join(Address(host=broker[0], port=broker[1]))
+                self._clients.join(Address(host=broker[0], port=broker[1]))
         if robot := line.get("reference"):
             self._at_board(robot, Board.put_at_reference)
         if robot := line.get("empty"):
@@ -122,36 +124,6 @@ class Boards:
         board = self._watched.devices.boards[self._model.robots[robot].mqtt]
         self.loop.read(lambda _: act(board))
 
-    def _join(self, broker: Address) -> None:
-        """Go to a broker at once, as a board does that happens to try just then."""
-        self._clients = {name: self._client(name, broker) for name in self._watched.devices.boards}
-        for client in self._clients.values():
-            client.start()
-
-    def _leave(self) -> None:
-        """Try no more: where one broker was, that of another plant may be next."""
-        for client in self._clients.values():
-            client.close()
-        self._clients = {}
-
-    def _client(self, board: str, broker: Address) -> MqttClient:
-        gone = Publication(
-            topic=topic(board, Channel.PRESENCE), payload=encode(Presence(online=False)), retain=True
-        )
-        return MqttClient(
-            board,
-            broker,
-            subscriptions=self._watched.devices.subscriptions(board),
-            on_event=lambda event: self.loop.post(ToBoard(board=board, event=event)),
-            will=gone,
-            announce=False,
-        )
-
-    def _send(self, message: FromBoard) -> None:
-        client = self._clients.get(message.board)
-        if client is not None:
-            client.publish(message.publication)
-
     def _tell(self) -> None:
         tell(self._watched.take())
 
@@ -160,12 +132,6 @@ def tell(deeds: Iterable[Deed]) -> None:
     """A line for each."""
     for deed in deeds:
         print(json.dumps(deed.data()), flush=True)
-
-
-def _lost(message: FromBoard, error: Exception) -> None:
-    """What a board says while there is no broker is lost, as with a real one."""
-    if not isinstance(error, NotConnected):
-        raise error
 
 
 def main() -> None:

@@ -21,15 +21,12 @@ from typing import Any
 
 from arboleda.adapters import clock
 from arboleda.adapters.broker_login import Address
-from arboleda.adapters.mqtt import MqttClient, NotConnected
 from arboleda.model.plant_model import PlantModel
 from arboleda.plant_file import loader
 from arboleda.runtime.loop import Loop
-from arboleda.sim.devices import Devices, FromBoard, ToBoard
-from arboleda.wire.payloads import Presence, encode
-from arboleda.wire.topics import Channel, topic
-from arboleda.wire.transport import Publication
+from arboleda.sim.devices import Devices
 
+from .board_clients import BoardClients, forget_unsent
 from .processes import PATIENCE_S, Plant
 
 CELL, ROBOT = "sis_a", "ra1"
@@ -47,11 +44,15 @@ class Arm:
     def __init__(self, model: PlantModel, robot: str) -> None:
         self.devices = Devices(model, now=clock.seconds(), boot_ids=count(int(time.time())).__next__)
         self._body = self.devices.boards[model.robots[robot].mqtt].body
-        self._clients: dict[str, MqttClient] = {}
+        self._clients = BoardClients(self.devices, lambda event: self.loop.post(event))
         self._moved = False
         self.moved_at = -math.inf
         self.loop: Loop[Any, Any] = Loop(
-            "boards", self.devices, self._send, on_send_error=_lost, on_step=lambda now, *_: self._look(now)
+            "boards",
+            self.devices,
+            self._clients.send,
+            on_send_error=forget_unsent,
+            on_step=lambda now, *_: self._look(now),
         )
         self.loop.start()
 
@@ -60,15 +61,10 @@ class Arm:
         return self._moved
 
     def join(self, broker: Address) -> None:
-        for client in self._clients.values():
-            client.close()
-        self._clients = {name: self._client(name, broker) for name in self.devices.boards}
-        for client in self._clients.values():
-            client.start()
+        self._clients.join(broker)
 
     def close(self) -> None:
-        for client in self._clients.values():
-            client.close()
+        self._clients.leave()
         self.loop.stop()
 
     def _look(self, now: float) -> None:
@@ -76,24 +72,6 @@ class Arm:
         if moves or self._moved:
             self.moved_at = now
         self._moved = moves
-
-    def _client(self, board: str, broker: Address) -> MqttClient:
-        gone = Publication(
-            topic=topic(board, Channel.PRESENCE), payload=encode(Presence(online=False)), retain=True
-        )
-        return MqttClient(
-            board,
-            broker,
-            subscriptions=self.devices.subscriptions(board),
-            on_event=lambda event: self.loop.post(ToBoard(board=board, event=event)),
-            will=gone,
-            announce=False,
-        )
-
-    def _send(self, message: FromBoard) -> None:
-        client = self._clients.get(message.board)
-        if client is not None:
-            client.publish(message.publication)
 
 
 class Cable:
@@ -258,12 +236,6 @@ class Bench:
     def _on_broker(self, host: str, port: int) -> None:
         self._cable.lead_to(host, port)
         self._arm.join(Address(host="127.0.0.1", port=self._cable.port))
-
-
-def _lost(message: FromBoard, error: Exception) -> None:
-    """What a board says while it is cut off is lost, as with a real one."""
-    if not isinstance(error, NotConnected):
-        raise error
 
 
 def share(values: Sequence[float], part: float) -> float:

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
+
 from .page_api import Layout
 from .tags import tag, way
 from .wording import Words
@@ -90,9 +93,7 @@ def _cells(words: Words) -> None:
 
 
 def _try(words: Words) -> None:
-    with tag("div", classes="box"):
-        tag("h2", words("make.panel.try"))
-        tag("p", words("make.try_how"), classes="hint")
+    with _box(words, "try"):
         with tag("div", classes="make-form"):
             _select(words, "try_recipe")
             _field(words, "task", maxlength="200")
@@ -113,9 +114,7 @@ def _try(words: Words) -> None:
 
 
 def _prove(words: Words) -> None:
-    with tag("div", classes="box"):
-        tag("h2", words("make.panel.prove"))
-        tag("p", words("make.prove_how"), classes="hint")
+    with _box(words, "prove"):
         with tag("div", classes="make-form"):
             _select(words, "prove_recipe")
             _select(words, "prove_kind")
@@ -130,9 +129,7 @@ def _prove(words: Words) -> None:
 
 
 def _device(words: Words) -> None:
-    with tag("div", classes="box"):
-        tag("h2", words("make.panel.device"))
-        tag("p", words("make.device_how"), classes="hint")
+    with _box(words, "device"):
         with tag("div", classes="make-form"):
             _select(words, "device_cell")
             _field(words, "role", maxlength="32", about=True)
@@ -161,23 +158,30 @@ def _device(words: Words) -> None:
 _BUILD = {"draft": _draft, "cells": _cells, "try": _try, "prove": _prove, "device": _device}
 
 
+@contextmanager
+def _box(words: Words, panel: str) -> Iterator[None]:
+    """A box with the panel's name and what it is for."""
+    with tag("div", classes="box"):
+        tag("h2", words(f"make.panel.{panel}"))
+        tag("p", words(f"make.{panel}_how"), classes="hint")
+        yield
+
+
 def _field(words: Words, name: str, *, about: bool = False, **attributes: str) -> None:
-    with tag("label", words(f"make.field.{name}")):
-        described = {"aria_describedby": f"make-{name}-about"} if about else {}
-        tag("input", id=f"make-{name}", type="text", autocomplete="off", **described, **attributes)
-        _about(words, name, about=about)
+    _labelled("input", words, name, about=about, type="text", autocomplete="off", **attributes)
 
 
 def _select(words: Words, name: str, *, about: bool = False) -> None:
+    _labelled("select", words, name, about=about)
+
+
+def _labelled(element: str, words: Words, name: str, *, about: bool, **attributes: str) -> None:
     with tag("label", words(f"make.field.{name}")):
-        described = {"aria_describedby": f"make-{name}-about"} if about else {}
-        tag("select", id=f"make-{name}", **described)
-        _about(words, name, about=about)
-
-
-def _about(words: Words, name: str, *, about: bool) -> None:
-    if about:
-        tag("small", words(f"make.about.{name}"), id=f"make-{name}-about")
+        if about:
+            attributes["aria_describedby"] = f"make-{name}-about"
+        tag(element, id=f"make-{name}", **attributes)
+        if about:
+            tag("small", words(f"make.about.{name}"), id=f"make-{name}-about")
 
 
 def _button(words: Words, act: str, classes: str = "act") -> None:

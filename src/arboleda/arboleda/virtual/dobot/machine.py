@@ -156,7 +156,6 @@ class VirtualDobot:
     def _forget(self) -> None:
         self._queue: deque[QueuedMove] = deque()
         self._path: Path | None = None
-        self._ends_short = False
         self._command = 0  # the number of the last move that began
         self._number = 0
         self._alarms: set[int] = set()

@@ -78,7 +78,6 @@ class Blocks:
         self._planner = Planner(layout, dice)
         self._parameter = parameter
         self._within: frozenset[str] | None = None  # roles of this branch of a parallel
-        self._is_repeated = False  # nothing of it may depend on how often it is done
         self._answers = 0
         self._chosen_in = 0
 
