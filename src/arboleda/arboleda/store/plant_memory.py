@@ -181,9 +181,9 @@ class PlantMemory(ABC):
 
     def journal(self, entry: Journal, unix_s: float) -> None:
         """Commit one act of an operator."""
-        said = json.dumps(entry.sentence.data(), ensure_ascii=False)
+        sentence_json = json.dumps(entry.sentence.data(), ensure_ascii=False)
         word = PUT_TO_WORK if entry.verb is None else entry.verb.value
-        row = (unix_s, word, entry.scope, str(entry.sentence), entry.cell, said)
+        row = (unix_s, word, entry.scope, str(entry.sentence), entry.cell, sentence_json)
         insert = "INSERT INTO journal (unix_s, verb, scope, sentence, cell, said) VALUES (?, ?, ?, ?, ?, ?)"
         self._write((insert, row), durable=outlives_power(entry))
 
@@ -213,16 +213,18 @@ class PlantMemory(ABC):
             )
             self._write((begin, (state.value, unix_s, change.task)), durable=durable)
         elif state is not TaskState.REFUSED:
-            said = json.dumps(change.sentence.data(), ensure_ascii=False)
+            sentence_json = json.dumps(change.sentence.data(), ensure_ascii=False)
             reason = None if change.reason is None else change.reason.value
             end = (
                 "UPDATE task SET state = ?, reason = ?, sentence = ?, said = ?, ended_s = ?, answers = ?,"
                 " course = ?, unchecked = ? WHERE id = ? AND ended_s IS NULL"
             )
-            told = json.dumps([vars(each) for each in answers], ensure_ascii=False) if answers else None
+            answers_json = (
+                json.dumps([vars(each) for each in answers], ensure_ascii=False) if answers else None
+            )
             how, unchecked = course_written(change.course), unchecked_written(change.unchecked)
-            outcome = (state.value, reason, str(change.sentence), said, unix_s)
-            values = (*outcome, told, how, unchecked, change.task)
+            outcome = (state.value, reason, str(change.sentence), sentence_json, unix_s)
+            values = (*outcome, answers_json, how, unchecked, change.task)
             self._write((end, values), durable=durable)
 
     def attempted(self, task: str, attempts: int) -> None:
@@ -269,8 +271,8 @@ class PlantMemory(ABC):
         """The last acts, the newest first."""
         columns = "id", "unix_s", "verb", "scope", "sentence", "cell", "said"
         rows = self._read(f"SELECT {', '.join(columns)} FROM journal ORDER BY id DESC LIMIT ?", limit)
-        for _, unix_s, *texts, cell, said in rows:
-            known = [*texts, cell or "", said or ""]
+        for _, unix_s, *texts, cell, sentence_json in rows:
+            known = [*texts, cell or "", sentence_json or ""]
             if not isinstance(unix_s, float) or not all(isinstance(text, str) for text in known):
                 raise self._damaged()
         return [JournalEntry(**dict(zip(columns, row, strict=True))) for row in rows]

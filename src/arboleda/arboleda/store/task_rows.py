@@ -105,8 +105,8 @@ ASKED = {
 
 def selection(query: TaskQuery) -> tuple[str, tuple[object, ...]]:
     """The SQL of a query and its values, the last accepted task first."""
-    asked = {column: getattr(query, column) for column in ASKED}
-    wanted = {column: value for column, value in asked.items() if value not in ("", None)}
+    filters = {column: getattr(query, column) for column in ASKED}
+    wanted = {column: value for column, value in filters.items() if value not in ("", None)}
     where, values = [ASKED[column] for column in wanted], list(wanted.values())
     if query.is_open is not None:
         where.append("ended_s IS NULL" if query.is_open else "ended_s IS NOT NULL")
@@ -159,9 +159,9 @@ def choice_written(choice: Sentence | None) -> str | None:
 def course_of(row: TaskRow) -> Course | None:
     """The times of a task's steps, if it is done; None if there are none, or they cannot be read."""
     try:
-        said = json.loads(row.course or "null")
-        begun = {step: float(at) for step, at in said["begun"].items()}
-        return Course(seconds=float(said["seconds"]), begun=begun)
+        course = json.loads(row.course or "null")
+        begun = {step: float(at) for step, at in course["begun"].items()}
+        return Course(seconds=float(course["seconds"]), begun=begun)
     except (AttributeError, KeyError, TypeError, ValueError):
         return None
 

@@ -51,7 +51,7 @@ from .schema.bodies import (
     VerbArguments,
 )
 from .schema.plain_json import PlainJson, explained
-from .schema.queries import WRONG, Answers, asked, described
+from .schema.queries import WRONG, Answers, described, query_of
 
 
 class NotFound(BaseRoute):
@@ -188,13 +188,13 @@ def _look(api: APIRouter, side: PlantApi) -> None:
     @api.get("/history", response_model=list[KeptTask], **wanted)
     async def history(request: Request) -> JSONResponse:
         """Tasks of all starts, the last accepted first; the next page is `before` the last `number`."""
-        rows = await run_in_threadpool(side.history, asked(request, TaskFilter).query())
+        rows = await run_in_threadpool(side.history, query_of(request, TaskFilter).query())
         return PlainJson([_kept(row) for row in rows])
 
     @api.get("/history.csv", response_class=PlainTextResponse, **wanted)
     async def history_as_table(request: Request) -> PlainTextResponse:
         """Tasks of all starts as a table for other programs, with a line of names."""
-        rows = await run_in_threadpool(side.history, asked(request, TaskFilter).query())
+        rows = await run_in_threadpool(side.history, query_of(request, TaskFilter).query())
         return PlainTextResponse(table(rows), media_type="text/csv; charset=utf-8")
 
     @api.get("/tasks/{task_id}", response_model=Task, responses=UNKNOWN)
@@ -227,10 +227,10 @@ def _submit(api: APIRouter, side: PlantApi) -> None:
     async def add_task(request: Request) -> JSONResponse:
         """Queue a task, written or as a form; 422 where it is refused, 503 where the queue is full."""
         require(request.scope["arboleda.role"], SUBMIT)
-        asked = task_asked(await request.body(), side.offers())
-        text = asked.text if isinstance(asked, TaskText) else side.spelled(**asked.named())
+        form = task_asked(await request.body(), side.offers())
+        text = form.text if isinstance(form, TaskText) else side.spelled(**form.named())
         is_ours = request.headers.get("user-agent", "").startswith(COMMAND_LINE)
-        why = asked.why if isinstance(asked, TaskText) else ""
+        why = form.why if isinstance(form, TaskText) else ""
         asked_by = COMMAND if is_ours else HTTP
         # Its id may be looked up in the history, and a stop must not wait for that.
         task = await in_time(await run_in_threadpool(side.submit, text, asked_by, why))
@@ -257,14 +257,14 @@ def _operate(api: APIRouter, side: PlantApi) -> None:
     async def operated(word: str, scope: str, request: Request) -> JSONResponse:
         verb, arguments = verb_of(word), verb_arguments(await request.body())
         require(request.scope["arboleda.role"], verb.value)
-        of, told = named(verb, scope, arguments.of(verb))
-        answer = await in_time(side.operate(verb, of, by_hand=arguments.by_hand, arguments=told))
+        of, values = named(verb, scope, arguments.of(verb))
+        answer = await in_time(side.operate(verb, of, by_hand=arguments.by_hand, arguments=values))
         if answer.refusal is not None:
             return PlainJson(explained({"sentence": answer.refusal}), status_code=409)
         known = {"act": answer.act, "outcome": answer.outcome, "why": answer.why}
-        told = {name: value for name, value in known.items() if value is not None}
+        parts = {name: value for name, value in known.items() if value is not None}
         is_open = isinstance(answer, StopLeft) or answer.outcome is Outcome.UNDER_WAY
-        return PlainJson({"verb": verb.value, "scope": scope, **told}, status_code=202 if is_open else 200)
+        return PlainJson({"verb": verb.value, "scope": scope, **parts}, status_code=202 if is_open else 200)
 
 
 async def in_time(answer: Future[Answer]) -> Answer:
@@ -334,8 +334,8 @@ async def refuse(_request: Request, error: Exception) -> JSONResponse:
     if isinstance(error, HTTPException):
         return JSONResponse({"sentence": error.detail}, status_code=error.status_code, headers=error.headers)
     headers = {"retry-after": LATER_S} if isinstance(error, QueueFull) else None
-    said = {"sentence": error.sentence if isinstance(error, ArboledaError) else str(error)}
-    return PlainJson(explained(said), status_code=STATUS.get(type(error), 503), headers=headers)
+    body = {"sentence": error.sentence if isinstance(error, ArboledaError) else str(error)}
+    return PlainJson(explained(body), status_code=STATUS.get(type(error), 503), headers=headers)
 
 
 async def own_up(request: Request, error: Exception) -> JSONResponse:
@@ -355,6 +355,6 @@ def _kept(row: TaskRow) -> dict[str, Any]:
     answers = [vars(each) for each in answers_of(row)]
     data = asdict(row) | {"sentence": row.sentence or "", "answers": answers, "choice": choice_of(row)}
     data["unchecked"] = unchecked_of(row)
-    said = json.loads(data.pop("said") or "{}")
+    sentence = json.loads(data.pop("said") or "{}")
     del data["course"]  # the plant estimates the duration of the next one from it
-    return {**data, **said} if row.sentence else data
+    return {**data, **sentence} if row.sentence else data

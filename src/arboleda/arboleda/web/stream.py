@@ -142,7 +142,7 @@ class Changes:
         self._readers.discard(reader)
 
     def _missed(self, last: str) -> list[Event]:
-        known = [told.id for told in self._history]
+        known = [change.id for change in self._history]
         if last in known:
             return list(self._history)[known.index(last) + 1 :]
         return [event(self._id(), "snapshot", self._side.snapshot())]
@@ -197,8 +197,8 @@ def routes(side: PlantApi, most: int) -> APIRouter:
         if len(changes) >= most:
             sentence = f"No more than {most} may listen at a time; close one."
             raise HTTPException(503, sentence, {"retry-after": limits.LATER_S})
-        told = tell(changes, last_event_id, request.scope["arboleda.login"].alive)
-        return StreamingResponse(told, media_type="text/event-stream", headers={"x-accel-buffering": "no"})
+        lines = tell(changes, last_event_id, request.scope["arboleda.login"].alive)
+        return StreamingResponse(lines, media_type="text/event-stream", headers={"x-accel-buffering": "no"})
 
     return api
 

@@ -143,18 +143,18 @@ def explained(name: str, kind: type[ArboledaError], cannot: str = "cannot be use
 
 def in_words(error: psycopg.Error) -> str:
     """The server's error on one line, without the address, which is named beside it."""
-    said = error.diag.message_primary or next(iter(str(error).splitlines()), type(error).__name__)
-    return re.sub(r"^connection failed: (connection to server .*? failed: )?(FATAL: *)?", "", said).rstrip(
+    message = error.diag.message_primary or next(iter(str(error).splitlines()), type(error).__name__)
+    return re.sub(r"^connection failed: (connection to server .*? failed: )?(FATAL: *)?", "", message).rstrip(
         "."
     )
 
 
 def advice(error: psycopg.Error) -> str:
     """The advice to the user for an error of PostgreSQL."""
-    said, code = str(error), error.sqlstate or ""
-    if "password" in said or "no pg_hba.conf entry" in said or "role" in said:
+    message, code = str(error), error.sqlstate or ""
+    if "password" in message or "no pg_hba.conf entry" in message or "role" in message:
         code = code or "28"
-    elif "does not exist" in said and "database" in said:
+    elif "does not exist" in message and "database" in message:
         code = code or "3D"
     known = (WORDS[each] for each in WORDS if code.startswith(each))
     return next(known, "look whether the server runs and can be reached; what was kept before is not lost")

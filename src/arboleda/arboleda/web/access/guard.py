@@ -20,10 +20,10 @@ from .auth import LOCAL, Door, Login
 from .names import Names
 
 
-async def whole_body(asked: RequestHead, receive: Receive) -> Receive:
+async def whole_body(head: RequestHead, receive: Receive) -> Receive:
     """A `receive` with the whole body; HttpError if it is too long or slow, ClientGone if it ends early."""
-    most = limits.PAGE_BODY_BYTES if asked.for_page else limits.API_BODY_BYTES
-    most = limits.TREE_BODY_BYTES if asked.has_tree else most
+    most = limits.PAGE_BODY_BYTES if head.for_page else limits.API_BODY_BYTES
+    most = limits.TREE_BODY_BYTES if head.has_tree else most
     try:
         body = await asyncio.wait_for(_read(receive, most), limits.BODY_S)
     except asyncio.TimeoutError:
@@ -193,75 +193,75 @@ class Guard:
         except ClientGone:
             return None
 
-    async def _serve(self, asked: RequestHead, receive: Receive, send: Send) -> None:
-        self._check_shape(asked)
-        self._check_names(asked)
-        peer = asked.peer(proxied=self._names.public is not None)
-        login = self._login(asked, peer)
-        self._check_origin(asked, login)
-        if login is None or not asked.stops:
-            self._check_rate(asked, peer if login in (None, LOCAL) else login.key)
-        if login is None and not asked.logs_in:
-            raise _unknown(asked)
-        self._check_plant(asked)
-        scope = self._introduced(asked.scope, login)
-        if asked.socket:
+    async def _serve(self, head: RequestHead, receive: Receive, send: Send) -> None:
+        self._check_shape(head)
+        self._check_names(head)
+        peer = head.peer(proxied=self._names.public is not None)
+        login = self._login(head, peer)
+        self._check_origin(head, login)
+        if login is None or not head.stops:
+            self._check_rate(head, peer if login in (None, LOCAL) else login.key)
+        if login is None and not head.logs_in:
+            raise _unknown(head)
+        self._check_plant(head)
+        scope = self._introduced(head.scope, login)
+        if head.socket:
             return await self._sockets.run(scope, receive, send, login)
-        if asked.logs_in:
+        if head.logs_in:
             send = self._counting_guesses(peer, send)
-        body = await whole_body(asked, receive)
-        if asked.opens_page:
+        body = await whole_body(head, receive)
+        if head.opens_page:
             return await self._pages.run(scope, body, send, receive)
         return await self._app(scope, body, send)
 
-    def _check_shape(self, asked: RequestHead) -> None:
-        if asked.header_bytes > limits.HEADER_BYTES:
+    def _check_shape(self, head: RequestHead) -> None:
+        if head.header_bytes > limits.HEADER_BYTES:
             raise HttpError(431, f"Address and headers may have {limits.HEADER_BYTES} bytes.")
-        if asked.ambiguous:
+        if head.ambiguous:
             raise HttpError(400, "A header that counts once is there twice, or the body has two lengths.")
-        query = parse_qsl(asked.scope["query_string"].decode("latin-1"), keep_blank_values=True)
+        query = parse_qsl(head.scope["query_string"].decode("latin-1"), keep_blank_values=True)
         if any(name.lower() in IN_URL for name, _ in query):
             raise HttpError(400, "A token does not belong into an address: it stays in logs and histories.")
 
-    def _check_names(self, asked: RequestHead) -> None:
-        host = asked.header("host")
+    def _check_names(self, head: RequestHead) -> None:
+        host = head.header("host")
         if not self._names.knows_host(host):
             raise HttpError(
                 403, f"This plant is not called {quoted(host, 80)}; --public-url gives it a name."
             )
-        if self._door.open and asked.forwarded:
+        if self._door.open and head.forwarded:
             raise HttpError(403, "A proxy asks, and this plant is for its own machine; see --public-url.")
 
-    def _check_plant(self, asked: RequestHead) -> None:
-        meant = asked.header(PLANT)
+    def _check_plant(self, head: RequestHead) -> None:
+        meant = head.header(PLANT)
         if meant and self._plant and meant != self._plant:
             raise HttpError(421, f"This is the plant {self._plant}, and {quoted(meant, 80)} is meant.")
 
-    def _check_origin(self, asked: RequestHead, login: Login | None) -> None:
-        if asked.has("origin"):
-            if not self._names.knows_origin(asked.header("origin"), asked.header("host")):
+    def _check_origin(self, head: RequestHead, login: Login | None) -> None:
+        if head.has("origin"):
+            if not self._names.knows_origin(head.header("origin"), head.header("host")):
                 raise HttpError(403, NOT_OURS)
             return
-        if asked.from_elsewhere:
+        if head.from_elsewhere:
             raise HttpError(403, NOT_OURS)
-        if login is None and not asked.logs_in:
+        if login is None and not head.logs_in:
             return  # refused in any case, as a token is missing
-        by_token = asked.bearer is not None and login is not None
-        if not (asked.reads or by_token or (self._door.open and asked.for_api)):
+        by_token = head.bearer is not None and login is not None
+        if not (head.reads or by_token or (self._door.open and head.for_api)):
             raise HttpError(
                 403, "The browser must name the page this comes from (Origin); tools send a token."
             )
 
-    def _login(self, asked: RequestHead, peer: str) -> Login | None:
+    def _login(self, head: RequestHead, peer: str) -> Login | None:
         """The login of a request, None if it has none; raises HttpError for a wrong token."""
         if self._door.open:
             return LOCAL
-        if asked.bearer is not None:
+        if head.bearer is not None:
             # A right token passes whoever else guesses from that address: it may be about to stop something.
-            return self._door.by_token(asked.bearer) or self._guessed(peer)
-        if asked.logs_in and not asked.reads and self._guesses.empty(peer):
+            return self._door.by_token(head.bearer) or self._guessed(peer)
+        if head.logs_in and not head.reads and self._guesses.empty(peer):
             raise HttpError(429, GUESSED, retry_after="60")
-        return self._door.by_cookie(asked.session) if asked.session is not None else None
+        return self._door.by_cookie(head.session) if head.session is not None else None
 
     def _guessed(self, peer: str) -> Login | None:
         if not self._guesses.take(peer):
@@ -276,18 +276,18 @@ class Guard:
 
         return counting
 
-    def _check_rate(self, asked: RequestHead, key: str) -> None:
-        if not self._rate(asked).take(key):
+    def _check_rate(self, head: RequestHead, key: str) -> None:
+        if not self._rate(head).take(key):
             raise HttpError(429, "Too many requests; wait a second.", retry_after="1")
 
-    def _rate(self, asked: RequestHead) -> Buckets:
-        if asked.holds:
+    def _rate(self, head: RequestHead) -> Buckets:
+        if head.holds:
             return self._holds
-        if not asked.reads:
+        if not head.reads:
             return self._changes
-        if asked.opens_page:
+        if head.opens_page:
             return self._opens
-        return self._files if asked.for_page else self._reads
+        return self._files if head.for_page else self._reads
 
     def _introduced(self, scope: Scope, login: Login | None) -> Scope:
         """The scope with who it is; what a proxy says of its paths is not passed on. The server's own scope
@@ -299,8 +299,8 @@ class Guard:
         return {**scope, "headers": kept, **known}
 
 
-def _unknown(asked: RequestHead) -> HttpError:
+def _unknown(head: RequestHead) -> HttpError:
     turned = HttpError(401, "This plant wants a token or a login.", www_authenticate="Bearer")
-    if asked.wants_page:
-        turned.answer = RedirectResponse(asked.at(LOGIN) if asked.opens_page else LOGIN, status_code=303)
+    if head.wants_page:
+        turned.answer = RedirectResponse(head.at(LOGIN) if head.opens_page else LOGIN, status_code=303)
     return turned

@@ -35,7 +35,7 @@ def texts(language: str, part: str) -> dict[str, str]:
     return contents(FIRST, part) | contents(language, part)
 
 
-def spoken(asked: Iterable[str | None]) -> str:
+def spoken(wishes: Iterable[str | None]) -> str:
     """The first language of these: as addresses, cookies and browsers name it, by its first two letters."""
-    words = (each.strip()[:2].lower() for each in asked if each)
+    words = (each.strip()[:2].lower() for each in wishes if each)
     return next((each for each in words if each in LANGUAGES), FIRST)

@@ -150,8 +150,8 @@ def _edit(api: APIRouter, side: PlantApi) -> None:
     def route(path: str, model: type[Body], about: str, act: Callable[[DraftApi, Body], State]) -> None:
         async def step(request: Request) -> JSONResponse:
             draft = _draft(side, request)
-            told = read_body(await request.body(), model)
-            return await _answered(lambda: act(draft, told))
+            body = read_body(await request.body(), model)
+            return await _answered(lambda: act(draft, body))
 
         step.__doc__ = about
         described = {"requestBody": {"content": {"application/json": {"schema": model.model_json_schema()}}}}
@@ -186,15 +186,15 @@ def _keep(api: APIRouter, side: PlantApi) -> None:
     async def keep(request: Request) -> JSONResponse:
         """Check the draft, write it into the plant's files and keep a version, which the next start takes."""
         draft = _draft(side, request)
-        told = read_body(await request.body(), Keeping)
-        return await _answered(lambda: draft.keep(told.editor, told.note))
+        body = read_body(await request.body(), Keeping)
+        return await _answered(lambda: draft.keep(body.editor, body.note))
 
     @api.post("/apply", response_model=AppliedDraft, responses=REFUSED, openapi_extra=described)
     async def apply(request: Request) -> JSONResponse:
         """The same, and put the version to work: a cell takes it once its task has ended."""
         draft = _draft(side, request)
-        told = read_body(await request.body(), Keeping)
-        return await _answered(lambda: draft.apply(told.editor, told.note))
+        body = read_body(await request.body(), Keeping)
+        return await _answered(lambda: draft.apply(body.editor, body.note))
 
 
 async def _answered(act: Callable[[], State]) -> JSONResponse:

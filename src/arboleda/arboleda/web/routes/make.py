@@ -16,7 +16,7 @@ from ..languages import FIRST
 from ..plant_api import PlantApi
 from ..schema.bodies import ResponseModel
 from ..schema.plain_json import PlainJson
-from ..schema.queries import asked, described, described_body, read_body
+from ..schema.queries import described, described_body, query_of, read_body
 from ..schema.trees import Drawn, EditForm, Nodes, TreeForm, operation_of
 from .draft import MAY, REFUSED, SHIPPED, DraftState, RecipeName, Step
 
@@ -145,7 +145,7 @@ def _look(api: APIRouter, side: PlantApi) -> None:
     @api.get("/recipe", responses=REFUSED, openapi_extra=described(Recipe))
     async def recipe(request: Request) -> Response:
         """The tree of a recipe, whoever wrote it, as XML that viewers show."""
-        make, wanted = _make(side, request), asked(request, Recipe)
+        make, wanted = _make(side, request), query_of(request, Recipe)
         text = await run_in_threadpool(make.shown, wanted.cell, wanted.recipe)
         return Response(text, media_type="application/xml")
 
@@ -167,7 +167,7 @@ def _draw(api: APIRouter, side: PlantApi) -> None:
     @api.get("/palette", response_model=list[Nodes], responses=REFUSED, openapi_extra=described(Cell))
     async def palette(request: Request) -> JSONResponse:
         """The nodes that a tree can have in a cell of the draft."""
-        make, wanted = _make(side, request), asked(request, Cell)
+        make, wanted = _make(side, request), query_of(request, Cell)
         return PlainJson(await run_in_threadpool(make.palette, wanted.cell, wanted.language))
 
     @api.post("/drawn/check", response_model=Drawn, responses=REFUSED, openapi_extra=described_body(TreeForm))
@@ -188,7 +188,7 @@ def _device(api: APIRouter, side: PlantApi) -> None:
     @api.get("/drivers", response_model=list[DriverRow], responses=REFUSED, openapi_extra=described(Language))
     async def drivers(request: Request) -> JSONResponse:
         """The drivers that a device of a declared kind can have, with a form for each of their settings."""
-        make, wanted = _make(side, request), asked(request, Language)
+        make, wanted = _make(side, request), query_of(request, Language)
         return PlainJson(await run_in_threadpool(make.drivers, wanted.language))
 
     @api.post(

@@ -12,7 +12,7 @@ from arboleda.store.oee_rows import OeeQuery
 from ..plant_api import PlantApi
 from ..schema.bodies import ResponseModel
 from ..schema.plain_json import PlainJson
-from ..schema.queries import WRONG, asked, described
+from ..schema.queries import WRONG, described, query_of
 
 
 class OeeFilter(BaseModel):
@@ -54,7 +54,7 @@ def routes(side: PlantApi) -> APIRouter:
     @api.get("/oee", response_model=list[CellOee], responses=WRONG, openapi_extra=described(OeeFilter))
     async def oee(request: Request) -> JSONResponse:
         """The OEE of the cells, of the last 24 hours where no time is asked for; docs/how-to/oee.md."""
-        rows = await run_in_threadpool(side.oee, asked(request, OeeFilter).query())
+        rows = await run_in_threadpool(side.oee, query_of(request, OeeFilter).query())
         return PlainJson([row.data() for row in rows])
 
     return api

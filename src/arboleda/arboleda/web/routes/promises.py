@@ -9,7 +9,7 @@ from pydantic import BaseModel, ConfigDict, Field
 from ..plant_api import PlantApi
 from ..schema.bodies import ResponseModel
 from ..schema.plain_json import PlainJson
-from ..schema.queries import WRONG, asked, described
+from ..schema.queries import WRONG, described, query_of
 
 
 class PromiseFilter(BaseModel):
@@ -39,6 +39,6 @@ def routes(side: PlantApi) -> APIRouter:
     )
     async def promises(request: Request) -> JSONResponse:
         """The time at which each cell named by a task text would have done it; queues no task."""
-        return PlainJson(side.promises(asked(request, PromiseFilter).text))
+        return PlainJson(side.promises(query_of(request, PromiseFilter).text))
 
     return api

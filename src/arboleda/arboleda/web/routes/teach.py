@@ -59,8 +59,8 @@ class ButtonState(_Request):
 
     @model_validator(mode="after")
     def _check_one(self) -> ButtonState:
-        told = [self.goal is not None, self.along is not None, bool(self.verb)]
-        if self.held and told.count(True) != 1:
+        given = [self.goal is not None, self.along is not None, bool(self.verb)]
+        if self.held and given.count(True) != 1:
             raise ValueError("exactly one of goal, along and verb is needed")
         return self
 
@@ -116,15 +116,15 @@ def routes(side: PlantApi) -> APIRouter:
     async def jog(cell: str, request: Request) -> JSONResponse:
         """Hold a button of a cell that is taught, or let go of it."""
         desk = _desk(side, request)
-        told = read_body(await request.body(), ButtonState)
-        return await _answered(lambda: desk.press(cell, told.button()))
+        body = read_body(await request.body(), ButtonState)
+        return await _answered(lambda: desk.press(cell, body.button()))
 
     @api.post("/{cell}/here", response_model=MadeTarget, responses=REFUSED, openapi_extra=_body(NewTarget))
     async def here(cell: str, request: Request) -> JSONResponse:
         """Make a target in the draft where a robot stands now, or move one there."""
         desk = _desk(side, request)
-        told = read_body(await request.body(), NewTarget)
-        return await _answered(lambda: desk.here(cell, teach.Target(**told.model_dump())))
+        body = read_body(await request.body(), NewTarget)
+        return await _answered(lambda: desk.here(cell, teach.Target(**body.model_dump())))
 
     return api
 

@@ -14,7 +14,7 @@ from ..languages import FIRST
 from ..plant_api import PlantApi
 from ..schema.bodies import Sentence
 from ..schema.plain_json import PlainJson
-from ..schema.queries import WRONG, Answers, asked, described, described_body, read_body
+from ..schema.queries import WRONG, Answers, described, described_body, query_of, read_body
 from ..schema.trees import CopyForm, Drawn, EditForm, Nodes, TreeCopy, TreeFile, TreeForm, operation_of
 
 DRAW = "drawing a tree"
@@ -46,7 +46,7 @@ def routes(side: PlantApi) -> APIRouter:
     @api.get("/palette", response_model=list[Nodes], responses=WRONG, openapi_extra=described(PaletteFilter))
     async def palette(request: Request) -> JSONResponse:
         """All nodes that a tree can have in a cell: of its devices, in Python, and those of Arboleda."""
-        wanted = asked(request, PaletteFilter)
+        wanted = query_of(request, PaletteFilter)
         return PlainJson(await run_in_threadpool(side.palette, wanted.cell, wanted.language))
 
     @api.post("/check", response_model=Drawn, responses=REFUSED, openapi_extra=described_body(TreeForm))

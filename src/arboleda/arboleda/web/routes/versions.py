@@ -86,8 +86,8 @@ def routes(side: PlantApi) -> APIRouter:
     async def put(request: Request, number: Number) -> JSONResponse:
         """Put a version to work, as when going back to it: a cell takes it once its task has ended."""
         require(request.scope["arboleda.role"], MAY)
-        desk, told = _versions(side), read_body(await request.body(), PutRequest)
-        return PlainJson(await run_in_threadpool(lambda: desk.put(number, told.name)))
+        desk, body = _versions(side), read_body(await request.body(), PutRequest)
+        return PlainJson(await run_in_threadpool(lambda: desk.put(number, body.name)))
 
     wish = {"requestBody": {"content": {"application/json": {"schema": RestartWish.model_json_schema()}}}}
 

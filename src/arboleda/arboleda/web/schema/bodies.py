@@ -102,14 +102,14 @@ class _ByHand(_RequestModel):
 
     def of(self, verb: Verb) -> Arguments:
         """The arguments of this verb; raises PayloadError for one that it does not take."""
-        told = self.model_dump(exclude={"by_hand"}, exclude_none=True)
+        given = self.model_dump(exclude={"by_hand"}, exclude_none=True)
         takes = {each.name: each for each in verb.arguments}
-        for name in told:
+        for name in given:
             if name not in takes:
                 raise PayloadError(f"{verb.value} takes no {name}.")
-            if (beside := takes[name].beside) and beside not in told:
+            if (beside := takes[name].beside) and beside not in given:
                 raise PayloadError(f"A {name} is only allowed beside {beside}.")
-        return tuple(told.items())
+        return tuple(given.items())
 
 
 def _fields() -> dict[str, Any]:
@@ -118,8 +118,8 @@ def _fields() -> dict[str, Any]:
     for verb in Verb:
         for each in verb.arguments:
             limits = {"ge": 0} if each.type is int else {"pattern": f"^(?:{each.pattern or ANYTHING})$"}
-            said = f"For `{verb.value}`: {ABOUT[verb].arguments[each.name]}"
-            found[each.name] = (each.type | None, Field(default=None, description=said, **limits))
+            text = f"For `{verb.value}`: {ABOUT[verb].arguments[each.name]}"
+            found[each.name] = (each.type | None, Field(default=None, description=text, **limits))
     return found
 
 

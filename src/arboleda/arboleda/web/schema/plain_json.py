@@ -23,6 +23,6 @@ class PlainJson(JSONResponse):
 
 def explained(row: Mapping[str, Any]) -> dict[str, Any]:
     """A row with the parts of its `sentence`, `key` and `values`; unchanged if that is text only."""
-    said = row["sentence"]
-    by_key = isinstance(said, Sentence) and said and said.phrase is not OWN
-    return {**row, **said.data()} if by_key else {**row}
+    sentence = row["sentence"]
+    by_key = isinstance(sentence, Sentence) and sentence and sentence.phrase is not OWN
+    return {**row, **sentence.data()} if by_key else {**row}

@@ -17,7 +17,7 @@ Answers = dict[int | str, dict[str, Any]]
 WRONG: Answers = {422: {"model": Sentence, "description": "The request is wrong."}}
 
 
-def asked(request: Request, model: type[Query]) -> Query:
+def query_of(request: Request, model: type[Query]) -> Query:
     """The query parameters as `model`; raises PayloadError, which names the first wrong one."""
     try:
         return model.model_validate(dict(request.query_params))
