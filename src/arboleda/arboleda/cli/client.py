@@ -251,10 +251,10 @@ class PlantClient:
         """Tell the person which host is asked, if that is not this process's own."""
         if not isinstance(line, FarLine) and done == "asked":
             return
-        said = f"plant {line.place.plant} is led on {line.host}: {done} there"
-        if said != self._said:
-            print(plain(said, LONGEST), file=sys.stderr, flush=True)
-            self._said = said
+        notice = f"plant {line.place.plant} is led on {line.host}: {done} there"
+        if notice != self._said:
+            print(plain(notice, LONGEST), file=sys.stderr, flush=True)
+            self._said = notice
 
 
 def _others() -> str:

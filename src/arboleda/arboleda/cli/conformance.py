@@ -89,13 +89,13 @@ def _try(robot: Robot, broker: str, credentials: Credentials | None) -> int:
         raise typer.BadParameter(str(error), param_hint="--broker") from error
     shown = 0
 
-    def told(judge: Judge) -> None:
+    def report(judge: Judge) -> None:
         nonlocal shown
         for finding in judge.findings[shown:]:
             console.print(_line(finding), soft_wrap=True)
         shown = len(judge.findings)
 
-    trial = Trial(robot, where, credentials, told)
+    trial = Trial(robot, where, credentials, report)
     trial.run()
     console.print(_verdict(robot, trial.judge), soft_wrap=True)
     return PASSED if trial.judge.reached is trial.judge.spoken else FAILED

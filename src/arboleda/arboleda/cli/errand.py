@@ -121,9 +121,9 @@ class Errand:
         for task, change in self.results.items():
             found = [each for cell, each in gone.items() if change.cell in (cell, None)]
             if change.state is TaskState.QUEUED and found:
-                said = [why for absence in found for why in absence.why]
-                self.results[task] = replace(change, sentence=said[0])
-                self.missing = tuple(dict.fromkeys((*self.missing, *said)))
+                reasons = [why for absence in found for why in absence.why]
+                self.results[task] = replace(change, sentence=reasons[0])
+                self.missing = tuple(dict.fromkeys((*self.missing, *reasons)))
 
     def _waiting(self) -> list[TaskChanged]:
         return [change for change in self.results.values() if change.state not in ENDED]

@@ -47,7 +47,7 @@ class Options:
     until_ns: int | None = None
 
 
-def asked(record: Record, options: Options) -> ForkRequest:
+def request_of(record: Record, options: Options) -> ForkRequest:
     """The fork that these options mean; ConfigError says what is missing or wrong."""
     beginning = record.first.beginning
     changed = bool(options.settings or options.plant)

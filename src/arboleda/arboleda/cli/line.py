@@ -161,8 +161,8 @@ class FarLine(Line):
             )
         if answer.status in ERRORS:
             return super()._refusal(answer)
-        said = f"{self._name}, which refuses this at {self.place.url}: {answer.sentence}"
-        return ArboledaError(f"{said} {self._token_advice}" if answer.status == UNAUTHORIZED else said)
+        refusal = f"{self._name}, which refuses this at {self.place.url}: {answer.sentence}"
+        return ArboledaError(f"{refusal} {self._token_advice}" if answer.status == UNAUTHORIZED else refusal)
 
     def _how(self, error: Exception) -> str:
         import httpx
@@ -186,10 +186,10 @@ class FarLine(Line):
 
 def _answer(answer: httpx.Response) -> Answer:
     """The answer in a response; ValueError if no plant gave it."""
-    said = answer.json()
-    if not answer.is_success and not (isinstance(said, dict) and isinstance(said.get("sentence"), str)):
+    body = answer.json()
+    if not answer.is_success and not (isinstance(body, dict) and isinstance(body.get("sentence"), str)):
         raise ValueError(f"status {answer.status_code}")
-    return Answer(status=answer.status_code, said=said, is_for_now="retry-after" in answer.headers)
+    return Answer(status=answer.status_code, said=body, is_for_now="retry-after" in answer.headers)
 
 
 def _doubt(error: BaseException | None) -> str | None:

@@ -60,11 +60,11 @@ def logs(
     with suppress(KeyboardInterrupt):
         for path in paths:
             goes_on = follow and path is last
-            told = _followed(path, folder(plant, state)) if goes_on else _all(reader.opened(path))
+            messages = _followed(path, folder(plant, state)) if goes_on else _all(reader.opened(path))
             began = reader.opened(path).first
             if cell is None:
                 _print(began.began_ns, f"{STARTED:<9} {began.beginning.plant}")
-            for topic, unix_ns, data in told:
+            for topic, unix_ns, data in messages:
                 for concerns, line in _lines(topic, json.loads(data)):
                     if cell in (None, concerns):
                         _print(unix_ns, line)
@@ -132,12 +132,12 @@ def _followed(path: Path, state: Path) -> Iterator[Told]:
         first = following
 
 
-def _lines(topic: str, told: dict[str, Any]) -> Iterator[tuple[str | None, str]]:
+def _lines(topic: str, message: dict[str, Any]) -> Iterator[tuple[str | None, str]]:
     """The lines of a message, each with its cell, None for all of them."""
-    if topic == EVENTS and told["kind"] == "cell" and told["what"] in NEWS:
-        why = sentence_of(told["sentence"])
-        yield told["cell"], f"{told['what']:<9} {told['subject']}" + (f"  {why}" if why else "")
-    for row in told["messages"] if topic == STEPS else ():
+    if topic == EVENTS and message["kind"] == "cell" and message["what"] in NEWS:
+        why = sentence_of(message["sentence"])
+        yield message["cell"], f"{message['what']:<9} {message['subject']}" + (f"  {why}" if why else "")
+    for row in message["messages"] if topic == STEPS else ():
         write = WRITERS.get(row["type"])
         if write is not None and (line := write(row)):
             yield row.get("cell"), line

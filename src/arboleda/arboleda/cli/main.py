@@ -364,8 +364,8 @@ def submit(
 
 def _print_task(row: dict[str, Any]) -> None:
     choice = row.get("choice") if row["state"] == TaskState.QUEUED.value else ""
-    said = "; ".join(each for each in (choice, row["sentence"]) if each)
-    line = f"{row['state']}: {row['text']} (id {row['id']})" + (f"  {said}" if said else "")
+    remarks = "; ".join(each for each in (choice, row["sentence"]) if each)
+    line = f"{row['state']}: {row['text']} (id {row['id']})" + (f"  {remarks}" if remarks else "")
     print(plain(line, LONGEST), flush=True)
 
 

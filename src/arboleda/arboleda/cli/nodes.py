@@ -49,12 +49,12 @@ def of_plant(model: PlantModel, cell: str | None) -> Mapping[str, Kind]:
 
 def _line(kind: Kind) -> str:
     ports = (kind.ports or {}).values()
-    said = [
+    facts = [
         f"{'gives ' if each.way is PortDirection.OUT else ''}{each.name} ({_what(each.words, each.about)})"
         for each in ports
     ]
     about = [f"  {kind.about}"] if kind.about else []
-    return "\n".join([f"{kind.category.value} {kind.name}{': ' if said else ''}{'; '.join(said)}", *about])
+    return "\n".join([f"{kind.category.value} {kind.name}{': ' if facts else ''}{'; '.join(facts)}", *about])
 
 
 def _what(words: tuple[str, ...], about: str) -> str:

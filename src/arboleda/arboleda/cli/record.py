@@ -122,9 +122,9 @@ def _lines(record: Any, found: Summary) -> Iterator[str]:
     yield f"plant file: {', '.join(began.files.contents)}"
     states = [row["state"] for row in found.tasks.values()]
     ended = [state.value for state in ENDED if state.value in states]
-    told = ", ".join(f"{states.count(state)} {state}" for state in sorted(ended))
+    counts = ", ".join(f"{states.count(state)} {state}" for state in sorted(ended))
     open_ = sum(state not in ended for state in states)
-    yield f"tasks: {told or 'none ended'}{f', {open_} open' if open_ else ''}"
+    yield f"tasks: {counts or 'none ended'}{f', {open_} open' if open_ else ''}"
     if record.missing:
         yield f"its first {record.missing} files are gone, to make room: it can be read, but not replayed"
     if record.broken:
@@ -218,5 +218,5 @@ def _export_case(record: Any, task: str | None, output: Path) -> None:
     tasks = sum(act.task is not None for act in case.people)
     acts = len(case.people) - tasks
     faults = counted(len(case.faults), "fault")
-    told = f"{counted(tasks, 'task')}, {counted(acts, 'act')} of operators, {faults} in {case.seconds:.1f} s"
-    print(plain(f"{output} has {told}", LONGEST))
+    people = f"{counted(tasks, 'task')}, {counted(acts, 'act')} of operators"
+    print(plain(f"{output} has {people}, {faults} in {case.seconds:.1f} s", LONGEST))

@@ -168,7 +168,7 @@ def _fork(record: Record, options: Options) -> None:
 
     from . import fork
 
-    found = forked(record.first.beginning, record.steps(), fork.asked(record, options), sentence_of)
+    found = forked(record.first.beginning, record.steps(), fork.request_of(record, options), sentence_of)
     if found.difference is not None:
         _finish(record, found.difference)
     for line in fork.lines(found, options):
@@ -272,10 +272,10 @@ def _line(row: dict[str, Any]) -> str:
 def _difference(last: ReplayedStep) -> Iterator[str]:
     step, found = last.recorded, last.difference
     assert found is not None
-    asked = ", ".join(_event(each) for each in step.events) or "no event, a deadline"
+    events = ", ".join(_event(each) for each in step.events) or "no event, a deadline"
     when = moment(step.unix_ns, "microseconds")
     yield f"{last.number - 1} steps are equal; step {last.number}, of {when}, is not"
-    yield f"  what went in: {asked}"
+    yield f"  what went in: {events}"
     yield f"  {found.field} was {_value(found.recorded)}, is now {_value(found.now)}"
 
 

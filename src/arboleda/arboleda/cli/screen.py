@@ -105,11 +105,11 @@ class Screen:
                 self.say(_words(f"  {cell['name']}: {cell['step']}"), at)
             self._steps[cell["name"]] = cell["step"]
         for robot in snapshot["robots"]:
-            asked = robot["question"] and robot["question"]["id"]
-            if asked != self._asked.get(robot["name"]):
+            question_id = robot["question"] and robot["question"]["id"]
+            if question_id != self._asked.get(robot["name"]):
                 for line in _question(robot):
                     self.say(_words(line), at)
-            self._asked[robot["name"]] = asked
+            self._asked[robot["name"]] = question_id
 
 
 def logged(line: logging.LogRecord) -> Text:
@@ -133,13 +133,13 @@ def table(snapshot: dict[str, Any]) -> Group:
     title = _words(f"plant {snapshot['plant']}", "italic")
     drawn = _table(headings, title=title, title_justify="left")
     for cell in snapshot["cells"]:
-        drawn.add_row(*_row(cell, robots, told=bool(columns)))
+        drawn.add_row(*_row(cell, robots, by_role=bool(columns)))
     others = [] if columns else [_devices(snapshot["cells"], robots)]
     zones = [_zones(snapshot["zones"])] if snapshot.get("zones") else []
-    asked = [_words(line, "cyan") for robot in snapshot["robots"] for line in _question(robot)]
+    questions = [_words(line, "cyan") for robot in snapshot["robots"] for line in _question(robot)]
     answers = [_words(line) for cell in snapshot["cells"] for line in _answers(cell)]
     troubles = [_words(line, "yellow") for line in _in_the_way(snapshot)]
-    return Group(drawn, *others, *zones, *asked, *answers, *troubles)
+    return Group(drawn, *others, *zones, *questions, *answers, *troubles)
 
 
 def _table(headings: list[str], **settings: Any) -> Table:
@@ -151,9 +151,9 @@ def _table(headings: list[str], **settings: Any) -> Table:
 
 def _columns(cells: list[dict[str, Any]]) -> list[str]:
     """The heading of each role, if every cell has the same few roles for robots that go somewhere."""
-    told = {tuple(_heading(device) for device in cell["devices"]) for cell in cells}
+    headings = {tuple(_heading(device) for device in cell["devices"]) for cell in cells}
     moving = all(device["position"] for cell in cells for device in cell["devices"])
-    return list(*told) if len(told) == 1 and moving and len(*told) <= ROLES else []
+    return list(*headings) if len(headings) == 1 and moving and len(*headings) <= ROLES else []
 
 
 def _heading(device: dict[str, Any]) -> str:
@@ -185,8 +185,8 @@ def _told(robot: dict[str, Any]) -> str:
     command, answer = robot["command"], robot["answer"]
     if command is None:
         return ""
-    said = f"{command['what']}: {command['state']}"
-    return said if answer is None else f"{said}, {answered(answer)}"
+    line = f"{command['what']}: {command['state']}"
+    return line if answer is None else f"{line}, {answered(answer)}"
 
 
 def says(robot: dict[str, Any]) -> str:
@@ -239,7 +239,7 @@ def _zones(zones: list[dict[str, Any]]) -> Table:
     return drawn
 
 
-def _row(cell: dict[str, Any], robots: dict[str, dict[str, Any]], *, told: bool) -> list[Text]:
+def _row(cell: dict[str, Any], robots: dict[str, dict[str, Any]], *, by_role: bool) -> list[Text]:
     """The row of a cell; with `told`, the positions of its robots, too."""
     task = cell["task"]
     standing = view.standing(cell)
@@ -249,25 +249,25 @@ def _row(cell: dict[str, Any], robots: dict[str, dict[str, Any]], *, told: bool)
     words = (cell["name"], view.standing_said(cell), " ".join(tasks), cell["step"] or "")
     return [
         *(_words(word, style) for word in words),
-        *(_of(robots[device["name"]], device["holds"]) for device in (cell["devices"] if told else ())),
+        *(_of(robots[device["name"]], device["holds"]) for device in (cell["devices"] if by_role else ())),
         Text(f"{task['elapsed_s']:.1f} s" if task else "", style=style),
     ]
 
 
 def _of(robot: dict[str, Any], holds: str | None) -> Text:
     """The position of a robot and the state of its effector, dim if it is no longer heard."""
-    said = place(robot) or ["?"]
-    said += [fact(holds, robot["facts"][holds])] if holds else []
-    return Text(", ".join(said), style="" if robot["online"] else "dim")
+    texts = place(robot) or ["?"]
+    texts += [fact(holds, robot["facts"][holds])] if holds else []
+    return Text(", ".join(texts), style="" if robot["online"] else "dim")
 
 
 def _question(robot: dict[str, Any]) -> list[str]:
     """The question to a person, then the command of each answer; empty if there is none."""
-    asked = robot["question"]
-    if asked is None:
+    question = robot["question"]
+    if question is None:
         return []
-    said = f"{robot['name']} is asked, {asked['left_s']:.0f} s left: {asked['text']}"
-    return [said, *(f"  {_command(robot['name'], asked['id'], answer)}" for answer in asked["answers"])]
+    line = f"{robot['name']} is asked, {question['left_s']:.0f} s left: {question['text']}"
+    return [line, *(f"  {_command(robot['name'], question['id'], answer)}" for answer in question["answers"])]
 
 
 def _answers(cell: dict[str, Any]) -> list[str]:
@@ -310,10 +310,10 @@ def _to_do_by_hand(cell: dict[str, Any]) -> str | None:
 def _obstacles(snapshot: dict[str, Any]) -> list[str]:
     """The obstacles of robots without a task. A latch alone is reported in one line for all robots, and an
     obstacle that its idle cell reports is left out."""
-    told = {cell["blocked_by"] for cell in snapshot["cells"]}
+    blocking = {cell["blocked_by"] for cell in snapshot["cells"]}
     idle = {each["name"] for cell in snapshot["cells"] if not cell["task"] for each in cell["devices"]}
     robots = [each for each in snapshot["robots"] if each["name"] in idle and each["obstacle"]]
-    robots = [each for each in robots if each["name"] not in told]
+    robots = [each for each in robots if each["name"] not in blocking]
     return [each["obstacle"] for each in robots if not (each["online"] and each.get("latched"))]
 
 

@@ -158,8 +158,8 @@ class Manager:
     def _ask(self, *words: str) -> None:
         ran = self.run(*words, quiet=True)
         if ran.returncode:
-            said = (ran.stderr.strip() or f"exit status {ran.returncode}").splitlines()[0]
-            raise StartError(f"systemd does not do it (systemctl {' '.join(words)}): {plain(said)}")
+            trouble = (ran.stderr.strip() or f"exit status {ran.returncode}").splitlines()[0]
+            raise StartError(f"systemd does not do it (systemctl {' '.join(words)}): {plain(trouble)}")
 
     def _write(self, path: Path, text: str | None) -> None:
         try:

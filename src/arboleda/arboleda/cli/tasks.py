@@ -141,8 +141,8 @@ def _json(rows: Sequence[TaskRow], *, first: bool) -> None:
     for row in rows:
         answers = [vars(each) for each in answers_of(row)]
         parsed = {key: json.loads(text) if text else None for key, text in _json_of(row).items()}
-        said = asdict(row) | parsed | {"answers": answers, "unchecked": unchecked_of(row)}
-        print(json.dumps(said, ensure_ascii=False), flush=True)
+        fields = asdict(row) | parsed | {"answers": answers, "unchecked": unchecked_of(row)}
+        print(json.dumps(fields, ensure_ascii=False), flush=True)
 
 
 def _json_of(row: TaskRow) -> dict[str, str | None]:

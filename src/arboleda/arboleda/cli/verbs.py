@@ -40,13 +40,13 @@ def about(words: VerbWords) -> str:
 def _command(verb: Verb) -> Callable[..., None]:
     """The command of a verb: typer reads its parameters from its signature."""
 
-    def act(**told: Any) -> None:
-        scope, sure = told["scope"], ABOUT[verb].sure
-        if sure and not told["yes"]:
+    def act(**options: Any) -> None:
+        scope, sure = options["scope"], ABOUT[verb].sure
+        if sure and not options["yes"]:
             typer.confirm(sure.format(scope=scope), abort=True)
-        reached = client(*(told[each.name] for each in PLANT_OPTIONS))
-        arguments = tuple(_values(verb, told))
-        _ask(verb, scope, reached, by_hand=told.get("by_hand", False), arguments=arguments)
+        reached = client(*(options[each.name] for each in PLANT_OPTIONS))
+        arguments = tuple(_values(verb, options))
+        _ask(verb, scope, reached, by_hand=options.get("by_hand", False), arguments=arguments)
 
     parameters = [*_parameters(verb), *PLANT_OPTIONS]
     act.__signature__ = Signature(parameters)  # type: ignore[attr-defined]
@@ -91,13 +91,13 @@ def _behind(arguments: list[Argument], words: VerbWords) -> Parameter:
     return _parameter(BEHIND, list[str], argument)
 
 
-def _values(verb: Verb, told: dict[str, Any]) -> Iterator[tuple[str, int | str]]:
+def _values(verb: Verb, options: dict[str, Any]) -> Iterator[tuple[str, int | str]]:
     """The arguments of a verb as they were given."""
     for each in verb.arguments:
-        if each.mark and told[each.name] is not None:
-            yield each.name, told[each.name].removeprefix(each.mark)
-    if told.get(BEHIND):
-        yield from from_text(verb, " ".join([told["scope"] or "", *told[BEHIND]]))[1]
+        if each.mark and options[each.name] is not None:
+            yield each.name, options[each.name].removeprefix(each.mark)
+    if options.get(BEHIND):
+        yield from from_text(verb, " ".join([options["scope"] or "", *options[BEHIND]]))[1]
 
 
 def _scope(verb: Verb) -> Any:
@@ -123,9 +123,9 @@ def _ask(
     by_hand: bool = False,
     arguments: Arguments = (),
 ) -> None:
-    of, told = (scope or "", arguments) if arguments else from_text(verb, scope or "")
+    of, given = (scope or "", arguments) if arguments else from_text(verb, scope or "")
     try:
-        answer = reached.operate(verb, of, by_hand=by_hand, arguments=told)
+        answer = reached.operate(verb, of, by_hand=by_hand, arguments=given)
         if answer.get("outcome") == Outcome.UNDER_WAY.value:
             answer = reached.outcome(answer["act"])
     except ArboledaError as error:
@@ -133,7 +133,7 @@ def _ask(
             raise
         raise ArboledaError(f"The stop was not confirmed, use the hard-wired button: {error}") from error
     did = (ABOUT[verb].called or verb.value) + (" by hand" if by_hand else "")
-    _tell(answer, f"{did}, {plain(as_text(verb, of, told) or 'the whole plant')}")
+    _tell(answer, f"{did}, {plain(as_text(verb, of, given) or 'the whole plant')}")
 
 
 def _tell(answer: dict[str, Any], did: str) -> None:

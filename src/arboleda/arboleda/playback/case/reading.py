@@ -70,8 +70,8 @@ class _Collected:
         scope, by_hand = _scope(event), event.by_hand
         first = scope.partition(" ")[0]
         if not first or first in scopes(self.model) or first in {_own(id) for id in self.ids}:
-            told = lasting(event.verb, event.arguments)
-            self.acts.append(Act(at=event.at, verb=event.verb, scope=scope, by_hand=by_hand, arguments=told))
+            taken = lasting(event.verb, event.arguments)
+            self.acts.append(Act(at=event.at, verb=event.verb, scope=scope, by_hand=by_hand, arguments=taken))
 
 
 def case_of(record: Record, task: str | None) -> Case:

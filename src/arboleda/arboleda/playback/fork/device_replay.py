@@ -68,8 +68,8 @@ def _silence(world: World, board: str, trouble: Trouble) -> None:
         _later(world, trouble.ends, lambda _: _present(world, board, b"1"))
 
 
-def _present(world: World, board: str, said: bytes) -> None:
-    world.publish(Publication(topic=f"{board}/conexion", payload=said, retain=True))
+def _present(world: World, board: str, payload: bytes) -> None:
+    world.publish(Publication(topic=f"{board}/conexion", payload=payload, retain=True))
 
 
 def _boot(world: World, board: str, trouble: Trouble) -> None:

@@ -65,16 +65,16 @@ def happenings(at: float, messages: Iterable[Mapping[str, Any]], words: Words) -
     for row in messages:
         if row[TYPE] == "TaskChanged" and row["task"]:
             why = words(row.get("sentence"))
-            said = f"{row['state']} {row['text']} (id {row['task']})" + (f": {why}" if why else "")
+            sentence = f"{row['state']} {row['text']} (id {row['task']})" + (f": {why}" if why else "")
             what = f"{row['state']} {row.get('reason', '')}"
-            yield PlantEvent(at=at, stream=f"{TASK}{row['task']}", what=what, said=said, cell=row["cell"])
+            yield PlantEvent(at=at, stream=f"{TASK}{row['task']}", what=what, said=sentence, cell=row["cell"])
         elif row[TYPE] == "OperatorAnswer":
             why = words(row.get("refusal"))
             arguments = tuple((name, value) for name, value in row.get("arguments", ()))
-            asked = f"{row['verb']} {as_text(Verb(row['verb']), row['scope'], arguments)}"
-            said = asked + (f" is refused: {why}" if why else " is done")
+            request = f"{row['verb']} {as_text(Verb(row['verb']), row['scope'], arguments)}"
+            sentence = request + (f" is refused: {why}" if why else " is done")
             what = f"refused {(row.get('refusal') or {}).get('key')}"
-            yield PlantEvent(at=at, stream=asked, what=what, said=said)
+            yield PlantEvent(at=at, stream=request, what=what, said=sentence)
         elif "robot" in row and "id" in row:
             yield _command(at, row)
 
@@ -83,8 +83,8 @@ def _command(at: float, row: Mapping[str, Any]) -> PlantEvent:
     values = {key: value for key, value in row.items() if key not in UNTOLD}
     shown = " ".join(f"{key}={_short(value)}" for key, value in values.items())
     what = json.dumps([row[TYPE], values], sort_keys=True)
-    said = f"{row['robot']} {row[TYPE]} {shown}".strip()
-    return PlantEvent(at=at, stream=row["robot"], what=what, said=said)
+    sentence = f"{row['robot']} {row[TYPE]} {shown}".strip()
+    return PlantEvent(at=at, stream=row["robot"], what=what, said=sentence)
 
 
 def _short(value: Any) -> str:

@@ -72,28 +72,28 @@ class ForkResult:
 
 
 def forked(
-    beginning: Beginning, steps: Iterable[RecordedStep], asked: ForkRequest, words: Words
+    beginning: Beginning, steps: Iterable[RecordedStep], request: ForkRequest, words: Words
 ) -> ForkResult:
     """Execute the record up to the fork, go on from there, and collect the happenings of both since."""
     found, builders = ForkResult(), LateLookup()
     plant = Plant(
-        asked.model,
+        request.model,
         epoch=beginning.epoch,
         now=beginning.now,
         memory=beginning.memory,
         kept=beginning.kept,
         recipes=builders,
-        versions=asked.versions,
+        versions=request.versions,
     )
-    troubles = Troubles(_supervised(asked.recorded), asked.recorded.timing.stale_after_s)
+    troubles = Troubles(_supervised(request.recorded), request.recorded.timing.stale_after_s)
     rest = iter(steps)
-    parted = _execute(plant, rest, asked, found, troubles)
+    parted = _execute(plant, rest, request, found, troubles)
     if found.difference is not None:
         return found
-    if parted[0] is None and not asked.changed:
+    if parted[0] is None and not request.changed:
         when = moment(found.unix_ns, "milliseconds")
         raise ConfigError((f"a fork after the last step of the record, of {when}, has nothing after it",))
-    builders.switch(asked.builders)
+    builders.switch(request.builders)
     first, *others = parted
     inputs: list[tuple[float, tuple[Event, ...]]] = []
     if found.early and first is not None:
@@ -101,13 +101,13 @@ def forked(
         found.recorded += happenings(first.now, first.said["messages"], words)
     elif first is not None:
         rest = chain([first], rest)
-    for step in _until(rest, asked.until_ns):
+    for step in _until(rest, request.until_ns):
         troubles.take(step.events)
         inputs.append((step.now, step.events))
         found.recorded += happenings(step.now, step.said["messages"], words)
         found.until = step.now
     found.troubles = [each for each in troubles.of(found.until) if each.ends > found.at]
-    found.world = _go_on(plant, found, inputs, asked, words)
+    found.world = _go_on(plant, found, inputs, request, words)
     return found
 
 
@@ -121,13 +121,13 @@ def _supervised(model: PlantModel) -> frozenset[str]:
 
 
 def _execute(
-    plant: Plant, steps: Iterator[RecordedStep], asked: ForkRequest, found: ForkResult, troubles: Troubles
+    plant: Plant, steps: Iterator[RecordedStep], request: ForkRequest, found: ForkResult, troubles: Troubles
 ) -> list[Any]:
     """Execute steps up to the fork. Returns the first step after it; if the fork is early, the step in which
     the plant did otherwise, with its messages."""
     found.at = found.until = plant.now
-    for step in _until(steps, asked.until_ns):
-        if step.unix_ns > asked.at_ns:
+    for step in _until(steps, request.until_ns):
+        if step.unix_ns > request.at_ns:
             if not found.steps:  # it goes on from the plant's beginning
                 found.unix_ns = step.unix_ns - round((step.now - plant.now) * 1e9)
             return [step]
@@ -135,14 +135,14 @@ def _execute(
         found.until = step.now
         troubles.take(step.events)
         messages = plant.step(step.now, step.events)
-        if asked.changed:
+        if request.changed:
             if _leaves(_plain(messages)) != _leaves(step.said["messages"]):
                 found.early = True
                 return [step, *messages]
             continue
-        said = outcome(messages, state_of(plant, found.steps))
-        if hash_of(said) != step.hash:
-            found.difference = ReplayedStep(found.steps, step, first_difference(step.said, said))
+        result = outcome(messages, state_of(plant, found.steps))
+        if hash_of(result) != step.hash:
+            found.difference = ReplayedStep(found.steps, step, first_difference(step.said, result))
             return [step]
     return [None]
 
@@ -167,14 +167,14 @@ def _go_on(
     plant: Plant,
     found: ForkResult,
     inputs: Iterable[tuple[float, tuple[Event, ...]]],
-    asked: ForkRequest,
+    request: ForkRequest,
     words: Words,
 ) -> World:
-    model = plant.model if asked.versions else asked.model
+    model = plant.model if request.versions else request.model
     world = taken_over(plant, model.on_boards(*ELSEWHERE))
     for now, events in inputs:
         device_replay.ask(world, now, events)
-    if not asked.healthy:
+    if not request.healthy:
         device_replay.befall(world, found.troubles)
     world.watchers.append(lambda: found.fork.extend(happenings(world.now, _plain(world.moment.sent), words)))
     world.advance(found.until - world.now)

@@ -133,9 +133,9 @@ def _tree(found: Incident) -> str:
     return "".join(f"<pre lang={each}>{escape(_outline(found, words(each)))}</pre>" for each in LANGUAGES)
 
 
-def _outline(found: Incident, said: Words) -> str:
-    told = ("name", "feedback")
-    rows = [{**row, **{key: said.say(row[key] or "") for key in told}} for row in found.tree]
+def _outline(found: Incident, words: Words) -> str:
+    columns = ("name", "feedback")
+    rows = [{**row, **{key: words.say(row[key] or "") for key in columns}} for row in found.tree]
     return outline(rows, statuses=True)
 
 

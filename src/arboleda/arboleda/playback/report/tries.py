@@ -70,14 +70,14 @@ def _tried(read: TaskRecord, what: str, value: float, model: PlantModel, options
         digest: replace(each, timing=model.timing) if model is not read.model else each
         for digest, each in versions_of(record).items()
     }
-    asked = ForkRequest(
+    request = ForkRequest(
         at_ns=incident.unix_ns - round(since_s * 1e9) - EARLIER_NS,
         model=model,
         recorded=read.model,
         healthy=what == HEALTHY,
         versions=versions,
     )
-    found = forked(record.first.beginning, record.steps(), asked, sentence_of)
+    found = forked(record.first.beginning, record.steps(), request, sentence_of)
     fork, recorded = (_last(row, incident.task) for row in (found.fork, found.recorded))
     end = fork.said if fork else "?"
     alike = fork is not None and recorded is not None and fork.what == recorded.what
