@@ -72,8 +72,8 @@ class Desk(OpenPage):
 
     async def _operate(self, verb: Verb, scope: str, more: object) -> None:
         by_hand, arguments = more is True, _arguments(verb, more)
-        asked = self._plant.operate(verb, scope, by_hand=by_hand, arguments=arguments)
-        answer = await self._answered(asked)
+        call = self._plant.operate(verb, scope, by_hand=by_hand, arguments=arguments)
+        answer = await self._answered(call)
         if answer is None:
             return
         if answer.refusal is not None:
@@ -104,8 +104,8 @@ class Desk(OpenPage):
                 return
 
     def _tell(self, outcome: Outcome, why: Sentence | None, act: dict[str, str]) -> None:
-        said = {} if why is None else {"why": self._words.say(why)}
-        self.say(self._words(f"panel.{outcome.value}", **act, **said), good=GOOD.get(outcome, True))
+        reason = {} if why is None else {"why": self._words.say(why)}
+        self.say(self._words(f"panel.{outcome.value}", **act, **reason), good=GOOD.get(outcome, True))
 
     async def _answered(self, future: Future[Answer]) -> Answer | None:
         """The plant's answer; None if there is none, after the page was told the reason."""
@@ -137,9 +137,9 @@ class Desk(OpenPage):
 
 def _arguments(verb: Verb, more: object) -> Arguments:
     """The arguments of a verb in what a page sends."""
-    told = more if isinstance(more, dict) else {}
-    takes = [each for each in verb.arguments if type(told.get(each.name)) is each.type]
-    return tuple((each.name, told[each.name]) for each in takes)
+    values = more if isinstance(more, dict) else {}
+    takes = [each for each in verb.arguments if type(values.get(each.name)) is each.type]
+    return tuple((each.name, values[each.name]) for each in takes)
 
 
 VERBS = frozenset(verb.value for verb in Verb)

@@ -41,8 +41,8 @@ class OpenPage:
 
     async def hear(self, event: GenericEventArguments) -> None:
         """Take one event of the page: [act, of, more]; anything else is ignored."""
-        told = event.args if isinstance(event.args, list) else [event.args]
-        act, of, more = [*told, None, None, None][:3]
+        args = event.args if isinstance(event.args, list) else [event.args]
+        act, of, more = [*args, None, None, None][:3]
         if act == SEEN and isinstance(of, int):
             self._seen(self, of)
         elif isinstance(act, str) and isinstance(of, str) and len(of) <= LONGEST:

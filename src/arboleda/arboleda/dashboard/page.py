@@ -77,14 +77,14 @@ def mount(server: FastAPI, plant: PageApi) -> None:
         return known[1]
 
     def drawn(layout: Layout, language: str, role: str | None) -> str:
-        said, parts = words(language), parts_for(role)
+        wording, parts = words(language), parts_for(role)
 
         def top(names: list[str]) -> None:
-            header.build(layout, said, [name for name in names if name not in FROM_CARDS], role)
+            header.build(layout, wording, [name for name in names if name not in FROM_CARDS], role)
             if layout.get("demo"):
-                demo.build(said)
+                demo.build(wording)
 
-        return shell.body(layout, said, parts, header=top)
+        return shell.body(layout, wording, parts, header=top)
 
     def build(request: Request, client: Client) -> None:
         if past_page.is_of_draft(request) and is_operator(request):
@@ -93,11 +93,11 @@ def mount(server: FastAPI, plant: PageApi) -> None:
         if past_page.asked(request):
             past_page.open_page(client, plant, stills, turns, request, beside=True)
             return
-        said, layout = words(language_of(request)), plant.layout()
+        wording, layout = words(language_of(request)), plant.layout()
         window.open_window(client, show)
-        open_page(client, Desk(client, plant, feed, said), feed)
-        html = made(layout, said.language, role_shown(request))
-        shell.fill(layout, said, PARTS, script="page.js", made=html)
+        open_page(client, Desk(client, plant, feed, wording), feed)
+        html = made(layout, wording.language, role_shown(request))
+        shell.fill(layout, wording, PARTS, script="page.js", made=html)
 
     window.serve(server, plant, show, stills, tried=tried.last)
     _serve_tasks(server, plant, feed)

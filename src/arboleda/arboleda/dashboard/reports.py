@@ -28,13 +28,13 @@ def serve(server: FastAPI, plant: PageApi) -> None:
     """Answer `/report?task=ID` with the report, or with a page that waits until it is written."""
 
     async def report(request: Request, task: str = "") -> Response:
-        said = words(language_of(request))
+        wording = words(language_of(request))
         try:
             content = await run_in_threadpool(plant.report, task)
         except ArboledaError as error:
-            return _note(said, task, said.say(error.sentence), status=404)
+            return _note(wording, task, wording.say(error.sentence), status=404)
         if content is None:
-            waits = _note(said, task, said("report.waits"))
+            waits = _note(wording, task, wording("report.waits"))
             waits.headers["refresh"] = str(LOOK_S)
             return waits
         name = f'inline; filename="{task}.html"'
@@ -43,7 +43,7 @@ def serve(server: FastAPI, plant: PageApi) -> None:
     server.add_api_route(PATH, report, include_in_schema=False)
 
 
-def _note(said: Words, task: str, text: str, status: int = 200) -> HTMLResponse:
-    title = said("report.title", task=task)
+def _note(wording: Words, task: str, text: str, status: int = 200) -> HTMLResponse:
+    title = wording("report.title", task=task)
     body = f"<h1>{escape(title)}</h1><p role=status>{escape(text)}</p>"
-    return login.page(title, body, language=said.language, status=status)
+    return login.page(title, body, language=wording.language, status=status)

@@ -76,16 +76,16 @@ def is_operator(request: Request) -> bool:
     return bool(request.scope["arboleda.role"] is Role.OPERATOR)
 
 
-def fill(layout: Layout, said: Words, parts: Parts, *, script: str, made: str) -> None:
+def fill(layout: Layout, wording: Words, parts: Parts, *, script: str, made: str) -> None:
     """Fill the page of one browser with what was `made` of its parts; `script` is its entry."""
     shown = parts_of(parts, layout)
-    ui.add_head_html(head(said, script, *(["twin.js"] if "twin" in shown else [])))
+    ui.add_head_html(head(wording, script, *(["twin.js"] if "twin" in shown else [])))
     ui.html(made, sanitize=False).classes("app")
 
 
 def body(
     layout: Layout,
-    said: Words,
+    wording: Words,
     parts: Parts,
     *,
     header: Callable[[list[str]], None],
@@ -98,10 +98,10 @@ def body(
         header(list(shown))
         with tag("div", id="parts"):
             for name, build_part in shown.items():
-                label = said(f"tab.{name}")
+                label = wording(f"tab.{name}")
                 with tag("section", id=f"part-{name}", classes="part", data_part=name, aria_label=label):
-                    build_part(layout, said)
-        trees.detail(said)
+                    build_part(layout, wording)
+        trees.detail(wording)
         footer()
 
     return markup(build)
@@ -112,10 +112,10 @@ def parts_of(parts: Parts, layout: Layout) -> Parts:
     return {name: build for name, build in parts.items() if name != "twin" or layout["places"]["robots"]}
 
 
-def head(said: Words, *scripts: str) -> str:
+def head(wording: Words, *scripts: str) -> str:
     """The page's head: its styles, its scripts, and the few words that these use themselves."""
-    used = {key[3:]: text for key, text in said.flat.items() if key.startswith("js.")}
-    data = json.dumps({"language": said.language, "words": used}).replace("<", "\\u003c")
+    used = {key[3:]: text for key, text in wording.flat.items() if key.startswith("js.")}
+    data = json.dumps({"language": wording.language, "words": used}).replace("<", "\\u003c")
     styles = "".join(f'<link rel="stylesheet" href="{assets()}/{name}.css">' for name in STYLES)
     modules = "".join(f'<script type="module" src="{assets()}/{name}"></script>' for name in scripts)
     return f"{styles}<script>window.arboledaPage = {data};</script>{modules}"

@@ -120,10 +120,10 @@ def _number(parameter: Row, label: str, words: Words) -> None:
     """Draw a number field with its limits; the plant has the last word on them."""
     whole = parameter["type"] == "integer"
     limits = {key: parameter[of] for key, of in (("min", "lower"), ("max", "upper")) if of in parameter}
-    asked = label
+    caption = label
     if len(limits) == 2:
-        asked = words("tasks.between", what=label, **{key: f"{value:g}" for key, value in limits.items()})
-    with _named(parameter, asked):
+        caption = words("tasks.between", what=label, **{key: f"{value:g}" for key, value in limits.items()})
+    with _named(parameter, caption):
         step = "1" if whole else "any"
         tag("input", type="number", step=step, data_set_from=parameter["name"], **limits)
 

@@ -133,8 +133,8 @@ class TreeMemory:
                 _conclude(above, list(kinds), after)
 
     def _become(self, path: str, name: Sentence, status: str, unix_s: float) -> None:
-        told = path in self._steps or (status == FAILURE and path in self._leaves)
-        if told and self.statuses.get(path, IDLE) != status:
+        is_shown = path in self._steps or (status == FAILURE and path in self._leaves)
+        if is_shown and self.statuses.get(path, IDLE) != status:
             self._count += 1
             begun = [each for each in self.changes if each.path == path and each.status == RUNNING]
             for each in begun:

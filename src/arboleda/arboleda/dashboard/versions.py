@@ -8,9 +8,9 @@ from .wording import Words
 
 def build(words: Words) -> None:
     """Draw the box; the script fills and shows it where the plant has files of its own."""
-    said = {"data_by": words("versions.from_page"), "data_sure": words("versions.sure")}
+    texts = {"data_by": words("versions.from_page"), "data_sure": words("versions.sure")}
     lost = words("js.not_sent")
-    with tag("div", id="versions-box", classes="box", hidden="true", data_lost=lost, **said):
+    with tag("div", id="versions-box", classes="box", hidden="true", data_lost=lost, **texts):
         tag("h2", words("versions.title"))
         tag("p", id="versions-now", classes="fact")
         tag("ul", id="versions-cells")

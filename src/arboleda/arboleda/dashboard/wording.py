@@ -39,15 +39,15 @@ class Words:
         word, plain = self.of("cell_state", state), self.flat.get(f"cell_plain.{state}")
         return word if plain is None else f"{plain} ({word})"
 
-    def say(self, said: Sentence | str) -> str:
+    def say(self, sentence: Sentence | str) -> str:
         """A sentence of the plant in this language; any other text, as of a user's own step, unchanged."""
-        if isinstance(said, str):
-            return said
-        text = self._said.get(said)
+        if isinstance(sentence, str):
+            return sentence
+        text = self._said.get(sentence)
         if text is None:
             if len(self._said) > 2000:
                 self._said.clear()
-            text = self._said[said] = said.told(self._template)
+            text = self._said[sentence] = sentence.told(self._template)
         return text
 
     def _template(self, phrase: Phrase) -> str:

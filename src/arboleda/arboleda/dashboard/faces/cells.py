@@ -158,8 +158,8 @@ def _ways(words: Words, cell: Row) -> Face:
 def _said(words: Words, advice: Row) -> str:
     if advice["by_hand"]:
         return words(f"ways.{advice['do']}_by_hand", robot=advice["scope"])
-    said = words.say(advice["said"])
-    return said[:1].upper() + said[1:]
+    text = words.say(advice["said"])
+    return text[:1].upper() + text[1:]
 
 
 def _before(ways: list[Row], number: int) -> list[Row]:
@@ -186,17 +186,17 @@ def _note(words: Words, advice: Row, before: list[Row]) -> str:
 
 
 def _offer(words: Words, advice: Row) -> Row:
-    said, asks = _said(words, advice), []
+    label, asks = _said(words, advice), []
     if advice["by_hand"]:
         asks = words.asks(f"{advice['do']}_by_hand")
     elif advice["drops"]:
-        asks = [words("ways.asks_drops", said=said, robots=", ".join(advice["drops"]))]
+        asks = [words("ways.asks_drops", said=label, robots=", ".join(advice["drops"]))]
     elif advice["moves"]:
-        asks = [words("ways.asks_moves", said=said, robots=", ".join(advice["moves"]))]
+        asks = [words("ways.asks_moves", said=label, robots=", ".join(advice["moves"]))]
     return {
         "act": advice["do"],
         "of": advice["scope"],
-        "label": said,
+        "label": label,
         "does": words.say(advice["why"]),
         "asks": asks,
         "by_hand": advice["by_hand"],

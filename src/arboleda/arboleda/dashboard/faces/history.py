@@ -40,5 +40,5 @@ def _row(row: TaskRow, words: Words, now_unix_s: float) -> dict[str, Any]:
 
 
 def _why(row: TaskRow, words: Words) -> str:
-    said = words.say(sentence_of(row))
-    return said if row.reason is None else f"{words.of('reason', row.reason)}: {said}"
+    sentence = words.say(sentence_of(row))
+    return sentence if row.reason is None else f"{words.of('reason', row.reason)}: {sentence}"

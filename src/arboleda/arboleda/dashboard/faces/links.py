@@ -124,8 +124,8 @@ def _yes_or_no(moment: Moment, value: bool | None) -> str:
 def says(words: Words, robot: Row) -> str:
     """The facts of a robot by name, also those without a word on the page; the part that it may hold; and,
     for a shared device, the cell that has it."""
-    told = robot["facts"].items()
-    facts = [f"{words.of('fact', name)} {_fact(words, name, value)}" for name, value in told]
+    known = robot["facts"].items()
+    facts = [f"{words.of('fact', name)} {_fact(words, name, value)}" for name, value in known]
     holding = [words("links.holding")] if robot["holding"] else []
     held = [words("links.held_by", cell=robot["holder"])] if robot["holder"] else []
     return ", ".join([*facts, *holding, *held])

@@ -45,5 +45,5 @@ def _of(words: Words, person: str, question: Row | None) -> Face:
 def _offer(words: Words, person: str, question: Row, answer: str) -> Row:
     """The act of an answer's button; it names its question, so that a late click answers no later one."""
     does = words("asked.does", answer=answer, question=question["text"])
-    told = {"question": question["id"], "answer": answer}
-    return {"act": Verb.ANSWER.value, "of": person, "label": answer, "does": does, "arguments": told}
+    arguments = {"question": question["id"], "answer": answer}
+    return {"act": Verb.ANSWER.value, "of": person, "label": answer, "does": does, "arguments": arguments}

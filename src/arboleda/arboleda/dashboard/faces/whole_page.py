@@ -101,8 +101,8 @@ def _title(moment: Moment) -> list[str]:
     states = {cell["name"]: standing(cell) for cell in moment.snapshot["cells"]}
     bad = {name: moment.words.cell(state) for name, state in states.items() if state not in WELL}
     waits = {name: _waits(moment, people) for name, people in waited_for(moment.snapshot).items()}
-    said = "; ".join(f"{name}: {word}" for name, word in (*bad.items(), *waits.items()))
+    causes = "; ".join(f"{name}: {word}" for name, word in (*bad.items(), *waits.items()))
     plant = moment.snapshot["plant"]
     if bad:
-        return [f"⚠ {said} - {plant}", "trouble"]
-    return [f"? {said} - {plant}", "waits"] if waits else [plant, "well"]
+        return [f"⚠ {causes} - {plant}", "trouble"]
+    return [f"? {causes} - {plant}", "waits"] if waits else [plant, "well"]

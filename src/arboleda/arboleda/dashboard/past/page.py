@@ -61,8 +61,8 @@ def open_page(
     beside: bool = False,
 ) -> None:
     """Build the page of one browser on a record; `beside` a plant that runs it has a link to that."""
-    layout, said = {**side.layout(), "recorded": False}, words(shell.language_of(request))
-    visitor = Visitor(client, side, stills, turns, said, arrival(request))
+    layout, wording = {**side.layout(), "recorded": False}, words(shell.language_of(request))
+    visitor = Visitor(client, side, stills, turns, wording, arrival(request))
     ui.on("arboleda-past", visitor.hear)
     ui.on(window.EVENT, visitor.hear)
     window.bring_three()
@@ -70,28 +70,28 @@ def open_page(
     role = shell.role_shown(request)
     made = shell.body(
         layout,
-        said,
+        wording,
         PARTS,
-        header=lambda parts: header.of_record(layout, said, parts, role, beside=beside),
-        footer=lambda: bar.build(layout, said),
+        header=lambda parts: header.of_record(layout, wording, parts, role, beside=beside),
+        footer=lambda: bar.build(layout, wording),
     )
-    shell.fill(layout, said, PARTS, script="record.js", made=made)
+    shell.fill(layout, wording, PARTS, script="record.js", made=made)
 
 
 def arrival(request: Request) -> Arrival:
     """The place in the record that the address names: `at=1795324375.912` is Unix time, `at=task` the end of
     the task that it names, anything else the last failure."""
     query = request.query_params
-    asked = query.get(KEY, "")
+    moment_text = query.get(KEY, "")
     try:
-        moment = round(float(asked) * 1000)
+        moment = round(float(moment_text) * 1000)
     except (OverflowError, ValueError):
         moment = None
     start = query.get(START, "")
     return Arrival(
         moment=moment,
         task=query.get("task"),
-        at_its_end=asked == OF_TASK,
+        at_its_end=moment_text == OF_TASK,
         cell=query.get("cell"),
         epoch=int(start) if EPOCH.fullmatch(start) else None,
     )

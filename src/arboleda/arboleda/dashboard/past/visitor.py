@@ -99,8 +99,8 @@ class Visitor:
 
     async def hear(self, event: GenericEventArguments) -> None:
         """Take one event of the page: [what, of, cell]; anything else is ignored."""
-        asked = event.args if isinstance(event.args, list) else [event.args]
-        what, of, cell = [*asked, None, None, None][:3]
+        args = event.args if isinstance(event.args, list) else [event.args]
+        what, of, cell = [*args, None, None, None][:3]
         if self._past is None:
             return
         if what == GROW:
@@ -135,12 +135,12 @@ class Visitor:
 
     def _arrive(self, past: Past) -> None:
         """Go to the moment that the address names."""
-        asked = self._arrival
-        if asked.moment is not None:
-            self._moment = past.within(asked.moment)
+        arrival = self._arrival
+        if arrival.moment is not None:
+            self._moment = past.within(arrival.moment)
             return
-        of_task = asked.task if asked.at_its_end else None
-        found = past.end_of(of_task) if of_task else past.last_failure(asked.cell)
+        of_task = arrival.task if arrival.at_its_end else None
+        found = past.end_of(of_task) if of_task else past.last_failure(arrival.cell)
         if found is None:
             self._say(self._words("record.no_task" if of_task else "record.no_failure"))
         self._moment = past.ended if found is None else found

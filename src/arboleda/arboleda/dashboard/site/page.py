@@ -38,14 +38,16 @@ def mount(server: FastAPI, site: SiteSide) -> None:
     frames, opened = Frames(), asyncio.Event()
 
     def build(request: Request, client: Client) -> None:
-        said = words(language_of(request))
-        desk = Desk(client, site, frames, said)
+        wording = words(language_of(request))
+        desk = Desk(client, site, frames, wording)
         ui.on("arboleda", desk.hear)
         client.on_connect(lambda: (frames.add(desk), opened.set()))
         client.on_delete(lambda: frames.remove(desk))
         role = role_shown(request)
-        made = shell.body(NOTHING_DRAWN, said, PARTS, header=lambda parts: header.of_site(said, parts, role))
-        shell.fill(NOTHING_DRAWN, said, PARTS, script="site.js", made=made)
+        made = shell.body(
+            NOTHING_DRAWN, wording, PARTS, header=lambda parts: header.of_site(wording, parts, role)
+        )
+        shell.fill(NOTHING_DRAWN, wording, PARTS, script="site.js", made=made)
 
     _serve(server, site)
     shell.serve(server, {"plant": words("en")("site.title")}, build)
@@ -64,10 +66,10 @@ def _serve(server: FastAPI, site: SiteSide) -> None:
     async def add_task(request: Request) -> JSONResponse:
         """Give a task to the best of the plants it names, `north/sis_a,south/sis_a 0B 7`, or refuse it."""
         require(request.scope["arboleda.role"], SUBMIT)
-        asked = task_asked(await request.body())
-        if not isinstance(asked, TaskText):
+        form = task_asked(await request.body())
+        if not isinstance(form, TaskText):
             raise PayloadError('The body must be JSON like {"text": "north/sis_a,south/sis_a 0B 7"}.')
-        answer = await site.submit("", asked.text)
+        answer = await site.submit("", form.text)
         sentence = words(language_of(request)).say(answer.sentence)
         return JSONResponse({"sentence": sentence}, status_code=202 if answer.good else 422)
 
@@ -76,28 +78,33 @@ def _serve(server: FastAPI, site: SiteSide) -> None:
     server.add_api_route("/api/plants/{plant}/stop", stop, methods=["POST"], include_in_schema=False)
 
 
-def _plants(_layout: Layout, said: Words) -> None:
+def _plants(_layout: Layout, wording: Words) -> None:
     with tag("div", classes="box"):
         rows(
             "plants",
-            [said(f"site.column.{name}") for name in COLUMNS],
-            empty=said("site.none"),
+            [wording(f"site.column.{name}") for name in COLUMNS],
+            empty=wording("site.none"),
             classes="plants",
         )
-        tag("p", said("site.not_safety"), classes="hint")
+        tag("p", wording("site.not_safety"), classes="hint")
     with tag("form", id="site-form", classes="box form"):
-        tag("h2", said("tasks.new"))
+        tag("h2", wording("tasks.new"))
         with tag("div", classes="send"):
             with tag("label", classes="text"):
-                tag("span", said("site.column.plant"))
+                tag("span", wording("site.column.plant"))
                 tag("select", id="site-plant")
             with tag("label", classes="text"):
-                tag("span", said("tasks.text"))
+                tag("span", wording("tasks.text"))
                 tag("input", id="site-text", type="text", autocomplete="off", maxlength="200")
             act_button(
-                said("tasks.send"), SUBMIT, "", said("site.send_does"), classes="primary", id="site-send"
+                wording("tasks.send"),
+                SUBMIT,
+                "",
+                wording("site.send_does"),
+                classes="primary",
+                id="site-send",
             )
-        tag("p", said("site.send_does"), classes="hint")
+        tag("p", wording("site.send_does"), classes="hint")
 
 
 NOTHING_DRAWN: Layout = {"places": {"robots": []}}
@@ -107,8 +114,8 @@ PARTS: shell.Parts = {"plants": _plants}
 class Desk(OpenPage):
     """Desk: the way from the events of a page to the plants."""
 
-    def __init__(self, client: Client, site: SiteSide, frames: Frames, said: Words) -> None:
-        super().__init__(client, said, frames.seen)
+    def __init__(self, client: Client, site: SiteSide, frames: Frames, wording: Words) -> None:
+        super().__init__(client, wording, frames.seen)
         self._site = site
 
     async def asked(self, act: str, of: str, more: object) -> None:

@@ -135,8 +135,8 @@ def _bounds(
     for robot in places["robots"]:
         frame = kinematics.floor(robot["at"])
         points += [kinematics.at(frame, (x, y, 0.0)) for x, y in robot.get("nodes", ())]
-    told = {cell["name"] for cell in cells}
-    for robot in (robot for robot in places["robots"] if robot["cell"] not in told):
+    in_cells = {cell["name"] for cell in cells}
+    for robot in (robot for robot in places["robots"] if robot["cell"] not in in_cells):
         frame, body = kinematics.floor(robot["at"]), drawings[robot["name"]]
         points.append(kinematics.at(kinematics.tool(body, robot["reference"], frame)))
     frames = [frame for cell in cells for frame in [*cell["pickups"], *cell["stations"]]]

@@ -40,8 +40,8 @@ class Window:
 
     def hear(self, event: GenericEventArguments) -> None:
         """Take an event of the script: ["look"], ["leave"] or ["drawn", number]; anything else is ignored."""
-        asked = event.args if isinstance(event.args, list) else [event.args]
-        what, number = [*asked, None, None][:2]
+        args = event.args if isinstance(event.args, list) else [event.args]
+        what, number = [*args, None, None][:2]
         if what == LOOK:
             self._show.look(self)
         elif what == LEAVE:
