@@ -38,12 +38,12 @@ RULES: Mapping[type[Behaviour], Rule] = {**STEP_RULES, **NODE_RULES}
 
 def warnings(plant: PlantModel) -> tuple[str, ...]:
     """Warnings of what recipes do in vain, and of what they forget, each with the place of its recipe."""
-    return tuple(said for check in _checks(plant) for said in check.warnings())
+    return tuple(sentence for check in _checks(plant) for sentence in check.warnings())
 
 
 def ends(plant: PlantModel) -> tuple[str, ...]:
     """Ends of recipes: all that is so for certain once a task is done, with any parameters."""
-    return tuple(said for check in _checks(plant) for said in check.ends())
+    return tuple(sentence for check in _checks(plant) for sentence in check.ends())
 
 
 def _checks(plant: PlantModel) -> list[CellCheck]:

@@ -41,16 +41,16 @@ class CheckProcess:
         request = {"plant_file": str(plant_file), "plant": files.plant, "contents": _texts(files.contents)}
         run = self._start()
         try:
-            said, _ = run.communicate(json.dumps(request).encode(), AT_MOST_S)
+            output, _ = run.communicate(json.dumps(request).encode(), AT_MOST_S)
         except (OSError, subprocess.TimeoutExpired):
-            said = b""
+            output = b""
         finally:
             run.kill()
             run.communicate()
             with self._turns:
                 self._run = None
                 self._turns.notify()
-        return _answer(said, files.plant)
+        return _answer(output, files.plant)
 
     def stop(self) -> None:
         """End the check that is under way, and begin no other; idempotent."""
@@ -86,10 +86,10 @@ def main() -> None:
     os._exit(0)  # whatever threads the plant's Python has started
 
 
-def _answer(said: bytes, plant: str) -> Checked:
+def _answer(output: bytes, plant: str) -> Checked:
     """The verdict on the last line of what the process said; ArboledaError if there is none."""
     try:
-        found: dict[str, Any] = json.loads(said.splitlines()[-1])
+        found: dict[str, Any] = json.loads(output.splitlines()[-1])
         read = found["read"]
         return Checked(
             problems=tuple(found["problems"]),

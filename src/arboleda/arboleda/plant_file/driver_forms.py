@@ -15,7 +15,7 @@ from arboleda.model.errors import ArboledaError
 from arboleda.model.outside import plain, quoted
 
 from .drivers import GROUP, OF_DEVICES
-from .python_uses import LONGEST, said
+from .python_uses import LONGEST, error_text
 from .yaml_flow import flow
 from .yaml_marks import YamlFault, parse
 
@@ -83,13 +83,13 @@ def written(name: str, texts: Mapping[str, str], own: Mapping[str, DriverSpec]) 
     known = {} if name in OF_DEVICES else {each.name: each for each in keys(_spec(name, own))}
     if strange := sorted(texts.keys() - known.keys()):
         raise ArboledaError(f"the driver {name} has no key {quoted(strange[0])}")
-    said = {key: text.strip() for key, text in texts.items() if text.strip()}
-    if missing := [each.name for each in known.values() if each.required and each.name not in said]:
+    filled = {key: text.strip() for key, text in texts.items() if text.strip()}
+    if missing := [each.name for each in known.values() if each.required and each.name not in filled]:
         raise ArboledaError(f"the driver {name} needs {', '.join(missing)}")
     values = {
-        key.name: key.read(said[key.name])
+        key.name: key.read(filled[key.name])
         for key in known.values()
-        if key.name in said and said[key.name] != key.default
+        if key.name in filled and filled[key.name] != key.default
     }
     return {name: values} if values else name
 
@@ -116,7 +116,7 @@ def _form(name: str, own: Mapping[str, DriverSpec], words: Mapping[str, str]) ->
         spec = _spec(name, own)
         rows = [vars(each) for each in keys(spec, words)]
     except Exception as error:  # noqa: BLE001 - it is user code: whatever it raises is told
-        return {"name": name, "about": "", "keys": [], "why_not": plain(said(error), LONGEST)}
+        return {"name": name, "about": "", "keys": [], "why_not": plain(error_text(error), LONGEST)}
     return {"name": name, "about": words.get(name) or _about(spec), "keys": rows, "why_not": ""}
 
 
@@ -130,7 +130,9 @@ def _spec(name: str, own: Mapping[str, DriverSpec]) -> DriverSpec:
     try:
         found = spec_of(point.load())
     except (Exception, SystemExit) as error:
-        raise ArboledaError(plain(f"{point.value} cannot be imported: {said(error)}", LONGEST)) from error
+        raise ArboledaError(
+            plain(f"{point.value} cannot be imported: {error_text(error)}", LONGEST)
+        ) from error
     if found is None:
         raise ArboledaError(f"{point.value} is installed as a driver and is none")
     return found

@@ -17,7 +17,7 @@ from arboleda.recipes.storage_layout import ARM, MOBILE
 
 from . import settings
 from .document import Document, Place, choice, nearest, shown
-from .python_uses import LONGEST, PythonUses, Spot, refused, said
+from .python_uses import LONGEST, PythonUses, Spot, error_text, refused
 from .shared import SECTION as SHARED
 
 KEY, SHORT = "driver", "link"
@@ -108,7 +108,7 @@ def _check(document: Document, place: Place, use: DriverUse, device: Robot) -> N
     try:
         problems = list(use.settings.problems(device))
     except Exception as error:  # noqa: BLE001 - it is user code: whatever it raises is told
-        problems = [((), said(error))]
+        problems = [((), error_text(error))]
     for inside, sentence in problems:
         document.problem((*place, use.name, *inside), plain(sentence, LONGEST))
 
@@ -127,7 +127,7 @@ def _installed(document: Document, place: Place, name: str, used: PythonUses) ->
     try:
         loaded = point.load()
     except (Exception, SystemExit) as error:  # noqa: BLE001 - it is user code: whatever it raises is told
-        document.problem(place, plain(f"{point.value} cannot be imported: {said(error)}", LONGEST))
+        document.problem(place, plain(f"{point.value} cannot be imported: {error_text(error)}", LONGEST))
         return None
     spec = spec_of(loaded)
     if spec is None:
@@ -150,7 +150,7 @@ def _settings(document: Document, place: Place, spec: DriverSpec, used: PythonUs
         used.keep(document, used.spot(spec).problem(f"{what}; it can {settings.TYPES}"))
         return FAULTY
     except Exception as error:  # noqa: BLE001 - annotations are user code, and may be of anything
-        used.keep(document, used.spot(spec).problem(f"the settings of {spec.name}: {said(error)}"))
+        used.keep(document, used.spot(spec).problem(f"the settings of {spec.name}: {error_text(error)}"))
         return FAULTY
     if not has:
         missing = [name for name, field in fits.model_fields.items() if field.is_required()]

@@ -136,9 +136,9 @@ class Foresight:
         for lock in self._locks(robot, target):
             device: Any = next(each for each in self.cell.robots if each.name == lock.device)
             verbs = device.kind.verbs.values() if device.verb_names else ()
-            told = {name for verb in verbs for name, _ in verb.sets}
+            names = {name for verb in verbs for name, _ in verb.sets}
             for fact, value in lock.free_while:
-                if fact in told:
+                if fact in names:
                     yield (lock.device, fact), value
 
     def _locks(self, robot: str, target: str | None) -> Iterator[Interlock]:
@@ -175,10 +175,10 @@ class Foresight:
             if (each.device, each.word) == (command.robot, command.word)
         ]
         for name, fact, value in [*((command.robot, *need) for need in command.needs), *others]:
-            told = scene.get(name, fact)
-            if told is not None and told != value and name not in self.cell.shared:
+            known = scene.get(name, fact)
+            if known is not None and known != value and name not in self.cell.shared:
                 needed = f"{fact} of {name} to be {shown(value)}"
-                yield f"has {command.robot} {command.word}, which needs {needed}, where it is {shown(told)}"
+                yield f"has {command.robot} {command.word}, which needs {needed}, where it is {shown(known)}"
 
     def _by_hand(self, command: Switch, scene: Scene) -> Iterator[str]:
         hand, here = command.robot, self._here(command.robot, scene)
@@ -239,9 +239,9 @@ class Foresight:
         """The facts that keep a robot out of the zones of a target, and what they have to be."""
         for lock in self._locks(robot, target):
             for fact, value in lock.free_while:
-                told = scene.get(lock.device, fact)
-                if told not in (None, value):
-                    yield f"{fact} of {lock.device} is {shown(told)}", shown(value)
+                known = scene.get(lock.device, fact)
+                if known not in (None, value):
+                    yield f"{fact} of {lock.device} is {shown(known)}", shown(value)
 
     def _closing(self, command: Command, scene: Scene) -> Iterator[str]:
         for lock in self.cell.interlocks_of(command.robot):

@@ -65,13 +65,13 @@ def handover(
     targets = reach[goes[shape.taker].name].targets if shape.taker in takers else {}
     codes = [path.code for path in reach[goes[shape.giver].name].paths] if shape.giver in givers else []
     by_path = {code.upper(): target for code, target in shape.by_path.items()}
-    asked: list[tuple[str, str, Collection[str]]] = [
+    rows: list[tuple[str, str, Collection[str]]] = [
         ("taker", shape.taker, takers),
         ("giver", shape.giver, givers),
         ("at", shape.at, targets),
     ]
-    asked += [(f"by_path.{code}", target, targets) for code, target in shape.by_path.items()]
-    wrong = [each for each in asked if each[1] not in each[2]]
+    rows += [(f"by_path.{code}", target, targets) for code, target in shape.by_path.items()]
+    wrong = [each for each in rows if each[1] not in each[2]]
     for key, name, known in wrong:
         there = f"must be {choice(known)}" if known else "there is none to choose from"
         document.problem((*here, *key.split(".")), f"{there}, is {shown(name)}{nearest(name, known)}")

@@ -162,21 +162,23 @@ def _with_values(walk: Walkthrough, node: DeviceStep, scene: Scene) -> tuple[Out
 
 def _answered(node: DeviceStep, step: Behaviour, scenes: Sequence[Scene]) -> list[Scene]:
     """The scenes after a step; after a question one for each answer."""
-    asked = asked_in(step) if isinstance(node, QuestionStep) else None
-    if not isinstance(node, QuestionStep) or asked is None:
+    question = asked_in(step) if isinstance(node, QuestionStep) else None
+    if not isinstance(node, QuestionStep) or question is None:
         return list(scenes)
     key = key_of(node.scope.place(node.out))
-    if not asked.answers:
+    if not question.answers:
         return [scene.without({key}) for scene in scenes]
-    return [scene.put({key: as_variable(answer)}) for scene in scenes for answer in asked.answers]
+    return [scene.put({key: as_variable(answer)}) for scene in scenes for answer in question.answers]
 
 
 def _facts(walk: Walkthrough, node: FactStep, scenes: Sequence[Scene]) -> Outcome:
     done = []
     for scene in scenes:
-        told = {key_of(node.scope.place(variable)): scene.get(*fact) for variable, fact in node.facts.items()}
-        known = {key: as_variable(value) for key, value in told.items() if value is not None}
-        done.append(scene.without(set(told)).put(known))
+        facts = {
+            key_of(node.scope.place(variable)): scene.get(*fact) for variable, fact in node.facts.items()
+        }
+        known = {key: as_variable(value) for key, value in facts.items() if value is not None}
+        done.append(scene.without(set(facts)).put(known))
     return Outcome(done=tuple(done), failed=tuple(scenes))
 
 

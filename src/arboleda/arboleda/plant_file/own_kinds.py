@@ -20,7 +20,7 @@ from arboleda.wire import mqtt_limits
 from .document import Document, Place, shown
 from .kinds import OF_FACTS, OF_STEPS, name_objection
 from .moving_kinds import as_read
-from .python_uses import LONGEST, KindInPython, PythonUses, Spot, refused, said
+from .python_uses import LONGEST, KindInPython, PythonUses, Spot, error_text, refused
 from .registry import COME_WITH_IT, IN_PYTHON, RESERVED
 from .robot_kind import RobotKind
 from .settings import TYPES, keys
@@ -91,7 +91,7 @@ def device(
         used.keep(document, spot.problem(f"{what}; it can {TYPES}"))
         return None
     except Exception as error:  # noqa: BLE001 - annotations are user code, and may be of anything
-        used.keep(document, spot.problem(f"the settings of {kind.name} cannot be read: {said(error)}"))
+        used.keep(document, spot.problem(f"the settings of {kind.name} cannot be read: {error_text(error)}"))
         return None
     settings = None if shape is None else _settings(document, place, kind, shape, used)
     if shape is None or (settings is None and kind.settings is not None):
@@ -134,7 +134,7 @@ def _installed(
     try:
         kind = rows[0].load()
     except (Exception, SystemExit) as error:  # noqa: BLE001 - it is user code: whatever it raises is told
-        what = f"the kind {shown(name)} of {packages[0]} cannot be imported: {said(error)}"
+        what = f"the kind {shown(name)} of {packages[0]} cannot be imported: {error_text(error)}"
         document.problem(place, plain(what, LONGEST))
         return None
     if not isinstance(kind, IN_PYTHON) or kind.name != name:
@@ -183,7 +183,7 @@ def _tell(
 ) -> None:
     """Keep the error that a kind raised: at its line, or at the device if no file of a user has that line."""
     spot = used.where(error.__cause__ or error, used.where(error, used.spot(kind)))
-    what = f"{kind.name}: {error}" if isinstance(error, KindError) else f"{kind.name}: {said(error)}"
+    what = f"{kind.name}: {error}" if isinstance(error, KindError) else f"{kind.name}: {error_text(error)}"
     _keep(document, place, spot, what, used)
 
 

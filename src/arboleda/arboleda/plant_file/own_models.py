@@ -167,19 +167,19 @@ def _is_drivable(document: Document, place: Place, joint: Joint) -> bool:
     least = TO_SI["mm" if joint.unit == "m" else "deg"](LEAST_STEP)
     wide = joint.upper - joint.lower
     if max(abs(to_wire(joint, end)) for end in (joint.lower, joint.upper)) > FARTHEST:
-        said = f"has limits beyond {FARTHEST:g} deg on MQTT"
+        why = f"has limits beyond {FARTHEST:g} deg on MQTT"
     elif not least <= joint.step <= wide:
-        said = f"has a motor step that is not from {LEAST_STEP:g} deg or mm to all of its way"
+        why = f"has a motor step that is not from {LEAST_STEP:g} deg or mm to all of its way"
     elif joint.speed / joint.step > FASTEST:
         steps = joint.speed / joint.step
-        said = f"takes {steps:.3g} motor steps a second; at most {FASTEST:g}, so give it larger ones"
+        why = f"takes {steps:.3g} motor steps a second; at most {FASTEST:g}, so give it larger ones"
     elif not joint.travel_s(wide) <= DAY_S:
-        said = "needs more than a day for its whole way"
+        why = "needs more than a day for its whole way"
     elif min(joint.speed**2 / joint.acceleration, wide) / 2 / joint.step > LONGEST_RAMP:
-        said = f"needs more than {LONGEST_RAMP} motor steps to its full speed; give it larger ones"
+        why = f"needs more than {LONGEST_RAMP} motor steps to its full speed; give it larger ones"
     else:
         return True
-    document.problem(place, f"the joint {joint.name} {said}")
+    document.problem(place, f"the joint {joint.name} {why}")
     return False
 
 

@@ -31,7 +31,7 @@ from . import tree_includes, user_file
 from .document import Document, Place, nearest, shown
 from .lost_steps import KEEP, LostSteps, noting
 from .moving_kinds import as_read
-from .python_uses import LONGEST, PythonUses, Spot, Watch, Written, said, unwatched
+from .python_uses import LONGEST, PythonUses, Spot, Watch, Written, error_text, unwatched
 from .registry import IN_PYTHON, RESERVED
 from .shapes import NAME_RULE, WORDS, is_name
 from .source_text import source_of
@@ -106,7 +106,7 @@ def _file(document: Document, place: Place, word: str, used: PythonUses, watch: 
         setattr(module, READ, read)
     except (Exception, SystemExit) as error:  # noqa: BLE001 - it is user code: whatever it raises is told
         spot = used.where(error, Spot(file=known_as))
-        used.keep(document, spot.problem(f"cannot be imported: {said(error)}"))
+        used.keep(document, spot.problem(f"cannot be imported: {error_text(error)}"))
         return None
     document.files |= read
     _check_twice(document, known_as, source)
@@ -187,10 +187,10 @@ def _module(document: Document, place: Place, word: str, used: PythonUses, watch
             hint = f'; a file beside this one is written with its ending, "{word}{ENDING}"'
             document.problem(place, f"no module {shown(word)} is installed{hint}")
         else:
-            document.problem(place, plain(f"{shown(word)} cannot be imported: {said(error)}", LONGEST))
+            document.problem(place, plain(f"{shown(word)} cannot be imported: {error_text(error)}", LONGEST))
         return None
     except (Exception, SystemExit) as error:  # noqa: BLE001 - it is user code: whatever it raises is told
-        document.problem(place, plain(f"{shown(word)} cannot be imported: {said(error)}", LONGEST))
+        document.problem(place, plain(f"{shown(word)} cannot be imported: {error_text(error)}", LONGEST))
         return None
     if file := getattr(module, "__file__", None):
         used.files[file] = file

@@ -34,9 +34,9 @@ def _unguarded(cell: Cell) -> Iterator[str]:
         reaching = [space.robot.name for space in cell.spaces if place.target in space.targets]
         if device is None or not (moves and reaching) or _is_guarded(cell, place):
             continue
-        told = f"{cell.name}: {place.target} is at {device.name}, which moves ({', '.join(moves)})"
+        place_text = f"{cell.name}: {place.target} is at {device.name}, which moves ({', '.join(moves)})"
         how = "a zone with this target and free_while or held_while of the device does"
-        yield f"{told}, and nothing keeps {' and '.join(reaching)} out of there meanwhile; {how}"
+        yield f"{place_text}, and nothing keeps {' and '.join(reaching)} out of there meanwhile; {how}"
 
 
 def _verbs(device: Any) -> dict[str, DeviceVerb]:

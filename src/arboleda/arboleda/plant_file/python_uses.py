@@ -85,7 +85,7 @@ class PythonUses:
         document.keep_those_of(ConfigError((problem,)))
 
 
-def said(error: BaseException) -> str:
+def error_text(error: BaseException) -> str:
     """An error as the end of a sentence."""
     if isinstance(error, ArboledaError):
         return str(error)
@@ -102,7 +102,7 @@ def said(error: BaseException) -> str:
 
 def refused(error: BaseException) -> str:
     """The reason for which settings are refused: a kind's or driver's rules raise ValueError with it."""
-    return str(error) if isinstance(error, ValueError) and str(error) else said(error)
+    return str(error) if isinstance(error, ValueError) and str(error) else error_text(error)
 
 
 def _function(written: Written) -> Callable[..., object]:

@@ -26,7 +26,7 @@ from arboleda.views import tree_view
 
 from .document import Document, Place, choice, nearest, shown
 from .own_recipes import SECTION
-from .python_uses import LONGEST, PythonUses, Spot, Watch, said
+from .python_uses import LONGEST, PythonUses, Spot, Watch, error_text
 
 MOST = 200  # combinations of parameters that are tried
 HOW_TO_CHOOSE = "; give it to a node that lists its values, or its port a type: int, double, bool"
@@ -68,8 +68,8 @@ class Trial:
         is_sound = not self.document.kept[0]
         for cell in cells:
             named = self._named(cell)
-            asked = list(self.used.recipes) if named is None else named
-            fitting = [name for name in asked if self._fits(cell, self.used.recipes[name], named is not None)]
+            names = list(self.used.recipes) if named is None else named
+            fitting = [name for name in names if self._fits(cell, self.used.recipes[name], named is not None)]
             self.offers[cell.name] = fitting
             self._check_default(cell, fitting)
         if is_sound:
@@ -153,7 +153,9 @@ class Trial:
         except TreeMistakes as error:
             return [plain(line, LONGEST) for line in error.lines]
         except (Exception, SystemExit) as error:  # noqa: BLE001 - it is user code: whatever it raises is told
-            return [self.used.where(error, spot).problem(f"{recipe.name} cannot be built: {said(error)}")]
+            return [
+                self.used.where(error, spot).problem(f"{recipe.name} cannot be built: {error_text(error)}")
+            ]
         objection = _objection(tree)
         found = [] if objection is None else [spot.problem(f"{recipe.name} {objection}")]
         return [*found, *self._lost(recipe)]

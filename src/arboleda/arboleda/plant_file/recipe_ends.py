@@ -59,9 +59,9 @@ def _otherwise(cell: Cell, wanted: Mapping[str, Value], end: Scene) -> Iterator[
     for what, value in wanted.items():
         role, dot, fact = what.partition(".")
         if dot:
-            told = end.get(cell.roles[role].name, fact)
-            if told not in (None, value):
-                yield f"ends with {what} {shown(told)}, and says that it ends with {shown(value)}"
+            known = end.get(cell.roles[role].name, fact)
+            if known not in (None, value):
+                yield f"ends with {what} {shown(known)}, and says that it ends with {shown(value)}"
         elif (number := _unlike_number(cell, what, int(value), end)) is not None:
             yield f"ends with {what} {number}, and says that it ends with {shown(value)}"
 
@@ -90,7 +90,7 @@ def _unlike(cell: Cell, wanted: Mapping[str, Value], ends: Sequence[Scene]) -> I
         (cell.roles[what.partition(".")[0]].name, what.partition(".")[2]) for what in wanted if "." in what
     }
     for name, fact in sorted(guards - named):
-        told = {end.get(name, fact) for end in ends}
-        if len(told) > 1 and None not in told and name not in cell.shared:
-            values = " and ".join(sorted(shown(value) for value in told if value is not None))
+        found = {end.get(name, fact) for end in ends}
+        if len(found) > 1 and None not in found and name not in cell.shared:
+            values = " and ".join(sorted(shown(value) for value in found if value is not None))
             yield f"ends with {name} {'at' if fact == OVER else fact} {values}, by which way it goes"

@@ -31,8 +31,8 @@ def _leaf(walk: Walkthrough, node: Leaf, scenes: Sequence[Scene]) -> Outcome:
 
 def _act(walk: Walkthrough, node: Act, scenes: Sequence[Scene]) -> Outcome:
     walk.check(node, scenes)
-    command, asked = node.make(id=""), {answer_key(node)}
-    done = tuple(walk.foresight.after(command, scene).without(asked) for scene in scenes)
+    command, answer = node.make(id=""), {answer_key(node)}
+    done = tuple(walk.foresight.after(command, scene).without(answer) for scene in scenes)
     return Outcome(done=done, failed=walk.blurred(node, scenes))
 
 
@@ -83,9 +83,9 @@ def _sequence(walk: Walkthrough, node: composites.Sequence, scenes: Sequence[Sce
 
 
 def _selector(walk: Walkthrough, node: composites.Selector, scenes: Sequence[Scene]) -> Outcome:
-    asked = getattr(node, "asked", None)
-    if asked is not None:
-        return _chosen(walk, node, asked, scenes)
+    question = getattr(node, "asked", None)
+    if question is not None:
+        return _chosen(walk, node, question, scenes)
     if not node.memory:
         return walk.unsure(node, scenes)
     outcome = Outcome(failed=tuple(scenes))
@@ -96,10 +96,10 @@ def _selector(walk: Walkthrough, node: composites.Selector, scenes: Sequence[Sce
 
 
 def _chosen(
-    walk: Walkthrough, node: composites.Selector, asked: Behaviour, scenes: Sequence[Scene]
+    walk: Walkthrough, node: composites.Selector, question: Behaviour, scenes: Sequence[Scene]
 ) -> Outcome:
     """The outcome of a choice by an answer: each way begins where the answer is its own."""
-    outcome, key = Outcome(), answer_key(asked)
+    outcome, key = Outcome(), answer_key(question)
     for number, child in enumerate(node.children):
         begin = [scene.put({key: number}) for scene in scenes if scene.get(*key) in (None, number)]
         found = walk.follow(child, begin)

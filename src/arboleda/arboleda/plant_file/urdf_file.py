@@ -211,8 +211,10 @@ class _Reader:
             return "tool0"
         ends = [each for each in beyond if not any(self._children(each))]
         if len(ends) > 1:
-            said = f"the link {link} has the ends {', '.join(ends[:4])}; say with tip_link which is the tool"
-            self._say(self._links[link], said)
+            text = (
+                f"the link {link} has the ends {', '.join(ends[:4])}; say with tip_link which is the tool"
+            )
+            self._say(self._links[link], text)
         return ends[0]
 
     def _check_link(self, key: str, name: str) -> None:

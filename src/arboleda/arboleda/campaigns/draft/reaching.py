@@ -18,7 +18,7 @@ from arboleda.model.errors import ArboledaError
 from arboleda.model.messages import Report
 from arboleda.model.outside import plain
 from arboleda.model.plant_model import DriverUse, MotionState, Robot
-from arboleda.plant_file.python_uses import LONGEST, said
+from arboleda.plant_file.python_uses import LONGEST, error_text
 
 from .process import errand, write
 from .tryout import RESULT
@@ -90,7 +90,7 @@ def _listened(device: Robot, heard: Heard, until: float, seconds: float) -> Row:
         while True:
             what = heard.get(timeout=max(0.0, until - clock.seconds()))
             if isinstance(what, BaseException):
-                return _unreached(said(what))
+                return _unreached(error_text(what))
             wrong = objection(what, {device.name: device})
             if wrong is not None:
                 why = wrong
