@@ -211,9 +211,7 @@ class _Reader:
             return "tool0"
         ends = [each for each in beyond if not any(self._children(each))]
         if len(ends) > 1:
-            text = (
-                f"the link {link} has the ends {', '.join(ends[:4])}; say with tip_link which is the tool"
-            )
+            text = f"the link {link} has the ends {', '.join(ends[:4])}; say with tip_link which is the tool"
             self._say(self._links[link], text)
         return ends[0]
 
