@@ -1,1 +1,1 @@
-"""Who may use the HTTP server: names that it answers to, logins, and the guard before all routes."""
+"""Access to the HTTP server: names that it answers to, logins, and the guard before all routes."""
