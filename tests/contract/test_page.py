@@ -30,7 +30,7 @@ def hostile() -> Iterator[list[str]]:
         assert child.stdin is not None and child.stdout is not None
         yield [child.stdout.readline().strip() for _ in range(2)]
         child.stdin.close()
-        assert child.wait(10) == 0
+        assert child.wait(PATIENCE_S) == 0
 
 
 @pytest.fixture(scope="module")
