@@ -32,7 +32,7 @@ from .lengths import length
 from .postgres import PASSWORD, Server
 
 # How fast a machine is does not decide a test.
-EXAMPLES = length(30, whole=300)
+EXAMPLES = length(20, whole=300)
 settings.register_profile(
     "arboleda", max_examples=EXAMPLES, deadline=None, suppress_health_check=[HealthCheck.too_slow]
 )

@@ -168,7 +168,7 @@ def test_reconnect(shop: Shop) -> None:
     assert (end.state, end.reason) == (TaskState.FAILED, Reason.LINK_LOST)
     shop.device.come_back()
     shop.until(online=True)
-    shop.app.plant.operate(Verb.STOP, "shop").result(20)
+    shop.app.plant.operate(Verb.STOP, "shop").result(PATIENCE_S)
     after = [shop.device.told()[0]]
     while after[-1] != LATCH:
         after.append(shop.device.told()[0])

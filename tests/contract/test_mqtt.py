@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import signal
-import statistics
 import subprocess
 import sys
 import time
@@ -36,11 +35,12 @@ def test_a_subscriber_hears_what_is_published_after_it_is_up(broker, peer):
     board = peer("ra_1", broker.address, subscriptions=[GOALS]).up()
     bridge = peer("bridge", broker.address).up()
 
+    began = time.monotonic()
     bridge.client.publish(message(b"goal"))
 
     heard = board.inbox.wait(lambda inbox: inbox.deliveries)[0]
     assert (heard.topic, heard.payload, heard.retain) == (GOALS, b"goal", False)
-    assert heard.at == pytest.approx(time.monotonic(), abs=5)
+    assert began <= heard.at <= time.monotonic()
 
 
 def test_a_retained_message_is_flagged_for_a_newcomer_only(broker, peer):
@@ -84,7 +84,7 @@ def test_answers_are_not_held_back_by_the_sockets(broker, peer):
         bridge.inbox.wait(lambda inbox, n=n: len(inbox.deliveries) == 2 * n)
         took.append(time.monotonic() - began)
 
-    assert statistics.median(took) < 0.030  # without TCP_NODELAY an answer waits 40 ms for an acknowledgment
+    assert min(took) < 0.030  # without TCP_NODELAY each answer waits 40 ms for an acknowledgment
 
 
 def test_an_oversized_payload_is_for_the_codec_to_refuse(broker, peer):

@@ -13,6 +13,7 @@ import httpx
 import pytest
 
 from ..chromium import browsers
+from ..patience import PATIENCE_S
 
 pytestmark = pytest.mark.requires("chromium", "playwright")
 
@@ -29,7 +30,7 @@ def hostile() -> Iterator[list[str]]:
         assert child.stdin is not None and child.stdout is not None
         yield [child.stdout.readline().strip() for _ in range(2)]
         child.stdin.close()
-        assert child.wait(10) == 0
+        assert child.wait(PATIENCE_S) == 0
 
 
 @pytest.fixture(scope="module")
@@ -53,7 +54,9 @@ def test_a_second_page_in_one_process_is_refused(hostile: list[str]) -> None:
 
 
 def test_an_address_without_a_page_and_another_method_are_one_sentence(hostile: list[str]) -> None:
-    with httpx.Client(base_url=hostile[-1], trust_env=False, headers={"origin": hostile[-1]}) as client:
+    with httpx.Client(
+        base_url=hostile[-1], trust_env=False, headers={"origin": hostile[-1]}, timeout=PATIENCE_S
+    ) as client:
         absent, other = client.get("/nothing"), client.post("/")
     assert (absent.status_code, absent.json()) == (404, {"sentence": "Not Found"})
     assert (other.status_code, other.headers["allow"]) == (405, "GET")

@@ -17,6 +17,8 @@ from arboleda.plant_file import loader
 from arboleda.runtime.parts import reports
 from arboleda.runtime.parts.reports import MOST_KEPT, MOST_WAITING, NoReport, ReportsPart
 
+from ..patience import PATIENCE_S
+
 SHIPPED = loader.load_recorded()[1]
 
 
@@ -29,7 +31,7 @@ def running(code: str) -> Callable[[str, Path, Path], list[str]]:
 
 
 def until(holds: Callable[[], bool]) -> None:
-    end = time.monotonic() + 20.0
+    end = time.monotonic() + PATIENCE_S
     while not holds():
         assert time.monotonic() < end
         time.sleep(0.01)

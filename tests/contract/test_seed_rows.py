@@ -11,6 +11,8 @@ from tests.postgres import Server
 from arboleda.model.errors import StartError
 from arboleda.store.postgres.seeds import SeedRow, SeedRows
 
+from ..patience import PATIENCE_S
+
 
 def done(seed: int) -> SeedRow:
     return SeedRow(seed=seed, digest=f"digest of {seed}", cycles=3)
@@ -34,7 +36,7 @@ def test_workers_share_the_seeds_and_each_is_done_once(database: str, campaign: 
             nonlocal first
             asked.append(seed)
             if first:
-                all_have_one.wait(10)
+                all_have_one.wait(PATIENCE_S)
                 first = False
             return done(seed)
 

@@ -10,6 +10,8 @@ import pytest
 from arboleda.virtual.faults import Faults
 from arboleda.virtual.switchboard import Switchboard
 
+from ..patience import PATIENCE_S
+
 pytestmark = pytest.mark.system
 
 
@@ -18,7 +20,7 @@ def board() -> Iterator[tuple[Faults, httpx.Client]]:
     faults = Faults({"mute": "it says nothing", "slow": "it is slow"}, ["slow"])
     switchboard = Switchboard(faults, 0)
     switchboard.start()
-    with httpx.Client(base_url=f"http://127.0.0.1:{switchboard.port}") as client:
+    with httpx.Client(base_url=f"http://127.0.0.1:{switchboard.port}", timeout=PATIENCE_S) as client:
         yield faults, client
     switchboard.stop()
 

@@ -601,7 +601,7 @@ FOUND = {
 }
 
 
-CASES = dict(sample(FOUND.items(), every=6))
+CASES = dict(sample(FOUND.items(), every=12))
 
 
 @pytest.mark.parametrize("found", CASES.values(), ids=CASES)

@@ -416,4 +416,4 @@ class Chain:
             changes = [json.loads(message.data) for message in self.observer.heard["/task_status"]]
             return [each for each in changes if each["text"] == text and each["state"] in ("done", "failed")]
 
-        return self.observer.wait(ended, f"{text} has no end", 45.0)[0]
+        return self.observer.wait(ended, f"{text} has no end")[0]

@@ -9,8 +9,9 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from arboleda.cli.client import PlantClient
-from arboleda.model.messages import ENDED, TaskState, Verb
+import httpx
+
+from arboleda.model.messages import ENDED, TaskState
 
 from ..patience import PATIENCE_S
 from .conftest import Process, paths
@@ -49,12 +50,34 @@ def until(condition: Callable[[], bool]) -> None:
         time.sleep(0.1)
 
 
-def ended(plant: PlantClient) -> None:
-    """Every task has ended, by advice too: a busy machine may hold cells, after a second of standstill."""
-    for _ in plant.changes():
-        now = plant.status()
-        for cell in now["cells"]:
-            if cell["state"] == "held":
-                plant.operate(Verb(cell["advice"][0]["do"]), cell["advice"][0]["scope"])
-        if all(TaskState(task["state"]) in ENDED for task in now["tasks"]):
-            return
+def lead_out(address: str) -> bool:
+    """Do what the plant advises first for each cell in trouble; True where no cell is in any.
+
+    A busy machine brings trouble of its own: who got no time for a second holds cells, or is not heard.
+    """
+    with _api(address) as plant:
+        cells = plant.get("/api/plant").raise_for_status().json()["cells"]
+        troubled = [cell["advice"][0] for cell in cells if cell["advice"]]
+        for advice in troubled:
+            if not advice["hand"] and not advice["refusal"]:  # refused meanwhile: the next look says what now
+                where, by_hand = f"/api/cells/{advice['scope']}/{advice['do']}", advice["by_hand"]
+                plant.post(where, json={"by_hand": True} if by_hand else None)
+    return not troubled and all(cell["state"] in ("idle", "execute") for cell in cells)
+
+
+def ended(address: str, *tasks: str) -> None:
+    """These tasks have ended; by advice too, where the machine was too busy for one."""
+
+    def have_ended() -> bool:
+        with _api(address) as plant:
+            rows = [plant.get(f"/api/tasks/{task}").raise_for_status().json() for task in tasks]
+        if all(TaskState(row["state"]) in ENDED for row in rows):
+            return True
+        lead_out(address)
+        return False
+
+    until(have_ended)
+
+
+def _api(address: str) -> httpx.Client:
+    return httpx.Client(base_url=address, trust_env=False, timeout=PATIENCE_S)

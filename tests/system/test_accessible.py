@@ -82,7 +82,7 @@ def at_work(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
     file = folder / "plant.yaml"
     file.write_text(yaml.safe_dump(plant))
     with running(folder, "--plant", str(file), "sis_a 0B 7 #done", "sis_c 2A 5 #failed") as address:
-        ended(PlantClient(folder))
+        ended(address, "done", "failed")
         yield address
 
 

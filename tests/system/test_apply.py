@@ -20,11 +20,12 @@ from .page import until
 pytestmark = pytest.mark.system
 
 EXAMPLE = Path(__file__).parents[2] / "examples/own_tree"
+Typed = Callable[..., tuple[int, str]]
 VISE = ("cells", "cell", "targets", "vise", "loader")
 
 
 def test_what_changed_since_the_start_is_said_and_a_restart_at_rest_has_it(
-    arboleda: Callable[..., Any], tmp_path: Path
+    arboleda: Callable[..., Any], typed: Typed, tmp_path: Path
 ) -> None:
     plant = copied(tmp_path)
     up = arboleda("up", "--no-ros", "--plant", str(plant))
@@ -35,17 +36,17 @@ def test_what_changed_since_the_start_is_said_and_a_restart_at_rest_has_it(
     assert "compared with what the plant was started with" in applied.output
     assert "kinds.mill.verbs.run.takes_s: from 20 to 25" in applied.output
     assert "this needs a restart" in applied.output
-    assert at_work(arboleda, plant) == ["  1  "]
+    assert at_work(typed, plant) == ["  1  "]
     again = arboleda("apply", "--plant", str(plant), "--yes", "--restart")
     assert again.wait() == 0 and "restarts with it once all its cells rest" in again.output, again.output
     until(lambda: up.output.count("HTTP API: ") == 2)
     assert "all its cells rest" in up.output
-    assert at_work(arboleda, plant) == ["  2  "]
+    assert at_work(typed, plant) == ["  2  "]
     assert up.interrupt() == 0
 
 
 def test_a_draft_over_http_is_checked_and_kept_and_the_next_start_has_it(
-    arboleda: Callable[..., Any], tmp_path: Path
+    arboleda: Callable[..., Any], typed: Typed, tmp_path: Path
 ) -> None:
     plant = copied(tmp_path)
     up = arboleda("up", "--no-ros", "--plant", str(plant))
@@ -66,17 +67,17 @@ def test_a_draft_over_http_is_checked_and_kept_and_the_next_start_has_it(
     again.wait_for("HTTP API")
     with draft(tmp_path) as step:
         assert step("take", name="Ana")["waiting"] == []
-    assert at_work(arboleda, plant) == ["  2  "]
+    assert at_work(typed, plant) == ["  2  "]
     assert again.interrupt() == 0
 
 
 def test_a_plant_that_runs_takes_a_change_when_its_task_has_ended_and_its_record_is_replayed(
-    arboleda: Callable[..., Any], tmp_path: Path
+    arboleda: Callable[..., Any], typed: Typed, tmp_path: Path
 ) -> None:
     plant = copied(tmp_path)
     up = arboleda("up", "--no-ros", "--plant", str(plant), "--rate", "10")
     up.wait_for("HTTP API")
-    assert arboleda("submit", "--plant", str(plant), "cell slot_1 1001").wait() == 0
+    assert typed("submit", "--plant", str(plant), "cell slot_1 1001")[0] == 0
     up.wait_for("running ")
     moved(plant, "-75.52", "-75.5")
     tend = tmp_path / "tend.xml"
@@ -85,8 +86,8 @@ def test_a_plant_that_runs_takes_a_change_when_its_task_has_ended_and_its_record
     assert applied.wait() == 0, applied.output
     assert "cell takes it when task t-" in applied.output or "cell takes it now" in applied.output
     up.wait_for("cell works by version 2 from now on")
-    assert arboleda("submit", "--plant", str(plant), "--wait", "cell slot_2 1002").wait() == 0
-    assert at_work(arboleda, plant) == ["  2  "]
+    assert typed("submit", "--plant", str(plant), "--wait", "cell slot_2 1002")[0] == 0
+    assert at_work(typed, plant) == ["  2  "]
     put = by_signal(up, plant, "-75.5,", "-75.4,")
     assert "version 3 was put to work by SIGHUP" in put
     assert up.interrupt() == 0
@@ -95,7 +96,7 @@ def test_a_plant_that_runs_takes_a_change_when_its_task_has_ended_and_its_record
 
 
 def test_a_plant_that_is_killed_while_a_change_is_put_to_work_has_all_of_it_next_or_nothing(
-    arboleda: Callable[..., Any], tmp_path: Path
+    arboleda: Callable[..., Any], typed: Typed, tmp_path: Path
 ) -> None:
     plant = copied(tmp_path)
     up = arboleda("up", "--no-ros", "--plant", str(plant))
@@ -111,7 +112,7 @@ def test_a_plant_that_is_killed_while_a_change_is_put_to_work_has_all_of_it_next
     again.wait_for("HTTP API")
     assert plant.read_bytes() == (EXAMPLE / "plant.yaml").read_bytes()
     assert (tmp_path / "tend.xml").read_bytes() == (EXAMPLE / "tend.xml").read_bytes()
-    assert not (kept / "bringing_back").exists() and at_work(arboleda, plant) == ["  1  "]
+    assert not (kept / "bringing_back").exists() and at_work(typed, plant) == ["  1  "]
     assert again.interrupt() == 0
 
 
@@ -155,8 +156,8 @@ def draft(folder: Path) -> Iterator[Callable[..., Any]]:
         yield step
 
 
-def at_work(arboleda: Callable[..., Any], plant: Path) -> list[str]:
+def at_work(typed: Typed, plant: Path) -> list[str]:
     """The numbers of the versions that are listed as at work, as they begin their lines."""
-    listed = arboleda("versions", "--plant", str(plant))
-    assert listed.wait() == 0, listed.output
-    return [line[:5] for line in listed.output.splitlines() if "at work" in line]
+    status, listed = typed("versions", "--plant", str(plant))
+    assert status == 0, listed
+    return [line[:5] for line in listed.splitlines() if "at work" in line]

@@ -11,12 +11,12 @@ from typing import Any
 import pytest
 import yaml
 
-from arboleda.model.messages import Fact, Remember
+from arboleda.model.messages import ENDED, Fact, Remember, TaskState
 from arboleda.store.sqlite import Store
 
 from ..patience import PATIENCE_MS
 from .conftest import SHIPPED
-from .page import PARTS, connected, running, show, until
+from .page import PARTS, connected, ended, lead_out, running, show, until
 
 pytestmark = [pytest.mark.system, pytest.mark.requires("chromium", "playwright")]
 
@@ -31,16 +31,29 @@ Open = Callable[..., Any]
 
 
 @pytest.fixture(scope="module")
-def address(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
+def quick_plant(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
     with running(tmp_path_factory.mktemp("state")) as found:
         yield found
 
 
 @pytest.fixture(scope="module")
-def slow(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
-    """A plant whose tasks take as long as real ones, so that there is time to do something meanwhile."""
+def slow_plant(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
     with running(tmp_path_factory.mktemp("slow"), "--rate", "1") as found:
         yield found
+
+
+@pytest.fixture
+def address(quick_plant: str) -> str:
+    """A plant that is ready, however the test before has left it."""
+    until(lambda: lead_out(quick_plant))
+    return quick_plant
+
+
+@pytest.fixture
+def slow(slow_plant: str) -> str:
+    """A plant whose tasks take as long as real ones, so that there is time to do something meanwhile."""
+    until(lambda: lead_out(slow_plant))
+    return slow_plant
 
 
 @pytest.fixture(scope="module")
@@ -116,6 +129,9 @@ def taken(page: Any, text: str) -> str:
 
 
 def wait_for_task(page: Any, task: str, state: str) -> None:
+    """Wait until the page shows it so; a task that is to end is led there where the machine held its cell."""
+    if TaskState(state) in ENDED:
+        ended(page.evaluate("location.origin"), task)
     page.wait_for_selector(f'[data-rows=tasks] [data-row="{task}"][data-s="{state}"]', state="attached")
 
 
@@ -131,6 +147,14 @@ def wait_for_stop(page: Any, state: str) -> None:
 
 
 def get_ready(page: Any) -> None:
+    """Lead every cell out, as the plant advises: a stop finds an arm now with a part, now without."""
+    address = page.evaluate("location.origin")
+    until(lambda: lead_out(address))
+    page.wait_for_function(EVERY_CELL, arg="idle")
+    wait_for_stop(page, "ready")
+
+
+def by_panel(page: Any) -> None:
     """Clear, reset and resume the whole plant."""
     show(page, "panel")
     page.click('[data-scope=""]')
@@ -162,6 +186,7 @@ def test_a_waiting_task_is_cancelled_and_sent_again(open_page: Open) -> None:
     first, second = send(page, "sis_b 0A 1"), send(page, "sis_b 2C 1")
     page.click(f'[data-row="{second}"] button[data-act=cancel]')
     wait_for_task(page, second, "cancelled")
+    wait_for_answer(page, "Done", "good")
     wait_for_task(page, first, "done")
     page.click(f'[data-row="{second}"] button[data-act=submit]')
     wait_for_task(page, taken(page, "sis_b 2C 1"), "done")
@@ -187,7 +212,7 @@ def test_a_stop_needs_no_socket(open_page: Open) -> None:
     page.reload()
     connected(page)
     wait_for_stop(page, "stopped")
-    get_ready(page)
+    by_panel(page)
 
 
 def test_a_stop_needs_no_http(open_page: Open) -> None:

@@ -15,7 +15,7 @@ from arboleda.plant_file.versions import Versions
 
 from ..chromium import leave
 from ..contract.drivers.modbus import ModbusWire
-from ..patience import PATIENCE_MS
+from ..patience import PATIENCE_MS, PATIENCE_S
 from .page import connected, running
 from .test_accessible import Eye
 
@@ -269,7 +269,7 @@ def test_a_new_device_with_a_driver_is_reached_before_it_is_added(
 
 def test_the_second_person_sees_who_edits_and_takes_over(browser: Any, address: str) -> None:
     ana = {"editor": "test-of-ana", "name": "Ana"}
-    httpx.post(f"{address}/api/draft/take", json=ana).raise_for_status()
+    httpx.post(f"{address}/api/draft/take", json=ana, timeout=PATIENCE_S).raise_for_status()
     me = Person(browser, address, **LAPTOP)
     me.sees("#make-who", "Ana edits the draft since")
     me.panel("cells")

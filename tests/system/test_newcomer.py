@@ -13,7 +13,7 @@ from arboleda.cli.new import write
 from arboleda.plant_file.loader import load
 from arboleda.plant_file.versions import Versions
 
-from ..patience import PATIENCE_MS
+from ..patience import PATIENCE_MS, PATIENCE_S
 from .page import running, until
 from .test_make import LONG_MS, Person
 from .test_teach_page import NOTE, device, hold
@@ -201,7 +201,7 @@ def send_a_task(me: Person, address: str) -> None:
     me.page.wait_for_selector("#answer[data-s=good]")
 
     def is_done() -> bool:
-        tasks = httpx.get(f"{address}/api/plant").json()["tasks"]
+        tasks = httpx.get(f"{address}/api/plant", timeout=PATIENCE_S).json()["tasks"]
         return [each["state"] for each in tasks] == ["done"]
 
     until(is_done)

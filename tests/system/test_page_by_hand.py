@@ -55,8 +55,7 @@ def test_no_part_of_the_page_scrolls_sideways_on_a_laptop(
     browser: Any, plant: tuple[str, PlantClient], language: str
 ) -> None:
     address, client = plant
-    client.submit("sis_a 0B 7")
-    ended(client)
+    ended(address, client.submit("sis_a 0B 7")["id"])
     page = opened(browser, f"{address}/?lang={language}", viewport={"width": 1280, "height": 800})
     for part in PARTS:
         show(page, part)

@@ -19,7 +19,7 @@ from arboleda.recorder.files import FOLDER, parts_in
 from arboleda.recorder.views import Views
 
 from ..chromium import leave
-from ..patience import PATIENCE_MS
+from ..patience import PATIENCE_MS, PATIENCE_S
 from .conftest import Process, paths
 from .page import connected, running, show, until
 from .test_accessible import Eye, eye
@@ -127,8 +127,9 @@ def test_it_opens_at_the_last_failure_with_the_tree_as_it_was(tab: Any, replay: 
 
 def test_an_address_leads_a_colleague_to_the_same_moment(tab: Any, browser: Any, replay: str) -> None:
     look(tab, replay)
+    before = noted(tab)
     moment = moved(tab, lambda: tab.keyboard.press("ArrowLeft"))
-    tab.wait_for_timeout(600)  # until the address has followed
+    tab.wait_for_function("before => location.href !== before", arg=before)
     colleague = browser.new_page(locale="es")
     look(colleague, noted(tab).replace("lang=en", "lang=es"))
     assert colleague.text_content(AT) == moment
@@ -170,7 +171,7 @@ def test_a_task_shows_its_end_and_nothing_can_be_done(tab: Any, replay: str) -> 
     tab.wait_for_selector("#task g.node.is-failure")
     assert tab.locator("#stop, form, [data-act], [data-choice]").count() == 0
     origin = replay.partition("/?")[0]
-    with httpx.Client(base_url=origin, trust_env=False) as client:
+    with httpx.Client(base_url=origin, trust_env=False, timeout=PATIENCE_S) as client:
         assert client.get("/api/plant").status_code == 404
         assert client.get("/", headers={"host": "evil.example"}).status_code == 403
 

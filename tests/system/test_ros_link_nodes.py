@@ -92,5 +92,5 @@ def test_the_dashboard_is_in_the_process_of_the_orchestrator(start: Start, tmp_p
     while (running := find_running(tmp_path)) is None or running.port is None:
         assert time.monotonic() < until, "no HTTP API was announced"
         time.sleep(0.05)
-    plant = httpx.get(f"http://127.0.0.1:{running.port}/api/plant").json()
+    plant = httpx.get(f"http://127.0.0.1:{running.port}/api/plant", timeout=PATIENCE_S).json()
     assert [cell["name"] for cell in plant["cells"]] == ["sis_a", "sis_b", "sis_c"]

@@ -19,6 +19,7 @@ import pytest
 from arboleda.runtime.log_queue import log_to
 from arboleda.testing import shipped
 
+from ..patience import PATIENCE_S
 from .conftest import paths
 
 pytestmark = [pytest.mark.system, pytest.mark.requires("rclpy")]
@@ -180,4 +181,4 @@ def test_a_console_that_nobody_reads_does_not_stop_the_plant(
     seen = len(beats)
     observer.wait(lambda: len(beats) > seen + 3, "the plant has stopped with its console")
     unread.send_signal(signal.SIGTERM)
-    assert unread.wait(20) == 0
+    assert unread.wait(PATIENCE_S) == 0

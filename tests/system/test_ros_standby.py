@@ -80,7 +80,7 @@ def test_a_node_that_waits_says_so_in_the_diagnostics_and_leads_then(
         assert not heard("arboleda: orchestrator on ROS 2")
         running = find_running(tmp_path / "state")
         assert running is not None and running.guarded, "other hosts reach it, with a token"
-        assert httpx.get(f"{running.url}/api/plant", trust_env=False).status_code == 401
+        assert httpx.get(f"{running.url}/api/plant", trust_env=False, timeout=PATIENCE_S).status_code == 401
         leader.close()
         until(lambda: heard("arboleda: orchestrator on ROS 2"))
         assert heard(name)[-1] == (0, "leads the plant from now on")

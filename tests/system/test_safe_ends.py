@@ -15,6 +15,7 @@ from arboleda.adapters.mqtt import MqttClient
 from arboleda.model.plant_model import Evidence
 from arboleda.wire.transport import Connection, Delivery
 
+from ..patience import PATIENCE_S
 from .conftest import Chain, plant_at
 
 pytestmark = [pytest.mark.system, pytest.mark.requires("rclpy", "mosquitto")]
@@ -112,14 +113,14 @@ def test_a_stop_in_a_move_reaches_the_board_and_holds_until_clear_and_reset(
     board = MqttClient("observer", address(moving.address), subscriptions=["ra_1/paro"], on_event=on_event)
     board.start()
     request.addfinalizer(board.close)
-    assert joined.wait(5.0), "the observer did not reach the broker"
+    assert joined.wait(PATIENCE_S), "the observer did not reach the broker"
     stop = moving.observer.node.create_client(Trigger, "/plant/stop")
     moving.observer.wait(stop.service_is_ready, "no service /plant/stop")
     asked = time.monotonic()
     answer = stop.call_async(Trigger.Request())
     moving.observer.wait(answer.done, "the stop was not answered")
     assert answer.result().success
-    assert heard.wait(5.0), "no stop on MQTT"
+    assert heard.wait(PATIENCE_S), "no stop on MQTT"
     print(f"stop: {1000 * (times['ra_1/paro'] - asked):.1f} ms from the request to the board's command")
     change = moving.outcome("sis_a 0B 4")
     assert (change["state"], change["reason"]) == ("failed", "stopped")

@@ -19,7 +19,7 @@ import pytest
 
 from arboleda.campaigns.request import Request
 
-from ..patience import SOON_S
+from ..patience import PATIENCE_S, SOON_S
 from .conftest import paths
 
 pytestmark = pytest.mark.system
@@ -151,7 +151,7 @@ def stat(pid: int) -> list[str]:
 
 def gone(pids: list[int]) -> bool:
     """Whether they all end within some seconds."""
-    until = time.monotonic() + 10.0
+    until = time.monotonic() + PATIENCE_S
     while any(alive(pid) for pid in pids) and time.monotonic() < until:
         time.sleep(0.05)
     return not any(alive(pid) for pid in pids)

@@ -14,7 +14,7 @@ import yaml
 from arboleda.cli.new import write
 
 from ..chromium import leave
-from ..patience import PATIENCE_MS
+from ..patience import PATIENCE_MS, PATIENCE_S
 from .page import connected, running, until
 from .test_accessible import Eye
 
@@ -59,7 +59,7 @@ def screen(browser: Any, address: str) -> Iterator[Open]:
     yield go
     for each in contexts:
         leave(each)
-    httpx.post(f"{address}/api/cells/cell/automatic")
+    httpx.post(f"{address}/api/cells/cell/automatic", timeout=PATIENCE_S)
     assert troubles == []
 
 
@@ -71,7 +71,7 @@ def begin(page: Any, name: str = "Ana") -> None:
 
 
 def device(address: str, name: str = "loader") -> dict[str, Any]:
-    found = httpx.get(f"{address}/api/teach/cell").json()["devices"]
+    found = httpx.get(f"{address}/api/teach/cell", timeout=PATIENCE_S).json()["devices"]
     return next(each for each in found if each["name"] == name)
 
 
@@ -159,7 +159,7 @@ def test_a_target_is_made_here_and_gone_to(screen: Open, address: str, folder: P
     page.select_option("[aria-label='Zone of the target']", "inside")
     page.click("button:text-is('Here')")
     page.wait_for_function("document.querySelector('#teach-note').textContent.includes('nest is here now')")
-    draft = httpx.get(f"{address}/api/draft").json()
+    draft = httpx.get(f"{address}/api/draft", timeout=PATIENCE_S).json()
     here = turned(address)
     assert draft["values"]["cells"]["cell"]["targets"]["nest"]["loader"]["deg"][0] == here
     assert draft["values"]["zones"]["inside"]["poses"] == ["cell press", "cell nest"]

@@ -12,7 +12,7 @@ import pytest
 from arboleda.bt_xml.editing.tree_text import TreeText, walk
 
 from ..chromium import leave
-from ..patience import PATIENCE_MS
+from ..patience import PATIENCE_MS, PATIENCE_S
 from .page import connected, running
 from .test_accessible import Eye
 
@@ -60,13 +60,19 @@ def editor(browser: Any, address: str) -> Iterator[Open]:
 def forget_draft(address: str) -> None:
     """Have the draft of the plant be as its files are."""
     editor = {"editor": EDITOR}
-    httpx.post(f"{address}/api/draft/take", json=editor | {"name": "a test"}).raise_for_status()
-    httpx.post(f"{address}/api/draft/discard", json=editor).raise_for_status()
+    httpx.post(
+        f"{address}/api/draft/take", json=editor | {"name": "a test"}, timeout=PATIENCE_S
+    ).raise_for_status()
+    httpx.post(f"{address}/api/draft/discard", json=editor, timeout=PATIENCE_S).raise_for_status()
 
 
 def drafted(address: str) -> str:
     """The tree that the draft has."""
-    return str(httpx.get(f"{address}/api/draft/trees", params={"file": "tend.xml"}).json()["text"])
+    return str(
+        httpx.get(f"{address}/api/draft/trees", params={"file": "tend.xml"}, timeout=PATIENCE_S).json()[
+            "text"
+        ]
+    )
 
 
 def row(path: str) -> str:
@@ -106,7 +112,7 @@ def test_by_mouse_a_node_is_put_in_given_a_value_dragged_and_undone(editor: Open
     page.click("[data-kind=mill_run]:visible")
     page.wait_for_selector(f"{row('1.0.2')}[data-mark=mistake]")
     page.click(row("1.0.2"))
-    assert "needs program" in page.inner_text("#draw-marks")
+    page.wait_for_selector("#draw-marks:has-text('needs program')")
     page.select_option("[data-port=program]", "1001")
     page.wait_for_selector(f"{row('1.0.2')}:not([data-mark])")
     page.mouse.move(*middle(page, row("1.0.2")))
@@ -177,7 +183,7 @@ def test_a_value_beyond_its_limits_is_marked_where_it_stands(editor: Open) -> No
     page.fill("[data-port=force_n]", "99")
     page.press("[data-port=force_n]", "Tab")
     page.wait_for_selector("[data-port=force_n][aria-invalid]")
-    assert "must be from 0 to 60" in page.inner_text("#draw-marks")
+    page.wait_for_selector("#draw-marks:has-text('must be from 0 to 60')")
     page.click("[data-variable=force_n]")
     page.fill("[data-port=force_n]", "to")
     page.press("[data-port=force_n]", "Tab")
@@ -227,7 +233,7 @@ def test_each_edit_is_a_step_of_the_draft_and_somebody_else_is_not_overwritten(
     page.wait_for_selector("[data-draw=undo]:not([disabled])")
     assert "<mill_close/>" not in drafted(address)
     ben = {"editor": "test-of-ben", "name": "Ben"}
-    httpx.post(f"{address}/api/draft/take", json=ben).raise_for_status()
+    httpx.post(f"{address}/api/draft/take", json=ben, timeout=PATIENCE_S).raise_for_status()
     page.click(row("0"))
     page.click("[data-draw=remove]")
     page.wait_for_function(
@@ -313,8 +319,8 @@ def test_a_recipe_in_python_is_copied_as_a_tree_of_the_draft_and_opens(browser: 
         page.click("[data-draw=copy_recipe]")
         page.wait_for_selector(row("3.1"))
         assert page.input_value("#draw-file") == "weigh_tree"
-        assert "weigh was copied as the tree weigh_tree" in page.inner_text("#draw-note")
-        trees = httpx.get(f"{address}/api/draft").json()["trees"]
+        page.wait_for_selector("#draw-note:has-text('weigh was copied as the tree weigh_tree')")
+        trees = httpx.get(f"{address}/api/draft", timeout=PATIENCE_S).json()["trees"]
         assert trees == ["weigh_tree.xml"]
         page.goto(f"{address}/?tab=make")
         connected(page)

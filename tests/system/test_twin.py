@@ -28,7 +28,7 @@ from arboleda.wire.topics import Channel
 from arboleda.wire.values import Presence, Telemetry
 
 from ..chromium import FEW_FRAMES, browsers, leave
-from ..patience import PATIENCE_MS
+from ..patience import PATIENCE_MS, PATIENCE_S, SOON_S
 from ..unit.description import drawn
 from ..unit.kinds.test_places import PLANT as PARTS_AT_PLACES
 from ..unit.kinds.test_places import written
@@ -41,7 +41,6 @@ NO_WEBGL = ("--disable-gpu", "--disable-3d-apis")
 # Drawn in software, each point costs time, and no test looks at one.
 COARSE = {"viewport": {"width": 900, "height": 640}, "device_scale_factor": 0.25, "locale": "en"}
 ACCURACY = 1e-6  # m, and of unit vectors
-LATE_S = 3.0  # how old what is drawn may be where a busy machine draws in software
 Pose = tuple[float, ...]
 Linked = dict[str, list[float]]  # link -> 16 numbers, row by row
 
@@ -225,7 +224,7 @@ def ended(page: Any, count: int) -> bool:
     return page.locator("[data-rows=tasks] [data-row][data-s=done]").count() >= count
 
 
-def wait_for(true: Callable[[], bool], patience_s: float = 20.0) -> None:
+def wait_for(true: Callable[[], bool], patience_s: float = PATIENCE_S) -> None:
     until = time.monotonic() + patience_s
     while not true():
         assert time.monotonic() < until, "it never came true"
@@ -233,14 +232,14 @@ def wait_for(true: Callable[[], bool], patience_s: float = 20.0) -> None:
 
 
 def follow(place: Place, told: list[tuple[float, Pose]], seen: list[tuple[float, Linked]]) -> None:
-    """What was seen is what was told, in the same order, at most LATE_S late."""
+    """What was seen is what was told, in the same order, at most SOON_S late."""
     number = 0
     for at, links in seen:
         while not same(links, place.links(told[number][1])):
             number += 1
             assert number < len(told), f"{links} was never reported, or not any more"
         rest = (when for when, pose in told[number:] if pose != told[number][1])
-        assert next(rest, math.inf) > at - LATE_S, f"what was drawn at {at} was out of date"
+        assert next(rest, math.inf) > at - SOON_S, f"what was drawn at {at} was out of date"
     assert len({str(links) for _, links in seen}) >= 3, "it was never seen to move"
 
 
@@ -251,7 +250,7 @@ def test_every_link_is_where_the_last_telemetry_puts_it(
     wait_for(lambda: all(heard.poses.values()))
     kept = keep(page, "arboledaTwin.links()")
     submit(page, "sis_a 0B 7", "sis_b 1C 3", "sis_c 2A 5")
-    wait_for(lambda: ended(page, 3), 40.0)
+    wait_for(lambda: ended(page, 3))
 
     def at_rest() -> bool:
         drawn_now = page.evaluate("arboledaTwin.links()")
@@ -274,7 +273,7 @@ def test_an_arm_of_ones_own_is_drawn_where_its_telemetry_puts_it(tmp_path: Path,
         wait_for(lambda: bool(heard.poses["tender"]))
         kept = keep(page, "arboledaTwin.links()")
         submit(page, "tending 0B 1")
-        wait_for(lambda: ended(page, 1), 40.0)
+        wait_for(lambda: ended(page, 1))
         wait_for(
             lambda: same(page.evaluate("arboledaTwin.links()")["tender"], place.links(heard.last("tender")))
         )
@@ -313,7 +312,7 @@ def test_parts_are_drawn_at_their_places_and_in_the_hand(tmp_path: Path, look: A
         drawn_now = "arboledaTwin.drawn()['books/lab'], arboledaTwin.links().mover"
         kept = keep(page, f"[arboledaTwin.parts(), {drawn_now}]")
         submit(page, "lab try")
-        wait_for(lambda: ended(page, 1), 40.0)
+        wait_for(lambda: ended(page, 1))
         wait_for(lambda: close_to(page.evaluate("arboledaTwin.parts()"), [at("rack_2"), at("nest")]))
         carried = 0
         for _, (parts, books, links) in kept():
@@ -495,7 +494,7 @@ def test_what_is_drawn_solid_is_what_joint_states_say(
         observer.wait(lambda: all(observer.heard.values()), "no joint states")
         kept = keep(page, "arboledaTwin.drawn()")
         submit(page, "sis_a 0B 7", "sis_c 2A 5")
-        observer.wait(lambda: ended(page, 2), "the tasks did not end", 40.0)
+        observer.wait(lambda: ended(page, 2), "the tasks did not end")
         over = time.time()
 
         def heard_since() -> bool:

@@ -205,10 +205,17 @@ def test_the_plant_is_operated_by_services_of_ros_2(
     assert call("stop").success
     codes = observer.heard["/ra1/motion_state"]
     observer.wait(lambda: codes[-1].data == 4, "ra1 is not latched")
+
+    def stopped(topic: str) -> bool:
+        return 1 in {message.data for message in observer.heard[topic]}
+
+    def last() -> dict[str, Any]:
+        return dict(json.loads(observer.heard["/task_status"][-1].data))
+
     for topic in ("/ra1/stop_cmd", "/rm_sis_a/stop_cmd"):
-        assert 1 in {message.data for message in observer.heard[topic]}
-    ended = [json.loads(message.data) for message in observer.heard["/task_status"]][-1]
-    assert (ended["state"], ended["reason"]) == ("failed", "stopped")
+        observer.wait(lambda topic=topic: stopped(topic), f"no stop on {topic}")
+    observer.wait(lambda: last()["state"] == "failed", "the task did not fail")
+    assert last()["reason"] == "stopped"
     early = call("reset")
     assert not early.success and early.message
     done("clear")

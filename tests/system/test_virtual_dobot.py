@@ -13,6 +13,8 @@ from typing import Any
 
 import pytest
 
+from ..patience import PATIENCE_S
+
 pytestmark = pytest.mark.system
 
 LINK = "      twin: r3\n      link: mqtt\n"
@@ -42,7 +44,7 @@ def shipped(folder: Path, line: str) -> str:
 
 def switch(faults: str, name: str, method: str) -> dict[str, Any]:
     request = urllib.request.Request(f"{faults}/{name}", method=method)
-    with urllib.request.urlopen(request, timeout=10) as answer:
+    with urllib.request.urlopen(request, timeout=PATIENCE_S) as answer:
         found: dict[str, Any] = json.load(answer)
     return found
 

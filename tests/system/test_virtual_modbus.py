@@ -11,6 +11,8 @@ from typing import Any
 
 import pytest
 
+from ..patience import PATIENCE_S
+
 pytestmark = [pytest.mark.system, pytest.mark.requires("pymodbus", "serial")]
 
 EXAMPLE = Path(__file__).parents[2] / "examples/plc_conveyor"
@@ -37,10 +39,10 @@ def test_a_part_is_carried_then_the_belt_jams_then_the_plc_is_gone(
     process, plant, faults = plc
     up = arboleda("up", "line pass 400 #first", "--plant", plant, "--boards", "real", "--no-ros")
     up.wait_for("done      line 400")
-    urllib.request.urlopen(urllib.request.Request(f"{faults}/gives_up", method="PUT"), timeout=10).close()
+    switch(f"{faults}/gives_up", "PUT")
     arboleda("submit", "line pass 200 #second", "--plant", plant).wait()
     up.wait_for("gave up (jam) while doing load")
-    urllib.request.urlopen(urllib.request.Request(f"{faults}/gives_up", method="DELETE"), timeout=10).close()
+    switch(f"{faults}/gives_up", "DELETE")
     arboleda("submit", "line pass 100 #third", "--plant", plant).wait()
     up.wait_for("belt advance exit 100")
     process.kill()
@@ -71,3 +73,7 @@ def test_a_port_that_is_taken_is_named(plc: tuple[Any, str, str], start: Callabl
     second = start(sys.executable, "-c", COMMAND, "virtual", "modbus", "--port", port)
     assert second.wait() == 1
     assert f"127.0.0.1:{port}" in second.output and "Traceback" not in second.output
+
+
+def switch(fault: str, method: str) -> None:
+    urllib.request.urlopen(urllib.request.Request(fault, method=method), timeout=PATIENCE_S).close()

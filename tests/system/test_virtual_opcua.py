@@ -11,6 +11,8 @@ from typing import Any
 
 import pytest
 
+from ..patience import PATIENCE_S
+
 pytestmark = [pytest.mark.system, pytest.mark.requires("asyncua")]
 
 EXAMPLE = Path(__file__).parents[2] / "examples/plc_conveyor"
@@ -53,7 +55,7 @@ def test_a_part_is_carried_then_calls_are_refused_then_the_plc_is_gone(
 
 
 def switch(fault: str, method: str) -> None:
-    urllib.request.urlopen(urllib.request.Request(fault, method=method), timeout=10).close()
+    urllib.request.urlopen(urllib.request.Request(fault, method=method), timeout=PATIENCE_S).close()
 
 
 def port_of(plant: str) -> str:

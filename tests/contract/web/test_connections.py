@@ -15,6 +15,7 @@ from arboleda.model.errors import StartError
 from arboleda.web import server
 from arboleda.web.server import Server
 
+from ...patience import PATIENCE_S
 from .conftest import VIEW, Web
 
 
@@ -23,7 +24,9 @@ def idle(web: Web, count: int, said: bytes = b"") -> Iterator[list[socket.socket
     with ExitStack() as stack:
         talks = []
         for _ in range(count):
-            talks.append(stack.enter_context(socket.create_connection(("127.0.0.1", web.port), timeout=5)))
+            talks.append(
+                stack.enter_context(socket.create_connection(("127.0.0.1", web.port), timeout=PATIENCE_S))
+            )
             talks[-1].sendall(said)
         yield talks
 
@@ -97,7 +100,7 @@ def test_an_application_that_does_not_start_is_one_sentence():
 
 def test_it_stops_with_a_connection_open_and_twice(serve):
     web = serve()
-    kept = http.client.HTTPConnection("127.0.0.1", web.port, timeout=5)
+    kept = http.client.HTTPConnection("127.0.0.1", web.port, timeout=PATIENCE_S)
     kept.request("GET", "/api/plant")
     assert json.load(kept.getresponse()) == VIEW
     web.server.stop()

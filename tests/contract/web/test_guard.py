@@ -12,6 +12,7 @@ from arboleda.model.messages import Verb
 from arboleda.web import limits
 from arboleda.web.access.auth import Role
 
+from ...patience import PATIENCE_S
 from .conftest import TOKENS, VIEW
 
 
@@ -21,7 +22,7 @@ def sentence(answer) -> str:
 
 def raw(port: int, request: bytes) -> bytes:
     """What the server says to these bytes, until it closes."""
-    with socket.create_connection(("127.0.0.1", port), timeout=5) as talk:
+    with socket.create_connection(("127.0.0.1", port), timeout=PATIENCE_S) as talk:
         talk.sendall(request)
         said = b""
         while chunk := talk.recv(65536):
@@ -76,7 +77,7 @@ def test_a_long_body_is_turned_away_with_and_without_a_length(web, port, plant):
     exact = b'{"text": "' + b"x" * (4096 - 12) + b'"}'
     assert web.post("/api/tasks", content=exact).status_code == 202
     assert web.post("/api/tasks", content=exact + b" ").status_code == 413
-    chunked = http.client.HTTPConnection("127.0.0.1", port, timeout=5)
+    chunked = http.client.HTTPConnection("127.0.0.1", port, timeout=PATIENCE_S)
     chunked.request("POST", "/api/tasks", body=iter([b"x" * 3000, b"x" * 3000]), encode_chunked=True)
     assert chunked.getresponse().status == 413
     chunked.close()
@@ -293,13 +294,13 @@ def test_a_bomb_of_headers_is_refused(local, count):
 
 
 def test_headers_without_end_are_cut_off(local):
-    with socket.create_connection(("127.0.0.1", local.port), timeout=5) as talk:
+    with socket.create_connection(("127.0.0.1", local.port), timeout=PATIENCE_S) as talk:
         talk.sendall(b"GET / HTTP/1.1\r\nX-A: " + b"a" * 40_000)
         assert talk.recv(100).startswith(b"HTTP/1.1 400 ")
 
 
 def test_a_body_without_end_is_refused_while_it_comes(local, plant):
-    with socket.create_connection(("127.0.0.1", local.port), timeout=5) as talk:
+    with socket.create_connection(("127.0.0.1", local.port), timeout=PATIENCE_S) as talk:
         chunks = (b"400\r\n" + b"a" * 1024 + b"\r\n") * 5
         talk.sendall(head(local.port, "POST /api/tasks", "Transfer-Encoding: chunked") + chunks)
         assert talk.recv(100).startswith(b"HTTP/1.1 413 ")
@@ -314,7 +315,7 @@ def test_a_body_that_never_comes_is_waited_for_only_so_long(local, plant, monkey
 
 
 def test_a_body_that_breaks_off_does_nothing(local, plant, web):
-    with socket.create_connection(("127.0.0.1", local.port), timeout=5) as talk:
+    with socket.create_connection(("127.0.0.1", local.port), timeout=PATIENCE_S) as talk:
         talk.sendall(head(local.port, "POST /api/plant/release", "Content-Length: 9"))
     assert web.get("/api/plant").json() == VIEW
     assert plant.acts == []

@@ -91,17 +91,21 @@ def heard(plants: list[LastSeenPlant]) -> list[str]:
     return [plant.name for plant in plants if plant.silent is None]
 
 
-def test_a_plant_that_does_not_answer_is_said_to_be_silent_and_holds_up_no_other() -> None:
-    async def look(site: Site) -> tuple[float, list[LastSeenPlant]]:
-        began = time.monotonic()
-        await seen(site, lambda plants: heard(plants) == ["first", "second"])
-        took_s = time.monotonic() - began
-        return took_s, await seen(site, lambda plants: all(each.silent != NOT_SEEN() for each in plants))
-
+def test_a_plant_that_does_not_answer_holds_up_no_other(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("arboleda.site.reach.ANSWER_S", 2 * PATIENCE_S)
     with deaf() as silent, running(called("first")) as first, running(called("second")) as second:
         places = [Place(url=silent), Place(url=first.origin), Place(url=second.origin)]
-        took_s, plants = watched(places, look)
-    assert took_s < ANSWER_S, "nobody waited for the silent one"
+        plants = watched(places, lambda site: seen(site, lambda plants: heard(plants) == ["first", "second"]))
+    assert [each.silent for each in plants if each.url == silent] == [NOT_SEEN()]
+
+
+def test_a_plant_that_does_not_answer_is_said_to_be_silent() -> None:
+    def looked_at(plants: list[LastSeenPlant]) -> bool:
+        return len(plants) == 2 and NOT_SEEN() not in [each.silent for each in plants]
+
+    with deaf() as silent, running(called("first")) as first:
+        places = [Place(url=silent), Place(url=first.origin)]
+        plants = watched(places, lambda site: seen(site, looked_at))
     assert [each.silent for each in plants if each.url == silent] == [NO_ANSWER(seconds=ANSWER_S)]
 
 

@@ -23,6 +23,7 @@ from arboleda.web import server
 from arboleda.web.access.auth import Role
 from arboleda.web.server import Server
 
+from ...patience import PATIENCE_S
 from .conftest import TOKENS, VIEW, Plant, Web
 
 STOPS = 20
@@ -61,7 +62,9 @@ class Attack:
             self._one(ADDRESSES[number % len(ADDRESSES)])
 
     def _one(self, address: str) -> None:
-        talk = socket.create_connection(("127.0.0.1", self._port), timeout=5, source_address=(address, 0))
+        talk = socket.create_connection(
+            ("127.0.0.1", self._port), timeout=PATIENCE_S, source_address=(address, 0)
+        )
         self._open.enter_context(talk)
         with suppress(ConnectionError):  # cut off at once
             talk.sendall(self._said)
@@ -80,7 +83,7 @@ def stops(web: Web, attack: Attack, login: dict[str, str]) -> list[int]:
 
 def stop(web: Web, login: dict[str, str]) -> int:
     """The status of the answer."""
-    with closing(http.client.HTTPConnection("127.0.0.1", web.port, timeout=5)) as client:
+    with closing(http.client.HTTPConnection("127.0.0.1", web.port, timeout=PATIENCE_S)) as client:
         client.request("POST", "/api/plant/stop", headers=login)
         return client.getresponse().status
 
@@ -118,7 +121,7 @@ def test_on_a_network(serve, plant: Plant, said: str, path: str, login: str) -> 
 
 def test_a_browser_that_is_logged_in_keeps_its_connection_while_strangers_crowd(serve) -> None:
     web = serve(dict(TOKENS), connections=MOST)
-    browser = http.client.HTTPConnection("127.0.0.1", web.port, timeout=5)
+    browser = http.client.HTTPConnection("127.0.0.1", web.port, timeout=PATIENCE_S)
     with closing(browser):
         assert looks(browser)
         with Attack(web, SLOW, "/login"):
@@ -154,10 +157,10 @@ def test_while_more_is_asked_than_the_server_can_answer(serve, plant: Plant) -> 
     never = "GET /never HTTP/1.1\r\nHost: 127.0.0.1:{port}\r\n\r\n"
     with Attack(web, never, count=MOST - 1) as attack:
         for _ in range(MOST - 1):
-            assert asked.acquire(timeout=5)
+            assert asked.acquire(timeout=PATIENCE_S)
         for _ in range(STOPS):
             attack.goes_on(1)
-            assert asked.acquire(timeout=5)  # the server is full again, and waits for nobody
+            assert asked.acquire(timeout=PATIENCE_S)  # the server is full again, and waits for nobody
             assert stop(web, {}) == 200
 
 
@@ -183,12 +186,12 @@ def test_while_something_else_is_made_that_takes_long(serve, plant: Plant) -> No
         @app.get("/slow")
         async def make() -> bool:  # in the loop, as a page or a snapshot is made
             making.set()
-            return stopped.wait(10)
+            return stopped.wait(PATIENCE_S)
 
     web = serve(mount=slow)
     with ThreadPoolExecutor() as browser:
         page = browser.submit(web.client().get, "/slow")
-        assert making.wait(10)
+        assert making.wait(PATIENCE_S)
         assert stop(web, {}) == 200
         stopped.set()
         assert page.result().json() is True
@@ -205,12 +208,12 @@ def hanging(serve, monkeypatch: pytest.MonkeyPatch) -> Iterator[tuple[Web, Event
         @app.get("/slow")
         async def make() -> bool:
             making.set()
-            return going_on.wait(10)
+            return going_on.wait(PATIENCE_S)
 
     web = serve(mount=slow)
     with ThreadPoolExecutor() as browser:
         browser.submit(web.client().get, "/slow")
-        assert making.wait(10)
+        assert making.wait(PATIENCE_S)
         yield web, going_on
         going_on.set()
 
@@ -222,7 +225,7 @@ def test_the_server_ends_while_a_page_is_made_for_ever(hanging: tuple[Web, Event
     left = [thread for thread in threading.enumerate() if thread.name == "http pages"]
     going_on.set()
     for thread in left:
-        thread.join(10)
+        thread.join(PATIENCE_S)
 
 
 def test_the_server_ends_with_an_application_that_does_not(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -14,6 +14,7 @@ import pytest
 from arboleda.web import limits, server
 from arboleda.web.access.auth import Role
 
+from ...patience import PATIENCE_S
 from .conftest import TASK, VIEW, Plant, Web
 
 
@@ -36,7 +37,7 @@ class Listener:
 
 @contextmanager
 def listening(client: httpx.Client, **headers: str) -> Iterator[Listener]:
-    with client.stream("GET", "/api/events", headers=headers, timeout=5) as answer:
+    with client.stream("GET", "/api/events", headers=headers, timeout=PATIENCE_S) as answer:
         assert answer.status_code == 200
         assert answer.headers["content-type"].startswith("text/event-stream")
         yield Listener(answer)

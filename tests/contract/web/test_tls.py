@@ -46,13 +46,16 @@ def test_who_believes_the_authority_is_answered(
 ) -> None:
     web = serve(tls=tls)
     believing = ssl.create_default_context(cafile=lab.certificate)
-    assert httpx.get(f"{web.origin}/api/plant", verify=believing, trust_env=False).json() == VIEW
+    assert (
+        httpx.get(f"{web.origin}/api/plant", verify=believing, trust_env=False, timeout=PATIENCE_S).json()
+        == VIEW
+    )
 
 
 def test_who_does_not_believe_it_is_told_of(secure: Web, caplog: pytest.LogCaptureFixture) -> None:
     caplog.set_level(logging.WARNING, logger="arboleda.web")
     with pytest.raises(httpx.ConnectError, match="CERTIFICATE_VERIFY_FAILED"):
-        httpx.get(secure.origin, trust_env=False)
+        httpx.get(secure.origin, trust_env=False, timeout=PATIENCE_S)
     end = time.monotonic() + PATIENCE_S
     while "HTTP server: a client at 127.0.0.1 does not believe this certificate" not in caplog.text:
         assert time.monotonic() < end
@@ -103,7 +106,7 @@ def test_other_names_are_refused_as_ever(secure: Web) -> None:
 
 
 def test_who_asks_in_clear_is_told_how_to_ask(secure: Web) -> None:
-    answer = httpx.get(f"http://127.0.0.1:{secure.port}/api/plant", trust_env=False)
+    answer = httpx.get(f"http://127.0.0.1:{secure.port}/api/plant", trust_env=False, timeout=PATIENCE_S)
     assert (answer.status_code, answer.text) == (
         400,
         "This plant speaks TLS here: its address begins with https://\n",
@@ -112,7 +115,7 @@ def test_who_asks_in_clear_is_told_how_to_ask(secure: Web) -> None:
 
 def test_tls_to_a_port_without_it_breaks_no_more_than_that(local: Web) -> None:
     with pytest.raises(httpx.HTTPError):
-        httpx.get(local.origin.replace("http", "https"), trust_env=False)
+        httpx.get(local.origin.replace("http", "https"), trust_env=False, timeout=PATIENCE_S)
     assert local.client().get("/api/plant").status_code == 200
 
 

@@ -15,6 +15,8 @@ from arboleda.runtime.standby.leader import LeaderInfo
 from arboleda.runtime.standby.waiting_room import WaitingRoom
 from arboleda.runtime.web_options import WebOptions
 
+from ...patience import PATIENCE_S
+
 LED = LeaderInfo(plant="demo", host="host-a", process=7, url="http://10.0.0.5:8080", epoch=3)
 NEAR = "http://127.0.0.1:8080"
 TASK = {"text": "sis_a 0B 7"}
@@ -30,7 +32,7 @@ def rooms(tmp_path: Path) -> Iterator[Callable[..., httpx.Client]]:
             room.start(lambda *_, **__: None)
             stack.callback(room.stop)
             room.show("waits for host-a", led)
-            return stack.enter_context(httpx.Client(base_url=room.url, trust_env=False))
+            return stack.enter_context(httpx.Client(base_url=room.url, trust_env=False, timeout=PATIENCE_S))
 
         yield made
 

@@ -18,6 +18,8 @@ from arboleda.model.plant_model import PlantModel
 from arboleda.model.recipe import Recipe
 from arboleda.plant_file.loader import load
 
+from ...lengths import length
+
 EXAMPLES = Path(__file__).parents[3] / "examples"
 COPIED = {
     "agv": ["fetch"],
@@ -94,7 +96,7 @@ def test_the_copy_is_accepted_by_check_and_tells_devices_the_same(name: str, tmp
             python.about,
             python.ends_with,
         )
-        for seed in (1, 2, 3):
+        for seed in length((1,), whole=(1, 2, 3)):
             found = differences_of(only(both, python), only(both, replace(tree, name=recipe)), seed)
             assert found == []
 

@@ -19,8 +19,9 @@ BASE = PlantFiles(
 )
 
 
-@pytest.fixture
+@pytest.fixture(scope="module")
 def workshop() -> Iterator[Workshop]:
+    """One for all: its process takes longer to begin than to answer."""
     made = Workshop(lambda: OWN_TREE)
     yield made
     made.stop()

@@ -24,7 +24,7 @@ from .remote_plant import NoLeader, RemotePlant
 
 LONGEST = 500  # characters of a line
 NEXT_S = 30.0  # for a plant that lost its leader to get the next one
-NOBODY_S = 5.0  # a standby needs less to begin leading; until then nobody leads or waits
+NOBODY_S = 15.0  # a standby on a busy host needs less to begin leading; until then nobody leads or waits
 LOOK_S = 0.2
 FOLLOWED_S = 120.0  # a homing may take a minute
 CHECKED_S = 330.0  # a check of the plant's files has five minutes

@@ -131,6 +131,7 @@ class Workshop:
             raise ArboledaError(NO_ANSWER) from error
         finally:
             late.cancel()
+            late.join()
         if refusal:
             raise DraftRefused(refusal)
         return result
