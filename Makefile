@@ -6,7 +6,7 @@ export PYTHON
 export PYTHONDONTWRITEBYTECODE := # what a target here runs hundreds of times is compiled once
 BIN := .venv/bin
 PYTEST_ARGS ?= -n auto --dist worksteal
-INTEGRATION_ARGS ?= -n 7 --dist worksteal # more than cores: most of the time, tests of the real chain wait
+INTEGRATION_ARGS ?= -n 5 --dist worksteal # more than cores: most of the time, tests of the real chain wait
 TESTS ?= tests/unit tests/scenario tests/meta
 INTEGRATION_TESTS ?= tests/contract tests/system tests/tutorial
 PINNED_TESTS ?= $(addprefix tests/scenario/,test_digests.py test_found_by_simulation.py test_found_by_drawn_plants.py)

@@ -65,6 +65,6 @@ def _is_over(stage: Stage, since_s: float) -> bool:
 
 
 def _done(stage: Stage) -> object:
-    """What was done so far, and how many reports were heard of each robot: a quick look before the other."""
+    """Deeds so far, and the number of reports of each robot: a quick look before the other."""
     beliefs = stage.world.plant.dispatcher.beliefs.values()
     return stage.done, stage.world.starts, [each.reports for each in beliefs]

@@ -23,7 +23,7 @@ def face(listed: dict[str, Any], words: Words) -> dict[str, Any]:
 
 
 def _restart(restart: dict[str, Any], words: Words) -> dict[str, Any] | None:
-    """What is said of a restart and the button for it; None where the plant cannot restart itself."""
+    """Sentence about a restart, and the button for it; None where the plant cannot restart itself."""
     if not restart["can"]:
         return None
     by = restart["by"]
