@@ -104,7 +104,7 @@ def _outside(look: Look, cell: KnownCell) -> bool:
     if any(_is_away(look, cell, name) for name in cell.cell.shared_movers):
         return False
     if look.world.found.facts.get(Fact.QUARANTINE) and look.world.now < look.record.born_at + SURE_S:
-        return not cell.cell.zone_users
+        return not (cell.cell.zone_users or cell.cell.shared_movers)
     return all(_is_outside(look, cell.cell.workspaces[name]) for name in cell.cell.zone_users)
 
 
