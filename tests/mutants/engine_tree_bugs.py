@@ -68,9 +68,9 @@ OF_LEAVES = (
         LEAVES,
         "A dwell counts milliseconds.",
         "        self.until = self.began + self.seconds\n        self.time.wake_at(self.until)\n\n"
-        "    def update(self) -> Status:\n        return Status.SUCCESS if",
+        "    def update(self) -> Status:\n        over, self.proven =",
         "        self.until = self.began + self.seconds / 1000\n        self.time.wake_at(self.until)\n\n"
-        "    def update(self) -> Status:\n        return Status.SUCCESS if",
+        "    def update(self) -> Status:\n        over, self.proven =",
     ),
     bug(
         STEPS,
@@ -418,8 +418,8 @@ OF_WALK_BACK = (
     bug(
         TRAIL,
         "One more command than there was is explained.",
-        "return 0 <= now.accepted - before.accepted <= self.more\n",
-        "return 0 <= now.accepted - before.accepted <= self.more + 1\n",
+        "return 0 <= now.accepted - before.accepted <= most\n",
+        "return 0 <= now.accepted - before.accepted <= most + 1\n",
     ),
     bug(
         "trees/keeping.py",

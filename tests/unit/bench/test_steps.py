@@ -22,7 +22,7 @@ def model(tmp_path):
 
 
 def without_ids(commands: Iterable[object]) -> list[Command]:
-    return [replace(each, id="", heard=None) for each in commands if isinstance(each, Command)]
+    return [replace(each, id="", heard=None, token=None) for each in commands if isinstance(each, Command)]
 
 
 def test_the_floors_say_what_the_plant_says(model):

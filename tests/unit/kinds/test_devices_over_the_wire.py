@@ -52,11 +52,12 @@ def test_an_order_names_its_verb_and_values_and_has_the_numbers_of_every_command
     ended(here)
     orders = [json.loads(said.payload) for _, said in here.to_boards if said.topic == "st_1/orden"]
     epoch, heard = orders[0]["epoca"], [order.pop("visto") for order in orders]
+    tokens = {order.pop("ficha") for order in orders}
     assert orders == [
         {"verbo": "go", "seq": 1, "epoca": epoch},
         {"verbo": "warm", "valores": {"celsius": 40.5}, "seq": 2, "epoca": epoch},
     ]
-    assert 0 < heard[0] < heard[1]
+    assert 0 < heard[0] < heard[1] and len(tokens) == 2
     assert here.changes[-1].state is TaskState.DONE
 
 

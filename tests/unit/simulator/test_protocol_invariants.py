@@ -604,7 +604,9 @@ def test_nothing_late_has_effect(monkeypatch, bites):
 
 
 def test_commands_say_what_was_heard(monkeypatch, bites):
-    monkeypatch.setattr(dispatcher.Dispatcher, "_leave", lambda self, command: self.outbox.append(command))
+    monkeypatch.setattr(
+        dispatcher.Dispatcher, "_leave", lambda self, command, token: self.outbox.append(command)
+    )
     watch = Watch()
     watch.task(wait_s=15)
     bites(watch)
