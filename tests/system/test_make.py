@@ -14,6 +14,7 @@ from arboleda.plant_file.loader import load
 from arboleda.plant_file.versions import Versions
 
 from ..chromium import leave
+from ..conftest import unused_port
 from ..contract.drivers.modbus import ModbusWire
 from ..patience import PATIENCE_MS, PATIENCE_S
 from .page import connected, running
@@ -66,7 +67,9 @@ def folder(tmp_path: Path) -> Path:
 
 @pytest.fixture
 def address(folder: Path) -> Iterator[str]:
-    with running(folder / "state", "--plant", str(folder / "plant.yaml")) as found:
+    """A plant that comes back to its port after a restart, whatever other tests start meanwhile."""
+    port = str(unused_port())
+    with running(folder / "state", "--plant", str(folder / "plant.yaml"), "--port", port) as found:
         yield found
 
 
