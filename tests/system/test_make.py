@@ -270,6 +270,21 @@ def test_a_new_device_with_a_driver_is_reached_before_it_is_added(
     assert DOOR % wire.port in (folder / "plant.yaml").read_text()
 
 
+def test_a_restart_is_asked_for_under_links_and_called_off_there(browser: Any, address: str) -> None:
+    httpx.post(
+        f"{address}/api/cells/cell/teach", json={"teacher": "Ana"}
+    ).raise_for_status()  # it waits for her
+    me = Person(browser, address, tab="links", **LAPTOP)
+    me.sees("#versions-restart button", "Restart once all cells rest")
+    me.press("#versions-restart button")
+    me.sees("#versions-restart", "The plant restarts once all its cells rest, as the page wants.")
+    me.sees("#versions-restart button", "Do not restart")
+    me.press("#versions-restart button")
+    me.sees("#versions-restart button", "Restart once all cells rest")
+    assert httpx.get(f"{address}/api/versions").json()["restart"] == {"by": "", "can": True}
+    me.go()
+
+
 def test_the_second_person_sees_who_edits_and_takes_over(browser: Any, address: str) -> None:
     ana = {"editor": "test-of-ana", "name": "Ana"}
     httpx.post(f"{address}/api/draft/take", json=ana, timeout=PATIENCE_S).raise_for_status()
