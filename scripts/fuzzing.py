@@ -8,6 +8,8 @@ from collections import Counter
 from collections.abc import Callable
 from typing import NoReturn
 
+from arboleda.simulator.chance import Dice
+
 BAD_INPUT = 2
 
 
@@ -23,6 +25,23 @@ def fuzz(run: Callable[[int, int], Counter[str]], usage: str | None, runs: int =
         print(f"{count:8} {what}")
     print(f"{runs} runs of seed {seed} in {time.perf_counter() - began:.0f} s: nothing went wrong")
     sys.exit()
+
+
+def spoilt(dice: Dice, frame: bytes) -> bytes:
+    """A frame with up to three mistakes: another byte or bit, bytes too many, or its end cut off."""
+    changed = bytearray(frame)
+    for _ in range(dice.below(4)):
+        at = dice.below(len(changed))
+        way = dice.below(4)
+        if way == 0:
+            changed[at] = dice.below(256)
+        elif way == 1:
+            changed = changed[: max(1, at)]
+        elif way == 2:
+            changed[at:at] = bytes(dice.below(256) for _ in range(4))
+        else:
+            changed[at] ^= 1 << dice.below(8)
+    return bytes(changed)
 
 
 def fail(seed: int, number: int, error: Exception) -> NoReturn:

@@ -29,10 +29,12 @@ from arboleda.testing.domains import Domain
 from . import forked
 from .dealing import dealt
 from .lengths import length
+from .patience import PATIENCE_S
 from .postgres import PASSWORD, Server
 
 # How fast a machine is does not decide a test.
 EXAMPLES = length(20, whole=300)
+os.environ["ARBOLEDA_LANG"] = "en"  # whatever the locale here is: what commands print is compared
 settings.register_profile(
     "arboleda", max_examples=EXAMPLES, deadline=None, suppress_health_check=[HealthCheck.too_slow]
 )
@@ -102,7 +104,7 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
 @pytest.hookimpl(wrapper=True)
 def pytest_collection() -> Iterator[object]:
     """Plants that tests load as they are imported are tried in forks, too."""
-    with mock.patch.object(recipe_trial, "subprocess", forked):
+    with mock.patch.multiple(recipe_trial, subprocess=forked, WAITS=200.0, STUCK_S=3000.0):
         return (yield)
 
 
@@ -184,21 +186,22 @@ def no_network(request: pytest.FixtureRequest) -> Iterator[None]:
 
 @pytest.fixture(autouse=True, scope="module")
 def quick_trials(request: pytest.FixtureRequest) -> Iterator[None]:
-    """Files of Python that a plant uses are tried in forks, but for tests of real parts."""
-    with mock.patch.object(recipe_trial, "subprocess", subprocess if is_real(request.node) else forked):
+    """Files of Python that a plant uses are tried in forks, but for tests of real parts; however long that
+    takes by the clock."""
+    python = subprocess if is_real(request.node) else forked
+    with mock.patch.multiple(recipe_trial, subprocess=python, WAITS=200.0, STUCK_S=3000.0):
         yield
 
 
 @pytest.fixture(autouse=True)
-def no_thread_left(request: pytest.FixtureRequest) -> Iterator[None]:
-    """A thread that outlives its test fails it; where clocks are real it has two seconds to end."""
+def no_thread_left() -> Iterator[None]:
+    """A thread that outlives its test fails it; one that ends by itself may do so."""
     before = set(threading.enumerate())
     yield
     started = set(threading.enumerate()) - before
-    if not by_hand(request.node):
-        for thread in started:
-            with suppress(RuntimeError):  # it is being started in this very moment, by one that ends
-                thread.join(timeout=2.0)
+    for thread in started:
+        with suppress(RuntimeError):  # it is being started in this very moment, by one that ends
+            thread.join(PATIENCE_S)
     left = sorted(thread.name for thread in started if thread.is_alive())
     assert not left, f"threads left behind: {', '.join(left)}"
 
@@ -239,8 +242,10 @@ def postgres() -> Iterator[Server]:
 
 @pytest.fixture
 def database(postgres: Server, monkeypatch: pytest.MonkeyPatch) -> str:
-    """The address of its database; the password is where people have it."""
+    """The address of its database; the password is where people have it. A server is silent for as long as
+    it likes: in this process that decides nothing but where a test says so."""
     monkeypatch.setenv("PGPASSWORD", PASSWORD)
+    monkeypatch.setattr("arboleda.store.postgres.server.ANSWER_S", PATIENCE_S)
     return postgres.address
 
 

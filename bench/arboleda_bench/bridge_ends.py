@@ -123,7 +123,7 @@ def _number_of_status(raw: bytes) -> int:
 
 
 def _number_of_goal(raw: bytes) -> int:
-    return round(json.loads(raw)["q1"] / DEG)
+    return round(float(json.loads(raw)["q1"]) / DEG)
 
 
 def _client(broker: str) -> Client:
@@ -137,5 +137,5 @@ def _client(broker: str) -> Client:
     return client
 
 
-def _no_delay(_client: Client, _userdata: Any, sock: socket.socket) -> None:
+def _no_delay(_client: Client, _userdata: Any, sock: Any) -> None:
     sock.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)

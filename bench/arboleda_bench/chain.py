@@ -8,8 +8,6 @@ Both use the same bridge and broker, run all the time and have tasks in turns.
 
 from __future__ import annotations
 
-from functools import partial
-
 from arboleda.adapters.broker_login import address
 from arboleda.plant_file.loader import load
 
@@ -27,8 +25,10 @@ PAUSE_S = 0.01
 def run(scene: Scene) -> Result:
     """500 transitions of each side, or as many as a short look allows."""
     turns, cycles = (3, 4) if scene.quick else (13, 10)
-    write = partial(plants.write, timing={"dwell_s": PAUSE_S}, near=True, **DECLARED)
-    both, ours = write(scene.folder / "both.yaml", 2), write(scene.folder / "ours.yaml", 1)
+    both, ours = (
+        plants.write(scene.folder / f"{name}.yaml", cells, timing={"dwell_s": PAUSE_S}, near=True, **DECLARED)
+        for name, cells in (("both", 2), ("ours", 1))
+    )
     scene.say("starting")
     broker = scene.mosquitto()
     processes = [
@@ -45,7 +45,7 @@ def run(scene: Scene) -> Result:
             stage.play(cycles, mine)
         found = [reactions(stage.moments(cell)) for cell in (mine, floor)]
     return Result(
-        figures=[figure(f"p{percent}", percent, *found, Aim(most=1.3)) for percent in (50, 99)],
+        figures=[figure(f"p{percent}", percent, found[0], found[1], Aim(most=1.3)) for percent in (50, 99)],
         notes=(
             f"{len(found[0])} transitions of ours, {len(found[1])} of the floor, in turns. Each passes the "
             "broker, the bridge and ROS 2 twice.",

@@ -50,12 +50,13 @@ def _all(names: Sequence[str], screen: Console, quick: bool, file: Path | None) 
     for name in names:
         began, load = datetime.now().astimezone(), os.getloadavg()[0]
         try:
-            outcome: Result | str = _one(name, screen, quick)
+            result = _one(name, screen, quick)
         except ArboledaError as error:
-            outcome = str(error)
+            outcome: Result | str = str(error)
             screen.print(Text(f"{name} was not measured: {error}\n", style="red"), soft_wrap=True)
         else:
-            _show(name, outcome, screen)
+            outcome = result
+            _show(name, result, screen)
         runs.append(Run(name=name, began=began, load=load, revision=revision(), outcome=outcome))
         if file is not None:
             _write(file, report.as_json(runs, quick=quick))
@@ -65,7 +66,8 @@ def _all(names: Sequence[str], screen: Console, quick: bool, file: Path | None) 
 def _one(name: str, screen: Console, quick: bool) -> Result:
     bench = catalog.module(name)
     with progress(screen, name, None) as show, Scene(quick=quick, say=lambda said: show(said, 0)) as scene:
-        return bench.run(scene)
+        result: Result = bench.run(scene)
+        return result
 
 
 def _show(name: str, result: Result, screen: Console) -> None:

@@ -16,6 +16,7 @@ from typing import Any
 
 from websockets.asyncio.client import connect
 from websockets.exceptions import WebSocketException
+from websockets.typing import Origin
 
 PAGES = 25  # at once
 STREAMS, LOOKERS = 10, 4
@@ -74,7 +75,9 @@ class Crowd:
         """Read the page's socket up to the plant's first frame, after the greetings."""
         query = f"client_id={client}&document_id={TAB}&tab_id={TAB}&next_message_id=0&implicit_handshake=true"
         address = f"ws://127.0.0.1:{self._port}/_nicegui_ws/socket.io/?EIO=4&transport=websocket&{query}"
-        async with connect(address, origin=f"http://127.0.0.1:{self._port}", compression=None) as socket:
+        async with connect(
+            address, origin=Origin(f"http://127.0.0.1:{self._port}"), compression=None
+        ) as socket:
             await socket.recv()
             await socket.send("40")
             while b"arboleda.live" not in (await asyncio.wait_for(socket.recv(decode=False), PATIENCE_S)):
@@ -97,7 +100,7 @@ class Crowd:
     async def _got(self, path: str, address: str) -> bytes:
         reader, writer = await self._asked(path, address)
         try:
-            return await reader.read()
+            return bytes(await reader.read())
         finally:
             writer.close()
 

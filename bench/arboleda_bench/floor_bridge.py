@@ -25,7 +25,6 @@ from arboleda.kinds.arm import Arm
 from arboleda.model.plant_model import PlantModel
 from arboleda.plant_file.loader import load
 from arboleda.recipes.storage_layout import StorageLayout
-from arboleda.wire.joints import joint_names, joint_states_topic
 from arboleda_ros import qos
 from arboleda_ros.link import connect
 
@@ -39,12 +38,12 @@ class Voice:
         self._node = node
         self._client = client
         self._name, self._mqtt = f"arboleda: {arm.name}", arm.mqtt
-        self._joints = list(joint_names(arm))
+        self._joints = list(arm.joint_states.joints)
         self._radii = [joint.pinion_radius_m or 1.0 for joint in arm.joints]
         self._seq = 0
         self._status = node.create_publisher(DiagnosticStatus, f"{arm.name}/status", qos.COMMAND)
         self._state = node.create_publisher(UInt8, f"{arm.name}/motion_state", qos.COMMAND)
-        self._positions = node.create_publisher(JointState, joint_states_topic(arm), qos.COMMAND)
+        self._positions = node.create_publisher(JointState, arm.joint_states.topic, qos.COMMAND)
         self._piece = node.create_publisher(Bool, f"{arm.name}/piece_detected", qos.COMMAND)
         node.create_subscription(Float32MultiArray, f"{arm.name}/command", self._on_goal, qos.COMMAND)
         client.message_callback_add(f"{arm.mqtt}/sensores", self._on_telemetry)
@@ -114,16 +113,19 @@ def main(plant: str, broker: str) -> None:
 def _join(node: Node, model: PlantModel, client: Client) -> None:
     voices = [Voice(node, StorageLayout(cell).arm, client) for cell in model.cells]
     client.on_connect = partial(_subscribe, [f"{cell.roles['arm'].mqtt}/sensores" for cell in model.cells])
-    node.create_subscription(
-        UInt32, "plant/heartbeat", lambda _: [voice.beat() for voice in voices], qos.COMMAND
-    )
+
+    def beat(_: UInt32) -> None:
+        for voice in voices:
+            voice.beat()
+
+    node.create_subscription(UInt32, "plant/heartbeat", beat, qos.COMMAND)
 
 
 def _subscribe(topics: list[str], client: Client, *_: Any) -> None:
     client.subscribe([(topic, 1) for topic in topics])
 
 
-def _no_delay(_client: Client, _userdata: Any, sock: socket.socket) -> None:
+def _no_delay(_client: Client, _userdata: Any, sock: Any) -> None:
     sock.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
 
 

@@ -7,6 +7,7 @@ callback, labelled as the bridge wants it: with the epoch of the plant that beat
 from __future__ import annotations
 
 from itertools import count
+from typing import Any
 
 from diagnostic_msgs.msg import DiagnosticStatus
 from rclpy.node import Node
@@ -23,7 +24,7 @@ from .walker import Walker
 
 READY_S = 0.05
 STOPPED = "0"
-Ready = tuple[Publisher, object, str | None]  # a message, and what the effector then reports
+Ready = tuple[Publisher, Any, str | None]  # a message, and what the effector then reports
 
 
 class Echo(Walker[Ready]):

@@ -34,7 +34,7 @@ def _frame(fed: socket.socket) -> bytes:
 def _is_over(frame: bytes, number: int, goal_deg: float) -> bool:
     mode, command = struct.unpack_from("<Q", frame, 24)[0], struct.unpack_from("<Q", frame, 1112)[0]
     joints = struct.unpack_from("<6d", frame, 432)
-    return mode == IDLE and command == number and abs(joints[0] - goal_deg) < NEAR_DEG
+    return bool(mode == IDLE and command == number and abs(joints[0] - goal_deg) < NEAR_DEG)
 
 
 if __name__ == "__main__":

@@ -18,7 +18,6 @@ from arboleda.kinds.joints import MoveJoints
 from arboleda.kinds.mobile import FollowPath
 from arboleda.model.commands import Command
 from arboleda.model.plant_model import Cell, PlantModel, Robot
-from arboleda.wire.joints import joint_states_topic
 from arboleda_ros import convert, qos
 
 from . import brain, steps
@@ -55,7 +54,7 @@ class BareNode(Walker[Ready]):
             self.go_on_after(self._effector_s)
 
     def _hear(self, node: Node, robot: Robot) -> None:
-        name, joints = robot.name, joint_states_topic(robot)
+        name, joints = robot.name, robot.joint_states.topic
         node.create_subscription(UInt8, f"{name}/motion_state", partial(self._on_state, name), qos.COMMAND)
         node.create_subscription(JointState, joints, partial(self._on_joints, name), qos.SENSOR)
         if isinstance(robot, Arm):

@@ -125,8 +125,8 @@ def _acceptance(scene: Scene, tasks: int) -> list[Figure]:
             row = (f"lot{number}", text, CELL, "storage", "queued", time.time())
             queued = TaskChanged(task=f"lot{number}", text=text, cell=CELL, state=TaskState.QUEUED)
             deeds: Sequence[Callable[[], object]] = (
-                lambda text=text, row=row: plant.submit(f"{text} #{row[0]}").result(),
-                lambda row=row: floor.ask(row).result(),
+                partial(_result, plant.submit, f"{text} #{row[0]}"),
+                partial(_result, floor.ask, row),
                 partial(only.task, queued, "storage", 1.0),
                 partial(alone.execute, INSERT, row),
             )
@@ -284,3 +284,7 @@ def _seconds(deed: Callable[[], object]) -> float:
 
 def _raise(_name: str, error: BaseException) -> None:
     raise error
+
+
+def _result(ask: Callable[[Any], Any], what: object) -> object:
+    return ask(what).result()

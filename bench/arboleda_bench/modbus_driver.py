@@ -10,6 +10,7 @@ poll, which comes 10 ms after the one before.
 from __future__ import annotations
 
 import time
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -62,8 +63,8 @@ def run(scene: Scene) -> Result:
     memory = Echo()
     server = ModbusServer(memory)
     port = server.start()
-    rest = {"alive": None, "heartbeat": None, "boot": None}
-    settings = replace(belt.driver.settings, port=port, poll_s=POLL_S, **rest)
+    given = belt.driver.settings
+    settings = replace(given, port=port, poll_s=POLL_S, alive=None, heartbeat=None, boot=None)
     ours, floor = Driven(belt, Modbus(settings)), Bare(belt, settings)
     try:
         found = figures(scene, times, (ours, floor), memory.change)
@@ -108,6 +109,7 @@ class Bare:
     def _read(self) -> dict[tuple[str, int], int]:
         raw: dict[tuple[str, int], int] = {}
         for block in self._blocks:
+            values: Sequence[bool | int]
             if block.table == "discrete":
                 values = self._client.read_discrete_inputs(block.address, count=block.length).bits
             else:

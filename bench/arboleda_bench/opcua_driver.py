@@ -73,8 +73,8 @@ def run(scene: Scene) -> Result:
     echo = Echo()
     server = OpcUaServer(echo)
     url = f"opc.tcp://127.0.0.1:{server.start()}"
-    without = {"alive": None, "heartbeat": None, "boot": None}
-    settings = replace(belt.driver.settings, url=url, publish_s=PUBLISH_S, **without)
+    given = belt.driver.settings
+    settings = replace(given, url=url, publish_s=PUBLISH_S, alive=None, heartbeat=None, boot=None)
     ours, floor = Driven(belt, OpcUa(settings)), Bare(belt, settings)
     try:
         found = figures(scene, times, (ours, floor), echo.change)
@@ -91,7 +91,7 @@ class Bare:
     """Bare client: the code that one writes with asyncua alone: call, read, compare; subscribe and wait."""
 
     def __init__(self, belt: Device, settings: Settings) -> None:
-        self._nodes = OpcUaDevice(belt, settings).nodes
+        self._nodes = OpcUaDevice(belt, settings).places
         self._loop = asyncio.new_event_loop()
         self._heard: asyncio.Queue[object] = asyncio.Queue()
         self._number = 30000

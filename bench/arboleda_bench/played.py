@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from functools import partial
-from typing import Any
+from typing import Any, cast
 
 from arboleda.kinds.arm import Arm, SetEffector
-from arboleda.kinds.joints import MoveJoints
+from arboleda.kinds.joints import Jointed, MoveJoints
 from arboleda.kinds.mobile import FollowPath
 from arboleda.model.commands import Command, Home, Stop
 from arboleda.model.messages import Heartbeat, Report
@@ -69,7 +69,7 @@ class PlayedRobot:
 
     def _goal(self, move: MoveJoints | FollowPath) -> tuple[float, ...]:
         if isinstance(move, MoveJoints):
-            return self.robot.quantised(move.q)  # type: ignore[union-attr]
+            return cast(Jointed, self.robot).quantised(move.q)
         return (move.nodes[-1],)
 
     def _place(self, now: float) -> tuple[float, ...]:

@@ -33,7 +33,7 @@ class Driven:
     def __init__(self, belt: Device, driver: Driver) -> None:
         self._belt, self._driver, self._number = belt, driver, 0
         self._said: queue.Queue[Report] = queue.Queue()
-        self._driver.start([belt], self._said.put, time.monotonic)
+        self._driver.start([belt], lambda report: self._said.put(report), time.monotonic)
         self._until(lambda report: report.fact("mm_s") is not None)
 
     def order(self) -> float:

@@ -9,7 +9,6 @@ have tasks in turns, so what the machine does besides falls on both.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from functools import partial
 
 from arboleda.dispatch.belief import APART_S
 from arboleda.plant_file.loader import load
@@ -29,8 +28,10 @@ def run(scene: Scene) -> Result:
     """500 transitions of each side, or as many as a short look allows."""
     turns, cycles = (3, 4) if scene.quick else (13, 10)
     timing = {"dwell_s": PAUSE_S, "effector_settle_s": PAUSE_S}
-    write = partial(plants.write, timing=timing, near=True, **DECLARED)
-    both, ours = write(scene.folder / "both.yaml", 2), write(scene.folder / "ours.yaml", 1)
+    both, ours = (
+        plants.write(scene.folder / f"{name}.yaml", cells, timing=timing, near=True, **DECLARED)
+        for name, cells in (("both", 2), ("ours", 1))
+    )
     scene.say("starting")
     processes = [
         scene.node("orchestrator", ours),
@@ -53,8 +54,8 @@ def _result(ours: Sequence[Reaction], floor: Sequence[Reaction]) -> Result:
     ]
     aims = {"arm to effector": Aim(most=1.5)}
     for what in dict.fromkeys(kind(each) for each in ours):
-        one = [[each for each in side if kind(each) == what] for side in (ours, floor)]
-        figures.append(figure(f"p50, {what}", 50, *one, aims.get(what)))
+        mine, bare = ([each for each in side if kind(each) == what] for side in (ours, floor))
+        figures.append(figure(f"p50, {what}", 50, mine, bare, aims.get(what)))
     return Result(
         figures=figures,
         notes=(

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Iterator
 
 from .rival_lines import begin, end, recipe
 
 
 def main() -> None:
-    kinds, left = recipe(), iter(())
+    kinds = recipe()
+    left: Iterator[str] = iter(())
     for line in sys.stdin:
         left = iter(kinds) if line == "task\n" else left
         kind = next(left, None)

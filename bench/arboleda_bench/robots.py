@@ -20,7 +20,6 @@ from arboleda.model.messages import Report
 from arboleda.model.plant_model import Cell, MotionState, PlantModel, Robot
 from arboleda.recipes.storage_layout import StorageLayout
 from arboleda.wire.hop import PLAIN
-from arboleda.wire.joints import joint_states_topic
 from arboleda_ros import convert, qos
 from arboleda_ros.robot_publisher import JointsMessage
 
@@ -28,7 +27,11 @@ from . import steps
 from .clockwork import Clockwork, now
 from .moments import Moment
 
-DECLARED = {"link": "ros", "evidence": "joints", "assume_homed": True}  # what the plant file says of them
+DECLARED: dict[str, Any] = {
+    "link": "ros",
+    "evidence": "joints",
+    "assume_homed": True,
+}  # what the plant file says of them
 TELEMETRY_S = 0.1
 
 
@@ -83,7 +86,7 @@ class Body:
         self._moving: Command | None = None
         self._proven_from = math.inf  # who hears its last node from then on knows that the drive has ended
         self._state = node.create_publisher(UInt8, f"{robot.name}/motion_state", qos.COMMAND)
-        self._joints = node.create_publisher(JointState, joint_states_topic(robot), qos.COMMAND)
+        self._joints = node.create_publisher(JointState, robot.joint_states.topic, qos.COMMAND)
         self._position = JointsMessage(robot)
         self._here = self._seen_at(_resting_place(cell, robot))
         self._commanded: list[str] = []
@@ -151,9 +154,10 @@ class Body:
 
     def _seen_at(self, place: Sequence[float] | int) -> JointState:
         """The joint states for a place: joints of an arm, or a node of the grid."""
-        if isinstance(self._robot, Arm):
+        if isinstance(self._robot, Arm) and not isinstance(place, int):
             said = Report(at=0.0, robot=self._robot.name, q=self._robot.quantised(tuple(place)))
         else:
+            assert isinstance(place, int)
             said = Report(at=0.0, robot=self._robot.name, node=place)
         message = self._position.of(said, self._node.get_clock())
         assert message is not None

@@ -99,7 +99,7 @@ def _costs(joined: dict[int, dict[str, Any]]) -> list[Figure]:
 
 
 def _per_task(found: dict[str, Any]) -> float:
-    return float(found["process_s"]) / max(found["tasks"], 1) * 1e3
+    return float(found["process_s"]) / max(int(found["tasks"]), 1) * 1e3
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -163,7 +163,7 @@ def _notes(scene: Scene, joined: dict[int, dict[str, Any]]) -> list[str]:
 
 
 def _of_plant(found: dict[str, Any]) -> float:
-    return float(found["plant_s"]) / max(found["tasks"], 1) * 1e3
+    return float(found["plant_s"]) / max(int(found["tasks"]), 1) * 1e3
 
 
 def _move_s(scene: Scene) -> float:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from typing import Protocol
 
 from rclpy.node import Node
@@ -85,7 +86,10 @@ class Stage:
                 self._ask[cell.name].publish(String(data=steps.task(cell)))
         for cell in cells:
             what = f"the end of {cycles} tasks in cell {cell.name}"
-            wait_for(lambda at=cell: self.played(at) >= wanted[at.name], what, self.check, cycles * CYCLE_S)
+            wait_for(partial(self._has_played, cell, wanted[cell.name]), what, self.check, cycles * CYCLE_S)
+
+    def _has_played(self, cell: Cell, tasks: int) -> bool:
+        return self.played(cell) >= tasks
 
     def played(self, cell: Cell) -> int:
         """The number of tasks that the cell has ended."""

@@ -33,7 +33,7 @@ from arboleda.model.plant_model import PlantModel
 from arboleda.plant_file.loader import load
 from arboleda.recipes.storage_layout import StorageLayout
 from arboleda.views import view
-from arboleda.views.remembered import RestingCells
+from arboleda.views.resting_cells import RestingCells
 
 from . import plants
 from .obedient import Yard, command_in, is_over
@@ -173,4 +173,5 @@ def _run(yard: Yard) -> Any:
 
 
 def _tree(yard: Yard) -> Behaviour:
-    return _run(yard).tree
+    tree: Behaviour = _run(yard).tree
+    return tree

@@ -33,11 +33,11 @@ def storage(cell: Cell, epoch: int = 1) -> list[Command]:
     return [
         FollowPath(id=next(names), robot=mobile, nodes=back),
         FollowPath(id=next(names), robot=mobile, nodes=path.nodes),
-        MoveJoints(id=next(names), robot=arm, q=layout.pickup.q),
+        MoveJoints(id=next(names), robot=arm, q=layout.pickup.joints),
         SetEffector(id=next(names), robot=arm, on=True),
-        MoveJoints(id=next(names), robot=arm, q=cell.stations[STATION].q),
+        MoveJoints(id=next(names), robot=arm, q=cell.stations[STATION].joints),
         SetEffector(id=next(names), robot=arm, on=False),
-        MoveJoints(id=next(names), robot=arm, q=layout.home.q),
+        MoveJoints(id=next(names), robot=arm, q=layout.home.joints),
     ]
 
 

@@ -18,8 +18,9 @@ from sensor_msgs.msg import JointState
 from std_msgs.msg import UInt8
 
 from arboleda.kinds.arm import SetEffector
+from arboleda.kinds.joints import MoveJoints
+from arboleda.kinds.mobile import FollowPath
 from arboleda.model.plant_model import Cell, PlantModel, Robot
-from arboleda.wire.joints import joint_states_topic
 from arboleda_ros import convert, qos
 
 from . import brain, steps
@@ -34,7 +35,7 @@ class Heard:
         self.state = 0
         self.position: tuple[float, ...] = ()
         node.create_subscription(UInt8, f"{robot.name}/motion_state", self._on_state, qos.COMMAND)
-        node.create_subscription(JointState, joint_states_topic(robot), self._on_joints, qos.SENSOR)
+        node.create_subscription(JointState, robot.joint_states.topic, self._on_joints, qos.SENSOR)
 
     def _on_state(self, message: UInt8) -> None:
         self.state = message.data
@@ -121,6 +122,7 @@ def _storage(node: Node, model: PlantModel, cell: Cell) -> Sequence:
             settled = Pause("settle", timing.effector_settle_s + timing.dwell_s)
             leaves += [Send("effector", voice, message), settled]
         else:
+            assert isinstance(step, FollowPath | MoveJoints)
             goal = steps.end(cell, step)
             leaves.append(Move("move", voice, message, heard[step.robot], goal))
     return Sequence("storage", memory=True, children=leaves)

@@ -72,7 +72,7 @@ class Driven:
         self._arm, self._number = arm, 0
         self._said: queue.Queue[Report] = queue.Queue()
         self._driver = FollowJointTrajectory(Settings(joints=NAMES))
-        self._driver.start([arm], self._said.put, time.monotonic)
+        self._driver.start([arm], lambda report: self._said.put(report), time.monotonic)
         self._until(lambda report: report.state is MotionState.STOPPED)
 
     def go(self, q: tuple[float, ...]) -> float:

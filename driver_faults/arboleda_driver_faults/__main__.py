@@ -18,21 +18,30 @@ from pathlib import Path
 from arboleda.plant_file.loader import load
 
 from .dobot import DobotRig
+from .gcode import GantryRig
 from .gripper import CarryRig
 from .modbus import ModbusRig
 from .nav2 import RoundRig, WaypointsRig
 from .opcua import OpcUaRig
 from .rig import Rig, run
+from .s7 import S7Rig
+from .serial_arm import ServoRig
+from .ur import UrRig
 from .vda5050 import AgvRig
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 RIGS: dict[str, tuple[Path | None, Callable[..., Rig]]] = {
     "dobot": (None, DobotRig),
     "modbus": (EXAMPLES / "plc_conveyor/plant.yaml", ModbusRig),
+    "ur": (None, UrRig),
     "opcua": (EXAMPLES / "plc_conveyor/opcua.yaml", OpcUaRig),
+    "s7": (EXAMPLES / "plc_conveyor/s7.yaml", S7Rig),
     "ros2_control": (EXAMPLES / "ros2_control/plant.yaml", CarryRig),
     "navigate_to_pose": (EXAMPLES / "nav2/plant.yaml", RoundRig),
     "follow_waypoints": (EXAMPLES / "nav2/plant.yaml", WaypointsRig),
+    "gcode": (EXAMPLES / "gantry/bench.yaml", GantryRig),
+    "serial_arm-dynamixel": (EXAMPLES / "serial_arm/desk.yaml", partial(ServoRig, maker="dynamixel")),
+    "serial_arm-feetech": (EXAMPLES / "serial_arm/desk.yaml", ServoRig),
     **{
         f"vda5050-{version}": (EXAMPLES / "agv/plant.yaml", partial(AgvRig, version=version))
         for version in ("2.0", "2.1", "3.0")

@@ -5,21 +5,9 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Callable
 
-from arboleda.drivers.dobot.machine import (
-    Close,
-    Closed,
-    CommandNotSent,
-    CommandRequest,
-    ConnectionsOpened,
-    DashboardReply,
-    Event,
-    FeedbackData,
-    Machine,
-    Message,
-    Open,
-    SendLine,
-)
+from arboleda.drivers.dobot.machine import DashboardReply, Event, FeedbackData, Machine, Message, SendLine
 from arboleda.drivers.dobot.settings import Settings
+from arboleda.drivers.link import Close, Closed, CommandNotSent, CommandRequest, Open, Opened
 from arboleda.model.commands import Command
 from arboleda.model.messages import Report
 from arboleda.model.plant_model import Robot
@@ -85,7 +73,7 @@ class Loopback:
             off = self.dobot.is_off
             self._connected = not off
             self._client += 1
-            self._to_driver.append(Closed(why="refused") if off else ConnectionsOpened())
+            self._to_driver.append(Closed(why="refused") if off else Opened())
         elif isinstance(message, Close):
             self._connected = False
             self._to_driver.clear()

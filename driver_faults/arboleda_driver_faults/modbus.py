@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from arboleda.adapters.modbus import RequestRefused
+from arboleda.adapters.modbus import refused
+from arboleda.adapters.polled import RequestRefused
 from arboleda.drivers import Report
 from arboleda.drivers.modbus.machine import Block, ModbusDevice, Raw, WriteRequest
 from arboleda.drivers.modbus.settings import Settings
@@ -73,7 +74,7 @@ class Registers:
             values = self._memory.read(block.table, block.address, block.length)
             self._hear()
             if isinstance(values, int):
-                raise LineBroken(str(RequestRefused(f"to show {block.table} {block.address}", values)))
+                raise LineBroken(str(refused(f"to show {block.table} {block.address}", values)))
             raw |= {(block.table, block.address + at): value for at, value in enumerate(values)}
         return raw
 
@@ -81,7 +82,7 @@ class Registers:
         code = self._memory.write(put.table, put.address, list(put.values))
         self._hear()
         if code is not None:
-            raise RequestRefused(f"to take {put.table} {put.address}", code)
+            raise refused(f"to take {put.table} {put.address}", code)
 
     def _hear(self) -> None:
         """The answer as it arrives over the line."""

@@ -54,6 +54,7 @@ class Variables:
         call = self._machine.order(command)
         if call is None:
             return None
+        assert isinstance(call, Call)  # the belt of the example writes no variables
         if self._program.is_mute():
             self._late.append(call)
         self._answer()

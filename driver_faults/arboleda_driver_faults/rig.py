@@ -30,6 +30,7 @@ from arboleda.model.commands import Command
 from arboleda.model.messages import (
     ENDED,
     Event,
+    Heartbeat,
     OperatorRequest,
     Reason,
     Report,
@@ -37,9 +38,11 @@ from arboleda.model.messages import (
     TaskRequest,
     TaskState,
     Undelivered,
+    Verb,
 )
 from arboleda.model.plant_model import PlantModel, Robot
 from arboleda.model.sentence import OWN
+from arboleda.simulator.disk import Disk
 from arboleda.virtual.faults import Faults
 
 START_S, EPOCH = 100.0, 7
@@ -152,19 +155,52 @@ class World:
 
     def __init__(self, rig: Rig, result: Result, tasks: int) -> None:
         self.rig, self.result, self.now = rig, result, START_S
+        self.disk = Disk()
         self._tasks = tasks
         (self._cell,) = rig.model.cells
         self._names = {robot.name for robot in rig.robots}
         self._others = {robot.name for robot in self._cell.robots} - self._names
-        self.plant = Plant(rig.model, epoch=EPOCH, now=self.now)
+        self._epoch = EPOCH
+        self._start()
+        self._seen: list[Hashable] = []  # since a task began
+        self._looked_at = self.now
+
+    def _start(self) -> None:
+        found = self.disk.found()
+        self.plant = Plant(
+            self.rig.model,
+            epoch=self._epoch,
+            now=self.now,
+            memory=found.facts,
+            kept=found.tasks.values(),
+        )
         self._supervisor = Supervisor(
-            [(rig.driver, rig.robots)], epoch=EPOCH, stale_after_s=rig.model.timing.stale_after_s
+            [(self.rig.driver, self.rig.robots)],
+            epoch=self._epoch,
+            stale_after_s=self.rig.model.timing.stale_after_s,
         )
         self._driver: Loopback | None = None
         self._inbox: list[Event] = []
         self._heard: list[DriverOutput | CommandRequest | SendResult] = []
-        self._seen: list[Hashable] = []  # since a task began
-        self._looked_at = self.now
+
+    def restart(self) -> None:
+        """Kill the plant, its driver with it, and start it anew on what it has kept."""
+        self._epoch += 1
+        self._start()
+
+    def submit(self, text: str) -> None:
+        self._inbox.append(TaskRequest(at=self.now, text=text))
+
+    def operate(self, verb: Verb) -> None:
+        """Act on the cell as an operator."""
+        self._inbox.append(OperatorRequest(at=self.now, verb=verb, scope=self._cell.name))
+
+    def advance(self, seconds: float, until: Callable[[], bool] = lambda: False) -> bool:
+        """Let time pass; return True as soon as `until` comes true."""
+        end = self.now + seconds
+        while self.now < end and not until():
+            self._pass_time()
+        return until()
 
     def run(self) -> Result:
         times = [START_S + 1 + number * self.rig.between_s for number in range(self._tasks)]
@@ -173,7 +209,7 @@ class World:
         while len(self.result.ended) < self._tasks and self.now < over_at:
             self._pass_time()
             if asked < self._tasks and self.now >= times[asked]:
-                self._inbox.append(TaskRequest(at=self.now, text=self.rig.task(asked)))
+                self.submit(self.rig.task(asked))
                 asked += 1
         if (endless := self._tasks - len(self.result.ended)) > 0:
             self.result.breaches.append(f"hang: {endless} tasks have no end")
@@ -218,6 +254,8 @@ class World:
                     self._give(message)
             inbox, self._inbox = self._inbox, []
             for out in self.plant.step(self.now, inbox):
+                if not isinstance(out, Command | Heartbeat):
+                    self.disk.commit(out, self.now)
                 if isinstance(out, Command):
                     if out.robot in self._names:
                         self._heard.append(CommandRequest(at=self.now, command=out))

@@ -6,6 +6,7 @@ from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from arboleda.drivers.ros_action.events import ListedGoal
 from arboleda.drivers.ros_action.machine import Machine
 from arboleda.model.commands import Command, Stop
 from arboleda.model.messages import Reason
@@ -87,6 +88,7 @@ class ActionRig(Rig):
             name: VirtualServer(body, DeviceFaults(self.faults, name), measure_s=MEASURE_S)
             for name, body in self.bodies.items()
         }
+        self.listed: dict[str, dict[str, ListedGoal]] = {part.name: {} for part in self.parts}
         self._joined: DeviceGroup | None = None
 
     @property
@@ -103,7 +105,8 @@ class ActionRig(Rig):
         for part, device in zip(self.parts, self.robots, strict=True):
             assert device.driver is not None
             driver = part.machine([device], device.driver.settings)
-            made[part.name] = Loopback(driver, self._servers[part.name], part.read, hear, now)
+            server, listed = self._servers[part.name], self.listed[part.name]
+            made[part.name] = Loopback(driver, server, part.read, hear, now, listed)
         self._joined = DeviceGroup(made)
         return self._joined
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 from arboleda.drivers.ros_action.events import (
@@ -13,7 +14,9 @@ from arboleda.drivers.ros_action.events import (
     CommandRequest,
     Event,
     GoalAnswer,
+    GoalList,
     GoalResult,
+    ListedGoal,
     SendGoal,
     ServersFound,
 )
@@ -30,6 +33,7 @@ class Loopback:
     """Driver and virtual action server, connected: each gets the other's messages at once.
 
     `read` makes of a goal of the driver what the server's body takes, as the message between them does.
+    `listed` are the goals that the server accepted, by the ids of their messages: they outlive the driver.
     """
 
     def __init__(
@@ -39,6 +43,7 @@ class Loopback:
         read: Callable[[Any], Any],
         hear: Callable[[Report], None],
         now: float,
+        listed: dict[str, ListedGoal],
     ) -> None:
         self.now, self.goals = now, 0
         self._driver, self._server, self._read, self._hear = driver, server, read, hear
@@ -46,7 +51,8 @@ class Loopback:
         self._starts, self._was_off = 1, False
         self._open: dict[str, bool] = {}  # goals that have no end, and whether they are accepted
         self._early: dict[str, GoalResult] = {}  # ends of goals that are not yet accepted
-        self._to_driver: deque[Event] = deque()
+        self._listed, self._uuids = listed, dict[str, bytes]()
+        self._to_driver: deque[Event] = deque([self._list()])
 
     @property
     def next_deadline(self) -> float:
@@ -66,6 +72,7 @@ class Loopback:
             self._open.clear()
             self._early.clear()
             self._to_driver.clear()
+            self._listed.clear()
         self._was_off = self._server.is_off
         self._step_server()
         if self.now >= self._look_at:
@@ -89,7 +96,7 @@ class Loopback:
                 self._hear(message)
             elif isinstance(message, SendGoal) and not self._server.is_off:
                 self.goals += 1
-                self._open[message.id] = False
+                self._open[message.id], self._uuids[message.id] = False, message.uuid
                 self._step_server(GoalRequest(id=message.id, goal=self._read(message.goal)))
             elif isinstance(message, CancelAll) and not self._server.is_off:
                 self._cancel()
@@ -105,6 +112,7 @@ class Loopback:
     def _step_server(self, *events: GoalRequest | CancelRequest) -> list[CancelDecision]:
         decided = []
         for message in self._server.step(self.now, events):
+            self._note(message)
             if isinstance(message, CancelDecision):
                 decided.append(message)
                 continue
@@ -113,6 +121,21 @@ class Loopback:
             else:
                 self._to_driver.append(message)
         return decided
+
+    def _note(self, message: object) -> None:
+        """Keep the server's list of goals as its middleware does, and show it to the driver."""
+        if isinstance(message, GoalAnswer) and message.accepted:
+            uuid, s = self._uuids[message.id], int(self.now)
+            stamp = (s, int((self.now - s) * 1e9))
+            self._listed[message.id] = ListedGoal(uuid=uuid, stamp=stamp, status=None)
+        elif isinstance(message, GoalResult) and message.id in self._listed:
+            self._listed[message.id] = replace(self._listed[message.id], status=message.status)
+        else:
+            return
+        self._to_driver.append(self._list())
+
+    def _list(self) -> GoalList:
+        return GoalList(goals=tuple(self._listed.values()))
 
     def _tell(self, message: GoalAnswer | GoalResult) -> None:
         """Pass a message; a client asks for the end of a goal only once that is accepted."""

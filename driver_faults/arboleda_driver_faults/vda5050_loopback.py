@@ -100,10 +100,10 @@ class Loopback:
     def _read(self, say: OutgoingMessage) -> None:
         version = self._settings.version
         body = {**self._headers(say.topic), **say.body}
-        said = from_bytes(version, say.topic, to_bytes(version, say.topic, body))
+        parsed = from_bytes(version, say.topic, to_bytes(version, say.topic, body))
         if say.as_serial is None:
             heard = self.vehicle.factsheet if say.topic == "factsheet" else self.vehicle.state
-            self._do(heard(self.now, said))
+            self._do(heard(self.now, parsed))
 
     def _do(self, messages: Iterable[Message]) -> None:
         for message in messages:
@@ -116,7 +116,7 @@ class Loopback:
 
     def _publish(self, message: Publish) -> None:
         version, body = self._settings.version, {**self._to_agv(message.topic), **message.body}
-        said = from_bytes(version, message.topic, to_bytes(version, message.topic, body))
-        self.told.append((message.topic, said))
+        parsed = from_bytes(version, message.topic, to_bytes(version, message.topic, body))
+        self.told.append((message.topic, parsed))
         if self._connected:
-            self._waiting.append(VehicleMessage(topic=message.topic, said=said))
+            self._waiting.append(VehicleMessage(topic=message.topic, body=parsed))

@@ -220,7 +220,8 @@ class Bench:
         while not self._is_ready() and time.time() < until:
             time.sleep(0.1)
         if self._teacher is None:
-            status, said = 0, {}
+            status = 0
+            said: dict[str, Any] = {}
             while status != 200 and time.time() < until:
                 status, said = self._plant.ask("POST", f"/api/cells/{CELL}/teach", {"teacher": "bench"})
                 time.sleep(0.1)

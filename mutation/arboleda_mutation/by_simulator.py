@@ -85,7 +85,7 @@ def _runner(root: Path) -> Any:
     def setting(plants: Any, level: str, *, any_of: bool = False, standby: bool = False) -> Setting:
         return Setting(plants=plants, cycles=0, level=level, seconds=SECONDS, any_of=any_of, standby=standby)
 
-    with as_file(files("arboleda").joinpath("plants", "shared.yaml")) as shared:
+    with as_file(files("arboleda") / "plants" / "shared.yaml") as shared:
         packaged = Turns(*(Plant(declared=each) for each in (loader.load(shared), loader.load())))
     paths = [root / "examples" / name / "plant.yaml" for name in EXAMPLES]
     examples = Turns(*(Plant(declared=loader.load(path)) for path in paths))

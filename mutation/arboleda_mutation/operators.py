@@ -6,8 +6,9 @@ Words are left alone: what a sentence says is for tests of words, and for its re
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from copy import copy
+from typing import Any
 
 Enums = Mapping[str, tuple[str, ...]]  # the members of each enumeration, by its name
 Change = tuple[str, ast.AST]  # the operator's name, and what stands there instead
@@ -106,8 +107,8 @@ def _display(node: ast.Set | ast.Dict, enums: Enums) -> Iterator[Change]:
         if isinstance(node, ast.Set):
             yield f"row {index + 1}", ast.Set(elts=[node.elts[number] for number in left])
         else:
-            keys, values = ([each[number] for number in left] for each in (node.keys, node.values))
-            yield f"row {index + 1}", ast.Dict(keys=keys, values=values)
+            keys = [node.keys[number] for number in left]
+            yield f"row {index + 1}", ast.Dict(keys=keys, values=[node.values[number] for number in left])
 
 
 def _condition(node: ast.If | ast.IfExp | ast.While, enums: Enums) -> Iterator[Change]:
@@ -155,7 +156,7 @@ def _is_type(node: ast.BinOp) -> bool:
     )
 
 
-_OF = {
+_OF: dict[type, Callable[[Any, Enums], Iterator[Change]]] = {
     ast.Compare: _compare,
     ast.BoolOp: _both,
     ast.UnaryOp: _negation,

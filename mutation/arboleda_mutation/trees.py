@@ -58,15 +58,17 @@ def mutated(source: str, enums: Enums, number: int) -> ast.Module:
 def enumerations(sources: list[str]) -> dict[str, tuple[str, ...]]:
     """The members of every enumeration that these files define."""
     return {
-        node.name: tuple(each.targets[0].id for each in node.body if _is_member(each))
+        node.name: tuple(name for each in node.body if (name := _member(each)))
         for source in sources
         for node in ast.walk(ast.parse(source))
         if isinstance(node, ast.ClassDef) and any(getattr(base, "id", "") == "Enum" for base in node.bases)
     }
 
 
-def _is_member(node: ast.stmt) -> bool:
-    return isinstance(node, ast.Assign) and isinstance(node.targets[0], ast.Name)
+def _member(node: ast.stmt) -> str:
+    """The name that a statement gives to a member of its enumeration, "" where it gives none."""
+    first = node.targets[0] if isinstance(node, ast.Assign) else None
+    return first.id if isinstance(first, ast.Name) else ""
 
 
 def _all(tree: ast.Module, enums: Enums) -> Iterator[tuple[Place, Change]]:

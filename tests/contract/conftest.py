@@ -208,6 +208,12 @@ class Authority:
         subprocess.run(["openssl", *map(str, words)], check=True, capture_output=True)
 
 
+@pytest.fixture(autouse=True)
+def patient_messages(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What a client of this process sends leaves it, however long the process had to wait for a core."""
+    monkeypatch.setattr("arboleda.adapters.mqtt.WAITS_S", PATIENCE_S)
+
+
 @pytest.fixture(scope="session")
 def lab(tmp_path_factory: pytest.TempPathFactory) -> Authority:
     """An authority; who uses it needs openssl."""

@@ -89,6 +89,7 @@ def pour(talks: list[socket.socket], mb: int) -> None:
                 talk.sendall(block)
             except OSError:
                 break
+        talk.settimeout(PATIENCE_S)
 
 
 def resident_bytes() -> int:
@@ -210,7 +211,7 @@ def test_retained_topics_are_few_enough_for_any_subscriber(
         junk.publish(f"junk/{n}", b"x" * 60, retain=True)
     junk.publish("ra_1/conexion", b"1", retain=True)
     presence = peer("bridge", address, subscriptions=["ra_1/conexion"]).up()
-    presence.inbox.wait(lambda inbox: inbox.payloads, 30)  # a guest may publish 2000 a second
+    presence.inbox.wait(lambda inbox: inbox.payloads)  # a guest may publish 2000 a second
     looker = peer("looker", address, subscriptions=["#"]).up()
     looker.inbox.wait(lambda inbox: b"1" in inbox.payloads)
     got = sum(len(delivery.topic) + len(delivery.payload) for delivery in looker.inbox.deliveries)
@@ -282,8 +283,8 @@ def test_a_flood_of_packets_leaves_the_plant_its_turn(
         sent += 1
         board.inbox.wait(lambda inbox, sent=sent: len(inbox.payloads) == sent)
     assert plant.inbox.links == board.inbox.links == [True]
-    # 200 at once and 200 a second: the bridge is not flooded by one board.
-    assert len(plant.inbox.payloads) < 1000
+    # The bridge is not flooded by one board, which brings some thousand a second.
+    assert len(plant.inbox.payloads) < 400 + 200 * (time.monotonic() - began), "200 at once and 200 a second"
 
 
 def test_it_does_not_open_where_a_stranger_would_get_in(monkeypatch: pytest.MonkeyPatch) -> None:

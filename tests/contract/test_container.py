@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import re
+import shutil
+import subprocess
 from pathlib import Path
 from typing import Any
 
@@ -57,3 +60,34 @@ def test_the_files_that_are_mounted_are_those_that_its_first_lines_make(
     files = [word for word in said if word.startswith("/")]
     assert len(files) == 4
     assert all((tmp_path / broker[inside] / Path(each).relative_to(inside)).is_file() for each in files)
+
+
+def test_the_plant_keeps_its_memory_in_the_database_beside_it(services: dict[str, Any]) -> None:
+    environ, database = services["plant"]["environment"], services["database"]["environment"]
+    command = typer.main.get_command(cli).commands["up"]  # type: ignore[attr-defined]
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("ARBOLEDA_STORE", environ["ARBOLEDA_STORE"])
+        store = command.make_context("up", []).params["store"]
+    assert store == f"postgresql://{database['POSTGRES_USER']}@database/{database['POSTGRES_DB']}"
+    assert environ["PGPASSWORD"] == database["POSTGRES_PASSWORD"]  # of the file .env: none stands in this one
+    assert "ports" not in services["database"]
+    asked = re.search(r"^ARG EXTRAS=\[(.*)\]$", (FOLDER / "Containerfile").read_text(), re.MULTILINE)
+    assert asked and "postgres" in asked[1].split(",")
+
+
+@pytest.mark.parametrize("builder", ["podman", "docker"])
+def test_one_command_builds_for_both_machines(tmp_path: Path, builder: str) -> None:
+    (tmp_path / builder).write_text("#!/bin/sh\n")
+    (tmp_path / builder).chmod(0o755)
+    for tool in ("sh", "sed", "dirname", "mkdir"):
+        (tmp_path / tool).symlink_to(str(shutil.which(tool)))
+    ran = subprocess.run(
+        [FOLDER.parent / "scripts/images", "--print"],
+        env={"PATH": str(tmp_path)},
+        capture_output=True,
+        text=True,
+    )
+    assert ran.returncode == 0, ran.stderr
+    words = ran.stdout.split()
+    assert words[0] == builder and "linux/amd64,linux/arm64" in words
+    assert FOLDER.parent / words[words.index("--file") + 1] == FOLDER / "Containerfile"

@@ -26,7 +26,7 @@ def test_an_answer_with_mistakes_becomes_no_report(fuzz: Any) -> None:
 
 
 def test_a_wrong_answer_that_was_read_would_be_found(fuzz: Any, monkeypatch: pytest.MonkeyPatch) -> None:
-    device = SimpleNamespace(nodes=("ns=2;s=done",), report=lambda at, read: "a report")
+    device = SimpleNamespace(places=("ns=2;s=done",), report=lambda at, read: "a report")
     monkeypatch.setattr(fuzz, "OpcUaDevice", lambda *_: device)
     with pytest.raises(AssertionError, match="became a report"):
         fuzz.run(RUNS, 1)

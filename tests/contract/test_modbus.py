@@ -33,6 +33,8 @@ pytestmark = [pytest.mark.system, pytest.mark.requires("pymodbus", "serial")]
 
 EXAMPLE = Path(__file__).parents[2] / "examples/plc_conveyor/plant.yaml"
 
+LONGEST_S = 5.0  # that a plant file may wait for an answer
+
 
 class Memory:
     """A PLC that does nothing; `refuses` is an exception code for writes."""
@@ -74,9 +76,11 @@ def belt() -> Device:
 
 
 def settings(belt: Device, **changes: Any) -> Settings:
-    """The mapping of the example, without what a test does not play."""
+    """The mapping of the example, without what a test does not play, and patient."""
     assert belt.driver is not None and isinstance(belt.driver.settings, Settings)
-    return replace(belt.driver.settings, **{"alive": None, "heartbeat": None, "timeout_s": 0.3} | changes)
+    return replace(
+        belt.driver.settings, **{"alive": None, "heartbeat": None, "timeout_s": LONGEST_S} | changes
+    )
 
 
 @contextmanager
@@ -149,7 +153,10 @@ def test_a_command_whose_answer_does_not_come_loses_the_link_and_is_not_repeated
     def trace(sent: bool, packet: bytes) -> bytes:
         return b"" if sent and silent.is_set() else packet
 
-    with served(memory, trace=trace) as port, driven(belt, settings(belt, port=port)) as (driver, heard):
+    with (
+        served(memory, trace=trace) as port,
+        driven(belt, settings(belt, port=port, timeout_s=0.3)) as (driver, heard),
+    ):
         heard.until(is_heard)
         silent.set()
         with pytest.raises(Exception, match=r"No response|not connected"):
@@ -167,19 +174,34 @@ def test_two_devices_of_one_plc_share_a_connection(belt: Device) -> None:
         with driven(belt, first) as (_, heard), driven(other, second) as (_, more):
             heard.until(is_heard)
             more.until(is_heard)
-            line = LINES.take(first)
-            assert LINES.take(second) is line
-            LINES.give_back(first)
-            LINES.give_back(second)
+            one, two = Modbus(first), Modbus(second)
+            line = LINES.take(one.address(), one.make_line)
+            assert LINES.take(two.address(), two.make_line) is line
+            LINES.give_back(one.address())
+            LINES.give_back(two.address())
 
 
 def test_a_serial_line_speaks_rtu(belt: Device) -> None:
     memory = Memory()
-    with (
-        pair() as (ours, theirs),
-        served(memory, serial=theirs),
-        driven(belt, settings(belt, host="", serial=ours, parity="none")) as (driver, heard),
-    ):
+    with pair() as (ours, theirs), served(memory, serial=theirs):
+        loads(belt, memory, settings(belt, host="", serial=ours, parity="none"))
+
+
+def test_a_gateway_speaks_rtu_over_tcp(belt: Device) -> None:
+    memory, sent = Memory(), []
+
+    def note(is_sent: bool, packet: bytes) -> bytes:
+        sent.append(packet)
+        return packet
+
+    with served(memory, framing="rtu", trace=note) as port:
+        loads(belt, memory, settings(belt, port=port, unit=7, framing="rtu"))
+    assert all(packet[0] == 7 for packet in sent), "the unit is the first byte of RTU"
+
+
+def loads(belt: Device, memory: Memory, at: Settings) -> None:
+    """A load is written there, and what the PLC then shows makes it done."""
+    with driven(belt, at) as (driver, heard):
         heard.until(is_heard)
         driver.send(load_command(belt))
         assert memory.written.get(timeout=PATIENCE_S) == ("holding", 0, [1])

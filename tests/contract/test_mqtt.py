@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
+import os
 import signal
+import socket
 import subprocess
 import sys
 import time
+from collections.abc import Iterator
+from contextlib import suppress
 
 import pytest
 from paho.mqtt.client import Client
 from paho.mqtt.enums import CallbackAPIVersion, MQTTProtocolVersion
 
+from arboleda.adapters import mqtt
 from arboleda.adapters.broker_login import Credentials
 from arboleda.adapters.clock import seconds
 from arboleda.adapters.mqtt import WAITS_S, NotConnected
@@ -70,21 +75,30 @@ def test_messages_arrive_in_order_at_every_quality(broker, peer):
     assert board.inbox.payloads == sent + sent
 
 
+def connections(port: int) -> Iterator[socket.socket]:
+    """The ends of TCP connections to that port that this process has, as copies."""
+    for name in os.listdir("/proc/self/fd"):
+        try:
+            end = socket.socket(fileno=os.dup(int(name)))
+        except OSError:  # no socket, or closed meanwhile
+            continue
+        with end:
+            if end.family != socket.AF_INET or end.getsockopt(socket.SOL_SOCKET, socket.SO_ACCEPTCONN):
+                continue
+            with suppress(OSError):  # one that is not connected any more
+                if port in (end.getsockname()[1], end.getpeername()[1]):
+                    yield end
+
+
 def test_answers_are_not_held_back_by_the_sockets(broker, peer):
-    board = peer("ra_1", broker.address, subscriptions=[GOALS]).up()
-    bridge = peer("bridge", broker.address, subscriptions=[STATE]).up()
-    took = []
-
-    for n in range(1, 61):
-        began = time.monotonic()
-        bridge.client.publish(message(b"goal"))
-        board.inbox.wait(lambda inbox, n=n: len(inbox.deliveries) == n)
-        board.client.publish(message(b"moving", STATE, qos=0))
-        board.client.publish(message(b"stopped", STATE, qos=0))
-        bridge.inbox.wait(lambda inbox, n=n: len(inbox.deliveries) == 2 * n)
-        took.append(time.monotonic() - began)
-
-    assert min(took) < 0.030  # without TCP_NODELAY each answer waits 40 ms for an acknowledgment
+    """Without TCP_NODELAY each answer waits 40 ms for an acknowledgment of what was sent before it."""
+    for name in ("ra_1", "bridge"):
+        peer(name, broker.address, subscriptions=[GOALS]).up()
+    options = [
+        end.getsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY) for end in connections(broker.address.port)
+    ]
+    assert len(options) >= 2, "both clients, and the broker where it is in this process"
+    assert all(options)
 
 
 def test_an_oversized_payload_is_for_the_codec_to_refuse(broker, peer):
@@ -268,13 +282,13 @@ def test_what_was_right_too_long_ago_never_leaves_and_ends_the_connection(broker
     board = peer("ra_1", broker.address, subscriptions=[GOALS]).up()
     bridge = peer("bridge", broker.address).up()
 
-    bridge.client.publish(message(b"late"), since=seconds() - WAITS_S - 0.1)
+    bridge.client.publish(message(b"late"), since=seconds() - mqtt.WAITS_S - 0.1)
 
     bridge.inbox.wait(lambda inbox: inbox.links == [True, False, True])
-    bridge.client.publish(message(b"fresh"))
+    bridge.client.publish(message(b"fresh"), since=seconds() + PATIENCE_S)
     board.inbox.wait(lambda inbox: inbox.deliveries)
     assert board.inbox.payloads == [b"fresh"]
-    assert any("waited in this process for more than 1.5 s" in line for line in lines(caplog))
+    assert any(f"waited in this process for more than {mqtt.WAITS_S:g} s" in line for line in lines(caplog))
 
 
 TALKATIVE = """
@@ -289,7 +303,8 @@ client = MqttClient("bridge", Address(host=sys.argv[1], port=int(sys.argv[2])), 
 client.start()
 while True:
     try:
-        client.publish(Publication(topic="ra_1/juntas", payload=repr(seconds()).encode()))
+        now = seconds()
+        client.publish(Publication(topic="ra_1/juntas", payload=repr(now).encode()), since=now)
     except NotConnected:  # nor does it take more than some in advance
         time.sleep(0.01)
 """
@@ -299,17 +314,20 @@ while True:
 def test_a_process_that_was_frozen_sends_nothing_of_before(broker, peer):
     """What lay in it was right for the leader that it was; another one may lead the robots by now."""
     board = peer("ra_1", broker.address, subscriptions=[GOALS]).up()
+    other = peer("ra_2", broker.address).up()
     where = broker.address.host, str(broker.address.port)
     child = subprocess.Popen([sys.executable, "-c", TALKATIVE, *where])
     try:
         board.inbox.wait(lambda inbox: len(inbox.deliveries) > 50)
         child.send_signal(signal.SIGSTOP)
         time.sleep(WAITS_S + 0.5)
-        thawed_at = seconds()
+        for mark in (b"-1", b"-2", b"-3"):  # the one message that was on its way has arrived by then
+            other.client.publish(message(mark))
+            board.inbox.wait(lambda inbox, mark=mark: mark in inbox.payloads)
+        before, thawed_at = len(board.inbox.deliveries), seconds()
         child.send_signal(signal.SIGCONT)
         board.inbox.wait(lambda inbox: float(inbox.payloads[-1]) > thawed_at)
     finally:
         child.kill()
         child.wait()
-    late = [each for each in board.inbox.deliveries if each.at - float(each.payload) > WAITS_S]
-    assert late == []
+    assert [each for each in board.inbox.deliveries[before:] if float(each.payload) < thawed_at] == []

@@ -14,7 +14,7 @@ from contextlib import contextmanager, suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 from types import SimpleNamespace
-from typing import IO, Any
+from typing import IO, Any, ClassVar
 
 import asyncua
 import pytest
@@ -23,7 +23,8 @@ from asyncua.common.utils import NotEnoughData
 
 from arboleda.adapters.opcua import OpcUa
 from arboleda.drivers import MotionState, NotSent, Report, Stop, StopMode
-from arboleda.drivers.opcua.settings import Settings
+from arboleda.drivers.opcua.nodes import Order, Write
+from arboleda.drivers.opcua.settings import Sequence, Settings, Verb
 from arboleda.drivers.port import DriverError
 from arboleda.kinds.declared import Device
 from arboleda.plant_file.loader import load
@@ -251,9 +252,10 @@ class Played:
 
     def __init__(self, url: str, timeout: float) -> None:
         self.uaclient = self
+        self._changes: Any = None  # until somebody subscribes
 
-    def get_node(self, node: str) -> Any:
-        return SimpleNamespace(nodeid=ua.NodeId.from_string(node), call_method=self.call_method)
+    def get_node(self, node: ua.NodeId) -> Any:
+        return SimpleNamespace(nodeid=node, call_method=self.call_method)
 
     async def connect(self) -> None:
         """It is there at once."""
@@ -266,7 +268,8 @@ class Played:
         """All changes are told, whether they are asked for or not."""
 
     async def read_attributes(self, nodes: list[Any], attribute: Any) -> list[Any]:
-        self._changes.datachange_notification(None, None, None)
+        if self._changes is not None:
+            self._changes.datachange_notification(None, None, None)
         await asyncio.sleep(0)
         return [ua.DataValue(ua.Variant(0, ua.VariantType.UInt16))] * len(nodes)
 
@@ -337,6 +340,40 @@ def test_a_method_that_refuses_late_is_heard_as_of_then(
         assert report.at > sent_at
 
 
+class Slow(Played):
+    """One that takes its time for values, and none for a stop; it keeps what was written."""
+
+    written: ClassVar[list[str]] = []
+
+    async def write_attributes(self, nodes: list[Any], values: list[Any]) -> list[Any]:
+        names = [node.to_string() for node in nodes]
+        if "ns=2;s=Verb" in names:
+            await asyncio.sleep(0.2)
+        self.written += names
+        return [ua.StatusCode()] * len(nodes)
+
+
+def test_a_halt_between_values_and_number_keeps_the_number_from_being_written(
+    belt: Device, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(asyncua, "Client", Slow)
+    monkeypatch.setattr(Slow, "written", [])
+    verb = Verb(write=(Write(node="ns=2;s=Verb", value=1, type="byte"),))
+    halt = Order(write=(Write(node="ns=2;s=Halt", value=True, type="bool"),))
+    sequence = Sequence(accepted="ns=2;s=accepted", done="ns=2;s=done", write="ns=2;s=Request")
+    mapped = settings(belt, 4840, verbs={"load": verb}, halt=halt, sequence=sequence)
+    with driven(belt, mapped) as (driver, heard):
+        heard.until(is_heard)
+        driver.send(told(belt, "load"))
+        driver.send(Stop(id="s", robot="belt", mode=StopMode.HALT))
+        report = heard.until(lambda report: report.rejected is not None)
+        assert (report.rejected, report.refusal) == ("c1", "stopped")
+        assert Slow.written == ["ns=2;s=Halt", "ns=2;s=Verb"]
+        driver.send(told(belt, "load"))
+        heard.until(lambda report: "ns=2;s=Request" in Slow.written)
+        assert Slow.written[2:] == ["ns=2;s=Verb", "ns=2;s=Request"]
+
+
 @pytest.mark.parametrize(("client", "times"), [(Played, 50), (Stubborn, 1)])
 def test_a_cancellation_that_gets_lost_does_not_hold_up_the_end(
     belt: Device, monkeypatch: pytest.MonkeyPatch, client: type, times: int
@@ -358,7 +395,12 @@ def certificate(folder: Path, name: str) -> tuple[Path, Path]:
     """A certificate and its key, made by openssl."""
     need_tool("openssl")
     made, key = folder / f"{name}.pem", folder / f"{name}.key.pem"
-    subjects = ["-subj", f"/CN={name}", "-addext", f"subjectAltName=URI:urn:{name},DNS:localhost"]
+    extensions = (
+        f"subjectAltName=URI:urn:{name},DNS:localhost",
+        "keyUsage=digitalSignature,nonRepudiation,keyEncipherment,dataEncipherment",
+        "extendedKeyUsage=serverAuth,clientAuth",
+    )
+    subjects = ["-subj", f"/CN={name}", *(each for row in extensions for each in ("-addext", row))]
     kind = ["req", "-x509", "-newkey", "rsa:2048", "-nodes", "-days", "2", *subjects]
     subprocess.run(
         ["openssl", *kind, "-keyout", str(key), "-out", str(made)], check=True, capture_output=True

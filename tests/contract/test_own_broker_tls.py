@@ -142,7 +142,11 @@ def pub(require: Callable[[str], str], port: int, *options: object) -> subproces
     ]
     login = ["-u", "ra_1", "-P", USERS["ra_1"], "-i", "ra_1"]
     return subprocess.run(
-        [*map(str, (*words, *login, *options))], capture_output=True, text=True, timeout=30, check=False
+        [*map(str, (*words, *login, *options))],
+        capture_output=True,
+        text=True,
+        timeout=PATIENCE_S,
+        check=False,
     )
 
 

@@ -13,7 +13,7 @@ import httpx
 import pytest
 
 from ..chromium import browsers
-from ..patience import PATIENCE_S
+from ..patience import PATIENCE_MS, PATIENCE_S
 
 pytestmark = pytest.mark.requires("chromium", "playwright")
 
@@ -42,7 +42,7 @@ def browser() -> Iterator[Any]:
 @pytest.fixture
 def tab(browser: Any, hostile: list[str]) -> Iterator[Any]:
     made = browser.new_page()
-    made.set_default_timeout(10_000)
+    made.set_default_timeout(PATIENCE_MS)
     made.goto(hostile[-1])
     made.wait_for_selector("#connection", state="hidden")
     yield made

@@ -88,13 +88,14 @@ def test_who_was_superseded_writes_nothing(
 def test_a_leader_that_was_away_finds_out_that_it_is_none_any_more(
     postgres: Server, database: str, plant: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    now = 1000.0
+    monkeypatch.setattr("arboleda.adapters.clock.seconds", lambda: now)
     with leading(database, plant) as memory:
         memory.confirm()
         take_over(postgres, plant)
         memory.confirm()  # its lease has not ended: nobody can have taken over but by a look into the tables
-        now = time.clock_gettime(time.CLOCK_BOOTTIME)
         assert memory.leads_for_certain
-        monkeypatch.setattr("arboleda.adapters.clock.seconds", lambda: now + LEASE_S)
+        now += LEASE_S
         assert not memory.leads_for_certain
         with pytest.raises(Superseded):
             memory.confirm()
@@ -123,7 +124,8 @@ def test_who_waits_goes_by_its_own_clock_wherever_that_of_the_server_is_set(
             memory.renew()
 
 
-def test_a_plant_has_one_leader(database: str, plant: str) -> None:
+def test_a_plant_has_one_leader(database: str, plant: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("arboleda.core.leading.LEASE_S", PATIENCE_S)
     with leading(database, plant) as first, PostgresMemory(database, plant) as second:
         renewing, ended = _renewing(first)
         try:
@@ -374,9 +376,12 @@ def test_a_server_that_is_away_is_one_sentence_soon(postgres: Server, database: 
         assert [row.id for row in memory.tasks(TaskQuery())] == ["a"]
 
 
-def test_a_server_that_says_nothing_counts_as_away(postgres: Server, database: str, plant: str) -> None:
+def test_a_server_that_says_nothing_counts_as_away(
+    postgres: Server, database: str, plant: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
     with leading(database, plant) as memory:
         memory.keep(LATCH)
+        monkeypatch.setattr("arboleda.store.postgres.server.ANSWER_S", 1.0)
         postgres.freeze(on=True)
         try:
             began = time.monotonic()
@@ -412,7 +417,7 @@ def test_all_plants_of_a_database_are_found_with_who_leads_them(database: str, p
 
 
 def test_a_server_that_was_silent_for_a_while_is_heard_again_by_leader_and_standby(
-    postgres: Server, database: str, plant: str
+    postgres: Server, database: str, plant: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     with leading(database, plant) as memory:
         others = Leadership(database, plant)
@@ -420,9 +425,11 @@ def test_a_server_that_was_silent_for_a_while_is_heard_again_by_leader_and_stand
         epoch = others.leader().epoch
         postgres.freeze(on=True)
         try:
-            for ask in (memory.renew, others.leader):
-                with pytest.raises(ArboledaError, match="gave no answer for 1 s"):
-                    ask()
+            with monkeypatch.context() as patch:
+                patch.setattr("arboleda.store.postgres.server.ANSWER_S", 1.0)
+                for ask in (memory.renew, others.leader):
+                    with pytest.raises(ArboledaError, match="gave no answer for 1 s"):
+                        ask()
         finally:
             postgres.freeze(on=False)
         memory.renew()

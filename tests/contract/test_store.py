@@ -204,7 +204,7 @@ def test_a_file_that_another_program_writes_is_said_to_be(path, monkeypatch):
 
 def test_a_commit_waits_for_no_disk_and_a_sync_has_the_log_written_to_it(path, monkeypatch):
     synced: list[str] = []
-    monkeypatch.setattr(sqlite, "SYNC", lambda file: synced.append(os.readlink(f"/proc/self/fd/{file}")))
+    monkeypatch.setattr(sqlite, "sync_data", lambda file: synced.append(os.readlink(f"/proc/self/fd/{file}")))
     with Store(path) as store:
         store.keep(LATCH)
         store.journal(ACT, 5.0)
@@ -363,7 +363,7 @@ def test_a_memory_that_was_closed_lacks_nothing(path, monkeypatch):
 def test_a_memory_whose_sync_failed_may_lack_writes_although_it_was_closed(path, monkeypatch):
     ended = on_boot("monday", path, monkeypatch)
     ended.begin()
-    monkeypatch.setattr(sqlite, "SYNC", fail_to_sync)
+    monkeypatch.setattr(sqlite, "sync_data", fail_to_sync)
     with pytest.raises(ArboledaError):
         ended.sync()
     ended.close()
@@ -375,7 +375,7 @@ def fail_to_sync(_: int) -> None:
 
 
 def test_a_sync_that_fails_is_one_sentence(path, monkeypatch):
-    monkeypatch.setattr(sqlite, "SYNC", fail_to_sync)
+    monkeypatch.setattr(sqlite, "sync_data", fail_to_sync)
     with Store(path) as store, pytest.raises(ArboledaError, match=r"cannot be used \(Input/output error\)"):
         store.sync()
 

@@ -6,11 +6,22 @@ import math
 import queue
 import time
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from typing import Any
 
 import pytest
 
-from arboleda.drivers import Driver, FollowPath, MotionState, MoveJoints, Report, Stop, StopMode
+from arboleda.drivers import (
+    Driver,
+    FollowPath,
+    MotionState,
+    MoveJoints,
+    Receipt,
+    Report,
+    Stop,
+    StopMode,
+    Tokens,
+)
 from arboleda.drivers.gripper_command.settings import Settings as GripperSettings
 from arboleda.drivers.joint_trajectory.settings import Settings as ArmSettings
 from arboleda.drivers.nav2.pose import Pose
@@ -61,9 +72,17 @@ class Bench:
     """A driver that is heard by the test, and the faults of what it reaches."""
 
     def __init__(self, driver: Driver, device: Robot, faults: Faults) -> None:
-        self.driver, self.faults = driver, faults
-        self._heard: queue.Queue[Report] = queue.Queue()
-        driver.start([device], self._heard.put, time.monotonic)
+        self.faults, self._device = faults, device
+        self._start(driver)
+
+    def _start(self, driver: Driver) -> None:
+        self.driver, self._heard = driver, queue.Queue[Report]()
+        driver.start([self._device], self._heard.put, time.monotonic)
+
+    def restart(self, driver: Driver) -> None:
+        """Go on with another driver, as a plant does that starts again."""
+        self.driver.stop()
+        self._start(driver)
 
     def until(self, holds: Callable[[Report], Any]) -> Report:
         """The next report that does."""
@@ -159,6 +178,19 @@ def test_an_arm_is_moved_in_its_time(arm: Bench) -> None:
     assert arm.until(lambda report: report.accepted == "1").state is MotionState.MOVING
     done = arm.until(lambda report: report.done == "1")
     assert done.q is not None and ARM.motion.stands_at(done.q, GOAL)
+
+
+def test_a_later_start_hears_from_the_server_what_an_earlier_one_had_done(arm: Bench) -> None:
+    from arboleda_ros.joint_trajectory import FollowJointTrajectory
+
+    boot = arm.ready().boot_id
+    arm.driver.send(replace(go("9-1"), token="ab05ba000401"))
+    arm.until(lambda report: report.done == "9-1")
+    arm.restart(FollowJointTrajectory(ArmSettings()))
+    known = arm.until(lambda report: report.receipt is not None)
+    assert (known.receipt, known.boot_id) == (Receipt(9, 1, 1), boot)
+    assert known.tokens == Tokens("ab05ba000401", "ab05ba000401")
+    assert (known.accepted, known.done) == (None, None)
 
 
 def test_a_goal_is_halted_under_way(arm: Bench) -> None:

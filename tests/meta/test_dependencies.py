@@ -65,7 +65,7 @@ def test_the_smallest_install_needs_the_same_on_every_processor() -> None:
 
 def test_the_wheels_of_ros_2_are_asked_for_where_they_exist_only() -> None:
     text = (ROOT / "pyproject.toml").read_text(encoding="utf-8")
-    asked = re.findall(r'^ *"(ros-jazzy-.*)",$', text, re.MULTILINE)
+    asked = re.findall(r'^ *"(ros-(?:jazzy|kilted)-.*)",$', text, re.MULTILINE)
     assert asked and all(Requirement(each).marker is not None for each in asked)
     elsewhere = {"platform_machine": "aarch64", "sys_platform": "linux"}
     assert not any(marker.evaluate(elsewhere) for each in asked if (marker := Requirement(each).marker))

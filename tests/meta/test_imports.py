@@ -29,6 +29,7 @@ def third_party(path: Path) -> set[str]:
         ("dispatch", set()),
         ("trees", {"py_trees"}),
         ("core", {"py_trees"}),
+        ("client", {"httpx", "pandas"}),
         ("dashboard", {"fastapi", "nicegui", "yaml"}),
         ("drawing", set()),
         ("drivers", set()),

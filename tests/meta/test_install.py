@@ -21,7 +21,7 @@ def install(
     (folder / "scripts").mkdir()
     for name in ("install", "ros-prefix"):
         shutil.copy(ROOT / "scripts" / name, folder / "scripts")
-    for name in ("pyproject.toml", "constraints.txt"):
+    for name in ("pyproject.toml", "constraints.txt", "constraints-kilted.txt"):
         shutil.copy(ROOT / name, folder)
     path = folder / "tools"
     path.mkdir()
@@ -85,3 +85,9 @@ def test_building_messages_without_pythons_headers_gets_the_line_to_type(tmp_pat
     assert result.returncode == 1
     assert result.stderr.endswith("on Debian or Ubuntu type: sudo apt install python3.11-dev\n")
     assert result.stderr.count("\n") == 1
+
+
+def test_kilted_is_refused_where_another_ros_2_is_sourced(tmp_path: Path) -> None:
+    result = install(tmp_path, python("3.12"), "kilted", ROS_DISTRO="jazzy")
+    assert result.returncode == 1
+    assert "ROS 2 jazzy is sourced" in result.stderr

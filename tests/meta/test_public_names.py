@@ -16,7 +16,13 @@ ROOT = Path(__file__).parents[2]
 PAGE = ROOT / "docs/reference/api.md"
 MODULES = [
     name
-    for name in ("arboleda.recipes", "arboleda.kinds", "arboleda.drivers", "arboleda.testing")
+    for name in (
+        "arboleda.client",
+        "arboleda.recipes",
+        "arboleda.kinds",
+        "arboleda.drivers",
+        "arboleda.testing",
+    )
     if find_spec(name) and hasattr(importlib.import_module(name), "__all__")
 ]
 

@@ -137,7 +137,7 @@ GRIP = (
         "station_gets_one_part",
         "What is resumed begins anew, instead of where it was held.",
         edit(
-            CellRun._again,
+            CellRun.go_on,
             "for act in self.run.interrupted():\n        act.send()",
             "self._look(self.run.begin(lambda: self.keeping.make(self.task.order)))",
         ),

@@ -19,7 +19,7 @@ from .mutant import SHARED, edit, mutant
 BEAT = "self._beat()\n    self.next_deadline = self._earliest()"
 COLLECT = "out = self.dispatcher.outbox.copy()\n    self.dispatcher.outbox.clear()"
 STAYS_SHORT = (
-    " or at < seen.stopped_since + QUIET_S:\n"
+    " or at < observed.stopped_since + QUIET_S:\n"
     "        return False\n"
     "    if not entry.way:\n"
     "        return True\n"

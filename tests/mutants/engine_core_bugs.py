@@ -28,8 +28,8 @@ CORE_BUGS = (
     bug(
         CELL,
         "A stop leaves the queue running.",
-        "        self.queue.paused = True\n        self.end_teaching(STOPPED",
-        "        self.end_teaching(STOPPED",
+        "        self.queue.paused = True\n        self.manual.end(STOPPED",
+        "        self.manual.end(STOPPED",
     ),
     bug(
         CELL,
@@ -56,10 +56,10 @@ CORE_BUGS = (
         "        self.interrupt(self.trouble or given_up)\n        self.become(Cause.ENDED)\n",
     ),
     bug(
-        CELL,
+        "core/losses.py",
         "An operator who opens a hand strands nobody.",
-        "            self.stranded = NO_PART(arm=robot)\n\n    def _recover",
-        "            self.dirty = True\n\n    def _recover",
+        "        run.stranded = NO_PART(arm=robot)\n\n\ndef uproot",
+        "        run.dirty = True\n\n\ndef uproot",
     ),
     bug(
         CELL,

@@ -24,8 +24,8 @@ OF_EVIDENCE = (
     bug(
         EVIDENCE,
         "A way counts as driven at its last node but one.",
-        "entry.seen.passed == len(entry.way) - 1",
-        "entry.seen.passed >= len(entry.way) - 2",
+        "entry.observations.passed == len(entry.way) - 1",
+        "entry.observations.passed >= len(entry.way) - 2",
     ),
     bug(
         EVIDENCE,
@@ -78,14 +78,14 @@ OF_EVIDENCE = (
     bug(
         EVIDENCE,
         "At joints a process is done by its facts, though nobody saw it at work.",
-        "    if seen.moving and seen.stopped_since is not None:\n        if not entry.sets",
-        "    if seen.stopped_since is not None:\n        if not entry.sets",
+        "    if observed.moving and observed.stopped_since is not None:\n        if not entry.sets",
+        "    if observed.stopped_since is not None:\n        if not entry.sets",
     ),
     bug(
         EVIDENCE,
         "At state a halted move counts as done.",
-        "if entry.seen.moving and _rests(entry, report) and entry.cancelled_at is None:",
-        "if entry.seen.moving and _rests(entry, report):",
+        "if entry.observations.moving and _rests(entry, report) and entry.cancelled_at is None:",
+        "if entry.observations.moving and _rests(entry, report):",
     ),
     bug(
         EVIDENCE,
@@ -102,14 +102,14 @@ OF_EVIDENCE = (
     bug(
         EVIDENCE,
         "Homing is done as soon as the board says homed.",
-        "if entry.seen.unhomed and report.homed and report.state is MotionState.STOPPED:",
+        "if entry.observations.unhomed and report.homed and report.state is MotionState.STOPPED:",
         "if report.homed and report.state is MotionState.STOPPED:",
     ),
     bug(
         EVIDENCE,
         "A fault of a device fails nothing.",
-        "    if report.state is MotionState.FAULT:\n        return _failed",
-        "    if report.state is MotionState.FAULT and entry.finishes:\n        return _failed",
+        "    if report.state is MotionState.FAULT:\n        if isinstance(entry",
+        "    if report.state is MotionState.FAULT and entry.finishes:\n        if isinstance(entry",
     ),
     bug(
         EVIDENCE,

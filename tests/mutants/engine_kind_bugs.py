@@ -52,7 +52,7 @@ KIND_BUGS = (
     bug(
         DECLARED,
         "A virtual device always gives the first answer.",
-        "        if told.told.virtual is None:\n            return answers[0]\n",
+        "        if call.told.virtual is None:\n            return answers[0]\n",
         "        return answers[0]\n",
         argued="the judge asks the same function, and which answer a virtual device gives is its own affair",
     ),

@@ -52,7 +52,7 @@ WIRE_BUGS = (
     bug(
         LINK,
         "Telemetry that was overtaken counts.",
-        "        if self._overtaken(said) and not self._counts_anew(at, said.seq):\n"
+        "        if self._overtaken(telemetry) and not self._counts_anew(at, telemetry.seq):\n"
         "            return LinkUpdate.OLD\n",
         "",
     ),

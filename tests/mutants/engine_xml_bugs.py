@@ -90,8 +90,8 @@ XML_BUGS = (
     bug(
         CONTROLS,
         "A switch takes the case after the one that it has.",
-        '            case = self.given.text(f"case_{number + 1}", scope)',
-        '            case = self.given.text(f"case_{max(number, 1)}", scope)',
+        '            case = self.ports.text(f"case_{number + 1}", scope)',
+        '            case = self.ports.text(f"case_{max(number, 1)}", scope)',
     ),
     bug(
         CONTROLS,
@@ -132,8 +132,8 @@ XML_BUGS = (
     bug(
         DECORATORS,
         "Milliseconds are taken for seconds.",
-        "self.until = self.time.now + self.given.number(self.port, self.scope) / 1000",
-        "self.until = self.time.now + self.given.number(self.port, self.scope)",
+        "self.until = self.time.now + self.ports.number(self.port, self.scope) / 1000",
+        "self.until = self.time.now + self.ports.number(self.port, self.scope)",
     ),
     bug(
         DECORATORS,
@@ -263,8 +263,8 @@ XML_BUGS = (
     bug(
         LEAVES,
         "A sleep counts seconds.",
-        'self.until = self.time.now + self.given.number("msec", self.scope) / 1000',
-        'self.until = self.time.now + self.given.number("msec", self.scope)',
+        'self.until = self.time.now + self.ports.number("msec", self.scope) / 1000',
+        'self.until = self.time.now + self.ports.number("msec", self.scope)',
     ),
     bug(
         LEAVES,

@@ -29,7 +29,6 @@ EQUAL = {
 """Those with which the plant does the same as without, as far as its file says what is so; and why."""
 NO_PART_AT_SENSORS = "the virtual belt sees no part that nobody told it of"
 NOT_FOUND = {
-    ("kitting", "The cart rolls in before it is there."): "the lift needs nothing of the cart",
     ("machine_tending", "Nobody looks whether the belt is clear."): NO_PART_AT_SENSORS,
     ("machine_tending", "The belt is never told to clear."): NO_PART_AT_SENSORS,
 }

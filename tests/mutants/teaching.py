@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from arboleda.core.cell import CellRun
+from arboleda.core.manual_mode import ManualMode
 from arboleda.core.teaching import Press, Teaching
 from arboleda.kinds.joints.motion import JointMotion
 
@@ -21,8 +22,8 @@ TEACHING = (
     mutant(
         "no_task_begins_in_manual",
         "A cell that is taught goes on with its queue.",
-        edit(CellRun.not_ready, "if self.teaching is not None:", "if False:"),
-        edit(CellRun.teach, "self.queue.paused = True", "self.queue.paused = False"),
+        edit(CellRun.not_ready, "if self.manual.teaching is not None:", "if False:"),
+        edit(ManualMode.begin, "run.queue.paused = True", "run.queue.paused = False"),
         weather=TEACHERS,
     ),
     mutant(

@@ -6,8 +6,12 @@ from pathlib import Path
 
 import pytest
 
+from arboleda.campaigns.proof.calm import calm_run
+from arboleda.campaigns.proof.scenario import scenarios
+from arboleda.plant_file import loader
+
 from ..lengths import length
-from .planted_proof import MOST, sighted
+from .planted_proof import MOST, sighted, written
 from .proof_bug import PLANTS, ProofBug
 from .proof_bugs import BY_FAULTS, EQUAL, NOT_FOUND, PROOF_BUGS
 
@@ -30,3 +34,10 @@ def test_there_are_many_bugs_of_each_plant_and_most_are_found() -> None:
     assert {*NOT_FOUND, *EQUAL, *BY_FAULTS} <= known
     assert len(FOUND) / len(PROOF_BUGS) > 0.93
     assert len(FOUND) / (len(PROOF_BUGS) - len(EQUAL)) >= 0.95
+
+
+def test_the_virtual_belt_sees_no_part_that_an_arm_puts_down(tmp_path: Path) -> None:
+    (bug,) = (each for each in PROOF_BUGS if each.about == "The belt is never told to clear.")
+    model = loader.load(written(tmp_path, bug.plant, bug))
+    calm = calm_run(model, next(scenarios(model, ["mill"])))  # the camera says good first
+    assert (calm.state["parts at belt"], calm.state["belt.entry"]) == (1, "clear")

@@ -37,7 +37,9 @@ def restart(rig: Rig, model: PlantModel | None = None, *, bridge: bool = True, a
             rig.stop_bridge()
         rig.wait(after_s)
     rig.model = model or rig.model
-    rig.plant = Plant(rig.model, epoch=rig.plant.epoch + 1000, now=rig.now, memory=rig.memory, kept=kept(rig))
+    rig.plant = Plant(
+        rig.model, epoch=rig.plant.epoch + 1000, now=rig.now, memory=rig.disk.facts, kept=kept(rig)
+    )
     if bridge:
         rig.stop_bridge()
         rig.start_bridge()

@@ -309,7 +309,7 @@ def test_nobody_says_by_hand_that_a_robot_is_homed_which_says_that_it_is_not(sta
     assert rig.operate(Verb.HOME, "ra1", by_hand=True) == said
     assert rig.operate(Verb.HOME, "ra1") == said
     assert advised(rig, "sis_a")[0] == "home ra1 at its own controls"
-    rig.put_at_reference("ra1")
+    rig.manual.put_at_reference("ra1")
     rig.wait(2.0)
     assert advised(rig, "sis_a")[0] in ("home ra1 --by-hand", "retry sis_a")
 

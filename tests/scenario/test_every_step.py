@@ -47,7 +47,8 @@ PLACED = STEPS.index("effector off/switch")  # from here on it is in its station
 
 levels = pytest.mark.parametrize("evidence", list(Evidence))
 at_every_step_and_level = pytest.mark.parametrize(
-    ("step", "evidence"), sample(product(STEPS, Evidence), every=2)
+    ("step", "evidence"),
+    sample(product(STEPS, Evidence), every=4),  # of three levels: each with many steps
 )
 at_every_step_one_level = pytest.mark.parametrize(
     ("step", "evidence"), list(zip(STEPS, cycle(Evidence), strict=False))

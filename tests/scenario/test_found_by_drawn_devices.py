@@ -25,6 +25,16 @@ class Found:
     faults: tuple[Fault, ...] = ()
 
 
+SET_AND_BAKE = """
+from arboleda.recipes import recipe, work
+
+
+@recipe("do_1")
+def do_1(cell):
+    oven = cell.device("oven")
+    return work(oven.put(to="up"), oven.bake())
+"""
+
 DOWN_AND_UP = """
 from arboleda.recipes import recipe, work
 
@@ -160,6 +170,72 @@ def do_1(cell):
             cells: {cell: {devices: {mill: {kind: one}}, on_restart: go_on}}
         """,
         beside={"recipes.py": DOWN_AND_UP},
+    ),
+    "work that an alarm had ended beside a switch without end was cut short by the next": Found(
+        seconds=90.0,
+        faults=(
+            Fault(kind="never_ends", at=0.1, seconds=20.0, target="oven", seed=1),
+            Fault(kind="driver_alarm", at=10.0, seconds=0.5, target="oven", seed=1),
+        ),
+        file="""
+            name: drawn_52153
+            uses: [recipes.py]
+            kinds:
+              one:
+                facts: {mode: [up, down]}
+                verbs:
+                  put: {effect: switch, with: {to: [up, down]}, sets: {mode: $to}}
+                  bake: {effect: process, takes_s: 1, on_stop: finish}
+            cells: {cell: {devices: {oven: {kind: one}}}}
+        """,
+        beside={"recipes.py": SET_AND_BAKE},
+    ),
+    "an alternative went on with a machine clamped, because its work was cut short": Found(
+        faults=(Fault(kind="gives_up", at=5.0, seconds=15.0, target="press", word="atasco"),),
+        file="""
+            name: drawn_80229
+            uses: [recipes.py]
+            kinds:
+              press:
+                facts: {clamped: bool}
+                verbs:
+                  clamp: {effect: switch, with: {"on": bool}, sets: {clamped: $on}, holds: part}
+                  press: {effect: motion, takes_s: 2}
+            cells:
+              cell:
+                devices: {loader: {kind: arm, model: scara}, press: {kind: press}}
+                targets:
+                  home: {loader: {deg: [0, 0], mm: 0}}
+                  tray: {loader: {deg: [34.57, -38.59], mm: 80}}
+                places: {tray: {}}
+        """,
+        beside={
+            "recipes.py": """
+from arboleda.recipes import recipe, work
+
+
+@recipe("do_1")
+def do_1(cell):
+    press = cell.device("press")
+    clamped = work(press.clamp(on=True), press.press(), press.clamp(on=False))
+    return work(cell.fallback(clamped, cell.wait(0.5)))
+"""
+        },
+    ),
+    "a process without a duration was never told by a device that tells its state of another instant": Found(
+        seed=2,
+        file="""
+            name: drawn_52036
+            uses: [recipes.py]
+            kinds:
+              one:
+                facts: {mode: [up, down]}
+                verbs:
+                  put: {effect: switch, with: {to: [up, down]}, sets: {mode: $to}}
+                  bake: {effect: process, sets: {mode: down}, on_stop: finish}
+            cells: {cell: {devices: {oven: {kind: one, evidence: facts}}}}
+        """,
+        beside={"recipes.py": SET_AND_BAKE},
     ),
 }
 

@@ -34,7 +34,7 @@ def the_end(rig: Rig) -> Any:
 @pytest.mark.parametrize("step", STEPS)
 def test_the_task_fails_and_says_that_nobody_of_ours_commanded_it(rig: Rig, step: str) -> None:
     rig.wait_for("sis_a", f"main/{step}")
-    rig.open_effector("ra_1")
+    rig.manual.open_effector("ra_1")
     rig.wait(60.0, until=lambda: rig.plant.at_rest)
     assert (the_end(rig).state.value, the_end(rig).reason) == ("failed", Reason.PART_LOST)
     assert "not commanded by this plant" in str(the_end(rig).sentence)
@@ -50,14 +50,14 @@ def test_what_another_node_sent_is_named_only_where_it_was_obeyed_lately(
     rig.wait_for("sis_a", "main/move to station 4")
     sent = "ra1: effector_cmd 0 of /teleop was sent to it"
     rig.tell(Interference(at=rig.now - ago_s, robot="ra1", sentence=sent))
-    rig.open_effector("ra_1")
+    rig.manual.open_effector("ra_1")
     rig.wait(60.0, until=lambda: rig.plant.at_rest)
     assert (sent in str(the_end(rig).sentence)) is named
 
 
 def test_the_next_task_is_done(rig: Rig) -> None:
     rig.wait_for("sis_a", "main/move to station 4")
-    rig.open_effector("ra_1")
+    rig.manual.open_effector("ra_1")
     rig.wait(60.0, until=lambda: rig.plant.at_rest)
     task = rig.submit(f"{TASK} #again").task
     assert rig.wait(90.0, until=lambda: rig.outcomes()[task].state.value == "done")
@@ -72,7 +72,7 @@ def test_a_part_is_lost_as_ever_after_a_task_was_abandoned(rig: Rig) -> None:
     task = rig.submit(f"{TASK} #again").task
     assert rig.operate(Verb.RESUME, "sis_a") is None
     rig.wait_for("sis_a", "main/move to station 4")
-    rig.open_effector("ra_1")
+    rig.manual.open_effector("ra_1")
     rig.wait(60.0, until=lambda: rig.plant.at_rest)
     assert rig.outcomes()[task].reason is Reason.PART_LOST
 
@@ -81,7 +81,7 @@ def test_an_effector_that_opens_while_the_task_is_held_leaves_nothing_to_go_on_w
     rig.wait_for("sis_a", "main/move to station 4")
     rig.operate(Verb.HOLD, "sis_a")
     rig.wait(3.0)
-    rig.open_effector("ra_1")
+    rig.manual.open_effector("ra_1")
     rig.wait(1.0)
     held = rig.plant.cells["sis_a"]
     assert "ra1 has no part to go on with: abandon sis_a" in str(reasons.of_hold(held))
@@ -93,11 +93,11 @@ def test_an_effector_that_opens_while_the_task_is_held_leaves_nothing_to_go_on_w
 
 def test_an_effector_that_opens_before_the_grip_or_in_a_recovery_is_no_failure_of_its_own(rig: Rig) -> None:
     rig.wait_for("sis_a", "main/drive path 0B")
-    rig.open_effector("ra_1")
+    rig.manual.open_effector("ra_1")
     rig.wait_for("sis_a", "main/move to station 4")
     rig.operate(Verb.CANCEL, "sis_a")
     rig.wait_for("sis_a", "carry back/move to pick-up")
-    rig.open_effector("ra_1")
+    rig.manual.open_effector("ra_1")
     rig.wait(60.0, until=lambda: rig.plant.at_rest)
     assert (the_end(rig).state.value, the_end(rig).reason) == ("cancelled", Reason.CANCELLED)
     assert rig.plant.cells["sis_a"].state is CellState.IDLE

@@ -134,7 +134,7 @@ def facts(rig: Rig) -> Any:
     """Everything that a refused verb must leave as it is."""
     latched = set(rig.plant.dispatcher.latched)
     grip = rig.plant.dispatcher.effectors.grips["ra1"]
-    return rig.snapshot(), latched, grip, {fact: dict(kept) for fact, kept in rig.memory.items()}
+    return rig.snapshot(), latched, grip, {fact: dict(kept) for fact, kept in rig.disk.facts.items()}
 
 
 VERBS = [(verb, "sis_a") for verb in Verb] + [(verb, "ra1") for verb in (Verb.RELEASE, Verb.HOME)]
@@ -449,7 +449,7 @@ def test_after_a_failed_recovery_the_part_is_released_before_it_is_abandoned(
     mark = len(rig.to_boards)
     act(rig, Verb.RELEASE, scope="ra1")
     assert witness.part["ra1"] == "floor"
-    assert rig.memory[Fact.EFFECTOR]["ra1"] == "off"
+    assert rig.disk.facts[Fact.EFFECTOR]["ra1"] == "off"
     act(rig, Verb.ABANDON)
     rig.wait(10.0)
     assert cell(rig).state is CellState.IDLE

@@ -1,4 +1,4 @@
-"""A belt behind a PLC under its faults, on Modbus and OPC UA; `scripts/driver-faults` runs more seeds."""
+"""A belt behind a PLC under its faults, on Modbus, OPC UA and S7; `scripts/driver-faults` runs more seeds."""
 
 from __future__ import annotations
 
@@ -11,13 +11,15 @@ from arboleda.drivers.plc.numbers import Numbers
 from arboleda.plant_file.loader import load
 from arboleda.virtual.modbus.memory import FAULTS as MODBUS_FAULTS
 from arboleda.virtual.opcua.faults import FAULTS as OPCUA_FAULTS
+from arboleda.virtual.s7.memory import FAULTS as S7_FAULTS
 from arboleda_driver_faults.modbus import ModbusRig, Registers
 from arboleda_driver_faults.opcua import OpcUaRig
 from arboleda_driver_faults.plc import BeltRig
 from arboleda_driver_faults.rig import TASKS, run
+from arboleda_driver_faults.s7 import S7Rig
 
 EXAMPLES = Path(__file__).parents[2] / "examples/plc_conveyor"
-MODBUS, OPCUA = load(EXAMPLES / "plant.yaml"), load(EXAMPLES / "opcua.yaml")
+MODBUS, OPCUA, S7 = (load(EXAMPLES / file) for file in ("plant.yaml", "opcua.yaml", "s7.yaml"))
 SEEDS = 4
 FEW = 2  # tasks, in which a fault comes by itself
 
@@ -30,6 +32,7 @@ def breaches(rig: BeltRig, seed: int, *names: str, tasks: int = TASKS) -> list[s
 def test_no_false_success_no_hang_and_the_right_cause(seed: int) -> None:
     assert breaches(ModbusRig(MODBUS), seed) == []
     assert breaches(OpcUaRig(OPCUA), seed) == []
+    assert breaches(S7Rig(S7), seed) == []
 
 
 @pytest.mark.parametrize("fault", MODBUS_FAULTS)
@@ -40,6 +43,11 @@ def test_every_fault_of_modbus_by_itself(fault: str) -> None:
 @pytest.mark.parametrize("fault", ["mute", *sorted(set(OPCUA_FAULTS) - set(MODBUS_FAULTS))])
 def test_every_fault_that_only_opcua_has_by_itself(fault: str) -> None:
     assert breaches(OpcUaRig(OPCUA), 1, fault, tasks=FEW) == []
+
+
+@pytest.mark.parametrize("fault", ["mute", "refuses_reads", "refuses_writes"])
+def test_every_fault_of_the_connection_of_an_s7_by_itself(fault: str) -> None:
+    assert breaches(S7Rig(S7), 1, fault, tasks=FEW) == []
 
 
 def test_a_belt_that_is_believed_anywhere_would_be_found(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -62,3 +70,4 @@ def test_an_order_that_is_given_twice_would_be_found(monkeypatch: pytest.MonkeyP
 def test_every_fault_has_the_reasons_that_it_may_give() -> None:
     assert set(ModbusRig(MODBUS).causes) == set(MODBUS_FAULTS)
     assert set(OpcUaRig(OPCUA).causes) == set(OPCUA_FAULTS)
+    assert set(S7Rig(S7).causes) == set(S7_FAULTS)

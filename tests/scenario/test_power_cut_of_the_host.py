@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterable
 import pytest
 
 from arboleda.model.messages import Fact, TaskState, Verb
-from arboleda.simulator.world import Fuse, Side
+from arboleda.simulator.plant_process import Fuse, Side
 from arboleda.testing import Rig, Witness, shipped
 from arboleda.wire.transport import Publication
 
@@ -31,10 +31,10 @@ def cut(message: int, *, boards: Change = lambda said: None) -> tuple[Rig, Witne
 
     def burn() -> None:
         burnt.append(rig.now)
-        rig.cut_power(0)
+        rig.plant_process.cut_power(0)
         rig.stop_bridge()
 
-    rig.fuses.append(Fuse(message, Side.AFTER, burn))
+    rig.plant_process.fuses.append(Fuse(message, Side.AFTER, burn))
     rig.wait(60.0, until=lambda: bool(burnt))
     return rig, witness
 
@@ -50,7 +50,7 @@ def changed(said: Publication, boards: Change) -> Iterable[Publication]:
 
 def start(rig: Rig) -> None:
     rig.wait(1.0)
-    rig.start_plant()
+    rig.plant_process.start()
     rig.start_bridge()
     rig.wait(6.0)
 
@@ -118,7 +118,7 @@ def test_a_board_that_has_booted_proves_nothing_by_what_it_echoes() -> None:
 def test_a_second_cut_before_anybody_resumes_changes_nothing() -> None:
     rig, witness = cut(LET_GO)
     start(rig)
-    rig.cut_power(0)
+    rig.plant_process.cut_power(0)
     rig.stop_bridge()
     start(rig)
     assert rig.operate(Verb.RESUME, CELL) is None

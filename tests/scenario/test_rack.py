@@ -57,13 +57,13 @@ def test_they_are_known_after_a_restart(rig: Rig) -> None:
 
 
 def test_a_memory_of_an_earlier_version_has_the_rack_as_it_was(rig: Rig) -> None:
-    rig.memory[Fact.STORED] = {"sis_a": "2 7"}
+    rig.disk.facts[Fact.STORED] = {"sis_a": "2 7"}
     rig.crash()
     rig.wait(3.0)
     assert stored(rig) == {"sis_a": [2, 7]}
     carry_out(rig, "sis_a 0B 0")
     assert stored(rig) == {"sis_a": [0, 2, 7]}
-    assert rig.memory.get(Fact.STORED, {}) == {}, "there is one set of books"
+    assert rig.disk.facts.get(Fact.STORED, {}) == {}, "there is one set of books"
     rig.crash()
     rig.wait(3.0)
     assert stored(rig) == {"sis_a": [0, 2, 7]}
@@ -98,7 +98,7 @@ def test_what_was_taken_out_is_forgotten(rig: Rig, scope: str, told: dict, left:
     assert stored(rig) == left
     assert len(rig.to_boards) == before, "nothing moves"
     kept = {name: " ".join(f"station_{number}=1" for number in numbers) for name, numbers in left.items()}
-    assert rig.memory.get(Fact.PARTS, {}) == kept
+    assert rig.disk.facts.get(Fact.PARTS, {}) == kept
 
 
 REFUSED = [

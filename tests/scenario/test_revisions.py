@@ -15,7 +15,7 @@ from arboleda.testing import shipped
 
 from ..lengths import length, sample
 
-SEEDS = sample(range(24), 8)
+SEEDS = sample(range(24), 24)
 CALM_S = length(60.0, whole=150.0)  # enough for a version
 
 
@@ -62,7 +62,7 @@ def test_a_cell_that_never_takes_one_is_found(monkeypatch: pytest.MonkeyPatch) -
 def test_a_task_of_a_recipe_that_is_gone_is_found_where_it_is_not_ended(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr(Plant, "_without_unfit", lambda plant, run: [])
+    monkeypatch.setattr(Plant, "_without_unfit", lambda plant, run, version: [])
     broken = calm(10).broken
     assert broken is not None and "is not a recipe of sis_b" in broken.sentence
 

@@ -14,7 +14,8 @@ from ..lengths import length
 
 PLANT = Path(__file__).parent / "shared_arm" / "plant.yaml"
 SEEDS, CYCLES = length(1, 40), length(3, 6)
-RUNS = [(level, seed) for level in ("none", "normal", "many", "crashes") for seed in range(1, SEEDS + 1)]
+LEVELS = length(("many", "crashes"), ("none", "normal", "many", "crashes"))
+RUNS = [(level, seed) for level in LEVELS for seed in range(1, SEEDS + 1)]
 
 
 @pytest.mark.parametrize(("level", "seed"), RUNS)

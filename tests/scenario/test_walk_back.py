@@ -183,7 +183,7 @@ def test_a_part_that_was_lost_meanwhile_is_not_delivered(stage: Stage) -> None:
     rig, _ = stage()
     at(rig, "move to station 7")
     rig.wait(0.5)
-    rig.open_effector("ra_1")
+    rig.manual.open_effector("ra_1")
     restart(rig, after_s=1.0)
     rig.wait(1.0)
     assert held(rig).endswith("ra1 has no part to go on with: abandon sis_a")
@@ -203,7 +203,7 @@ def test_a_part_that_was_lost_stays_lost_though_the_effector_is_closed_again(sta
     rig, _ = stage()
     at(rig, "move to station 7")
     rig.wait(0.5)
-    rig.open_effector("ra_1")
+    rig.manual.open_effector("ra_1")
     restart(rig, after_s=1.0)
     rig.wait(1.0)
     rig.boards["ra_1"].body.switch_effector(True)
@@ -342,7 +342,7 @@ def test_a_task_kept_by_a_version_that_hashed_code_goes_on(stage: Stage, by_code
     rig, _ = stage()
     at(rig, "move to pick-up")
     by_code()
-    assert fingerprint.BY_SOURCE not in rig.memory[Fact.STEP][ID]
+    assert fingerprint.BY_SOURCE not in rig.disk.facts[Fact.STEP][ID]
     restart(rig)
     rig.wait(5.0)
     assert rig.operate(Verb.RESUME, CELL) is None
@@ -401,7 +401,7 @@ def test_what_a_plant_file_says_of_the_queue_is_no_change(stage: Stage) -> None:
 def test_a_trail_that_cannot_be_read_leaves_only_the_recovery(stage: Stage, kept: str) -> None:
     rig, _ = stage()
     at(rig, "move to pick-up")
-    rig.memory[Fact.STEP][ID] = kept
+    rig.disk.facts[Fact.STEP][ID] = kept
     restart(rig)
     rig.wait(1.0)
     assert "what was kept of it cannot be read: abandon sis_a" in held(rig)
@@ -425,8 +425,8 @@ def test_nobody_can_resume_before_the_devices_are_heard(stage: Stage) -> None:
 def test_who_resumes_in_the_very_step_in_which_the_plant_starts_is_told_to_wait(stage: Stage) -> None:
     rig, _ = stage()
     at(rig, "move to pick-up")
-    rig.stop_plant()
-    rig.start_plant()
+    rig.plant_process.stop()
+    rig.plant_process.start()
     refusal = rig.operate(Verb.RESUME, CELL)
     assert refusal == "ra1 was not heard yet; until then nobody can tell what became of the step of sis_a"
 
@@ -447,7 +447,7 @@ def test_a_cell_that_goes_on_by_itself_waits_for_a_word_on_its_task(stage: Stage
 def test_a_stop_that_was_kept_ends_the_task(stage: Stage) -> None:
     rig, _ = stage()
     at(rig, "move to pick-up")
-    rig.memory.setdefault(Fact.LATCH, {})["ra1"] = "on"
+    rig.disk.facts.setdefault(Fact.LATCH, {})["ra1"] = "on"
     restart(rig)
     assert run(rig).state is CellState.ABORTED
     assert rig.outcomes()[ID].state is TaskState.FAILED
@@ -456,9 +456,9 @@ def test_a_stop_that_was_kept_ends_the_task(stage: Stage) -> None:
 def test_where_a_task_stands_is_forgotten_with_its_end(stage: Stage) -> None:
     rig, _ = stage()
     at(rig, "system start/dwell")
-    assert ID in rig.memory[Fact.STEP]
+    assert ID in rig.disk.facts[Fact.STEP]
     assert outcome(rig) is TaskState.DONE
-    assert not rig.memory[Fact.STEP]
+    assert not rig.disk.facts[Fact.STEP]
 
 
 def test_each_command_leaves_after_the_step_that_it_is_of_was_kept(stage: Stage) -> None:
@@ -531,7 +531,7 @@ def test_what_a_run_that_ends_has_begun_ends_with_it(stage: Stage) -> None:
     at(rig, "move to pick-up")
     rig.tell(Shutdown(at=rig.now, drops_waiting=True))
     assert rig.outcomes()[ID].state is TaskState.FAILED
-    assert not rig.memory[Fact.STEP]
+    assert not rig.disk.facts[Fact.STEP]
 
 
 def test_what_an_earlier_start_had_accepted_does_not_end_with_a_run(stage: Stage) -> None:
@@ -541,4 +541,4 @@ def test_what_an_earlier_start_had_accepted_does_not_end_with_a_run(stage: Stage
     rig.wait(3.0)
     rig.tell(Shutdown(at=rig.now, drops_waiting=True))
     assert rig.outcomes()[ID].state is TaskState.RUNNING
-    assert ID in rig.memory[Fact.STEP]
+    assert ID in rig.disk.facts[Fact.STEP]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from shutil import copytree
 
@@ -12,7 +13,7 @@ from arboleda.core.advice import Hand
 from arboleda.core.cell_states import CellState
 from arboleda.model.commands import Command, Stop
 from arboleda.model.messages import Check, TaskState, Verb
-from arboleda.model.plant_model import PlantModel
+from arboleda.model.plant_model import PlantModel, Retry
 from arboleda.plant_file.loader import load
 from arboleda.recipes import Kit, parallel, recipe, work
 from arboleda.simulator import hands
@@ -258,17 +259,35 @@ def test_work_that_a_machine_finishes_by_itself_is_not_begun_again() -> None:
 def test_what_a_power_cut_made_the_plant_forget_is_not_begun_again(reached: int) -> None:
     rig = begin(load(EXAMPLES / "lab_bench" / "plant.yaml"), "bench weigh 20")
     assert rig.wait(10.0, until=lambda: "pump dispense" in sent(rig))
-    rig.cut_power(reached)
+    rig.plant_process.cut_power(reached)
     rig.stop_bridge()
     rig.wait(10.0)
     rig.start_bridge()
-    rig.start_plant()
+    rig.plant_process.start()
     rig.wait(10.0)
     if rig.operate(Verb.RESUME, "bench") is not None:
         held = str(reasons.of_hold(rig.plant.cells["bench"]))
         assert "pump proves neither that it has done this nor that it has not" in held
     rig.wait(20.0)
     assert sent(rig).count("pump dispense") == 1
+
+
+def test_work_that_ended_behind_a_lost_link_is_not_begun_again_by_a_retry_that_never_left() -> None:
+    model = bench()
+    (cell,) = model.cells
+    rig = begin(replace(model, cells=(replace(cell, retry=Retry(times=8, backoff_s=4.0)),)), "bench bake 5")
+    assert rig.wait(30.0, until=lambda: "oven bake" in sent(rig))
+    rig.wait(1.0)
+    rig.lost = lambda each: each.topic.startswith("oven/")
+    steps = rig.plant.cells["bench"].context.commands
+    before = steps.sent
+    assert rig.wait(30.0, until=lambda: steps.sent >= before + 2), "a retry was due, and refused"
+    rig.wait(15.0)
+    restart(rig)
+    rig.lost = lambda each: False
+    resumed(rig, "bench", after_s=10.0)
+    assert rig.wait(30.0, until=lambda: state(rig) is TaskState.DONE)
+    assert sent(rig).count("oven bake") == 1
 
 
 def test_another_recipe_of_that_name_is_not_walked_into() -> None:

@@ -99,7 +99,7 @@ def test_three_arms_share_three_zones_and_all_their_tasks_are_done(zoned: Plants
     assert {change.state for change in rig.outcomes().values()} == {TaskState.DONE}
     assert waits, "they met"
     assert all(row["state"] == "free" for row in rig.plant.zones.snapshot())
-    assert not rig.memory.get(Fact.QUARANTINE)
+    assert not rig.disk.facts.get(Fact.QUARANTINE)
     honest(witness)
 
 
@@ -112,7 +112,7 @@ def test_the_zone_of_a_silent_arm_is_quarantined_and_who_waits_gives_up_in_time(
     rig.lost = faults.from_board("ra_1")
     rig.wait(2.0)
     assert zone(rig, "centre") == ("quarantined", "ra1")
-    assert rig.memory[Fact.QUARANTINE]["centre"] == "ra1"
+    assert rig.disk.facts[Fact.QUARANTINE]["centre"] == "ra1"
     assert rig.wait(WAIT_S + 20.0, until=lambda: rig.plant.cells["sis_b"].context.failures.first is not None)
     assert rig.now - since == pytest.approx(WAIT_S)
     assert rig.wait(WAIT_S + 20.0, until=lambda: rig.plant.cells["sis_b"].task is None)
@@ -188,7 +188,7 @@ def test_an_operator_overrides_only_a_quarantine_and_it_is_journalled(
     assert rig.operate(Verb.OVERRIDE, "centre") is None
     assert [str(m.sentence) for m in rig.sent[journal:] if isinstance(m, Journal)] == ["override centre"]
     assert zone(rig, "centre") == ("held", "ra2")
-    assert rig.memory[Fact.QUARANTINE]["centre"] == "ra2", "it may be in there if the plant dies now"
+    assert rig.disk.facts[Fact.QUARANTINE]["centre"] == "ra2", "it may be in there if the plant dies now"
     assert rig.wait(60.0, until=lambda: rig.plant.cells["sis_b"].task is None)
     assert list(rig.outcomes().values())[1].state is TaskState.DONE
     assert witness.collisions, "ra1 was in there, and the operator answered for it"
@@ -495,7 +495,7 @@ def test_an_arm_whose_way_home_a_held_one_blocks_waits_for_what_that_cell_needs(
 def test_a_zone_that_is_kept_for_an_arm_that_is_gone_is_answered_for_first(zoned: Plants) -> None:
     """A plant file before this one had the arm."""
     rig, _ = start(zoned(Evidence.IDS))
-    rig.memory.setdefault(Fact.QUARANTINE, {})["centre"] = "ra9"
+    rig.disk.facts.setdefault(Fact.QUARANTINE, {})["centre"] = "ra9"
     rig.crash()
     rig.crash("ra_2")
     rig.wait(2.0)

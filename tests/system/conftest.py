@@ -27,6 +27,7 @@ from ..chromium import browsers
 from ..conftest import need_tool
 from ..patience import PATIENCE_S
 from ..postgres import Server
+from .playground_site import playground as playground
 from .two_hosts import Hosts
 
 collect_ignore = [] if find_spec("control_msgs") else ["test_mixed_ros2.py"]  # no wheels have it

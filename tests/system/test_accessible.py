@@ -34,6 +34,10 @@ OF_COLOURS = {
 }  # the dark changes nothing else: test_looks.py
 
 
+# what changes its colours by a script has done so then
+TWO_FRAMES = "new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))"
+
+
 class Eye:
     """Looks at a page in light and in the dark; what axe finds there is a line each of `violations`."""
 
@@ -47,6 +51,7 @@ class Eye:
     def look(self, where: str) -> None:
         self._judge(where, ALL)
         self.page.emulate_media(color_scheme="dark")
+        self.page.evaluate(TWO_FRAMES)
         self._judge(f"{where} in the dark", OF_COLOURS)
         self.page.emulate_media(color_scheme="light")
 

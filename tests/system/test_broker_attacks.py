@@ -15,7 +15,7 @@ from typing import Any
 import pytest
 
 from arboleda.cli.client import PlantClient
-from arboleda.cli.line import VerbRefused
+from arboleda.client import Conflict
 from arboleda.model.messages import Verb
 
 from ..patience import PATIENCE_S
@@ -125,7 +125,7 @@ def test_a_plant_whose_broker_is_attacked_is_stopped_and_works_on(
     client = PlantClient(tmp_path / "state")
 
     def done(verb: Verb) -> bool:
-        with suppress(VerbRefused):
+        with suppress(Conflict):
             return bool(client.operate(verb))
         return False
 

@@ -15,6 +15,7 @@ import pytest
 from arboleda.plant_file.loader import load
 from arboleda.runtime.build import Options, build
 
+from ..patience import PATIENCE_S
 from .conftest import paths
 
 pytestmark = pytest.mark.system
@@ -263,7 +264,13 @@ def test_a_png_is_not_poured_into_a_terminal() -> None:
     command = [sys.executable, "-c", main, "tree", "storage", "--format", "png"]
     environ = {**os.environ, "PYTHONPATH": paths()}
     ran = subprocess.run(
-        command, stdout=terminal, stderr=subprocess.PIPE, env=environ, text=True, timeout=30, check=False
+        command,
+        stdout=terminal,
+        stderr=subprocess.PIPE,
+        env=environ,
+        text=True,
+        timeout=PATIENCE_S,
+        check=False,
     )
     os.close(terminal)
     os.close(screen)

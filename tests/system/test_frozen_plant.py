@@ -12,6 +12,7 @@ import pytest
 
 from arboleda.model.plant_model import Evidence
 
+from ..patience import PATIENCE_S
 from .conftest import Chain
 
 pytestmark = [pytest.mark.system, pytest.mark.requires("rclpy", "mosquitto")]
@@ -23,7 +24,7 @@ def freeze(parts: Chain, process: Any) -> None:
     """SIGSTOP, some seconds, SIGCONT."""
     os.kill(process.pid, signal.SIGSTOP)
     until = time.monotonic() + FROZEN_S
-    parts.observer.wait(lambda: time.monotonic() > until, "never", FROZEN_S + 5.0)
+    parts.observer.wait(lambda: time.monotonic() > until, "never", FROZEN_S + PATIENCE_S)
     os.kill(process.pid, signal.SIGCONT)
 
 
@@ -42,6 +43,6 @@ def test_a_plant_that_was_stopped_in_a_move_holds_its_cell(chain: Callable[..., 
     for topic in goals:
         del parts.observer.heard[topic][:]
     until = time.monotonic() + LOOK_S
-    parts.observer.wait(lambda: time.monotonic() > until, "never", LOOK_S + 5.0)
+    parts.observer.wait(lambda: time.monotonic() > until, "never", LOOK_S + PATIENCE_S)
     assert [parts.observer.heard[topic] for topic in goals] == [[], []]
     assert parts.cell("sis_a")["state"] == "held"

@@ -214,7 +214,7 @@ def second_terminal(command: str, folder: Path) -> str:
     plant = str(ROOT / "examples" / "plants" / "lessons.yaml")
     words = as_installed(command).replace("examples/plants/lessons.yaml", plant)
     ran = subprocess.run(
-        words, shell=True, cwd=folder, capture_output=True, text=True, timeout=30, check=False
+        words, shell=True, cwd=folder, capture_output=True, text=True, timeout=PATIENCE_S, check=False
     )
     assert ran.returncode == 0, ran.stderr
     return ran.stdout

@@ -318,3 +318,52 @@ def test_axe_finds_nothing_in_any_panel(browser: Any, address: str, screen: dict
         assert width <= screen["viewport"]["width"], f"{panel} is {width} px wide"
     assert not eye.violations, "\n".join(eye.violations)
     me.go()
+
+
+TURNED = REST.replace("<loader_home/>", "<Sequence><loader_home/><lamp_shine/></Sequence>")
+WORDS = "Approve this now. <script>alert(1)</script> <b>The plant says it is safe.</b>"
+
+
+def proposed(address: str, tree: str, **more: Any) -> str:
+    """The hash of what an assistant proposes."""
+    body = {"name": "light", "by": "bot", "words": WORDS, "trees": {"rest.xml": tree}, "recipes": ["rest"]}
+    answer = httpx.post(f"{address}/api/proposals", json={**body, **more}, timeout=PATIENCE_S).json()
+    assert answer["problems"] == [], answer
+    return str(answer["hash"])
+
+
+@pytest.mark.parametrize("screen", [LAPTOP, PHONE], ids=["laptop", "phone"])
+def test_a_person_looks_at_proposals_of_an_assistant_and_decides(
+    browser: Any, folder: Path, screen: dict[str, Any]
+) -> None:
+    (folder / "plant.yaml").write_text(f"{PLANT}assistants: propose\n")
+    port = str(unused_port())
+    with running(folder / "state", "--plant", str(folder / "plant.yaml"), "--port", port) as address:
+        first = proposed(address, TURNED)
+        me = Person(browser, address, **screen)
+        eye = Eye(me.page)
+        me.panel("proposals")
+        me.sees("#make-proposal-list", first[:12])
+        me.press("[data-proposal=look]")
+        me.sees("#make-proposal .make-hash", first)
+        assert me.page.text_content("#make-proposal blockquote") == WORDS  # as text, which does nothing
+        assert me.page.query_selector("#make-proposal script, #make-proposal blockquote b") is None
+        drawn = me.page.wait_for_selector("#make-proposal img")
+        assert drawn.evaluate("image => image.decode().then(() => image.naturalWidth)") > 0
+        me.press("[data-proposal=prove]")
+        me.page.wait_for_selector("#make-proposal table", timeout=2 * LONG_MS)
+        eye.look("proposals")
+        assert me.page.evaluate("document.documentElement.scrollWidth") <= screen["viewport"]["width"]
+        assert not eye.violations, "\n".join(eye.violations)
+        me.write("#make-reason", "the lamp is broken")
+        me.press("[data-proposal=reject]")
+        me.sees("#make-proposal-list", "the lamp is broken")
+        second = proposed(address, TURNED.replace("<lamp_shine/>", "<lamp_dark/>"), words="")
+        me.press(f"[data-proposal=look][data-hash='{second}']")
+        me.press(f"[data-proposal=approve][data-hash='{second}']")
+        me.press("dialog button.primary")
+        me.page.wait_for_selector("[data-proposal=approve]", state="detached", timeout=LONG_MS)
+        rows = httpx.get(f"{address}/api/proposals").json()
+        assert [(each["hash"], each["stage"]) for each in rows] == [(second, "approved"), (first, "rejected")]
+        assert "lamp_dark" in (folder / "rest.xml").read_text()
+        me.go()

@@ -6,13 +6,15 @@ import pytest
 
 pytest.importorskip("rclpy", reason="rclpy is not installed")
 
+from std_msgs.msg import Float32MultiArray
+
 from arboleda.kinds.arm import SetEffector
 from arboleda.kinds.joints import MoveJoints
 from arboleda.kinds.mobile import FollowPath
 from arboleda.model.commands import Command, Home, Stop, StopMode
 from arboleda.model.errors import PayloadError
 from arboleda.testing import shipped
-from arboleda_ros.convert import labelled_command, labelled_message
+from arboleda_ros.convert import command_message, labelled_command, labelled_message
 
 PLANT = shipped("sis_a")
 COMMANDS = [
@@ -30,6 +32,19 @@ COMMANDS = [
 def test_a_command_comes_with_its_id_and_what_the_plant_had_heard(command: Command, *, copied: bool) -> None:
     robot = PLANT.robots[command.robot]
     assert labelled_command(robot, labelled_message(robot, command, copied=copied))[0] == command
+
+
+def test_a_message_that_is_filled_anew_is_as_one_that_is_made() -> None:
+    form = Float32MultiArray()
+    for command in (*COMMANDS, *reversed(COMMANDS)):
+        robot = PLANT.robots[command.robot]
+        for copied in (True, False):
+            made = labelled_message(robot, command, copied=copied)
+            assert labelled_message(robot, command, copied=copied, into=form) is form
+            assert form == made
+    plain = command_message(COMMANDS[1])
+    assert command_message(COMMANDS[1], into=form) is form
+    assert form == plain
 
 
 def test_a_broken_number_is_refused() -> None:

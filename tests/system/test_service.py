@@ -10,6 +10,7 @@ from typing import Any
 
 import pytest
 
+from ..patience import PATIENCE_S
 from .conftest import paths
 
 pytestmark = pytest.mark.system
@@ -21,7 +22,7 @@ def test_a_plant_says_that_it_is_ready_that_it_lives_and_that_it_ends(
 ) -> None:
     with socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM) as heard:
         heard.bind(str(tmp_path / "notify"))
-        heard.settimeout(30.0)
+        heard.settimeout(PATIENCE_S)
         asks = {"NOTIFY_SOCKET": heard.getsockname(), "WATCHDOG_USEC": "900000", "PYTHONPATH": paths()}
         up = start(sys.executable, "-c", RUN, "up", "--no-ros", "--state", str(tmp_path / "state"), env=asks)
         assert [heard.recv(100) for _ in range(3)] == [b"READY=1", b"WATCHDOG=1", b"WATCHDOG=1"]

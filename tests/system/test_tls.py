@@ -71,7 +71,7 @@ def test_page_boards_and_commands_speak_tls(
         page.goto(f"https://127.0.0.1:{free_port}/?lang=en")
         page.fill("input[name=token]", token)
         page.click("button")
-        page.wait_for_selector("text=sis_a", timeout=1000 * PATIENCE_S)
+        page.wait_for_selector("text=sis_a >> visible=true", timeout=1000 * PATIENCE_S)
         cookie = next(each for each in page.context.cookies() if each["name"].startswith("arboleda_"))
         assert cookie["secure"]
         assert typed("submit", "sis_b 0B 7 #over_tls")[0] == 0

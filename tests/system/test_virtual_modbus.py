@@ -13,24 +13,30 @@ import pytest
 
 from ..patience import PATIENCE_S
 
-pytestmark = [pytest.mark.system, pytest.mark.requires("pymodbus", "serial")]
+pytestmark = [pytest.mark.system, pytest.mark.requires("pymodbus", "serial", "snap7")]
 
 EXAMPLE = Path(__file__).parents[2] / "examples/plc_conveyor"
 COMMAND = "from arboleda.cli.main import main; main()"
 
 
-@pytest.fixture
-def plc(start: Callable[..., Any], tmp_path: Path) -> tuple[Any, str, str]:
+PLCS = {"modbus": ("plant.yaml", "port: 5020"), "s7": ("s7.yaml", "port: 1102")}
+"""By protocol: the plant file of the example, and what it says of the port."""
+
+
+@pytest.fixture(params=PLCS)
+def plc(request: pytest.FixtureRequest, start: Callable[..., Any], tmp_path: Path) -> tuple[Any, str, str]:
     """A virtual PLC, the plant file that reaches it, and where its faults are."""
-    process = start(sys.executable, "-c", COMMAND, "virtual", "modbus", "--port", "0", "--fault-port", "0")
+    file, usual = PLCS[request.param]
+    given = ("virtual", request.param, "--port", "0", "--fault-port", "0")
+    process = start(sys.executable, "-c", COMMAND, *given)
     process.wait_for("faults are switched on ")
-    port = re.search(r"Modbus on \S+:(\d+)", process.output)
+    port = re.search(r"speaks \w+ on \S+:(\d+)", process.output)
     faults = re.search(r"switched on (\S+)", process.output)
     assert port and faults
-    for name in ("plant.yaml", "recipes.py"):
+    for name in (file, "recipes.py"):
         text = (EXAMPLE / name).read_text("utf-8")
-        (tmp_path / name).write_text(text.replace("port: 5020", f"port: {port[1]}"), "utf-8")
-    return process, str(tmp_path / "plant.yaml"), faults[1]
+        (tmp_path / name).write_text(text.replace(usual, f"port: {port[1]}"), "utf-8")
+    return process, str(tmp_path / file), faults[1]
 
 
 def test_a_part_is_carried_then_the_belt_jams_then_the_plc_is_gone(
@@ -69,8 +75,8 @@ def test_a_plc_that_is_not_there_is_said_to_be(
 
 
 def test_a_port_that_is_taken_is_named(plc: tuple[Any, str, str], start: Callable[..., Any]) -> None:
-    port = plc[0].output.split("Modbus on 127.0.0.1:")[1].split()[0]
-    second = start(sys.executable, "-c", COMMAND, "virtual", "modbus", "--port", port)
+    protocol, port = re.findall(r"speaks (\w+) on 127.0.0.1:(\d+)", plc[0].output)[0]
+    second = start(sys.executable, "-c", COMMAND, "virtual", protocol.lower(), "--port", port)
     assert second.wait() == 1
     assert f"127.0.0.1:{port}" in second.output and "Traceback" not in second.output
 

@@ -21,7 +21,8 @@ TASK = {"text": "sis_a 0B 7 #lot-1"}
 class Site:
     """A plant that is killed and started again, and its boards."""
 
-    def __init__(self, folder: Path) -> None:
+    def __init__(self, folder: Path, *options: str) -> None:
+        self._options = options
         self.boards = Boards(1.0, folder / "boards.log")
         self._folder = folder
         self.moves = False  # whether a robot of the cell does
@@ -54,7 +55,7 @@ class Site:
         self.boards.end()
 
     def _start(self) -> Plant:
-        plant = Plant(self._folder / "state", self._folder / "plant.log", self.boards.broker)
+        plant = Plant(self._folder / "state", self._folder / "plant.log", self.boards.broker, self._options)
         assert plant.await_api(time.time() + PATIENCE_S)
         return plant
 

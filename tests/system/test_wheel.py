@@ -13,6 +13,8 @@ from packaging.metadata import Metadata
 
 from arboleda import __version__
 
+from ..patience import PATIENCE_S
+
 ROOT = Path(__file__).parents[2]
 PACKAGES = ("src/arboleda/arboleda", "src/arboleda_ros/arboleda_ros", "bench/arboleda_bench")
 DESCRIPTION = "src/arboleda_description/arboleda_description"
@@ -46,7 +48,7 @@ def installed(wheel: Path, tmp_path: Path) -> Command:
             env=environment,
             capture_output=True,
             text=True,
-            timeout=120,
+            timeout=2 * PATIENCE_S,
             check=False,
         )
 
@@ -64,8 +66,9 @@ def tracked(package: str) -> set[str]:
 def test_it_holds_the_packages_and_nothing_else(wheel: Path) -> None:
     wanted = set().union(*(tracked(each) for each in (*PACKAGES, DESCRIPTION)))
     wanted.remove("arboleda/examples")  # leads to the folder of the examples
-    # The lessons stay in the checkout, beside their pages.
-    examples = {file for file in tracked("examples") if file.count("/") > 1}
+    # The lessons and their notebooks stay in the checkout, beside their pages.
+    here = tracked("examples")
+    examples = {file for file in here if file.count("/") > 1 and not file.startswith("examples/notebooks/")}
     with ZipFile(wheel) as opened:
         held = {name for name in opened.namelist() if ".dist-info/" not in name}
     assert held == wanted | {f"arboleda/{file}" for file in examples}

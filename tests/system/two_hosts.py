@@ -42,7 +42,7 @@ class Hosts:
         if running is None or running.port is None:
             return {}
         try:
-            return httpx.get(f"{running.url}/api/plant", trust_env=False, timeout=10.0).json()
+            return httpx.get(f"{running.url}/api/plant", trust_env=False, timeout=PATIENCE_S).json()
         except httpx.HTTPError:
             return {}
 

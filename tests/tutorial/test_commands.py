@@ -18,7 +18,13 @@ ROOT = Path(__file__).parents[2]
 FOLDER = ROOT / "docs" / "tutorial"
 CONSOLE = re.compile(r"^```console\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 LEFT_OUT = "..."
-REAL = ("07_ros2_cell", "09_mqtt_board", "10_plant")  # real time, sockets, processes
+REAL = (
+    "07_ros2_cell",
+    "09_mqtt_board",
+    "10_plant",
+    "14_break_it",
+    "15_read_a_record",
+)  # real time, sockets, processes
 
 
 def commands(page: Path) -> Iterator[tuple[str, list[str]]]:

@@ -33,8 +33,8 @@ def links(text: str) -> list[str]:
     return [target.replace(".es.md", ".md") for target in targets if "//" not in target]
 
 
-def test_there_are_ten_lessons_with_a_page_each() -> None:
-    assert [name[:2] for name in LESSONS] == [f"{number:02}" for number in range(1, 11)]
+def test_there_are_sixteen_lessons_with_a_page_each() -> None:
+    assert [name[:2] for name in LESSONS] == [f"{number:02}" for number in range(1, 17)]
     found = {path.name for path in FOLDER.iterdir()}
     assert found == {f"{page}{ending}" for page in PAGES for ending in (".md", ".es.md")}
 

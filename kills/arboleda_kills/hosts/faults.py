@@ -9,6 +9,7 @@ import subprocess
 import sys
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
+from functools import partial
 
 from ..processes import PATIENCE_S, UP
 from .cast import BRIDGE, BROKER, DATA, FLOOR, HOSTS, Cast, HostPlant
@@ -65,6 +66,10 @@ def _kill_standby(scene: Scene) -> End:
     return _nothing
 
 
+def _cut_all(links: Callable[[Scene], list[Link]], scene: Scene) -> End:
+    return _cut(scene, links(scene))
+
+
 def _cut(scene: Scene, links: Iterable[Link]) -> End:
     scene.network.spoil(links)
     return scene.network.heal
@@ -111,12 +116,16 @@ def _between(name: str, one: Callable[[Scene], str], other: str, *, takes_over: 
     return [
         Fault(
             name=f"cut {way}",
-            begin=lambda scene, links=links: _cut(scene, links(scene)),
+            begin=partial(_cut_all, links),
             takes_over=takes_over,
             ends=takes_over,
         )
         for way, links in ways.items()
     ]
+
+
+def _step_one(one: Callable[[Scene], str], ahead_s: Callable[[random.Random], float], scene: Scene) -> End:
+    return _step(scene, one(scene), ahead_s(scene.dice))
 
 
 def _step(scene: Scene, host: str, ahead_s: float) -> End:
@@ -139,7 +148,7 @@ def _clock(name: str, one: Callable[[Scene], str]) -> list[Fault]:
     return [
         Fault(
             name=f"clock of {name} {words}",
-            begin=lambda scene, ahead_s=ahead_s: _step(scene, one(scene), ahead_s(scene.dice)),
+            begin=partial(_step_one, one, ahead_s),
         )
         for words, ahead_s in how.items()
     ]

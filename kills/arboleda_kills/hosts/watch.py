@@ -9,6 +9,7 @@ from __future__ import annotations
 import json
 import sys
 import threading
+from functools import partial
 
 import rclpy
 from diagnostic_msgs.msg import DiagnosticStatus
@@ -35,7 +36,7 @@ def main() -> None:
         node.create_subscription(
             DiagnosticStatus,
             f"{robot}/status",
-            lambda said, robot=robot: hear(robot, said),
+            partial(hear, robot),
             QoSProfile(depth=DEPTH),
         )
     threading.Thread(target=_end_with_input, daemon=True).start()

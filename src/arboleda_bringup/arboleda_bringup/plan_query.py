@@ -10,7 +10,7 @@ from pathlib import Path
 from .row import Plan, Row
 
 
-def asked(texts: Mapping[str, str], share: Path) -> Plan:
+def plan_of(texts: Mapping[str, str], share: Path) -> Plan:
     """The plan for these launch arguments; RuntimeError with a sentence if they are refused.
 
     `ros2` runs on the Python of its installation, which need not have the libraries of the plant file; the
@@ -21,6 +21,6 @@ def asked(texts: Mapping[str, str], share: Path) -> Plan:
     answer = subprocess.run(command, input=question, capture_output=True, text=True, check=False)
     if answer.returncode:
         raise RuntimeError(answer.stderr.strip())
-    told = json.loads(answer.stdout)
-    rows = [Row(**{**row, "arguments": tuple(row["arguments"])}) for row in told["rows"]]
-    return Plan(rows=rows, environment=told["environment"], notes=told["notes"])
+    plan = json.loads(answer.stdout)
+    rows = [Row(**{**row, "arguments": tuple(row["arguments"])}) for row in plan["rows"]]
+    return Plan(rows=rows, environment=plan["environment"], notes=plan["notes"])

@@ -27,7 +27,7 @@ def table(plant: PlantModel, choice: Choice, *, urdf: Callable[[str], str], shar
 
 def namespace(robot: Robot) -> str:
     """The namespace of a robot's joint states and description: the twin of an arm, the name of a mobile."""
-    return robot.twin_name
+    return robot.joint_states.twin
 
 
 def _shown(robot: Robot, urdf: str) -> list[Row]:
@@ -45,7 +45,8 @@ def _named(package: str, robot: Robot, **more: Any) -> Row:
 
 
 def _placed(robot: Robot) -> Row:
-    x, y, yaw = (str(value) for value in robot.drawn()["at"])
+    drawing: dict[str, Any] = robot.drawn() or {}
+    x, y, yaw = (str(value) for value in drawing["at"])
     frames = ("--frame-id", WORLD, "--child-frame-id", root_link(robot))
     return Row(
         package="tf2_ros",
@@ -70,5 +71,9 @@ def _plant(choice: Choice, plant: PlantModel) -> list[Row]:
 
 
 def _part(executable: str, choice: Choice, **more: Value) -> Row:
-    common = {"plant": choice.plant, "state_dir": choice.state_dir, "rate": choice.rate}
+    common: dict[str, Value] = {
+        "plant": choice.plant,
+        "state_dir": choice.state_dir,
+        "rate": choice.rate,
+    }
     return Row(package="arboleda_ros", executable=executable, parameters={**common, **more}, required=True)

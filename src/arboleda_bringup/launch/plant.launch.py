@@ -10,7 +10,7 @@ from launch_ros.actions import Node
 from launch_ros.parameter_descriptions import ParameterValue
 
 from arboleda_bringup.arguments import ARGUMENTS, Argument
-from arboleda_bringup.plan_query import asked
+from arboleda_bringup.plan_query import plan_of
 from arboleda_bringup.row import Row
 
 SHARE = Path(__file__).parents[1]
@@ -32,7 +32,7 @@ def _declared(argument: Argument) -> DeclareLaunchArgument:
 
 
 def _actions(context: LaunchContext) -> list[LogInfo | Node]:
-    plan = asked(context.launch_configurations, SHARE)
+    plan = plan_of(context.launch_configurations, SHARE)
     context.environment.update(plan.environment)
     return [*[LogInfo(msg=note) for note in plan.notes], *map(_node, plan.rows)]
 

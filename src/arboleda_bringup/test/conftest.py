@@ -22,7 +22,7 @@ NAMES = {
 }
 
 
-class Said(SimpleNamespace):
+class Entity(SimpleNamespace):
     """A call that a launch file made: `kind` is the class's name, `words` its positional arguments."""
 
     def __init__(self, kind: str, *words: Any, **named: Any) -> None:
@@ -32,12 +32,12 @@ class Said(SimpleNamespace):
 def stand_in(name: str) -> ModuleType:
     module = ModuleType(name)
     for kind in NAMES[name]:
-        setattr(module, kind, lambda *words, _kind=kind, **named: Said(_kind, *words, **named))
+        setattr(module, kind, lambda *words, _kind=kind, **named: Entity(_kind, *words, **named))
     return module
 
 
 @pytest.fixture
-def description(monkeypatch: pytest.MonkeyPatch) -> list[Said]:
+def description(monkeypatch: pytest.MonkeyPatch) -> list[Entity]:
     """The entities that plant.launch.py describes: its arguments, and the function that makes the rest.
 
     Its `python3` is the one that runs the tests, with the same path.
@@ -57,12 +57,12 @@ def description(monkeypatch: pytest.MonkeyPatch) -> list[Said]:
 
 
 @pytest.fixture
-def launched(description: list[Said]) -> Callable[..., list[Said]]:
+def launched(description: list[Entity]) -> Callable[..., list[Entity]]:
     """`launched(sim="false")`: the actions of a launch with these arguments, the others as declared."""
     *declared, function = description
     defaults = {argument.words[0]: argument.default_value for argument in declared}
 
-    def run(**given: str) -> list[Said]:
+    def run(**given: str) -> list[Entity]:
         context = SimpleNamespace(launch_configurations={**defaults, **given}, environment={})
         return function.function(context)
 

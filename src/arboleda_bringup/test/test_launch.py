@@ -14,7 +14,6 @@ import yaml
 pytest.importorskip("rclpy")
 
 from arboleda.testing import shipped
-from arboleda.wire.joints import joint_names, joint_states_topic
 from arboleda_bringup.arguments import ARGUMENTS
 from arboleda_ros import running
 
@@ -72,13 +71,13 @@ def test_a_robot_hangs_in_the_world_by_the_root_of_its_description(launched: Lau
 
 
 def test_a_robot_is_described_with_the_joints_that_the_bridge_names(launched: Launched) -> None:
-    robots = {joint_states_topic(robot): robot for robot in shipped().robots.values()}
+    robots = {robot.joint_states.topic: robot for robot in shipped().robots.values()}
     described = [node for node in nodes(launched()) if node.package == "robot_state_publisher"]
     assert {f"{node.namespace}/joint_states" for node in described} == robots.keys()
     for node in described:
         joints = ET.fromstring(values(node)["robot_description"]).findall("joint")
         moving = [joint.get("name") for joint in joints if joint.get("type") != "fixed"]
-        assert moving == list(joint_names(robots[f"{node.namespace}/joint_states"]))
+        assert moving == list(robots[f"{node.namespace}/joint_states"].joint_states.joints)
 
 
 def test_the_view_shows_every_robot_of_the_shipped_plant_in_the_world(launched: Launched) -> None:
@@ -96,9 +95,9 @@ def test_all_nodes_of_a_launch_stay_on_this_machine_and_a_line_says_so(descripti
     *declared, function = description
     texts = {argument.words[0]: argument.default_value for argument in declared}
     context = type("Context", (), {"launch_configurations": texts, "environment": {}})
-    said, *_ = function.function(context)
+    entity, *_ = function.function(context)
     assert context.environment == {"ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}
-    assert said.kind == "LogInfo" and "LOCALHOST" in said.msg
+    assert entity.kind == "LogInfo" and "LOCALHOST" in entity.msg
 
 
 def test_a_library_that_is_missing_is_one_sentence(launched: Launched, tmp_path: Path) -> None:

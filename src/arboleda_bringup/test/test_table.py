@@ -83,9 +83,9 @@ def test_every_robot_stands_where_the_plant_file_says() -> None:
         f"--x 0.0 --y 0.0 --z 0.0 --yaw {math.radians(220.6)} --frame-id world --child-frame-id r1_base_link"
     )
     assert " ".join(found["r1"]) == place
-    told = dict(zip(found["rm_sis_a"][::2], found["rm_sis_a"][1::2], strict=True))
-    assert [float(told[key]) for key in ("--x", "--y", "--z", "--yaw")] == [-0.1, -1.366, 0.0, 0.0]
-    assert (told["--frame-id"], told["--child-frame-id"]) == ("world", "rm_sis_a_grid_link")
+    options = dict(zip(found["rm_sis_a"][::2], found["rm_sis_a"][1::2], strict=True))
+    assert [float(options[key]) for key in ("--x", "--y", "--z", "--yaw")] == [-0.1, -1.366, 0.0, 0.0]
+    assert (options["--frame-id"], options["--child-frame-id"]) == ("world", "rm_sis_a_grid_link")
 
 
 def test_joints_are_published_only_for_robots_that_are_only_drawn() -> None:

@@ -49,4 +49,5 @@ def _processed(file: Path, prefix: str, limits: str) -> str:
     import xacro
 
     document = xacro.process_file(str(file), mappings={"prefix": prefix, "limits": limits})
-    return '<?xml version="1.0"?>\n' + document.documentElement.toprettyxml(indent="  ")
+    text: str = document.documentElement.toprettyxml(indent="  ")
+    return '<?xml version="1.0"?>\n' + text

@@ -23,7 +23,10 @@ from arboleda.drivers.ros_action.events import (
     CommandRequest,
     Event,
     GoalAnswer,
+    GoalList,
     GoalResult,
+    ListedGoal,
+    MakeCall,
     Measurement,
     Message,
     SendGoal,
@@ -35,6 +38,8 @@ from arboleda.drivers.ros_action.machine import Machine
 from arboleda.model.commands import Command
 from arboleda.model.messages import Report
 from arboleda.model.plant_model import Robot
+
+from .health import HealthLink
 
 with suppress(ImportError):
     # Drivers start in threads of their own, and two threads that import rclpy at once both fail.
@@ -58,6 +63,7 @@ class ActionClientDriver:
         self._lock = threading.Lock()  # around the machine and what it reports
         self._link: Any = None
         self._client: Any = None
+        self._health: HealthLink | None = None
 
     # What each of them has of its own.
 
@@ -103,21 +109,28 @@ class ActionClientDriver:
         if self._link is not None:
             self._link.close()
 
-    def see(self, seen: Measurement) -> None:
+    def see(self, measurement: Measurement) -> None:
         """Take a measurement, in the thread of ROS 2."""
-        self._take(seen, seen)
+        self._take(measurement, measurement)
 
     def _join(self, node: Any) -> None:
+        from action_msgs.msg import GoalStatusArray
         from action_msgs.srv import CancelGoal
         from rclpy.action import ActionClient
         from rclpy.clock import Clock as RosClock
         from rclpy.clock import ClockType
+        from rclpy.qos import qos_profile_action_status_default
 
         name = self.settings.action
         self._node = node
         self._client = ActionClient(node, self._action, name)
         self._cancels = node.create_client(CancelGoal, f"{name}/_action/cancel_goal")
+        latched = qos_profile_action_status_default
+        node.create_subscription(GoalStatusArray, f"{name}/_action/status", self._list, latched)
         self.listen(node)
+        health = getattr(self.settings, "health", None)
+        if health is not None:
+            self._health = HealthLink(node, health, self._take)
         node.create_timer(LOOK_S, self._look, clock=RosClock(clock_type=ClockType.STEADY_TIME))
 
     def _step(self, *events: Event) -> list[Message]:
@@ -130,11 +143,13 @@ class ActionClientDriver:
                     self._later(partial(self._send_goal, message))
                 elif isinstance(message, CancelAll):
                     self._later(self._cancel_all)
+                elif isinstance(message, MakeCall) and self._health is not None:
+                    self._later(partial(self._health.make, message.call))
         return messages
 
-    def _take(self, said: Any, event: Event) -> None:
+    def _take(self, message: Any, event: Event) -> None:
         """Pass an event from server or device to the machine; an unreadable value loses the link."""
-        with taking(said, self._lose):
+        with taking(message, self._lose):
             self._step(event)
 
     def _lose(self, why: str) -> None:
@@ -147,8 +162,11 @@ class ActionClientDriver:
     # What leaves.
 
     def _send_goal(self, message: SendGoal) -> None:
-        goal = self.goal(self._action, message.goal)
-        self._client.send_goal_async(goal).add_done_callback(partial(self._answered, message.id))
+        from unique_identifier_msgs.msg import UUID
+
+        goal, uuid = self.goal(self._action, message.goal), UUID(uuid=list(message.uuid))
+        sent = self._client.send_goal_async(goal, goal_uuid=uuid)
+        sent.add_done_callback(partial(self._answered, message.id))
 
     def _cancel_all(self) -> None:
         from action_msgs.srv import CancelGoal
@@ -165,14 +183,25 @@ class ActionClientDriver:
             handle.get_result_async().add_done_callback(partial(self._ended, id))
 
     def _ended(self, id: str, future: Any) -> None:
-        said = future.result()
-        status = STATUSES.get(said.status, Status.UNKNOWN)
-        with taking(said, self._lose):
-            self._step(GoalResult(id=id, status=status, **self.end(said.result)))
+        response = future.result()
+        status = STATUSES.get(response.status, Status.UNKNOWN)
+        with taking(response, self._lose):
+            self._step(GoalResult(id=id, status=status, **self.end(response.result)))
+
+    def _list(self, message: Any) -> None:
+        goals = (
+            ListedGoal(
+                uuid=bytes(each.goal_info.goal_id.uuid),
+                stamp=(each.goal_info.stamp.sec, each.goal_info.stamp.nanosec),
+                status=STATUSES.get(each.status),
+            )
+            for each in message.status_list
+        )
+        self._take(message, GoalList(goals=tuple(goals)))
 
     def _cancelled(self, future: Any) -> None:
-        said = future.result()
-        self._take(said, CancelAnswer(refused=said.return_code == REJECTED))
+        response = future.result()
+        self._take(response, CancelAnswer(refused=response.return_code == REJECTED))
 
     def _look(self) -> None:
         """Look for servers: each publishes the states of its goals by an endpoint of its own."""

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import math
+from array import array
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import cache
+from typing import cast
 
-from sensor_msgs.msg import JointState
 from std_msgs.msg import Float32MultiArray, MultiArrayDimension, String, UInt8
 
 from arboleda.kinds.arm import Arm, SetEffector
@@ -18,11 +19,9 @@ from arboleda.model.by_class import nearest
 from arboleda.model.commands import Command, Home, Stop, StopMode
 from arboleda.model.counting import counted
 from arboleda.model.errors import PayloadError
-from arboleda.model.messages import Report
-from arboleda.model.plant_model import MotionState, Robot
+from arboleda.model.plant_model import Robot
 from arboleda.wire import order
 from arboleda.wire.hop import COMMAND, ORDER, PLAIN, kind_of, loses_its_id
-from arboleda.wire.joints import joint_names
 from arboleda.wire.status import (
     from_heard_labels,
     from_label,
@@ -33,8 +32,6 @@ from arboleda.wire.status import (
 )
 
 COPY = "copy"  # the label of what the topic `command` carries, too; there, of what is copied
-
-_AT_NODE = 0.125  # share of the pitch: a mobile farther from every node is between nodes
 
 
 COMMANDS: dict[type[Robot], tuple[type[Command], ...]] = {
@@ -63,8 +60,8 @@ def _topics(kind: type[Robot]) -> dict[str, type[Command]]:
 def message_type(kind: type[Command]) -> type:
     """The ROS 2 type of a plain command topic."""
     if kind is VerbCall:
-        return String
-    return Float32MultiArray if kind in (MoveJoints, FollowPath) else UInt8
+        return cast(type, String)
+    return cast(type, Float32MultiArray if kind in (MoveJoints, FollowPath) else UInt8)
 
 
 def ordered(robot: Robot) -> tuple[type, str]:
@@ -74,17 +71,24 @@ def ordered(robot: Robot) -> tuple[type, str]:
     return Float32MultiArray, f"{robot.name}/{COMMAND}"
 
 
-def command_message(command: Command, *, copy: bool = False) -> Float32MultiArray | UInt8 | String:
-    """A command as its plain topic carries it; arrays are labelled with the id, and as copies."""
+def command_message(
+    command: Command, *, copy: bool = False, into: Float32MultiArray | None = None
+) -> Float32MultiArray | UInt8 | String:
+    """A command as its plain topic carries it; arrays are labelled with the id, and as copies.
+
+    `into`: an array of before that has been published, which is filled anew instead of making another.
+    """
     if isinstance(command, VerbCall):
         return String(data=order.write(command))
     if not loses_its_id(command):
-        return _labelled(command.id, _values(command), *((COPY,) if copy else ()))
+        return _labelled(command.id, _values(command), *((COPY,) if copy else ()), into=into)
     return UInt8(data=int(_values(command)[0]))
 
 
-def labelled_message(robot: Robot, command: Command, *, copied: bool) -> Float32MultiArray | String:
-    """A command for the robot's topic of all commands.
+def labelled_message(
+    robot: Robot, command: Command, *, copied: bool, into: Float32MultiArray | None = None
+) -> Float32MultiArray | String:
+    """A command for the robot's topic of all commands, in `into` as `command_message` has it.
 
     It carries the id, the telemetry that the plant had heard of the robot, what its board is to echo, and
     whether its plain topic has a copy.
@@ -94,7 +98,7 @@ def labelled_message(robot: Robot, command: Command, *, copied: bool) -> Float32
     heard = () if command.heard is None else (to_heard_label(command.heard),)
     token = () if command.token is None else (to_token_label(command.token),)
     more = (*((COPY,) if copied else ()), *heard, *token)
-    return _labelled(command.id, _values(command), PLAIN[kind_of(command)], *more)
+    return _labelled(command.id, _values(command), PLAIN[kind_of(command)], *more, into=into)
 
 
 def is_copy(message: Float32MultiArray | UInt8) -> bool:
@@ -107,7 +111,8 @@ def labelled_command(robot: Robot, message: Float32MultiArray | String) -> tuple
     if isinstance(robot, Device):
         return order.read(robot, message.data)
     labels = [dim.label for dim in message.layout.dim]
-    topics = _topics(robot.__class__)
+    kind: type = type(robot)
+    topics = _topics(kind)
     if len(labels) < 2 or labels[1] not in topics:
         raise PayloadError(
             f"{robot.name}: the labels are {ascii(labels)[:60]}; id=<command id> and one of "
@@ -115,17 +120,17 @@ def labelled_command(robot: Robot, message: Float32MultiArray | String) -> tuple
         )
     kind = topics[labels[1]]
     if message_type(kind) is Float32MultiArray:
-        given = command(kind, robot, message)
+        received = command(kind, robot, message)
     else:
         id, values = _unlabelled(message, robot.name)
         if len(values) != 1 or values[0] not in range(256):
             raise PayloadError(f"{robot.name}: {labels[1]} needs one whole number of 0 to 255")
-        given = replace(command(kind, robot, UInt8(data=int(values[0]))), id=id)
-    if not given.id:
+        received = replace(command(kind, robot, UInt8(data=int(values[0]))), id=id)
+    if not received.id:
         first = ascii(labels[0])[:40]
         raise PayloadError(f"{robot.name}: the first label is {first}; id=<command id> is needed")
-    given = replace(given, heard=from_heard_labels(labels[2:]), token=from_token_labels(labels[2:]))
-    return given, COPY in labels[2:] and loses_its_id(given)
+    received = replace(received, heard=from_heard_labels(labels[2:]), token=from_token_labels(labels[2:]))
+    return received, COPY in labels[2:] and loses_its_id(received)
 
 
 def command(kind: type[Command], robot: Robot, message: Float32MultiArray | UInt8) -> Command:
@@ -146,20 +151,6 @@ def command(kind: type[Command], robot: Robot, message: Float32MultiArray | UInt
     return Home(id="", robot=robot.name)
 
 
-def state_report(at: float, robot: Robot, message: UInt8) -> Report:
-    """The report that a `motion_state` makes."""
-    state = MotionState(_one_of(message, tuple(MotionState)))
-    return Report(at=at, robot=robot.name, state=state)
-
-
-def joints_report(at: float, robot: Robot, message: JointState) -> Report:
-    """The report that a `joint_states` makes; a mobile between two nodes reports no node."""
-    measured = _positions(joint_names(robot), message)
-    if isinstance(robot, Mobile):
-        return Report(at=at, robot=robot.name, node=_nearest(robot, *measured))
-    return Report(at=at, robot=robot.name, q=measured)
-
-
 def _values(command: Command) -> Sequence[float]:
     if isinstance(command, MoveJoints):
         return command.q
@@ -170,12 +161,18 @@ def _values(command: Command) -> Sequence[float]:
     return (int(command.mode) if isinstance(command, Stop) else 1,)
 
 
-def _labelled(id: str, values: Sequence[float], *more: str) -> Float32MultiArray:
+def _labelled(
+    id: str, values: Sequence[float], *more: str, into: Float32MultiArray | None = None
+) -> Float32MultiArray:
     """The values with labels; further labels have size and stride 1, so that the layout stays the same."""
-    message = Float32MultiArray(data=[float(value) for value in values])
-    size = len(message.data)
-    first = MultiArrayDimension(label=to_label(id), size=size, stride=size)
-    message.layout.dim = [first, *(MultiArrayDimension(label=label, size=1, stride=1) for label in more)]
+    message = Float32MultiArray() if into is None else into
+    message.data = array("f", values)
+    labels = message.layout.dim
+    if len(labels) != 1 + len(more):
+        labels = message.layout.dim = [MultiArrayDimension(size=1, stride=1) for _ in (id, *more)]
+    for dimension, label in zip(labels, (to_label(id), *more), strict=True):
+        dimension.label = label
+    labels[0].size = labels[0].stride = len(values)
     return message
 
 
@@ -216,27 +213,3 @@ def _one_of(message: UInt8, allowed: Sequence[int]) -> int:
         words = ", ".join(str(int(value)) for value in allowed)
         raise PayloadError(f"the value {message.data} means nothing; allowed: {words}")
     return int(message.data)
-
-
-def _positions(names: tuple[str, ...], message: JointState) -> tuple[float, ...]:
-    """The positions of `names`, wherever they stand in the message."""
-    if len(message.name) != len(message.position):
-        named, positions = (
-            counted(len(message.name), "joint name"),
-            counted(len(message.position), "position"),
-        )
-        raise PayloadError(f"{named} but {positions}")
-    found = dict(zip(message.name, message.position, strict=True))
-    missing = [name for name in names if name not in found]
-    if missing:
-        raise PayloadError(f"joint {', '.join(missing)} is missing; needed are {', '.join(names)}")
-    if not all(math.isfinite(found[name]) for name in names):
-        raise PayloadError(f"a position of {', '.join(names)} is not a finite number")
-    return tuple(found[name] for name in names)
-
-
-def _nearest(mobile: Mobile, x: float, y: float) -> int | None:
-    grid = mobile.grid
-    distances = [math.dist((x, y), grid.position(node)) for node in range(grid.size)]
-    node = min(range(grid.size), key=distances.__getitem__)
-    return node if distances[node] <= _AT_NODE * grid.pitch else None

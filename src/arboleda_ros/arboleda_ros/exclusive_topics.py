@@ -78,7 +78,8 @@ class ExclusiveTopics:
         return tuple(_intrusion(name, topics) for name, topics in self._by_name().items())
 
     def _to_look_at(self) -> list[str]:
-        nodes = Counter(map(tuple, self._node.get_node_names_and_namespaces()))
+        found = self._node.get_node_names_and_namespaces()
+        nodes = Counter((name, namespace) for name, namespace in found)
         self._alert |= dict.fromkeys(nodes - self._nodes, _ALERT)
         self._nodes = nodes
         topics = [*self._intruders, *self._in_turn()]

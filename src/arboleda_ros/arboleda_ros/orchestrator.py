@@ -13,12 +13,12 @@ from rclpy.duration import Duration
 from rclpy.node import Node
 from rclpy.publisher import Publisher
 from sensor_msgs.msg import JointState
-from std_msgs.msg import Bool, String, UInt8, UInt32
+from std_msgs.msg import Bool, Float32MultiArray, String, UInt8, UInt32
 
 from arboleda.adapters.rate_limit import RateLimit
 from arboleda.kinds.arm import Arm
 from arboleda.kinds.declared import Device
-from arboleda.model.commands import Command
+from arboleda.model.commands import Command, Stop
 from arboleda.model.errors import ArboledaError, PayloadError
 from arboleda.model.messages import (
     Event,
@@ -37,11 +37,11 @@ from arboleda.runtime import view_text
 from arboleda.views import view
 from arboleda.wire import rejections
 from arboleda.wire.hop import HEARTBEAT, PLAIN, kind_of
-from arboleda.wire.joints import joint_states_topic
 
 from . import convert, qos, statuses
 from .diagnostics import Diagnostic, Diagnostics
 from .overhear import OwnTopic
+from .plain_reports import PlainReports
 from .plant_queries import Asker
 from .port import NAMED, Port
 from .senders import Senders
@@ -81,6 +81,14 @@ class OrchestratorPort(Port):
             (robot.name, kind): self._plain(robot, kind, speak)
             for robot in robots
             for kind in convert.commands_of(robot)
+        }
+        # Publishing copies a message, and to make one takes longer than to fill it. A stop makes its own: it
+        # may leave in another thread meanwhile.
+        self._forms = {
+            (robot.name, kind): Float32MultiArray()
+            for robot in robots
+            for kind in convert.commands_of(robot)
+            if kind is not Stop
         }
         self._senders = Senders(node, clock)
         self._others = RateLimit()  # a stream of goals is one piece of news
@@ -141,7 +149,7 @@ class OrchestratorPort(Port):
 
     def publish_diagnostics(self, plain: Iterable[Diagnostic]) -> Iterator[None]:
         """Publish one status per robot and cell, in parts; the port's own status goes out by itself."""
-        named = ((self._diagnosed(name.removeprefix(NAMED)), *rest) for name, *rest in plain)
+        named = ((self._diagnosed(each[0].removeprefix(NAMED)), *each[1:]) for each in plain)
         data = yield from self._all.of(named, self._node.get_clock().now().to_msg())
         self._diagnostics.publish(data)
 
@@ -195,18 +203,20 @@ class OrchestratorPort(Port):
 
     def _command(self, command: Command) -> None:
         """Publish a command: on `command` if our bridge listens, on the plain topic for everybody else."""
-        plain, labelled = self._commands[command.robot, kind_of(command)], self._labelled.get(command.robot)
+        key = (command.robot, kind_of(command))
+        plain, labelled = self._commands[key], self._labelled.get(command.robot)
         if labelled is None:
-            self._speak_plainly(command, plain)
+            self._speak_plainly(command, key)
             return
         bridges, listeners = labelled.get_subscription_count(), plain.get_subscription_count()
         if not bridges and not listeners:
             raise NoBridge(f"no bridge listens to {labelled.topic_name}")
         if not bridges:
-            self._speak_plainly(command, plain)
+            self._speak_plainly(command, key)
             return
         copied = listeners > bridges  # a bridge listens to both
-        labelled.publish(convert.labelled_message(self._robots[command.robot], command, copied=copied))
+        robot = self._robots[command.robot]
+        labelled.publish(convert.labelled_message(robot, command, copied=copied, into=self._forms.get(key)))
         if copied:
             plain.publish(convert.command_message(command, copy=True))
 
@@ -218,12 +228,12 @@ class OrchestratorPort(Port):
             return self._labelled[robot.name]
         return speak(convert.message_type(kind), topic)
 
-    def _speak_plainly(self, command: Command, plain: Publisher) -> None:
-        message = convert.command_message(command)
-        own = self._own.get((command.robot, kind_of(command)))
+    def _speak_plainly(self, command: Command, key: tuple[str, type[Command]]) -> None:
+        message = convert.command_message(command, into=self._forms.get(key))
+        own = self._own.get(key)
         if own is not None:
             own.say(message)
-        plain.publish(message)
+        self._commands[key].publish(message)
 
     def _hear(self, robot: Robot) -> None:
         """Subscribe to the topics that a robot's link and evidence provide, and to others' commands to it."""
@@ -242,17 +252,18 @@ class OrchestratorPort(Port):
             else:
                 self._listen(DiagnosticStatus, topic, ear, qos.COMMAND, raw=True, speakers=speakers)
             return
-        on_state = self._reporting(convert.state_report, robot)
+        reports = PlainReports(robot)
+        on_state = self._reporting(reports.state)
         self._listen_as_offered(UInt8, f"{robot.name}/motion_state", on_state, speakers=speakers)
         if robot.evidence is Evidence.JOINTS:
-            on_joints = self._reporting(convert.joints_report, robot)
-            self._listen(JointState, joint_states_topic(robot), on_joints, qos.SENSOR, speakers=speakers)
+            on_joints = self._reporting(reports.joints)
+            self._listen(JointState, robot.joint_states.topic, on_joints, qos.SENSOR, speakers=speakers)
         if isinstance(robot, Arm):
-            on_piece = self._reporting(_piece_report, robot)
+            on_piece = self._reporting(reports.piece)
             self._listen(Bool, f"{robot.name}/piece_detected", on_piece, qos.SENSOR, speakers=speakers)
 
-    def _reporting(self, read: Callable[[float, Any, Any], Report], robot: Robot) -> Callable[[Any], None]:
-        return lambda message: self._on_event(read(self._clock(), robot, message))
+    def _reporting(self, read: Callable[[float, Any], Report]) -> Callable[[Any], None]:
+        return lambda message: self._on_event(read(self._clock(), message))
 
     def _on_command(self, robot: Robot, kind: type[Command], message: Any) -> None:
         """Take a command on a topic of a robot that hears everybody: the plant's own, or somebody else's."""
@@ -272,7 +283,3 @@ class OrchestratorPort(Port):
             raise PayloadError(f"the value {message.data} means nothing; allowed: 1 to start, 0")
         if message.data:
             self._on_event(TaskRequest(at=self._clock(), text=f"{arm.name} palletizing", trigger=True))
-
-
-def _piece_report(at: float, robot: Robot, message: Bool) -> Report:
-    return Report(at=at, robot=robot.name, piece=message.data)

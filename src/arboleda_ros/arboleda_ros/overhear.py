@@ -8,7 +8,7 @@ from typing import Any
 
 from std_msgs.msg import Float32MultiArray, String, UInt8
 
-Said = tuple[tuple[float | str, ...], tuple[str, ...]]
+Content = tuple[tuple[float | str, ...], tuple[str, ...]]
 KEPT = 20  # own messages that may still be heard; a lost one must not be expected for ever
 
 
@@ -19,25 +19,25 @@ class OwnTopic:
     """
 
     def __init__(self) -> None:
-        self._said: deque[Said] = deque(maxlen=KEPT)
+        self._sent: deque[Content] = deque(maxlen=KEPT)
         self._lock = threading.Lock()  # the plant speaks on its own thread, and hears on that of the link
 
     def say(self, message: Float32MultiArray | UInt8 | String) -> None:
         """Note a message; call it before the message is published."""
         with self._lock:
-            self._said.append(_content(message))
+            self._sent.append(_content(message))
 
     def is_own(self, message: Any) -> bool:
         """True if a heard message is one of this process's own; each of these is recognised once."""
         with self._lock:
             try:
-                self._said.remove(_content(message))
+                self._sent.remove(_content(message))
             except ValueError:
                 return False
             return True
 
 
-def _content(message: Float32MultiArray | UInt8 | String) -> Said:
+def _content(message: Float32MultiArray | UInt8 | String) -> Content:
     if isinstance(message, UInt8 | String):
         return (message.data,), ()
     return tuple(message.data), tuple(dim.label for dim in message.layout.dim)

@@ -41,15 +41,15 @@ class Asker:
 
         The scope of a message has the verb's arguments, as a person types them.
         """
-        of, told = from_text(verb, scope)
+        of, arguments = from_text(verb, scope)
 
-        def asked(token: str) -> OperatorRequest:
+        def request(token: str) -> OperatorRequest:
             return OperatorRequest(
-                at=self._clock(), verb=verb, scope=of, arguments=told, request=token, **more
+                at=self._clock(), verb=verb, scope=of, arguments=arguments, request=token, **more
             )
 
         try:
-            answer = self._ask(asked)
+            answer = self._ask(request)
         except NoAnswer as error:
             return False, str(error)
         except Exception:  # a caller must not wait for an answer that never comes
@@ -63,7 +63,8 @@ class Asker:
 
     def submit(self, text: str) -> TaskChanged:
         """Submit a task; returns its first state, a refusal included. Raises NoAnswer."""
-        return self._ask(lambda token: TaskRequest(at=self._clock(), text=text, request=token))
+        first: TaskChanged = self._ask(lambda token: TaskRequest(at=self._clock(), text=text, request=token))
+        return first
 
     def submit_later(self, text: str, token: str) -> None:
         """Submit a task without waiting; the TaskChanged that answers carries the token."""
@@ -71,8 +72,8 @@ class Asker:
 
     def cancellation_refusal(self, task: str) -> str | None:
         """Cancel a task for its client; returns the reason for a refusal, None if it was cancelled."""
-        done, said = self.operate(Verb.CANCEL, task, client=True)
-        return None if done else said
+        done, sentence = self.operate(Verb.CANCEL, task, client=True)
+        return None if done else sentence
 
     def cancel_later(self, task: str) -> None:
         """Cancel a task for its client without waiting; its changes tell the outcome."""

@@ -69,7 +69,8 @@ class Matches:
     """Counter of the publishers of a subscription, as the middleware counts them at this very moment."""
 
     def __init__(self, subscription: Subscription, on_match: Callable[[Any], None]) -> None:
-        (handler,) = (each for each in subscription.event_handlers if each.callback is on_match)
+        handlers: Any = subscription.event_handlers  # a list, which rclpy declares as one handler
+        (handler,) = (each for each in handlers if each.callback is on_match)
         handler.add_to_wait_set(self)  # the one way in which a handler hands out its event
 
     def add_event(self, event: Any) -> int:

@@ -17,7 +17,6 @@ from std_msgs.msg import Bool, UInt8
 from arboleda.kinds.arm import Arm
 from arboleda.model.messages import Report
 from arboleda.model.plant_model import MotionState, Robot
-from arboleda.wire.joints import joint_names, joint_states_topic, measured_joints
 from arboleda.wire.status import NUMBER, to_status, written_number
 
 Speak = Callable[..., Publisher]  # (type, topic), `alone` where nobody else may publish there
@@ -34,7 +33,7 @@ class RobotPublisher:
         self.status = speak(DiagnosticStatus, f"{robot.name}/status", alone=True)
         self.state = speak(UInt8, f"{robot.name}/motion_state")
         stands = robot.position_key is not None
-        self.joints = speak(JointState, joint_states_topic(robot)) if stands else None
+        self.joints = speak(JointState, robot.joint_states.topic) if stands else None
         self.piece = speak(Bool, f"{robot.name}/piece_detected") if isinstance(robot, Arm) else None
 
     def say(self, report: Report) -> None:
@@ -56,13 +55,13 @@ class StatusMessage:
         self._robot = robot
         self._message = DiagnosticStatus()
         self._pairs: dict[str, KeyValue] = {}
-        self._said: tuple[object, ...] = ()
+        self._words: tuple[object, ...] = ()
 
     def of(self, report: Report) -> DiagnosticStatus:
         """The message for one report; the next call changes it."""
-        if report.words != self._said or (report.number is None) == (NUMBER in self._pairs):
+        if report.words != self._words or (report.number is None) == (NUMBER in self._pairs):
             self._write(report)
-            self._said = report.words
+            self._words = report.words
         elif report.number is not None:
             self._pairs[NUMBER].value = written_number(report.number)
         return self._message
@@ -83,11 +82,11 @@ class JointsMessage:
 
     def __init__(self, robot: Robot) -> None:
         self._robot = robot
-        self._message = JointState(name=list(joint_names(robot)))
+        self._message = JointState(name=list(robot.joint_states.joints))
 
     def of(self, report: Report, clock: Clock) -> JointState | None:
         """The message for a report, None if nothing was measured; the next call changes it."""
-        measured = measured_joints(self._robot, report)
+        measured = self._robot.joint_states.values(report)
         if measured is None:
             return None
         self._message.position = measured

@@ -18,7 +18,7 @@ if not importlib.util.find_spec("py_trees_ros_interfaces"):  # neither we nor th
     collect_ignore = [*collect_ignore, "test_snapshot_streams.py"]
 
 RATE = 10.0
-PATIENCE_S = 30.0
+PATIENCE_S = 60.0
 
 
 @pytest.fixture(scope="module")
@@ -68,12 +68,12 @@ class Client:
         """The list that messages of a topic are appended to; if `latched`, it begins with earlier ones."""
         from rclpy.qos import DurabilityPolicy, QoSProfile
 
-        heard: list[Any] = []
+        messages: list[Any] = []
         durability = DurabilityPolicy.TRANSIENT_LOCAL if latched else DurabilityPolicy.VOLATILE
         qos = QoSProfile(depth=10, durability=durability)
-        made = self.node.create_subscription(kind, topic, heard.append, qos)
+        made = self.node.create_subscription(kind, topic, messages.append, qos)
         self.until(lambda: self.node.count_publishers(made.topic_name), f"nobody publishes {topic}")
-        return heard
+        return messages
 
     def vanish(self) -> None:
         """Leave without a word to anybody."""
@@ -97,7 +97,7 @@ class Goal:
 
     def at(self, step: str) -> None:
         """Wait for a step."""
-        self.client.until(lambda: step in [said for said, _ in self.feedback], f"{step} never came")
+        self.client.until(lambda: step in [step_name for step_name, _ in self.feedback], f"{step} never came")
 
     def executing(self) -> None:
         """Wait for its task to begin."""

@@ -38,13 +38,13 @@ def test_a_tree_is_shown_from_its_first_step_to_its_end(
     client: Any, opened: Callable[..., str], plant: Any
 ) -> None:
     topic = opened(data=True)
-    heard = client.hear(BehaviourTree, topic)
-    client.until(lambda: heard, "no tree was shown before a task")
-    assert [node.name for node in heard[0].behaviours] == ["no task yet"]
+    messages = client.hear(BehaviourTree, topic)
+    client.until(lambda: messages, "no tree was shown before a task")
+    assert [node.name for node in messages[0].behaviours] == ["no task yet"]
     plant.submit("sis_a 0B 7 #streamed")
 
     def at_work() -> Any:
-        trees = [each for each in heard if each.behaviours[0].status == Behaviour.RUNNING]
+        trees = [each for each in messages if each.behaviours[0].status == Behaviour.RUNNING]
         return next(
             (each for each in trees if any(node.name == "move to station 7" for node in each.behaviours)),
             None,
@@ -55,16 +55,16 @@ def test_a_tree_is_shown_from_its_first_step_to_its_end(
     assert ("task/id", "streamed") in [(each.key, each.value) for each in tree.blackboard_on_visited_path]
     ids = {bytes(node.own_id.uuid) for node in tree.behaviours}
     assert all(bytes(child.uuid) in ids for node in tree.behaviours for child in node.child_ids)
-    client.until(lambda: not any(node.is_active for node in heard[-1].behaviours), "the tree did not end")
-    counts = [each.statistics.count for each in heard]
+    client.until(lambda: not any(node.is_active for node in messages[-1].behaviours), "the tree did not end")
+    counts = [each.statistics.count for each in messages]
     assert counts == list(range(1, len(counts) + 1))
     assert close(client, topic)
 
 
 def test_without_a_change_a_stream_tells_by_its_period(client: Any, opened: Callable[..., str]) -> None:
     topic = opened(period_s=0.5)
-    heard = client.hear(BehaviourTree, topic)
-    client.until(lambda: [each for each in heard if not each.changed], "it was not told again")
+    messages = client.hear(BehaviourTree, topic)
+    client.until(lambda: [each for each in messages if not each.changed], "it was not told again")
     parameters = SnapshotStreamParameters(snapshot_period=math.inf)
     asked = {"topic_name": topic, "parameters": parameters}
     assert client.call(ReconfigureSnapshotStream, f"{AT}/reconfigure", **asked).result

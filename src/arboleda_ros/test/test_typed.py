@@ -32,24 +32,24 @@ def command(client: Any) -> Callable[..., Any]:
     return go
 
 
-def known(client: Any, heard: list[Any], id: str, state: str) -> Any:
+def known(client: Any, messages: list[Any], id: str, state: str) -> Any:
     """The task in the last list, once it is in that state."""
 
     def found() -> Any:
-        tasks = heard[-1].tasks if heard else []
+        tasks = messages[-1].tasks if messages else []
         return next((task for task in tasks if (task.id, task.state) == (id, state)), None)
 
     return client.until(found, f"{id} was never {state}")
 
 
 def test_a_task_is_submitted_and_listed_to_its_end(client: Any, submit: Any) -> None:
-    heard = client.hear(TaskList, "plant/tasks")
+    messages = client.hear(TaskList, "plant/tasks")
     answer = submit(text="sis_a 0A 4 #listed")
     assert answer.accepted
     assert (answer.task.id, answer.task.text, answer.task.cell) == ("listed", "sis_a 0A 4", "sis_a")
     assert answer.task.state == "queued"
-    assert known(client, heard, "listed", "done").sentence == ""
-    assert heard[-1].stamp.sec > 0
+    assert known(client, messages, "listed", "done").sentence == ""
+    assert messages[-1].stamp.sec > 0
     late = client.hear(TaskList, "plant/tasks")
     known(client, late, "listed", "done")
 
@@ -67,28 +67,28 @@ def test_a_refused_task_says_why(submit: Any) -> None:
 
 
 def test_a_cell_tells_its_state_and_progress_when_they_change(client: Any, submit: Any) -> None:
-    heard = client.hear(CellState, "sis_c/state")
-    client.until(lambda: heard and heard[-1].state == "idle", "sis_c is not idle")
+    messages = client.hear(CellState, "sis_c/state")
+    client.until(lambda: messages and messages[-1].state == "idle", "sis_c is not idle")
     for id in ("one", "two"):
         submit(text=f"sis_c 0B 3 #{id}")
-    client.until(lambda: [state.task for state in heard[-2:]] == ["two", ""], "sis_c did not finish")
-    first = [state for state in heard if state.task == "one"]
+    client.until(lambda: [state.task for state in messages[-2:]] == ["two", ""], "sis_c did not finish")
+    first = [state for state in messages if state.task == "one"]
     assert first[-1].queue == ["two"] and first[-1].waiting_for == "sis_c is busy"
     assert [state.progress for state in first] == sorted(state.progress for state in first)
     assert first[-1].progress > 0.8 and "move to pick-up" in [state.step for state in first]
-    last = heard[-1]
+    last = messages[-1]
     assert (last.cell, last.task, last.step, last.progress) == ("sis_c", "", "", 0.0)
     assert last.queue_running and last.queue == [] and last.waiting_for == ""
-    assert all(one != other for one, other in pairwise(heard))
+    assert all(one != other for one, other in pairwise(messages))
 
 
 def test_a_cell_is_held_and_resumed(client: Any, submit: Any, command: Any) -> None:
-    heard = client.hear(CellState, "sis_a/state")
+    messages = client.hear(CellState, "sis_a/state")
     submit(text="sis_a 1B 5 #held")
-    client.until(lambda: heard and heard[-1].step == "move to pick-up", "sis_a does not move")
+    client.until(lambda: messages and messages[-1].step == "move to pick-up", "sis_a does not move")
     assert command("hold", "sis_a") == (True, "")
-    client.until(lambda: heard[-1].state == "held", "sis_a was not held")
-    assert not heard[-1].queue_running
+    client.until(lambda: messages[-1].state == "held", "sis_a was not held")
+    assert not messages[-1].queue_running
     assert command(" Resume ", "sis_a") == (True, "")
     known(client, client.hear(TaskList, "plant/tasks"), "held", "done")
 

@@ -4,7 +4,22 @@ from __future__ import annotations
 
 from importlib.util import find_spec
 
-from . import dobot, gripper_command, joint_trajectory, line_tcp, modbus, mqtt, nav2, opcua, ros, vda5050
+from . import (
+    dobot,
+    gcode,
+    gripper_command,
+    joint_trajectory,
+    line_tcp,
+    modbus,
+    mqtt,
+    nav2,
+    opcua,
+    ros,
+    s7,
+    serial_arm,
+    ur,
+    vda5050,
+)
 from .bench import Bench
 
 BENCHES: dict[str, Bench] = {
@@ -13,7 +28,11 @@ BENCHES: dict[str, Bench] = {
     "line_tcp": line_tcp.BENCH,
     "modbus": modbus.BENCH,
     "opcua": opcua.BENCH,
+    "s7": s7.BENCH,
+    "serial_arm": serial_arm.BENCH,
     "dobot": dobot.BENCH,
+    "gcode": gcode.BENCH,
+    "ur": ur.BENCH,
     "vda5050": vda5050.BENCH,
 }
 if find_spec("control_msgs"):  # no wheels have it: `make ros-test` builds it, and runs these benches

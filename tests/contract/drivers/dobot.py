@@ -4,12 +4,9 @@ from __future__ import annotations
 
 import queue
 import re
-import selectors
-import socket
 import threading
 import time
 from collections.abc import Callable
-from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -19,6 +16,7 @@ from arboleda.runtime.build import App, Options, build
 
 from ...patience import PATIENCE_S
 from .bench import HALT, LATCH, OTHER, WORK, Bench, Device, Ref
+from .tcp_ports import Ports
 
 FRAME_S = 0.02
 HOME = "home"
@@ -52,66 +50,6 @@ def other(cell):
 """
 
 
-class Ports:
-    """Two listeners that keep their ports, and whoever is connected to them."""
-
-    def __init__(self, told: Callable[[str], None]) -> None:
-        self._told = told
-        self.numbers = [0, 0]
-        self._lock = threading.Lock()
-        self._selector: selectors.BaseSelector
-        self.open()
-
-    def open(self) -> None:
-        listeners = [socket.create_server(("127.0.0.1", number)) for number in self.numbers]
-        self.numbers = [each.getsockname()[1] for each in listeners]
-        self._clients: list[list[socket.socket]] = [[], []]
-        self._selector, self._ending = selectors.DefaultSelector(), threading.Event()
-        for which, listener in enumerate(listeners):
-            self._selector.register(listener, selectors.EVENT_READ, (which, True))
-        self._thread = threading.Thread(target=self._run, name="dobot ports", daemon=True)
-        self._thread.start()
-
-    def close(self) -> None:
-        self._ending.set()
-        self._thread.join()
-        with self._lock:
-            for key in list(self._selector.get_map().values()):
-                key.fileobj.close()  # type: ignore[union-attr]
-            self._clients = [[], []]
-            self._selector.close()
-
-    def send(self, which: int, data: bytes) -> None:
-        with self._lock:
-            for client in self._clients[which]:
-                with suppress(OSError):
-                    client.sendall(data)
-
-    def _run(self) -> None:
-        while not self._ending.is_set():
-            for key, _ in self._selector.select(0.05):
-                which, listens = key.data
-                with self._lock:
-                    said = self._welcome(key.fileobj, which) if listens else self._read(key.fileobj, which)
-                for line in re.findall(r"\w+\([^()]*\)", said):
-                    self._told(line)
-
-    def _welcome(self, listener: Any, which: int) -> str:
-        client, _ = listener.accept()
-        self._clients[which].append(client)
-        self._selector.register(client, selectors.EVENT_READ, (which, False))
-        return ""
-
-    def _read(self, client: Any, which: int) -> str:
-        with suppress(OSError):
-            if data := client.recv(4096):
-                return str(data, "ascii")
-        self._selector.unregister(client)
-        self._clients[which].remove(client)
-        client.close()
-        return ""
-
-
 class PlayedDobot:
     """It answers what it is asked; moves wait for the test, but those home, which it does at once."""
 
@@ -125,7 +63,7 @@ class PlayedDobot:
         self._stop_word = HALT  # there is one line for both
         self._said = Feedback(mode=Mode.IDLE, command=0, joints_deg=(0.0,) * 6, time_ms=0, run_ms=0)
         self._quiet, self._ending = threading.Event(), threading.Event()
-        self.ports = Ports(self._hear)
+        self.ports = Ports(2, self._told)
         self._thread = threading.Thread(target=self._speak, name="dobot frames", daemon=True)
         self._thread.start()
 
@@ -180,6 +118,10 @@ class PlayedDobot:
         self._ending.set()
         self._thread.join()
         self.ports.close()
+
+    def _told(self, port: int, data: bytes) -> None:
+        for line in re.findall(r"\w+\([^()]*\)", str(data, "ascii")):
+            self._hear(line)
 
     def _hear(self, line: str) -> None:
         name, values = line[:-1].split("(")

@@ -15,7 +15,7 @@ DRIVER = """
           modbus:
             host: 127.0.0.1
             port: %d
-            timeout_s: 0.3
+            timeout_s: 2.0
             boot: {input: 0}
             state: {input: 1, words: {stopped: 0, moving: 1, latched: 2}}
             sequence:

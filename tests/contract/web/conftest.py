@@ -75,6 +75,7 @@ class Plant:
 
     def __init__(self) -> None:
         self.teach: Any = None
+        self.reports: Iterator[str | None] = iter(())
         self.texts: list[str] = []
         self.choices: list[str] = []
         self.seconds = 60.0
@@ -113,6 +114,9 @@ class Plant:
     def history(self, query: TaskQuery) -> list[TaskRow]:
         self.queries.append(query)
         return [row for row in KEPT if query.cell in ("", row.cell)]
+
+    def report(self, task: str) -> str | None:
+        return next(self.reports)
 
     def oee(self, query: OeeQuery) -> list[Oee]:
         self.oee_queries.append(query)

@@ -8,7 +8,7 @@ import os
 import pytest
 
 from arboleda.cli.client import PlantClient
-from arboleda.cli.line import VerbRefused
+from arboleda.client import Conflict
 from arboleda.model.errors import ArboledaError, QueueFull, TextError
 from arboleda.model.messages import Verb
 from arboleda.runtime import tokens
@@ -39,7 +39,7 @@ def test_the_client_says_what_the_plant_said(state, plant, kind):
     plant.answer = kind("No cell sis_x")
     with pytest.raises(ArboledaError, match=r"^No cell sis_x$") as said:
         PlantClient(state.path).submit("x")
-    assert type(said.value) is kind
+    assert isinstance(said.value, kind)
 
 
 def test_the_client_operates_the_plant_or_one_thing_of_it(state, plant):
@@ -48,7 +48,7 @@ def test_the_client_operates_the_plant_or_one_thing_of_it(state, plant):
     assert client.operate(Verb.HOME, "ra1", by_hand=True) == {"verb": "home", "scope": "ra1"}
     assert plant.acts == [(Verb.STOP, "", False), (Verb.HOME, "ra1", True)]
     plant.refusal = "ra1 still moves."
-    with pytest.raises(VerbRefused, match=r"^ra1 still moves\.$"):
+    with pytest.raises(Conflict, match=r"^ra1 still moves\.$"):
         client.operate(Verb.CLEAR, "sis_a")
 
 

@@ -16,8 +16,8 @@ import pytest
 
 from arboleda.cli import remote_plant
 from arboleda.cli.client import PlantClient
-from arboleda.cli.line import PlantSilent
 from arboleda.cli.remote_plant import NoLeader, RemotePlant
+from arboleda.client import NoAnswer
 from arboleda.model.errors import ArboledaError
 from arboleda.model.messages import Verb
 from arboleda.runtime.standby.leader import LeaderInfo
@@ -148,7 +148,7 @@ def test_a_viewers_token_lets_it_look_and_stop(state: Path, open_to_all: Web) ->
 
 def test_a_leader_that_is_not_there_is_said_to_at_once(state: Path, free_port: int) -> None:
     began = time.monotonic()
-    with standing_by(state, led_at(free_port)), pytest.raises(PlantSilent) as silent:
+    with standing_by(state, led_at(free_port)), pytest.raises(NoAnswer) as silent:
         PlantClient(state).operate(Verb.STOP)
     assert time.monotonic() - began < SOON_S
     assert f"which cannot be reached at http://127.0.0.1:{free_port} (" in str(silent.value)
@@ -235,10 +235,10 @@ def test_after_silence_here_only_what_is_done_once_is_asked_of_the_next_leader(
         assert client(state).operate(Verb.STOP) == {"verb": "stop", "scope": ""}
         assert client(state).submit("sis_a 0B 7 #lot-1") == QUEUED
         with pytest.raises(
-            PlantSilent, match=r"did not answer\. Plant demo is led .* It may have taken the task"
+            NoAnswer, match=r"did not answer\. Plant demo is led .* It may have taken the task"
         ):
             client(state).submit("sis_a 0B 7")
-        with pytest.raises(PlantSilent, match="Plant demo is led on"):
+        with pytest.raises(NoAnswer, match="Plant demo is led on"):
             client(state).operate(Verb.CLEAR)
     assert plant.texts == ["sis_a 0B 7 #lot-1"] and plant.acts == [(Verb.STOP, "", False)]
 
@@ -247,7 +247,7 @@ def test_where_nobody_else_leads_silence_here_is_said(state: Path, cutting: int,
     database.led = replace(led_at(cutting), process=os.getpid())
     with StateDir(state, plant="demo") as here:
         here.announce(cutting)
-        with pytest.raises(PlantSilent, match=r"did not answer\.$"):
+        with pytest.raises(NoAnswer, match=r"did not answer\.$"):
             client(state).operate(Verb.STOP)
 
 

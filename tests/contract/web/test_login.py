@@ -93,7 +93,7 @@ def test_on_ones_own_machine_there_is_nothing_to_log_in_to(local):
 def test_a_new_token_ends_the_sessions_of_the_old_one():
     tokens = dict(TOKENS)
     door = Door(lambda: tokens)
-    viewer, operator = (door.log_in(tokens[role].encode()) for role in Role)
+    viewer, operator = (door.log_in(tokens[role].encode()) for role in (Role.VIEWER, Role.OPERATOR))
     known = door.by_cookie(operator)
     tokens[Role.OPERATOR] = "n" * 32
     assert door.by_cookie(operator) is None and not known.alive()

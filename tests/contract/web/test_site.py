@@ -19,7 +19,7 @@ from arboleda.dashboard.site.side import LastSeenPlant
 from arboleda.model.messages import OperatorAnswer, Verb
 from arboleda.runtime.endpoints import Place
 from arboleda.site.reach import ANSWER_S, NO_ANSWER
-from arboleda.site.watch import NOT_SEEN, NOT_STOPPED, STANDS_BY, STOPPED, STOPPED_ALL, Site
+from arboleda.site.watch import NOT_STOPPED, NOT_YET, STANDS_BY, STOPPED, STOPPED_ALL, Site
 from arboleda.web.access.auth import Door, Role
 from arboleda.web.access.guard import Guard
 from arboleda.web.access.names import names_for
@@ -58,6 +58,12 @@ def standby(plant: str) -> Iterator[str]:
         server.stop()
 
 
+@pytest.fixture(autouse=True)
+def patience(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A plant answers whenever it comes to that; those that never do are waited for as a test says."""
+    monkeypatch.setattr("arboleda.site.reach.ANSWER_S", PATIENCE_S)
+
+
 def called(name: str) -> Plant:
     plant = Plant()
     plant.view = VIEW | {"plant": name}
@@ -92,16 +98,18 @@ def heard(plants: list[LastSeenPlant]) -> list[str]:
 
 
 def test_a_plant_that_does_not_answer_holds_up_no_other(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("arboleda.site.reach.ANSWER_S", 2 * PATIENCE_S)
+    monkeypatch.setattr("arboleda.site.reach.ANSWER_S", 2 * PATIENCE_S)  # longer than others are waited for
     with deaf() as silent, running(called("first")) as first, running(called("second")) as second:
         places = [Place(url=silent), Place(url=first.origin), Place(url=second.origin)]
         plants = watched(places, lambda site: seen(site, lambda plants: heard(plants) == ["first", "second"]))
-    assert [each.silent for each in plants if each.url == silent] == [NOT_SEEN()]
+    assert [each.silent for each in plants if each.url == silent] == [NOT_YET()]
 
 
-def test_a_plant_that_does_not_answer_is_said_to_be_silent() -> None:
+def test_a_plant_that_does_not_answer_is_said_to_be_silent(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("arboleda.site.reach.ANSWER_S", ANSWER_S)
+
     def looked_at(plants: list[LastSeenPlant]) -> bool:
-        return len(plants) == 2 and NOT_SEEN() not in [each.silent for each in plants]
+        return len(plants) == 2 and NOT_YET() not in [each.silent for each in plants]
 
     with deaf() as silent, running(called("first")) as first:
         places = [Place(url=silent), Place(url=first.origin)]
@@ -109,7 +117,10 @@ def test_a_plant_that_does_not_answer_is_said_to_be_silent() -> None:
     assert [each.silent for each in plants if each.url == silent] == [NO_ANSWER(seconds=ANSWER_S)]
 
 
-def test_a_stop_of_all_reaches_every_plant_and_names_those_that_did_not_hear_it() -> None:
+def test_a_stop_of_all_reaches_every_plant_and_names_those_that_did_not_hear_it(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr("arboleda.site.reach.ANSWER_S", 10.0)
     first, second = called("first"), called("second")
 
     async def stop(site: Site) -> tuple[object, float]:
@@ -222,7 +233,7 @@ def test_two_that_both_lead_a_plant_of_one_name_are_two_rows_and_both_are_stoppe
 @pytest.mark.parametrize("token", [TOKENS[Role.OPERATOR], ""])
 def test_a_plant_of_a_network_is_shown_its_token(token: str) -> None:
     async def look(site: Site) -> list[LastSeenPlant]:
-        return await seen(site, lambda plants: plants and plants[0].silent != NOT_SEEN())
+        return await seen(site, lambda plants: plants and plants[0].silent != NOT_YET())
 
     with running(called("demo"), TOKENS) as web:
         (plant,) = watched([Place(url=web.origin, token=token)], look)

@@ -17,7 +17,7 @@ from arboleda.runtime.build import App, Options, build
 from arboleda.store.sqlite import Store
 from arboleda.testing import shipped
 
-PATIENCE_S = 20.0
+from ...patience import PATIENCE_S
 
 
 class Robots:

@@ -8,6 +8,7 @@ from hypothesis import strategies as st
 
 from arboleda.adapters import descriptors
 from arboleda.adapters.descriptors import divided
+from arboleda.host import limits
 from arboleda.model.errors import StartError
 
 
@@ -42,7 +43,7 @@ def test_a_soft_limit_is_raised_as_far_as_it_serves_anybody(
     monkeypatch: pytest.MonkeyPatch, soft: int, hard: int, raised: int | None
 ) -> None:
     asked: list[tuple[int, int]] = []
-    monkeypatch.setattr(descriptors.resource, "getrlimit", lambda _what: (soft, hard))
-    monkeypatch.setattr(descriptors.resource, "setrlimit", lambda _what, limits: asked.append(limits))
+    monkeypatch.setattr(limits.resource, "getrlimit", lambda _what: (soft, hard))
+    monkeypatch.setattr(limits.resource, "setrlimit", lambda _what, pair: asked.append(pair))
     descriptors.raise_limit()
     assert asked == ([] if raised is None else [(raised, hard)])

@@ -6,6 +6,8 @@ import pytest
 
 from arboleda_bench.clockwork import Clockwork
 
+from ...patience import PATIENCE_S
+
 
 @pytest.fixture
 def clockwork():
@@ -21,7 +23,7 @@ def test_acts_come_in_the_order_of_their_times(clockwork):
         clockwork.after(seconds, lambda word=word: said.append(word))
     clockwork.after(0.03, over.set)
     clockwork.start()
-    assert over.wait(10)
+    assert over.wait(PATIENCE_S)
     assert said == ["first", "second"]
 
 
@@ -29,14 +31,14 @@ def test_an_act_may_ask_for_the_next_one(clockwork):
     over = threading.Event()
     clockwork.start()
     clockwork.after(0.0, lambda: clockwork.after(0.0, over.set))
-    assert over.wait(10)
+    assert over.wait(PATIENCE_S)
 
 
 def test_what_recurs_goes_on(clockwork):
     thrice = threading.Semaphore(0)
     clockwork.every(0.001, thrice.release)
     clockwork.start()
-    assert all(thrice.acquire(timeout=10) for _ in range(3))
+    assert all(thrice.acquire(timeout=PATIENCE_S) for _ in range(3))
 
 
 def test_after_the_end_nothing_comes(clockwork):

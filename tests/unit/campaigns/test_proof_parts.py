@@ -8,12 +8,14 @@ from xml.etree import ElementTree as Xml
 
 import pytest
 
+from arboleda.campaigns.from_above import as_svg
 from arboleda.campaigns.proof.badge import badge
 from arboleda.campaigns.proof.calm import calm_run
 from arboleda.campaigns.proof.end_state import differences
+from arboleda.campaigns.proof.growing_numbers import GrowingNumber, Ranks
 from arboleda.campaigns.proof.instants import Instant, Mark, Side, instants
 from arboleda.campaigns.proof.kept import Kept
-from arboleda.campaigns.proof.moment import Moment, as_svg
+from arboleda.campaigns.proof.moment import Moment
 from arboleda.campaigns.proof.outcome import End, Outcome, outcome_from, plain
 from arboleda.campaigns.proof.proof import Proof, Proved, spread
 from arboleda.campaigns.proof.proof_report import unmended_lines
@@ -295,6 +297,25 @@ def test_the_shipped_plant_calls_no_task_done_whose_part_is_lost_missed_or_was_n
     assert {"part_lost", "no_piece"} <= {each.cause for each in outcomes}
 
 
+def ranks(*numbers: tuple[str, int, bool]) -> list[tuple[tuple[str, str], list[int]]]:
+    found = Ranks()
+    for robot, value, counts in numbers:
+        found.note(robot, GrowingNumber("reports", value, counts=counts))
+    return [*found]
+
+
+def test_growing_numbers_count_by_their_order_robot_by_robot() -> None:
+    one = ranks(("arm", 7, False), ("lamp", 3, True), ("arm", 9, True), ("arm", 0, False))
+    other = ranks(("arm", 70, False), ("lamp", 4, True), ("arm", 71, True), ("arm", 0, False))
+    assert one == other == [(("arm", "reports"), [1, 2, 0]), (("lamp", "reports"), [1])]
+    assert one != ranks(("arm", 9, False), ("lamp", 3, True), ("arm", 9, True), ("arm", 0, False))
+
+
+def test_a_number_above_the_count_or_without_one_counts_by_its_value() -> None:
+    assert ranks(("arm", 9, True), ("arm", 12, False)) == [(("arm", "reports"), [9, 12])]
+    assert ranks(("arm", 12, False)) == [(("arm", "reports"), [12])]
+
+
 def test_a_portion_is_broken_where_one_of_its_outcomes_is() -> None:
     held, broken = Outcome(end=End.DONE), Outcome(end=End.DONE, broken=("rule", "sentence"))
     assert not Proved(number=0, outcomes=(held,), rows=(0, 0), digest="").broken
@@ -325,5 +346,5 @@ def test_the_instants_are_told_at_which_the_outcome_of_a_fault_changes(model: Pl
 def test_the_devices_of_a_breach_are_drawn_from_above() -> None:
     moment = Moment(lines={"arm": [[0.0, 0.0], [0.3, 0.2]], "lamp": []}, grids=[[[1.0, 1.0]]])
     drawn = Xml.fromstring(as_svg(moment))
-    assert [each.text for each in drawn.iter("text")] == ["arm"]
+    assert [each.text for each in drawn.iterfind(".//{*}text")] == ["arm"]
     assert as_svg(Moment(facts={"lamp": "lit: true"})) == ""

@@ -12,8 +12,11 @@ from xml.etree import ElementTree as Xml
 
 import pytest
 
+from arboleda.campaigns.mending.mend import Edit, edited
 from arboleda.campaigns.plants import Plant
+from arboleda.campaigns.proof.between_steps import gaps, other_facts
 from arboleda.campaigns.proof.calm import Calm, calm_run, calm_runs
+from arboleda.campaigns.proof.changed_recipe import noticed_with, with_check
 from arboleda.campaigns.proof.course import course_of
 from arboleda.campaigns.proof.forks import CAN_FORK, run_all, run_one
 from arboleda.campaigns.proof.instants import Instant, Side
@@ -28,7 +31,7 @@ from arboleda.plant_file import loader
 from arboleda.simulator.faults import Fault
 from arboleda.testing import Sim
 
-from ...lengths import length
+from ...lengths import length, sample
 
 PLANT = """
 name: small
@@ -53,6 +56,9 @@ def shine(cell):
 QUIET = GOOD.replace(
     'cell.device("lamp").light(on=True)',
     'cell.fallback(cell.device("lamp").light(on=True), cell.wait(1))',
+)
+BLINK = QUIET.replace(', ends_with={"lamp.lit": True}', "").replace(
+    "cell.wait(1))", 'cell.wait(1)), cell.device("lamp").light(on=False)'
 )
 TESTED = """
 from arboleda.recipes import recipe, work
@@ -158,7 +164,7 @@ def test_what_holds_is_said_of_every_run(
     found = summary(plant)
     assert found["runs"] == {"done": 30, "of": 30} and found["complete"]
     assert found["scenarios"][0]["ends_with"] == {"lamp.lit": True}
-    assert found["unnoticed"][0]["checks"] == [{"steps": ["lamp.test()"], "is_sure": False}]
+    assert found["unnoticed"][0]["checks"] == [{"steps": ["lamp.test()"], "is_sure": False, "behind": ""}]
     refuses = found["table"][0]["faults"]["refuses"]
     assert refuses["ends"] == {"done": 4, "failed": 16} and refuses["changes_with_the_moment"]
 
@@ -221,24 +227,51 @@ def test_forks_do_the_same_as_runs_from_the_beginning(plant: Path) -> None:
     assert faults and forked == run_all(proof.model, calm, faults, lambda: None, forks=False)
 
 
-@pytest.mark.parametrize("recipe", [STAMP, STAMP.replace("press.lift()", "cell.wait(8), press.lift()")])
+@pytest.mark.parametrize(
+    ("file", "recipe", "every"),
+    sample(
+        [
+            (PRESS, STAMP.replace("press.lift()", "cell.wait(8), press.lift()"), 9),
+            (PRESS, STAMP, 9),
+            (CARRY, CARRIED, 83),
+        ],
+        every=2,
+    ),
+)
 def test_runs_that_end_as_soon_as_the_rest_is_known_have_the_outcomes_of_whole_ones(
-    plant: Path, recipe: str
+    plant: Path, file: str, recipe: str, every: int
 ) -> None:
-    (plant.parent / "small.yaml").write_text(PRESS)
+    (plant.parent / "small.yaml").write_text(file)
     (plant.parent / "small.py").write_text(recipe)
     model = Plant(declared=loader.load(plant)).model
     calm = calm_run(model, next(scenarios(model)))
     course, back = course_of(model, calm), 0
-    for number, instant in enumerate(length(calm.instants[::7], whole=calm.instants)):
+    for number, instant in enumerate(length(calm.instants[::21], whole=calm.instants)):
         parts = single_faults(model, model.cells[0], instant, number=number)
-        faults = [each for part in parts for each in part][:: length(9, whole=1)]
+        faults = [each for part in parts for each in part][:: length(every, whole=1)]
         whole = run_all(model, calm, faults, lambda: None)
         short = run_all(model, calm, faults, lambda: None, course=course)
         assert [each.outcome for each in short] == [each.outcome for each in whole]
         back += sum(each.joined_at is not None for each in short)
         assert sum(each.seconds for each in short) < sum(each.seconds for each in whole)
     assert back > 0
+
+
+@pytest.mark.parametrize(
+    ("kind", "word"), [("mute", ""), ("duplicate", "up"), ("reorder", "up"), ("lost_queue", "")]
+)
+def test_a_run_in_which_more_or_fewer_messages_came_is_as_the_calm_one_again(
+    plant: Path, kind: str, word: str
+) -> None:
+    plant.write_text(PRESS)
+    (plant.parent / "small.py").write_text(STAMP)
+    model = Plant(declared=loader.load(plant)).model
+    calm = calm_run(model, next(scenarios(model)))
+    fault = Fault(kind=kind, at=2.5, seconds=0.5, target="press", word=word)
+    run = run_one(model, calm, fault, course=course_of(model, calm))
+    whole = run_one(model, calm, fault)
+    assert run.joined_at is not None and run.joined_at < 5.0
+    assert run.outcome == whole.outcome
 
 
 def test_a_task_that_ended_as_the_plant_died_counts_as_what_was_kept_of_it(plant: Path) -> None:
@@ -447,8 +480,53 @@ def test_the_step_is_named_that_would_notice_what_the_plant_had_been_told(
     (plant.parent / "small.py").write_text(QUIET.replace(', ends_with={"lamp.lit": True}', ""))
     page = plant.parent / "out.html"
     assert prove("--fault", "refuses", "--html", str(page)) == 0
-    assert "a step notices it: lamp.becomes(lit=True)" in capsys.readouterr().out
-    assert "un paso lo nota: lamp.becomes(lit=True)" in page.read_text()
+    assert "a step notices it: lamp.becomes(lit=True, at_most_s=2)" in capsys.readouterr().out
+    assert "un paso lo nota: lamp.becomes(lit=True, at_most_s=2)" in page.read_text()
+
+
+@pytest.mark.parametrize(("lit", "end"), [(True, End.FAILED), (False, None)])
+def test_a_step_notices_a_fault_where_the_task_with_it_is_done_without_the_fault_only(
+    plant: Path, lit: bool, end: End | None
+) -> None:
+    (plant.parent / "small.py").write_text(QUIET.replace(', ends_with={"lamp.lit": True}', ""))
+    model = Plant(declared=loader.load(plant)).model
+    scenario, fault = next(scenarios(model)), Fault(kind="refuses", at=2.0, seconds=1.0, target="lamp")
+    changed = with_check(model.cells[0].recipe("shine"), "lamp", "lit", lit)
+    found = noticed_with(model, scenario, changed, [replace(fault, word="ocupado")])
+    assert (None if found is None else found.end) is end
+
+
+def test_a_check_between_two_steps_is_named_where_none_at_the_end_notices_the_fault(
+    plant: Path, prove: Prove, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (plant.parent / "small.py").write_text(BLINK)
+    page = plant.parent / "out.html"
+    assert prove("--fault", "refuses", "--html", str(page)) == 0
+    said, check = capsys.readouterr().out, "lamp.becomes(lit=True, at_most_s=2)"
+    assert "lamp: doing light true has failed, and was not done later" in said
+    assert f"a step behind step 1, fallback, notices it: {check}" in said
+    assert f"un paso tras el paso 1, fallback, lo nota: {check}" in page.read_text()
+
+
+def test_between_two_steps_only_what_the_plant_hears_otherwise_is_a_check(plant: Path) -> None:
+    (plant.parent / "small.py").write_text(BLINK)
+    model = Plant(declared=loader.load(plant)).model
+    calm = calm_run(model, next(scenarios(model)))
+    fault = Fault(kind="refuses", at=2.0, seconds=1.0, target="lamp", word="ocupado")
+    found = [
+        (gap.number, gap.name, fact, value)
+        for gap, fact, value in other_facts(gaps(model, calm), gaps(model, calm, fault))
+    ]
+    assert found == [(1, "fallback", "lamp.lit", True)]
+    assert not [*other_facts(gaps(model, calm), gaps(model, calm))]
+
+
+def test_a_step_that_sees_nothing_of_a_fault_does_not_notice_it(plant: Path) -> None:
+    model = Plant(declared=loader.load(plant)).model
+    lies = Fault(kind="lying_fact", at=2.0, seconds=10.0, target="lamp", word="lit")
+    assert run_one(model, calm_run(model, next(scenarios(model))), lies).outcome.goes_unnoticed
+    changed = with_check(model.cells[0].recipe("shine"), "lamp", "lit", True)
+    assert noticed_with(model, next(scenarios(model)), changed, [lies]) is None
 
 
 def test_a_command_that_failed_and_is_passed_over_is_told_where_no_fact_shows_it(
@@ -479,3 +557,30 @@ def test_where_nothing_was_run_it_is_not_said_that_it_held(
     assert prove("--fault", "refuses", "--budget", "0s", "--tests", str(tests)) == 2
     assert "nothing was run: --budget was over before" in capsys.readouterr().out
     assert not tests.exists()
+
+
+def test_the_check_that_notices_is_proposed_as_an_edit_with_which_it_is_noticed(
+    plant: Path, prove: Prove
+) -> None:
+    recipes = plant.parent / "small.py"
+    recipes.write_text(QUIET.replace(', ends_with={"lamp.lit": True}', ""))
+    out = str(plant.parent / "out.json")
+    prove("--fault", "refuses", "--json", out, "--mend")
+    found = summary(plant)
+    assert found["findings"] == [] and found["unnoticed"]
+    (edit,) = found["mend"]["edits"]
+    assert edit["new"] == ', cell.device("lamp").becomes(lit=True, at_most_s=2)'
+    text = edited({"small.py": recipes.read_text()}, [Edit(**edit)])["small.py"]
+    recipes.write_text(text)
+    prove("--fault", "refuses", "--json", out)
+    assert summary(plant)["unnoticed"] == []
+
+
+def test_what_fails_without_any_fault_is_a_finding_and_gets_its_mend(plant: Path, prove: Prove) -> None:
+    plant.write_text(PLANT.replace("test: {effect: query,", "test: {effect: query, needs: {lit: true},"))
+    (plant.parent / "small.py").write_text(GOOD.replace("light(on=True)", "test()"))
+    out = str(plant.parent / "out.json")
+    prove("--fault", "refuses", "--json", out, "--mend")
+    found = summary(plant)
+    assert [each["source"] for each in found["findings"]] == ["run without faults"]
+    assert found["mend"]["left"] == 0 and "light(on=True)" in found["mend"]["edits"][0]["new"]

@@ -7,7 +7,8 @@ from typing import Any
 
 import pytest
 
-from arboleda.campaigns.draft import noticing, tryout
+from arboleda.campaigns import plants
+from arboleda.campaigns.draft import noticing, simulating, tryout
 from arboleda.model.errors import ArboledaError
 from arboleda.model.plant_model import PlantModel
 from arboleda.plant_file.loader import load_with_files
@@ -84,3 +85,11 @@ def test_a_fault_that_is_noticed_needs_no_check(lab: Plant) -> None:
     fault = {"kind": "refuses", "at": 2.0, "seconds": 1.0, "target": "lamp", "amount": 0.0, "word": "ocupado"}
     with pytest.raises(ArboledaError, match="noticed by now: the task ends failed"):
         noticing.noticed(lab[0], {"task": "lab", "faults": [fault]})
+
+
+def test_a_draft_is_simulated_on_seeds_and_what_breaks_is_said_of_each(lab: Plant) -> None:
+    model, files = lab
+    plant = plants.Plant(declared=model, files=files)
+    rows = [*simulating.simulated(plant, 2, 1)]
+    assert [row["seed"] for row in rows] == [1, 2] and not any(map(simulating.is_bad, rows))
+    assert simulating.is_bad({**rows[0], "findings": ["task failed: x: y"]})

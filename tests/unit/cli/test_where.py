@@ -12,11 +12,12 @@ from types import SimpleNamespace
 import pytest
 import yaml
 
+from arboleda.campaigns.request import Request
 from arboleda.cli import main as command
 from arboleda.cli import remote_plant
 from arboleda.cli.client import PlantClient
 from arboleda.cli.main import main
-from arboleda.cli.plant_options import located
+from arboleda.cli.plant_options import located, plant_here
 from arboleda.model.errors import ArboledaError
 from arboleda.runtime.state import StateDir, default_state, running_plants
 
@@ -202,3 +203,50 @@ def test_the_environment_names_the_state_directory(
     monkeypatch.setenv("ARBOLEDA_STATE", str(tmp_path))
     assert f"No plant is running on {tmp_path};" in typed("status")[2]
     assert "No plant is running on /elsewhere;" in typed("status", "--state", "/elsewhere")[2]
+
+
+@pytest.fixture
+def own_folder(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Path:
+    """The working directory, with a plant file of a plant called own."""
+    folder = tmp_path / "own"
+    folder.mkdir()
+    said = yaml.safe_load(SHIPPED.read_text("utf-8"))
+    (folder / "plant.yaml").write_text(yaml.safe_dump({**said, "name": "own"}), "utf-8")
+    monkeypatch.chdir(folder)
+    return folder
+
+
+def test_the_plant_of_the_working_directory_is_meant_where_it_runs(up, own_folder: Path) -> None:
+    up("arboleda")
+    own = up("own")
+    assert located(None, None) == own
+
+
+def test_the_plant_of_the_working_directory_is_left_out_where_it_does_not_run(up, own_folder: Path) -> None:
+    shipped = up("arboleda")
+    assert located(None, None) == shipped
+
+
+def test_the_plant_file_of_the_working_directory_is_checked(typed: Typed, own_folder: Path) -> None:
+    status, out, _ = typed("check")
+    assert (status, out.splitlines()[0][:35]) == (0, "plant.yaml: good: plant own; cells ")
+
+
+def test_where_there_is_no_plant_file_the_one_to_check_has_to_be_named(
+    typed: Typed, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    status, _, complaint = typed("check")
+    assert status == 2
+    assert "there is no plant.yaml in this folder; name the file to check" in " ".join(complaint.split())
+
+
+def test_the_plant_of_the_working_directory_is_simulated_unless_a_file_of_faults_is_of_another(
+    own_folder: Path,
+) -> None:
+    here = plant_here(None)
+    assert [plant.name for plant in Request(plant_here=here).plants.plants] == ["own"]
+    of_shipped = own_folder / "out.yaml"
+    of_shipped.write_text(yaml.safe_dump({"plant": "arboleda", "faults": []}), "utf-8")
+    request = Request(plant_here=here, faults=str(of_shipped))
+    assert [plant.name for plant in request.plants.plants] == ["arboleda"]

@@ -6,7 +6,7 @@ from typing import Any
 import pytest
 
 from arboleda.core.plant import Plant
-from arboleda.model.messages import Report, TaskChanged, TaskRequest
+from arboleda.model.messages import OperatorRequest, Report, TaskChanged, TaskRequest, Verb
 from arboleda.model.plant_model import Evidence, MotionState, PlantModel
 from arboleda.recipes.storage_layout import StorageLayout
 from arboleda.testing import shipped
@@ -29,6 +29,9 @@ class Hand:
 
     def submit(self, text: str) -> list[Any]:
         return self._step([TaskRequest(at=self.now, text=text)])
+
+    def operate(self, verb: Verb, scope: str) -> list[Any]:
+        return self._step([OperatorRequest(at=self.now, verb=verb, scope=scope)])
 
     def tell(self, robot: str, after: float = 0.05, **said: Any) -> list[Any]:
         until = self.now + after

@@ -26,7 +26,7 @@ def rig() -> Rig:
 
 @pytest.fixture
 def trail(rig: Rig) -> str:
-    return str(rig.memory[Fact.STEP]["a"])
+    return str(rig.disk.facts[Fact.STEP]["a"])
 
 
 @pytest.mark.parametrize("grip", [{}, {"ra1": "off"}, {"ra1": "on"}])

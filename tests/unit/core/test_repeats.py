@@ -101,7 +101,8 @@ class Desk:
             {**vars(belief), "robot": None, "_said": (), "repeats": 0} for belief in desk.beliefs.values()
         ]
         entries = [
-            (id, entry.state, entry.deadline, vars(entry.seen)) for id, entry in ledger.entries.items()
+            (id, entry.state, entry.deadline, vars(entry.observations))
+            for id, entry in ledger.entries.items()
         ]
         return [desk.outbox, beliefs, entries, ledger.changed, desk.reached, desk.next_deadline]
 

@@ -102,7 +102,7 @@ def test_it_goes_to_the_goal_and_no_further(rig: Rig, teacher: Teacher) -> None:
     goal = turned(rig, 0.1)
     teacher.press(4.0, goal=goal)
     assert rig.plant.model.robots["ra1"].motion.stands_at(q(rig), goal)
-    assert rig.plant.cells["sis_a"].teaching.held is None
+    assert rig.plant.cells["sis_a"].manual.teaching.held is None
 
 
 def test_who_says_no_more_that_it_is_held_lets_the_robot_stand(rig: Rig, teacher: Teacher) -> None:
@@ -114,7 +114,7 @@ def test_who_says_no_more_that_it_is_held_lets_the_robot_stand(rig: Rig, teacher
     rig.wait(2.0)
     assert q(rig) == stood
     assert max(each for each in _sent_at(rig, MoveJoints)) <= last + HOLD_S
-    assert "not held any more" in str(rig.plant.cells["sis_a"].teaching.trouble)
+    assert "not held any more" in str(rig.plant.cells["sis_a"].manual.teaching.trouble)
 
 
 def _sent_at(rig: Rig, kind: type) -> list[float]:
@@ -146,7 +146,7 @@ def test_a_press_that_is_over_never_comes_back(rig: Rig, teacher: Teacher) -> No
 
 def test_a_gap_within_one_step_of_the_plant_ends_a_press(rig: Rig, teacher: Teacher) -> None:
     teacher.press(0.2, goal=turned(rig))
-    teaching = rig.plant.cells["sis_a"].teaching
+    teaching = rig.plant.cells["sis_a"].manual.teaching
     teaching.take(replace(teacher.made(goal=turned(rig)), at=rig.now + 1.0))
     assert teaching.held is None
 
@@ -222,9 +222,9 @@ def test_it_ends_by_itself_when_nobody_touches_it(rig: Rig, teacher: Teacher) ->
     rig.wait(299.0)
     teacher.press(0.2, goal=turned(rig))
     rig.wait(299.0)
-    assert rig.plant.cells["sis_a"].teaching is not None
+    assert rig.plant.cells["sis_a"].manual.teaching is not None
     rig.wait(2.0)
-    assert rig.plant.cells["sis_a"].teaching is None
+    assert rig.plant.cells["sis_a"].manual.teaching is None
     last = [message for message in rig.sent if isinstance(message, Journal)][-1]
     assert str(last.sentence) == "teaching of sis_a by ana ended: nobody touched it for 300 s"
 
@@ -232,7 +232,7 @@ def test_it_ends_by_itself_when_nobody_touches_it(rig: Rig, teacher: Teacher) ->
 def test_a_stop_ends_it(rig: Rig, teacher: Teacher) -> None:
     teacher.press(0.5, goal=turned(rig))
     assert rig.operate(Verb.STOP, "sis_a") is None
-    assert rig.plant.cells["sis_a"].teaching is None
+    assert rig.plant.cells["sis_a"].manual.teaching is None
     rig.wait(2.0)
     stood = q(rig)
     teacher.press(1.0, goal=turned(rig))
@@ -313,6 +313,6 @@ def test_a_plant_that_dies_meanwhile_starts_no_task_by_itself(rig: Rig, teacher:
     assert [(each.name, each.value) for each in kept] == [("sis_a", "ana")]
     rig.crash()
     rig.wait(3.0)
-    assert rig.plant.cells["sis_a"].teaching is None
+    assert rig.plant.cells["sis_a"].manual.teaching is None
     assert rig.plant.cells["sis_a"].queue.paused
     assert not rig.plant.cells["sis_b"].queue.paused

@@ -33,6 +33,7 @@ TOLD_BY = (
     "plant_file",
     "site",
     "dashboard",
+    "cli",
 )
 OTHERS = LANGUAGES[1:]
 

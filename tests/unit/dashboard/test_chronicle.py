@@ -109,9 +109,9 @@ def test_an_act_that_is_seen_late_is_told_with_the_time_of_when_it_was_done() ->
 
 def test_the_log_line_of_an_act_names_its_cell_once() -> None:
     home = Journal(verb=Verb.HOME, scope="ra1", cell="sis_a", sentence="home ra1")
-    assert act_line(home) == "home ra1 (sis_a)"
-    assert act_line(replace(home, scope="sis_a", sentence="home sis_a")) == "home sis_a"
-    assert act_line(replace(home, scope="", cell=None, sentence="stop plant")) == "stop plant"
+    assert str(act_line(home)) == "home ra1 (sis_a)"
+    assert str(act_line(replace(home, scope="sis_a", sentence="home sis_a"))) == "home sis_a"
+    assert str(act_line(replace(home, scope="", cell=None, sentence="stop plant"))) == "stop plant"
 
 
 def test_the_time_line_is_bounded() -> None:

@@ -6,10 +6,10 @@ import json
 from dataclasses import replace
 
 from arboleda.dashboard import page
+from arboleda.dashboard.body import parts_of
 from arboleda.dashboard.faces import Face
 from arboleda.dashboard.faces.links import says
 from arboleda.dashboard.page_state import PageState
-from arboleda.dashboard.shell import parts_of
 from arboleda.dashboard.wording import words
 from arboleda.model.messages import Event
 from arboleda.model.plant_model import PlantModel

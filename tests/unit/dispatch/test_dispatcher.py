@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from functools import partial
 
@@ -14,7 +15,7 @@ from arboleda.kinds.joints import MoveJoints
 from arboleda.kinds.mobile import FollowPath
 from arboleda.model.commands import Home, Stop, StopMode, Switch
 from arboleda.model.messages import Failure, Reason, Report
-from arboleda.model.plant_model import Evidence, MotionState
+from arboleda.model.plant_model import DriverUse, Evidence, MotionState
 from arboleda.testing import shipped
 
 EPOCH = 7
@@ -132,6 +133,23 @@ def test_what_a_bridge_refused_for_a_stop_is_stopped_until_another_start_of_the_
     assert dispatcher.beliefs["rm_sis_a"].barred is stopped
 
 
+@pytest.mark.parametrize(
+    ("state", "stopped"), [(MotionState.STOPPED, True), (MotionState.STOP_LATCHED, False)]
+)
+def test_a_refusal_for_a_stop_counts_as_the_report_of_it_that_is_missing_until_the_stop_is_cleared(
+    dispatcher: Dispatcher, state: MotionState, stopped: bool
+) -> None:
+    move = partial(MoveJoints, robot="ra1", q=(0.5, 0.0, 0.0))
+    entry = dispatcher.send(move, "sis_a", "moving", 100.1)
+    refused = {**STILL, "state": state, "rejected": entry.command.id, "refusal": "paro"}
+    dispatcher.report(Report(at=100.2, **refused), 100.2)
+    dispatcher.report(Report(at=100.3, **STILL), 100.3)
+    again = dispatcher.send(move, "sis_a", "moving", 100.4)
+    assert (again.failure is not None and again.failure.reason is Reason.STOPPED) is stopped
+    dispatcher.unlatch("ra1")
+    assert dispatcher.beliefs["ra1"].obstacle(was=False) is None
+
+
 def test_a_stopped_robot_lets_its_part_go_by_hand(latched: Dispatcher) -> None:
     let_go = partial(SetEffector, robot="ra1", on=False)
     assert latched.send(let_go, "sis_a", "doing", 100.1, by_hand=True).failure is None
@@ -183,3 +201,20 @@ def test_a_command_that_the_plant_never_gave_is_told_and_halted_and_the_next_num
     (noticed,) = dispatcher.interference.noticed
     assert f"took command {EPOCH}-9999, which this plant never gave" in str(noticed.sentence)
     assert move is None or move.interference == noticed.sentence
+
+
+@pytest.mark.parametrize("pace", [1.0, 0.05])
+def test_a_move_has_the_time_that_its_pace_takes(pace: float) -> None:
+    """A driver told to move at five percent takes twenty times as long."""
+    model = shipped("sis_a")
+    slow = DriverUse(name="slow", make=object, pace=pace)
+    cells = tuple(cell.with_robots(lambda robot: replace(robot, driver=slow)) for cell in model.cells)
+    dispatcher = Dispatcher(replace(model, cells=cells), EPOCH, {})
+    for at in (99.9, 100.0):
+        dispatcher.report(Report(at=at, **STILL), at)
+    arm, goal = dispatcher.model.robots["ra1"], (math.radians(150), 0.0, 0.0)
+    move = dispatcher.send(partial(MoveJoints, robot="ra1", q=goal), "sis_a", "moving", 100.0)
+    takes_s = arm.motion.travel_s((0.0, 0.0, 0.0), (goal,)) / pace
+    timing = dispatcher.model.timing
+    allowed_s = max(arm.timeout_s, takes_s * timing.deadline_factor + timing.deadline_floor_s)
+    assert move.deadline == pytest.approx(100.0 + allowed_s)

@@ -2,9 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 
-from arboleda.drivers import MotionState, SetEffector, Stop, StopMode
+from arboleda.drivers import MotionState, Report, SetEffector, Stop, StopMode
+from arboleda.drivers.dobot.frames import Feedback, Mode
+from arboleda.drivers.dobot.machine import DashboardReply, FeedbackData, Machine
+from arboleda.drivers.dobot.settings import Settings
+from arboleda.drivers.link import CommandRequest, Opened
 from arboleda.model.commands import Home
 
 from .dobot_rig import ARM, GO, GOAL, Loopback
@@ -14,6 +20,7 @@ LATCH = Stop(id="9-6", robot=ARM.name, mode=StopMode.LATCH)
 CLEAR = Stop(id="9-7", robot=ARM.name, mode=StopMode.CLEAR)
 READY = Home(id="9-2", robot=ARM.name)
 GRIP = SetEffector(id="9-3", robot=ARM.name, on=True)
+FRAME = Feedback(mode=Mode.IDLE, command=0, joints_deg=(0.0,) * 6, time_ms=1_700_000_000_000, run_ms=1000)
 
 
 def up(*faults: str, enabled: bool = True) -> Loopback:
@@ -141,6 +148,20 @@ def test_clearing_clears_the_alarms_of_the_controller() -> None:
     assert joined.last.state is MotionState.STOPPED
 
 
+def test_an_alarm_is_a_fact_and_a_stop_beside_it_shows_first_so_that_it_can_be_cleared() -> None:
+    joined = moving()
+    joined.faults.switch("alarm", on=True)
+    joined.wait(1.0)
+    assert (joined.last.state, joined.last.fact("health")) == (MotionState.FAULT, "alarm")
+    joined.ask(LATCH)
+    joined.wait(1.0)
+    assert (joined.last.state, joined.last.fact("health")) == (MotionState.STOP_LATCHED, "alarm")
+    joined.faults.switch("alarm", on=False)
+    joined.ask(CLEAR)
+    joined.wait(0.5)
+    assert (joined.last.state, joined.last.fact("health")) == (MotionState.STOPPED, "ok")
+
+
 def test_getting_ready_powers_and_enables_the_arm() -> None:
     joined = Loopback("power_off", enabled=False)
     joined.wait(0.5)
@@ -237,3 +258,69 @@ def test_answers_that_come_late_are_waited_for() -> None:
     assert joined.last.accepted is None and joined.last.state is MotionState.MOVING
     joined.wait(3.0)
     assert joined.last.done == GO.id
+
+
+def test_alarms_are_said_whose_answer_lacks_its_last_brace() -> None:
+    joined = moving("no_brace")
+    joined.faults.switch("alarm", on=True)
+    joined.wait(1.0)
+    assert (joined.last.failed, joined.last.failure) == (GO.id, "alarm 17: no joints reach that pose")
+
+
+def test_control_that_an_enabled_arm_refuses_is_asked_for_again_when_it_is_disabled() -> None:
+    joined = up()
+    assert joined.told.count("RequestControl()") == 1
+    joined.tell("DisableRobot()")
+    joined.wait(0.2)
+    assert joined.told.count("RequestControl()") == 2
+    joined.ask(READY)
+    joined.wait(2.0)
+    assert joined.told.count("RequestControl()") == 2
+
+
+@pytest.mark.parametrize("fault", ["script", "stop_button", "alarm", "power_off"])
+def test_the_effector_is_unknown_where_its_output_is_not_shown(fault: str) -> None:
+    joined = moving()
+    joined.ask(GRIP)
+    joined.wait(0.1)
+    assert joined.last.effector is True
+    joined.faults.switch(fault, on=True)
+    joined.wait(2.5)
+    assert joined.last.effector is None
+
+
+def test_an_output_that_a_script_keeps_from_being_read_back_is_said_to_be_unread() -> None:
+    joined = up("script")
+    joined.ask(GRIP)
+    joined.wait(0.2)
+    assert (joined.last.rejected, joined.last.refusal) == (GRIP.id, "output_not_read_back script_running")
+
+
+def bare() -> Machine:
+    """A machine that is connected, has had its answers, and has seen one frame of an arm that stands."""
+    machine = Machine([ARM], Settings(host="dobot"))
+    machine.step(0.0, [])
+    machine.step(0.0, [Opened()])
+    replies = b"0,{},RequestControl();0,{0},GetToolDO(1);"
+    machine.step(0.1, [DashboardReply(data=replies), FeedbackData(data=FRAME.packed())])
+    return machine
+
+
+def test_a_move_without_an_answer_is_told_as_such() -> None:
+    machine = bare()
+    machine.step(0.5, [CommandRequest(command=GO)])
+    machine.step(1.0, [FeedbackData(data=replace(FRAME, run_ms=2000).packed())])
+    out = machine.step(1.1, [DashboardReply(data=b"0,{0},GetToolDO(1);")])
+    (lost,) = [str(each.lost) for each in out if isinstance(each, Report)]
+    assert "it has not answered MovJ, and has answered GetToolDO, which it was told later" in lost
+
+
+@pytest.mark.parametrize(("changes", "lives"), [({}, False), ({"time_ms": 1}, True), ({"run_ms": 1}, True)])
+def test_an_arm_lives_by_its_clock_or_its_run_time(changes: dict[str, int], lives: bool) -> None:
+    machine, now, frame, lost = bare(), 0.1, FRAME, False
+    for _ in range(15):
+        now += 0.1
+        frame = replace(frame, **{name: getattr(frame, name) + 100 for name in changes})
+        out = machine.step(now, [FeedbackData(data=frame.packed())])
+        lost = lost or any(isinstance(each, Report) and each.lost is not None for each in out)
+    assert lost is not lives

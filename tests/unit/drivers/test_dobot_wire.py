@@ -79,3 +79,30 @@ def test_a_controller_that_is_not_in_tcp_mode_says_so_in_its_own_way() -> None:
 def test_nonsense_is_no_reply(data: bytes) -> None:
     with pytest.raises(NotAReply):
         ReplyReader().feed(data)
+
+
+def test_alarms_are_read_where_the_last_brace_is_missing() -> None:
+    """As in the example of the maker's README_V4.pdf, 3.40."""
+    reader = ReplyReader()
+    (alarm,) = reader.feed(b"0,{[[17,116],[],[],[],[2],[],[]],GetErrorId();")
+    assert (alarm.error, alarm.alarms, alarm.command) == (0, (17, 116, 2), "GetErrorId")
+    with pytest.raises(NotAReply):
+        reader.feed(b"0,{12,MovJ();")
+
+
+@pytest.mark.parametrize(
+    ("error", "word"),
+    [
+        (-8, "licence_expired"),
+        (-30001, "wrong_type_of_value_1"),
+        (-40002, "value_out_of_range_2"),
+        (-50003, "wrong_type_of_option_3"),
+        (-60001, "option_out_of_range_1"),
+        (-100001, "error -100001"),
+        (-30000, "error -30000"),
+        (-9, "error -9"),
+    ],
+)
+def test_refusals_have_words(error: int, word: str) -> None:
+    (reply,) = ReplyReader().feed(f"{error},{{}},MovJ();".encode())
+    assert reply.word == word

@@ -36,7 +36,7 @@ def machine(belt: Device) -> OpcUaDevice:
 
 def shown(machine: OpcUaDevice, **values: object) -> dict[str, object]:
     """What the server shows: all 0, except these."""
-    return dict.fromkeys(machine.nodes, 0) | {f"ns=2;s={name}": value for name, value in values.items()}
+    return dict.fromkeys(machine.places, 0) | {f"ns=2;s={name}": value for name, value in values.items()}
 
 
 def told(belt: Device, verb: str, id: str = "c1", **values: object) -> Command:
@@ -119,7 +119,7 @@ def test_what_the_mapping_does_not_know_is_not_sent(machine: OpcUaDevice) -> Non
 
 
 def test_what_says_that_it_is_done_is_read_before_the_facts(machine: OpcUaDevice) -> None:
-    names = [node.removeprefix("ns=2;s=") for node in machine.nodes]
+    names = [node.removeprefix("ns=2;s=") for node in machine.places]
     assert names.index("done") < names.index("accepted") < names.index("state") < names.index("part_at")
 
 

@@ -16,8 +16,16 @@ def test_what_a_plc_shows_already_is_given_to_no_command() -> None:
 def test_at_a_new_connection_no_number_names_a_command() -> None:
     numbers = Numbers()
     numbers.give("c1")
-    numbers.begin()
+    numbers.begin(1)
     assert numbers.id_of(1) is None
+
+
+def test_the_first_numbers_go_on_from_the_last_that_the_plc_accepted() -> None:
+    numbers = Numbers()
+    numbers.begin(41)
+    assert numbers.give("c1") == 42
+    numbers.begin(41)
+    assert numbers.give("c2") == 43, "the command of 42 may still be on its way"
 
 
 def test_numbers_begin_anew_after_the_last_and_never_are_0() -> None:

@@ -127,8 +127,8 @@ def test_a_message_has_no_more_nodes_than_it_takes_and_the_rest_comes_by_updates
     rig.run(5.0)
     sizes = [len(said["nodes"]) for topic, said in rig.told if topic == "order"]
     assert (max(sizes), len(sizes)) == (3, 3)
-    assert rig.said["cart"].done == "1-1"
-    assert rig.said["cart"].node == 8
+    assert rig.reports["cart"].done == "1-1"
+    assert rig.reports["cart"].node == 8
 
 
 def test_a_base_that_is_shorter_than_the_limit_stays_as_it_is() -> None:

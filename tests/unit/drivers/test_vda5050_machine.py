@@ -42,10 +42,10 @@ def test_a_way_is_driven_and_proven_by_its_ids(version: str) -> None:
     rig.run(0.5)
     rig.drive(0, 3, 6, 7)
     rig.run(1.0)
-    assert (rig.said["cart"].accepted, rig.said["cart"].state) == ("1-1", MotionState.MOVING)
-    assert rig.said["cart"].done is None
+    assert (rig.reports["cart"].accepted, rig.reports["cart"].state) == ("1-1", MotionState.MOVING)
+    assert rig.reports["cart"].done is None
     rig.run(WAY_S)
-    said = rig.said["cart"]
+    said = rig.reports["cart"]
     assert (said.done, said.state, said.node, said.homed) == ("1-1", MotionState.STOPPED, 7, True)
 
 
@@ -84,9 +84,9 @@ def test_a_way_begins_where_the_vehicle_stands(rig: Rig) -> None:
 def test_a_way_that_comes_by_its_goal_is_driven_to_its_end(rig: Rig) -> None:
     rig.drive(0, 3, 0)
     rig.run(0.4)
-    assert rig.said["cart"].done is None
+    assert rig.reports["cart"].done is None
     rig.run(WAY_S)
-    assert rig.said["cart"].done == "1-1"
+    assert rig.reports["cart"].done == "1-1"
 
 
 def test_nodes_have_the_names_and_places_of_the_vehicle() -> None:
@@ -103,7 +103,7 @@ def test_a_verb_is_an_action_at_the_node_where_the_vehicle_stands(rig: Rig) -> N
     rig.do("pick", height=0.4)
     assert rig.told[-1][1]["nodes"][0]["actions"][0]["actionParameters"] == [{"key": "height", "value": 0.4}]
     rig.run(2)
-    said = rig.said["forks"]
+    said = rig.reports["forks"]
     assert (said.done, said.fact("loaded")) == ("1-2", True)
 
 
@@ -113,7 +113,7 @@ def test_an_instant_verb_is_done_on_the_way() -> None:
     rig.drive(0, 3, 6)
     rig.do("drop")
     rig.run(1.3)
-    assert (rig.said["forks"].done, rig.said["cart"].done) == ("1-2", None)
+    assert (rig.reports["forks"].done, rig.reports["cart"].done) == ("1-2", None)
 
 
 def test_an_edge_has_its_action_in_both_directions_and_counts_for_the_end(horned: Rig) -> None:
@@ -128,9 +128,9 @@ def test_an_edge_has_its_action_in_both_directions_and_counts_for_the_end(horned
     assert edges[1]["actions"][0]["actionParameters"] == [{"key": "loudnessDb", "value": 60}]
     assert edges[1]["actions"][0]["blockingType"] == "NONE"
     rig.run(2.5)
-    assert (rig.agv.node, rig.said["cart"].done) == ("3", None)  # the horn of the way back is still heard
+    assert (rig.agv.node, rig.reports["cart"].done) == ("3", None)  # the horn of the way back is still heard
     rig.run(1.0)
-    assert rig.said["cart"].done == "1-1"
+    assert rig.reports["cart"].done == "1-1"
 
 
 def test_an_action_of_an_edge_that_fails_fails_the_way(horned: Rig) -> None:
@@ -138,7 +138,7 @@ def test_an_action_of_an_edge_that_fails_fails_the_way(horned: Rig) -> None:
     rig.faults.switch("action_fails", on=True)
     rig.drive(0, 3, 6, 7, 8)
     rig.run(WAY_S)
-    assert (rig.said["cart"].failed, rig.said["cart"].failure) == ("1-1", "actionError")
+    assert (rig.reports["cart"].failed, rig.reports["cart"].failure) == ("1-1", "actionError")
 
 
 def test_an_action_that_blocks_holds_the_vehicle_on_its_edge() -> None:
@@ -146,9 +146,9 @@ def test_an_action_that_blocks_holds_the_vehicle_on_its_edge() -> None:
     rig.run(0.5)
     rig.drive(0, 3)
     rig.run(0.9)
-    assert (rig.agv.node, rig.said["cart"].state) == ("0", MotionState.MOVING)
+    assert (rig.agv.node, rig.reports["cart"].state) == ("0", MotionState.MOVING)
     rig.run(1.5)
-    assert rig.said["cart"].done == "1-1"
+    assert rig.reports["cart"].done == "1-1"
 
 
 @pytest.mark.parametrize(
@@ -170,15 +170,15 @@ def test_a_question_is_answered_by_the_result_of_its_action(rig: Rig) -> None:
     rig.run(0.1)
     assert [action.type for action in rig.agv.actions.values()] == ["detectObject"]
     rig.run(2)
-    assert (rig.said["forks"].answered, rig.said["forks"].answer) == ("1-2", "empty")
+    assert (rig.reports["forks"].answered, rig.reports["forks"].answer) == ("1-2", "empty")
 
 
 def test_nothing_is_said_of_its_motion_until_it_has_named_what_it_was_told(rig: Rig) -> None:
     rig.faults.switch("hush", on=True)
     rig.drive(0, 3)
     rig.run(2)
-    assert rig.said["cart"].state is None
-    assert rig.said["cart"].accepted is None
+    assert rig.reports["cart"].state is None
+    assert rig.reports["cart"].accepted is None
 
 
 def test_a_halt_counts_once_the_cancel_is_over(rig: Rig) -> None:
@@ -187,10 +187,10 @@ def test_a_halt_counts_once_the_cancel_is_over(rig: Rig) -> None:
     rig.faults.switch("deaf", on=True)
     rig.stop(StopMode.HALT)
     rig.run(WAY_S)
-    assert rig.said["cart"].state is not MotionState.STOPPED
+    assert rig.reports["cart"].state is not MotionState.STOPPED
     rig.faults.switch("deaf", on=False)
     rig.run(AGAIN_S)  # it is said again
-    assert (rig.said["cart"].state, rig.said["cart"].done) == (MotionState.STOPPED, None)
+    assert (rig.reports["cart"].state, rig.reports["cart"].done) == (MotionState.STOPPED, None)
 
 
 def test_a_halted_vehicle_stands_short_of_its_goal(rig: Rig) -> None:
@@ -198,10 +198,10 @@ def test_a_halted_vehicle_stands_short_of_its_goal(rig: Rig) -> None:
     rig.run(0.5)
     rig.stop(StopMode.HALT)
     rig.run(0.5)
-    assert (rig.said["cart"].state, rig.said["cart"].done) == (MotionState.STOPPED, None)
+    assert (rig.reports["cart"].state, rig.reports["cart"].done) == (MotionState.STOPPED, None)
     rig.drive(0, 3, id="1-3")
     rig.run(WAY_S)
-    assert rig.said["cart"].done == "1-3"
+    assert rig.reports["cart"].done == "1-3"
 
 
 def test_a_latch_pauses_and_cancels_and_its_clear_ends_the_pause(rig: Rig) -> None:
@@ -209,10 +209,10 @@ def test_a_latch_pauses_and_cancels_and_its_clear_ends_the_pause(rig: Rig) -> No
     rig.run(0.5)
     rig.stop(StopMode.LATCH)
     rig.run(0.5)
-    assert rig.said["cart"].state is MotionState.STOP_LATCHED
+    assert rig.reports["cart"].state is MotionState.STOP_LATCHED
     rig.stop(StopMode.CLEAR)
     rig.run(0.5)
-    assert rig.said["cart"].state is MotionState.STOPPED
+    assert rig.reports["cart"].state is MotionState.STOPPED
 
 
 def test_instant_actions_of_2_0_are_under_both_keys_that_its_vehicles_read() -> None:
@@ -231,7 +231,7 @@ def test_a_second_order_while_driving_is_not_sent(rig: Rig) -> None:
 def test_an_order_of_somebody_else_is_left_alone_and_named(rig: Rig) -> None:
     rig.agv.course.id, rig.agv.course.steps = "other", [{"nodeId": "9", "sequenceId": 4, "released": False}]
     rig.run(1.5)
-    assert rig.said["cart"].state is MotionState.MOVING
+    assert rig.reports["cart"].state is MotionState.MOVING
     with pytest.raises(NotSent, match="at the order other of somebody else"):
         rig.drive(0, 3)
 
@@ -241,11 +241,11 @@ def test_what_is_left_of_an_order_is_cancelled_when_the_vehicle_is_back(rig: Rig
     rig.run(0.5)
     rig.faults.switch("vanish", on=True)
     rig.run(0.5)
-    assert "the connection of arboleda/agv1 broke" in str(rig.said["cart"].lost)
+    assert "the connection of arboleda/agv1 broke" in str(rig.reports["cart"].lost)
     rig.faults.switch("vanish", on=False)
     rig.run(1)
     assert [each["actionType"] for each in rig.told[-1][1]["actions"]] == ["cancelOrder"]
-    assert (rig.said["cart"].state, rig.agv.course.steps) == (MotionState.STOPPED, [])
+    assert (rig.reports["cart"].state, rig.agv.course.steps) == (MotionState.STOPPED, [])
 
 
 def test_no_vehicle_of_that_name_is_told_with_those_that_there_are() -> None:
@@ -253,8 +253,8 @@ def test_no_vehicle_of_that_name_is_told_with_those_that_there_are() -> None:
     rig.faults.switch("vanish", on=True)
     rig.vehicle.neighbour("arboleda/agv2 (v2)")
     rig.run(1)
-    assert "no vehicle arboleda/agv1 has said" in str(rig.said["cart"].lost)
-    assert "those that have: arboleda/agv2 (v2)" in str(rig.said["cart"].lost)
+    assert "no vehicle arboleda/agv1 has said" in str(rig.reports["cart"].lost)
+    assert "those that have: arboleda/agv2 (v2)" in str(rig.reports["cart"].lost)
     with pytest.raises(NotSent, match="no vehicle"):
         rig.drive(0, 3)
 
@@ -262,13 +262,13 @@ def test_no_vehicle_of_that_name_is_told_with_those_that_there_are() -> None:
 def test_a_boot_is_a_new_boot_id_and_forgets_the_order(rig: Rig) -> None:
     rig.drive(0, 3, 6)
     rig.run(0.5)
-    before = rig.said["cart"].boot_id
+    before = rig.reports["cart"].boot_id
     rig.faults.switch("power_cycle", on=True)
     rig.run(0.5)
-    assert rig.said["cart"].state is MotionState.NO_LINK
+    assert rig.reports["cart"].state is MotionState.NO_LINK
     rig.faults.switch("power_cycle", on=False)
     rig.run(0.5)
-    said = rig.said["cart"]
+    said = rig.reports["cart"]
     assert (said.state, said.done, said.accepted) == (MotionState.STOPPED, None, None)
     assert before is not None
 
@@ -306,7 +306,7 @@ def test_what_becomes_of_a_way(rig: Rig, fault: str) -> None:
     rig.faults.switch(fault, on=True)
     rig.run(WAY_S)
     name, value = BECOMES[fault]
-    assert getattr(rig.said["cart"], name) == value
+    assert getattr(rig.reports["cart"], name) == value
 
 
 def test_a_vehicle_that_lies_says_done_at_a_node_that_is_not_the_goal() -> None:
@@ -315,7 +315,7 @@ def test_a_vehicle_that_lies_says_done_at_a_node_that_is_not_the_goal() -> None:
     rig.faults.switch("lie", on=True)
     rig.drive(0, 3, 6, 7)
     rig.run(1)
-    assert (rig.said["cart"].done, rig.said["cart"].node) == ("1-1", 0)  # so the plant sees it
+    assert (rig.reports["cart"].done, rig.reports["cart"].node) == ("1-1", 0)  # so the plant sees it
 
 
 def test_every_fault_has_a_row_but_the_one_that_the_connection_refuses() -> None:
@@ -326,15 +326,15 @@ def test_an_order_that_is_refused_is_rejected_with_the_vehicle_s_word(rig: Rig) 
     rig.faults.switch("no_route", on=True)
     rig.drive(0, 3)
     rig.run(0.5)
-    assert (rig.said["cart"].rejected, rig.said["cart"].refusal) == ("1-1", "noRouteError")
-    assert rig.said["cart"].state is MotionState.STOPPED
+    assert (rig.reports["cart"].rejected, rig.reports["cart"].refusal) == ("1-1", "noRouteError")
+    assert rig.reports["cart"].state is MotionState.STOPPED
 
 
 def test_an_action_that_fails_is_failed_with_the_vehicle_s_word(rig: Rig) -> None:
     rig.faults.switch("action_fails", on=True)
     rig.do("pick", height=0.0)
     rig.run(2)
-    assert (rig.said["forks"].failed, rig.said["forks"].failure) == ("1-2", "actionError")
+    assert (rig.reports["forks"].failed, rig.reports["forks"].failure) == ("1-2", "actionError")
 
 
 def test_a_vehicle_that_is_silent_for_too_long_is_lost() -> None:
@@ -342,21 +342,21 @@ def test_a_vehicle_that_is_silent_for_too_long_is_lost() -> None:
     rig.run(0.5)
     rig.faults.switch("hush", on=True)
     rig.run(1.5)
-    assert rig.said["cart"].state is MotionState.STOPPED
+    assert rig.reports["cart"].state is MotionState.STOPPED
     rig.run(1)
-    assert "has told no state for 2 s" in str(rig.said["cart"].lost)
+    assert "has told no state for 2 s" in str(rig.reports["cart"].lost)
     rig.faults.switch("hush", on=False)
     rig.run(1)
-    assert rig.said["cart"].state is MotionState.STOPPED
+    assert rig.reports["cart"].state is MotionState.STOPPED
 
 
 def test_a_vehicle_that_does_not_count_its_headers_is_heard_by_its_timestamps(rig: Rig) -> None:
-    boots = rig.said["cart"].boot_id
+    boots = rig.reports["cart"].boot_id
     for second in range(3):
         said = state(headerId=7, timestamp=f"2100-01-01T00:00:0{second}.000Z", driving=second == 2)
         rig.vehicle.state(rig.now, said)
         rig.run(0.5)
-    assert (rig.said["cart"].state, rig.said["cart"].boot_id) == (MotionState.MOVING, boots)
+    assert (rig.reports["cart"].state, rig.reports["cart"].boot_id) == (MotionState.MOVING, boots)
 
 
 def test_states_that_never_become_newer_are_named_where_the_vehicle_counts_as_silent() -> None:
@@ -391,7 +391,7 @@ def test_what_was_open_is_over_once_the_vehicle_has_said_what_breaks_the_machine
         "arboleda/agv1 is there, and has told no state yet that could be read: it has said [[]]"
     }
     rig.run(60)
-    assert rig.said["cart"].state is MotionState.STOPPED and rig.said["cart"].done is None
+    assert rig.reports["cart"].state is MotionState.STOPPED and rig.reports["cart"].done is None
 
 
 def state(**news: Any) -> dict[str, Any]:
@@ -406,7 +406,7 @@ def test_what_was_not_sent_is_not_open(rig: Rig) -> None:
     rig.vehicle.unsent(command)
     rig.drive(0, 3, id="1-2")
     rig.run(WAY_S)
-    assert rig.said["cart"].done == "1-2"
+    assert rig.reports["cart"].done == "1-2"
 
 
 def test_a_stop_without_a_link_is_not_sent() -> None:

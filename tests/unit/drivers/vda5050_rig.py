@@ -35,12 +35,12 @@ class Rig(Loopback):
 
     def __init__(self, version: str = "2.1", **settings: Any) -> None:
         self.faults = Faults(FAULTS)
-        self.said: dict[str, Report] = {}
+        self.reports: dict[str, Report] = {}
         found = Settings(broker="nowhere", version=version, **MAKER, **settings)  # type: ignore[arg-type]
         super().__init__(devices(), found, VirtualAgv(self.faults, version=version), self._keep)
 
     def _keep(self, report: Report) -> None:
-        self.said[report.robot] = report
+        self.reports[report.robot] = report
 
     def drive(self, *nodes: int, id: str = "1-1") -> None:
         self.send(FollowPath(id=id, robot="cart", nodes=nodes))

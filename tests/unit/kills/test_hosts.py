@@ -15,6 +15,8 @@ from arboleda_kills.hosts.run import two_leaders
 from arboleda_kills.hosts.visitors import Visitors
 from arboleda_kills.hosts.ways import Answer
 
+from ...patience import PATIENCE_S
+
 ONE_BY_ONE = [(1.0, "ra1", "7-1"), (2.0, "ra1", "7-2"), (3.0, "ra1", "8-1"), (3.1, "ra2", "8-2")]
 
 
@@ -48,7 +50,7 @@ def brought(monkeypatch: pytest.MonkeyPatch, *answers: Answer) -> Visitors:
     started = set(threading.enumerate()) - before
     there.set()
     for thread in started:
-        thread.join(10.0)
+        thread.join(PATIENCE_S)
     assert visitors.are_gone and left == [] and len(set(texts)) == 1, "it is one task, with one id"
     return visitors
 

@@ -38,7 +38,7 @@ def machine(name: str) -> Bench:
 def holding(name: str) -> Bench:
     """A cell that is held, as one of its devices holds a part that came from nobody knows where."""
     here = machine(name)
-    here.set_by_hand(name, ((HOLDS[name], True),))
+    here.manual.set_facts(name, ((HOLDS[name], True),))
     assert here.wait(5.0, lambda: bool(here.plant.advice(cell_of(here))))
     return here
 
@@ -105,7 +105,7 @@ def found_part(here: Rig, broken: Callable[[], None]) -> None:
         body.effector = body.holding = True
         here.wake(name)
     else:
-        here.set_by_hand(name, ((HOLDS[name], True),))
+        here.manual.set_facts(name, ((HOLDS[name], True),))
     here.wait(3.0)
     broken()
 
@@ -139,7 +139,7 @@ def follow(here: Rig) -> list[str]:
             return acts
         assert first.refusal is None, (acts, str(first.refusal))
         if first.by_hand:
-            here.take_out(first.scope)
+            here.manual.take_out(first.scope)
         assert here.operate(first.do, first.scope, by_hand=first.by_hand) is None
         acts.append(f"{first.do.value}{' by hand' if first.by_hand else ''}")
         here.wait(120.0, until=lambda: here.plant.acts[-1].outcome is not Outcome.UNDER_WAY)
@@ -279,10 +279,10 @@ def test_who_took_a_part_out_is_believed_against_the_word_of_the_device() -> Non
 
 def test_the_next_word_of_the_device_itself_counts_again() -> None:
     here = emptied()
-    here.set_by_hand("oven", (("clamped", False),))
+    here.manual.set_facts("oven", (("clamped", False),))
     here.wait(1.0)
     assert here.plant.dispatcher.memory.value(Fact.EMPTIED, "oven") is None
-    here.set_by_hand("oven", (("clamped", True),))
+    here.manual.set_facts("oven", (("clamped", True),))
     here.wait(1.0)
     assert here.plant.cells["bench"].context.parts.holding == ["oven"]
 
@@ -317,7 +317,7 @@ def test_of_two_that_hold_both_are_named() -> None:
     two = replace(bench, members=(("oven", oven), ("kiln", second), ("eye", bench.roles["eye"])))
     here = Bench(replace(model(), cells=(two,)))
     for name in ("oven", "kiln"):
-        here.set_by_hand(name, (("clamped", True),))
+        here.manual.set_facts(name, (("clamped", True),))
     here.wait(5.0)
     assert here.operate(Verb.ABANDON, "bench") == (
         "oven, kiln may each hold a part; release oven and release kiln first"

@@ -7,13 +7,13 @@ from typing import Any
 
 from arboleda.kinds.declared import Device, DeviceKind, DeviceVerb, Effect, FactType
 from arboleda.model.messages import Fact, Reason, Verb
-from arboleda.model.plant_model import Interlock, PlantModel
+from arboleda.model.plant_model import Cell, Interlock, PlantModel
 from arboleda.model.recipe import Recipe
 from arboleda.recipes import Kit, parallel, recipe, work
 from arboleda.testing.following import advised, follow
 
 from .lab import Bench
-from .tending import IDS, plant
+from .tending import IDS, LAMP, plant
 
 DOOR = FactType(type=str, words=("open", "closed"), first="open")
 MILL = DeviceKind(
@@ -196,6 +196,28 @@ def test_a_machine_in_the_way_of_one_zone_moves_over_into_another_one_once_nobod
     assert (here.plant.zones.holder("vise"), here.plant.zones.holder("feed")) == ("gate", None)
 
 
+def with_shared_gate() -> PlantModel:
+    """The same gate, which a cell that does nothing has, too."""
+    model = with_gate()
+    (cell,) = model.cells
+    lamp = Device(name="other_lamp", mqtt="other_lamp", **IDS, timeout_s=5.0, kind=LAMP)
+    members = (("lamp", lamp), ("gate", cell.roles["gate"]))
+    idle = Cell(name="other", queue_limit=5, members=members, shared=("gate",), interlocks=cell.interlocks)
+    return replace(model, cells=(replace(cell, shared=("gate",)), idle))
+
+
+def test_a_cell_at_rest_does_not_withdraw_what_a_machine_asked_for_that_another_cell_has() -> None:
+    here = Bench(with_shared_gate())
+    here.machines["gate"].facts["at"] = "right"
+    here.wait(1.0)
+    here.submit("tending slide")
+    assert here.wait(10.0, lambda: "gate" in dict(here.plant.zones.waiting))
+    here.wait(0.5)
+    assert "gate" in dict(here.plant.zones.waiting)
+    assert here.outcome().state.value == "done"
+    assert here.machines["gate"].facts["at"] == "left"
+
+
 def test_a_machine_that_is_heard_again_keeps_its_zone_without_quarantine() -> None:
     here = Bench(with_gate())
     here.wait(1.0)
@@ -222,7 +244,7 @@ def test_a_machine_is_only_in_the_way_of_a_zone_in_which_it_is() -> None:
 
 def test_a_zone_kept_for_a_robot_that_the_plant_file_no_longer_has_is_freed_on_advice() -> None:
     here = Bench(with_mill(machine))
-    here.memory[Fact.QUARANTINE] = {"vise": "an_arm_of_last_year"}
+    here.disk.facts[Fact.QUARANTINE] = {"vise": "an_arm_of_last_year"}
     here.crash()
     here.power_off("left")
     here.power_on("left")
@@ -237,7 +259,7 @@ def test_a_zone_kept_for_a_robot_that_the_plant_file_no_longer_has_is_freed_on_a
 def test_a_task_begins_as_soon_as_an_arm_is_surely_outside_though_nothing_else_happens() -> None:
     here = Bench(with_mill(machine))
     here.wait(1.0)
-    here.memory[Fact.QUARANTINE] = {"vise": "mill"}
+    here.disk.facts[Fact.QUARANTINE] = {"vise": "mill"}
     here.crash()
     here.submit("tending machine")
     here.wait(0.9)

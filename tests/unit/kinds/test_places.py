@@ -11,7 +11,7 @@ from rich.console import Console
 from arboleda.cli import screen
 from arboleda.core.advice import in_words
 from arboleda.model.errors import ConfigError
-from arboleda.model.messages import Reason
+from arboleda.model.messages import Reason, TaskState
 from arboleda.model.verbs import Verb
 from arboleda.plant_file.loader import load
 from arboleda.views import view
@@ -125,6 +125,33 @@ def test_a_part_that_a_hand_holds_in_a_device_is_there_for_it(tmp_path: Path) ->
     lab = Lab(tmp_path, body)
     assert lab.run() is None
     assert lab.places.counts == {"rack_1": 0, "rack_2": 1, "nest": 0, "inside": 0, "bin": 1}
+
+
+CARTED = """
+name: hall
+uses: [recipes.py]
+kinds:
+  lift: {facts: {at: [low, high]}, verbs: {roll_in: {effect: process, works_on: part, takes_s: 1}}}
+cells:
+  lab:
+    devices: {mover: {kind: mobile, grid: {pitch_mm: 400}}, hand: {kind: lift}, oven: {kind: lift}}
+    targets: {home: {mover: {node: 6}}, platform: {mover: {node: 0}}, bay: {mover: {node: 3}}}
+    places: {platform: {of: oven}}
+"""
+
+
+@pytest.mark.parametrize(("at", "sentence"), [("platform", None), ("bay", "none is known to be at platform")])
+def test_a_cart_has_brought_a_part_where_it_stands_only(
+    tmp_path: Path, at: str, sentence: str | None
+) -> None:
+    body = f'mover.visit("{at}", oven.roll_in())'
+    file = written(tmp_path, CARTED, body)
+    bench = Bench(load(file))
+    bench.wait(1.0)
+    bench.submit("lab try")
+    end = bench.outcome(300.0)
+    assert (end.state is TaskState.DONE) is (sentence is None)
+    assert sentence is None or sentence in str(end.sentence)
 
 
 def test_a_part_is_brought_back_where_it_was_taken(tmp_path: Path) -> None:
@@ -321,7 +348,7 @@ def test_who_says_that_a_part_is_out_is_told_what_leads_on_where_that_is_known(t
     assert lab.bench.wait(60.0, lambda: bool(lab.bench.plant.cells["lab"].context.parts.holding))
     assert lab.bench.operate(Verb.HOLD, "lab") is None
     lab.bench.wait(2.0)
-    lab.bench.set_by_hand("hand", (("closed", False),))
+    lab.bench.manual.set_facts("hand", (("closed", False),))
     lab.bench.wait(2.0)
     told = str(lab.bench.operate(Verb.RELEASE, "hand", by_hand=True))
     assert told == "no part is known to be in hand, so nothing has to be said of it; go on with abandon lab"

@@ -49,8 +49,8 @@ def parts_after_a_cut(model: PlantModel, at_s: float) -> int | None:
     rig.wait(at_s)
     if rig.plant.cells["lab"].task is None:
         return None
-    rig.cut_power(0)
-    rig.start_plant()
+    rig.plant_process.cut_power(0)
+    rig.plant_process.start()
     rig.settle()
     rig.wait(1.0)
     places = rig.plant.cells["lab"].context.places

@@ -292,7 +292,7 @@ def test_a_cell_that_was_not_stopped_does_not_begin_so_after_a_restart() -> None
     here = Bench(plant())
     here.wait(1.0)
     here.operate(Verb.STOP, "below")
-    again = Plant(here.model, epoch=9, now=0.0, memory=here.memory)
+    again = Plant(here.model, epoch=9, now=0.0, memory=here.disk.facts)
     assert again.cells["below"].state is CellState.ABORTED
     assert again.cells["above"].state is CellState.IDLE
     assert "lift" in again.dispatcher.latched
@@ -300,7 +300,7 @@ def test_a_cell_that_was_not_stopped_does_not_begin_so_after_a_restart() -> None
 
 def test_what_a_cell_had_before_a_restart_is_nobodys_before_it_is_heard() -> None:
     here = riding()
-    again = Plant(here.model, epoch=9, now=0.0, memory=here.memory)
+    again = Plant(here.model, epoch=9, now=0.0, memory=here.disk.facts)
     assert again.zones.holder("lift") == "below"
     assert again.zones.is_quarantined("lift")
 
@@ -309,7 +309,7 @@ def test_after_a_restart_it_is_of_the_cell_that_got_it_while_it_waited_for_it() 
     here = riding()
     here.submit("above ride")
     assert here.wait(30.0, lambda: holder(here) == "above")
-    again = Plant(here.model, epoch=9, now=0.0, memory=here.memory)
+    again = Plant(here.model, epoch=9, now=0.0, memory=here.disk.facts)
     assert again.zones.holder("lift") == "above"
 
 

@@ -79,7 +79,7 @@ def carrying(model: PlantModel | None = None, text: str = "left carry") -> Bench
 
 def restarted(here: Bench) -> Bench:
     """The same boards and memory with a plant that has no task of before."""
-    here.plant = Plant(here.model, epoch=here.plant.epoch + 1, now=here.now, memory=here.memory)
+    here.plant = Plant(here.model, epoch=here.plant.epoch + 1, now=here.now, memory=here.disk.facts)
     return here
 
 
@@ -177,7 +177,7 @@ def test_a_restart_with_a_part_in_it_gives_it_to_the_cell_that_had_it() -> None:
 
 def test_what_no_cell_has_and_is_not_at_home_is_taken_by_none_before_it_is_homed() -> None:
     here = carrying()
-    here.memory.clear()  # as with another store
+    here.disk.facts.clear()  # as with another store
     restarted(here)
     here.wait(5.0)
     right = str(here.plant.cells["right"].not_ready)

@@ -112,7 +112,7 @@ def test_a_plant_that_starts_again_knows_that_the_tool_may_still_open() -> None:
 
 def test_a_part_from_nobody_knows_where_is_to_be_released() -> None:
     here = Bench(plant(load))
-    here.set_by_hand("jaw", (("gripped", True),))
+    here.manual.set_facts("jaw", (("gripped", True),))
     assert here.wait(5.0, lambda: bool(here.plant.advice("tending")))
     assert str(sentence(here.plant.advice("tending"))) == "release jaw, then resume tending"
 
@@ -123,7 +123,7 @@ def test_a_recovery_does_not_let_go_of_a_part_from_nobody_knows_where() -> None:
     here.wait(0.5)
     assert here.operate(Verb.HOLD, "tending") is None
     here.wait(2.0)
-    here.set_by_hand("jaw", (("gripped", True),))
+    here.manual.set_facts("jaw", (("gripped", True),))
     here.wait(1.0)
     assert here.operate(Verb.ABANDON, "tending") is None
     here.wait(20.0)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import time
 from pathlib import Path
 
 import pytest
@@ -12,6 +11,7 @@ from arboleda.model.errors import ConfigError
 from arboleda.model.plant_model import Evidence, Link, MqttVersion, PlantModel, Timing
 from arboleda.plant_file import loader
 from arboleda.recipes.storage_layout import StorageLayout
+from arboleda_bench.cost.counter import count
 
 EXAMPLES = Path(__file__).parents[3] / "examples" / "plants"
 PATHS = {
@@ -92,13 +92,13 @@ def test_shipped_times_and_limits_of_the_queue_are_the_defaults(shipped: PlantMo
         assert layout.mobile.grid.size == 9
 
 
-def test_the_shipped_plant_loads_in_far_less_than_100_ms(shipped: PlantModel) -> None:
-    took = []
-    for _ in range(3):  # a full garbage collection of all that this process tested before may fall into one
-        start = time.process_time()
-        assert loader.load() == shipped
-        took.append(time.process_time() - start)
-    assert min(took) < 0.1
+def test_the_shipped_plant_is_read_with_few_calls(shipped: PlantModel) -> None:
+    """Counted, as no clock tells a slow program from a busy machine: 20,000 calls take some hundredths of a
+    second."""
+    read: list[PlantModel] = []
+    calls = count(lambda: read.append(loader.load()))
+    assert read == [shipped]
+    assert sum(calls.values()) < 30_000
 
 
 def test_the_example_by_hand_listens_to_typed_motion_states() -> None:
@@ -147,3 +147,54 @@ def test_a_store_is_the_address_of_a_database_without_its_password() -> None:
     with pytest.raises(ConfigError, match="store: has a password in it; leave it to PGPASSWORD") as refused:
         parsed("postgresql://me:hidden@db.example/plants")
     assert "hidden" not in str(refused.value)
+
+
+@pytest.mark.parametrize(
+    ("line", "level"),
+    [
+        ("", "off"),
+        ("assistants: off\n", "off"),
+        ("assistants: read\n", "read"),
+        ("assistants: propose\n", "propose"),
+    ],
+)
+def test_assistants_may_look_only_where_the_file_says_so(tmp_path: Path, line: str, level: str) -> None:
+    assert loader.load(written(tmp_path, line)).assistants.value == level
+
+
+def test_what_assistants_may_give_tasks_to_needs_limits(tmp_path: Path) -> None:
+    lines = 'assistants: submit\nassistant_limits: {cells: [%s], at_once: 2, hours: "%s"}\n'
+    plant = loader.load(written(tmp_path, lines % ("sis_a", "22:00-06:30")))
+    limits = plant.assistant_limits
+    assert (plant.assistants.value, limits.cells, limits.at_once) == ("submit", ("sis_a",), 2)
+    assert limits.hours is not None and limits.hours.text == "22:00-06:30"
+    assert [limits.hours.include(minute) for minute in (0, 389, 390, 1319, 1320)] == [
+        True,
+        True,
+        False,
+        False,
+        True,
+    ]
+    for text, problem in (
+        ("assistants: submit\n", r'assistants: needs "assistant_limits"'),
+        (lines % ("sis_z", "08:00-18:00"), r"assistant_limits\.cells\[0\]: must be sis_a"),
+        (lines % ("sis_a", "8-18"), r'hours: must be hours of a day such as "07:30-18:00"'),
+        (lines % ("sis_a", "08:00-24:30"), "hours: must be hours"),
+        (lines % ("sis_a", "08:00-08:00"), "hours: must be hours"),
+        ("assistants: read\nassistant_limits: {cells: [sis_a]}\n", "counts only with"),
+    ):
+        with pytest.raises(ConfigError, match=problem):
+            loader.load(written(tmp_path, text))
+
+
+@pytest.mark.parametrize("word", ["proposes", "true", "all"])
+def test_there_is_no_other_level_of_assistants(tmp_path: Path, word: str) -> None:
+    with pytest.raises(ConfigError, match=r"assistants: .*off.*read"):
+        loader.load(written(tmp_path, f"assistants: {word}\n"))
+
+
+def written(folder: Path, line: str) -> Path:
+    """The shipped plant with a line more."""
+    file = folder / "plant.yaml"
+    file.write_text((EXAMPLES / "by_hand.yaml").read_text("utf-8") + line, "utf-8")
+    return file

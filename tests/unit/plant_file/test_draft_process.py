@@ -12,7 +12,7 @@ import pytest
 
 from arboleda.model.errors import ArboledaError
 from arboleda.plant_file import draft_process
-from arboleda.plant_file.draft_check import Checked
+from arboleda.plant_file.draft_check import CheckResult
 from arboleda.plant_file.draft_process import CheckProcess
 from arboleda.recorder.preamble import PlantFiles
 
@@ -38,7 +38,7 @@ def test_a_process_that_was_stopped_begins_no_check() -> None:
 
 
 @contextmanager
-def slow_check(process: CheckProcess, gate: Path) -> Iterator[Future[Checked]]:
+def slow_check(process: CheckProcess, gate: Path) -> Iterator[Future[CheckResult]]:
     """A check that is under way until the block ends, and then gives no answer."""
     os.mkfifo(gate)
     with ThreadPoolExecutor(1) as thread, pytest.MonkeyPatch.context() as slow:

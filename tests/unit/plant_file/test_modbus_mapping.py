@@ -116,6 +116,12 @@ def test_what_cannot_be_read_is_told_with_file_and_line(tmp_path: Path) -> None:
             "serial: /dev/ttyUSB0\n            host: 127.0.0.1",
             "needs either host (Modbus TCP) or",
         ),
+        (
+            "host: 127.0.0.1",
+            "serial: /dev/ttyUSB0\n            framing: rtu",
+            "framing is for host; a serial line",
+        ),
+        ("port: 5020", "framing: ascii", "framing"),
         ("port: 5020", "poll_s: 2.0", "poll_s is 2; allowed: 0.005 to 0.5"),
     ],
 )

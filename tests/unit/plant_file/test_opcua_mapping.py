@@ -85,6 +85,25 @@ def test_what_does_not_fit_the_kind_is_told_with_file_and_line(tmp_path: Path) -
         (URL, "url: opc.tcp://cell:x@127.0.0.1:4840", "user and password are never in a plant file"),
         (URL, f"{URL}\n            secrets: line-1", "secrets is how names in the environment begin"),
         ("security: none", "security: some", "sign_and_encrypt"),
+        ("security: none", "security: none\n            policy: basic256", "aes128_sha256_rsaoaep"),
+        ("security: none", "security: none\n            heartbeat_type: string", "is string; allowed: sbyte"),
+        (LOAD, LOAD.replace(", on: ns=2;s=Device", ""), "verbs.load: call needs on, the object that"),
+        (
+            LOAD,
+            "load: {write: [{node: ns=2;s=Verb, value: 1, type: byte}]}",
+            "verbs.load: is written, and sequence has no write",
+        ),
+        (LOAD, "load: {write: [{node: Verb, value: 1, type: byte}]}", "write[0]: 'Verb' is no node"),
+        (
+            "accepted: ns=2;s=accepted",
+            "busy: ns=2;s=busy\n              write: ns=2;s=asked",
+            "verbs.load: is a method, and busy says nothing of methods",
+        ),
+        (
+            "{node: ns=2;s=mm_s}",
+            "{node: nsu=http://maker.example/belt/;s=mm_s, words: {slow: 1}}",
+            "facts.mm_s: has words, and is",
+        ),
     ],
 )
 def test_what_is_wrong_has_its_place_and_a_hint(belt: Robot, old: str, new: str, told: str) -> None:

@@ -219,6 +219,59 @@ def test_settings_of_a_type_that_no_file_can_have_are_told(load: Callable[..., P
     )
 
 
+SHARE = """
+    @property
+    def model_speed_share(self):
+        return {}
+
+    def __post_init__(self):
+"""
+
+
+@pytest.mark.parametrize("share", ["0.05", "1"])
+def test_a_share_of_the_model_s_speed_is_the_robot_s_pace(
+    load: Callable[..., PlantModel], share: str
+) -> None:
+    paced = DRIVER.replace("\n    def __post_init__(self):\n", SHARE.format(share))
+    assert oven(load(driver=paced)).pace == float(share)
+    assert oven(load()).pace == 1.0
+
+
+@pytest.mark.parametrize("share", ["0", "2", "True", "'fast'", "1 / 0"])
+def test_a_share_that_is_none_is_told_with_its_place(load: Callable[..., PlantModel], share: str) -> None:
+    paced = DRIVER.replace("\n    def __post_init__(self):\n", SHARE.format(share))
+    assert [each for each in problems(load, driver=paced) if "my_plc: " in each]
+
+
+OFFERS = """
+    @property
+    def {}(self):
+        return {}
+
+    def __post_init__(self):
+"""
+
+
+def test_facts_and_a_way_out_of_faults_that_settings_offer_are_the_robot_s(
+    load: Callable[..., PlantModel],
+) -> None:
+    offers = OFFERS.format("reported_facts", '("health",)') + "        pass\n"
+    offering = offers + OFFERS.format("home_clears_faults", "True")
+    use = oven(load(driver=DRIVER.replace("\n    def __post_init__(self):\n", offering))).driver
+    assert use is not None and (use.facts, use.recovers) == (("health",), True)
+    use = oven(load()).driver
+    assert use is not None and (use.facts, use.recovers) == ((), False)
+
+
+@pytest.mark.parametrize("facts", ["'health'", "(1,)", "('two words',)", "1 / 0"])
+def test_facts_that_are_no_names_are_told_with_their_place(
+    load: Callable[..., PlantModel], facts: str
+) -> None:
+    offering = OFFERS.format("reported_facts", facts)
+    wrong = DRIVER.replace("\n    def __post_init__(self):\n", offering)
+    assert [each for each in problems(load, driver=wrong) if "my_plc: " in each]
+
+
 def test_check_finds_nothing_wrong_with_a_plant_with_drivers(load: Callable[..., PlantModel]) -> None:
     load()
     outcome = CliRunner().invoke(cli, ["check", "plant.yaml"])

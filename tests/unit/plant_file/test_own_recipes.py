@@ -323,6 +323,8 @@ def test_a_file_that_never_ends_is_a_problem_like_others(
 ) -> None:
     if "takes" in told:
         monkeypatch.setattr(recipe_trial, "LONGEST_S", 0.5)
+    if ".wait()" in recipes:  # and computes nothing, so that only the clock ends it
+        monkeypatch.setattr(recipe_trial, "WAITS", 4.0)
     if not told:
         monkeypatch.setattr(recipe_trial, "subprocess", subprocess)
         document = PLANT.encode()
@@ -348,7 +350,7 @@ def test_who_is_ended_while_it_writes_what_it_begins_is_told_by_what_it_began_be
         path.write_bytes(b"")
         raise KeyboardInterrupt
 
-    with recipe_trial.watching(tmp_path, 1000.0) as watch:
+    with recipe_trial.watching(tmp_path, 1000.0, 4000.0) as watch:
         watch(Spot(file="recipes.py", line=3), "importing this")
         monkeypatch.setattr(Path, "write_text", ended)
         with pytest.raises(KeyboardInterrupt):
@@ -358,10 +360,13 @@ def test_who_is_ended_while_it_writes_what_it_begins_is_told_by_what_it_began_be
     )
 
 
-def test_recipes_that_were_given_up_did_not_end_python(tmp_path: Path) -> None:
+def test_recipes_that_were_given_up_did_not_end_python(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(recipe_trial, "STUCK_S", 60.0)
     told = recipe_trial.broken_off(tmp_path, None)
     assert told.startswith("the recipes could not be tried: nothing came of it for 60 s; try again")
-    with recipe_trial.watching(tmp_path, 1000.0) as watch:
+    with recipe_trial.watching(tmp_path, 1000.0, 4000.0) as watch:
         watch(Spot(file="recipes.py", line=9), "building heat")
     assert recipe_trial.broken_off(tmp_path, None) == "recipes.py:9:1: building heat takes more than 60 s"
 
@@ -463,3 +468,15 @@ def test_a_cell_without_a_recipe_is_told_why(tmp_path: Path) -> None:
         'cells.shelf: offers no recipe: none that "uses" brings fits its devices (shelf has no device in the'
         " role 'oven'; there are lamp)"
     )
+
+
+def test_where_there_are_no_processes_recipes_are_tried_in_this_one(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    known = load(tmp_path, GOOD)
+    body, _, words = MISTAKES["value"]
+    monkeypatch.setattr(recipe_trial, "HAS_PROCESSES", False)
+    monkeypatch.setattr(recipe_trial, "subprocess", None)
+    (cell,) = load(tmp_path, GOOD).cells
+    assert [each.name for each in cell.recipes] == [each.name for each in known.cells[0].recipes] == ["heat"]
+    assert words in refused(write(tmp_path, f'{HEAD}@recipe("heat")\ndef heat(cell):\n{body}\n'))[0]

@@ -32,7 +32,7 @@ def happened(file: str) -> tuple[Asked, list[tuple[str, str]]]:
     record = reader.opened(Path(file))
     asked, failed = {}, []
     for step in record.steps():
-        for row in step.said["messages"]:
+        for row in step.result["messages"]:
             if row["type"] == "TaskChanged" and row["state"] == "queued":
                 asked.setdefault(row["task"], (round(step.now, 3), row["text"]))
             elif row["type"] == "TaskChanged" and row["state"] == "failed":

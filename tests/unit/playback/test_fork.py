@@ -59,7 +59,7 @@ def differences(found: ForkResult) -> list[Pair]:
 
 
 def end_of(found: ForkResult, task: str) -> str:
-    return [each.said for each in found.fork if each.stream == f"task {task}"][-1]
+    return [each.text for each in found.fork if each.stream == f"task {task}"][-1]
 
 
 def ended(found: ForkResult) -> Iterator[tuple[float, float]]:
@@ -102,9 +102,9 @@ def test_a_fork_of_nothing_else_happens_as_recorded(run: str, at: float) -> None
 
 def test_without_what_befell_devices_the_task_is_done() -> None:
     found = fork(run_of("silent arm"), 4.0, healthy=True)
-    assert "failed" in [each.said for each in found.recorded if each.stream == "task a"][-1]
+    assert "failed" in [each.text for each in found.recorded if each.stream == "task a"][-1]
     assert end_of(found, "a") == "done sis_a 0B 7 (id a)"
-    assert differences(found)[0].either.said.startswith("ra1 ")
+    assert differences(found)[0].either.text.startswith("ra1 ")
 
 
 def test_a_plant_that_waits_longer_outlasts_a_silence() -> None:

@@ -150,7 +150,7 @@ def test_an_export_can_be_replayed_elsewhere(state: Path, tmp_path: Path) -> Non
     assert said("replay", str(kept)) == said("replay", "--state", str(state))
     with pytest.raises(NoRecord, match="is there already: name another file"):
         said("record", "export", str(kept), "--state", str(state))
-    with pytest.raises(ConfigError, match=r"must end in \.mcap, \.jsonl, \.btlog or \.yaml"):
+    with pytest.raises(ConfigError, match=r"must end in \.mcap, \.jsonl, \.btlog, \.yaml"):
         said("record", "export", str(tmp_path / "kept.txt"), "--state", str(state))
     with pytest.raises(NoRecord, match="cannot be written: No such file or directory"):
         said("record", "export", str(tmp_path / "absent" / "kept.mcap"), "--state", str(state))

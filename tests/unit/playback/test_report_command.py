@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 from collections.abc import Callable
 from html import unescape
@@ -17,6 +18,7 @@ from arboleda.playback.report import reading
 from arboleda.simulator.faults import KINDS, Fault
 from arboleda.simulator.world import World
 from arboleda.testing import Sim
+from arboleda.web.routes.reports import DATA, TaskReport
 
 from .test_fork_command import written
 
@@ -107,6 +109,18 @@ def test_a_report_is_small_whole_and_in_two_languages(tmp_path: Path) -> None:
     assert "failed sis_a 0B 7 (id lot): ra1: no telemetry for 1.5 s" in content  # the fork without a change
     assert "Forks that were really run" in content and "prove nothing" not in content
     assert content.count("done sis_a 0B 7 (id lot)") == 2  # without what befell it, and with more patience
+
+
+def test_a_report_has_its_facts_as_data(tmp_path: Path) -> None:
+    content = reported(tmp_path, 5.3, fault("mute", "ra_1", 2.6))
+    found = DATA.search(content)
+    assert found is not None
+    report = TaskReport.model_validate({**json.loads(found[1])["facts"], "state": "written"})
+    assert (report.task, report.cell, report.reason) == ("lot", "sis_a", "link_lost")
+    assert report.cause is not None and (report.cause.kind, report.cause.robot) == ("silence", "ra1")
+    assert report.cause.key == "cause.silence" and "ra1 said nothing for 2." in report.cause.sentence
+    assert report.evidence is not None and report.evidence.troubles[0].kind == "silence"
+    assert report.evidence.last_command is not None and report.evidence.last_command.at_s < 0
 
 
 def test_a_task_without_failure_and_one_that_is_nowhere_are_sentences(

@@ -22,10 +22,11 @@ from arboleda.testing.plants import shipped
 from arboleda.testing.rig import Rig
 from arboleda.views import twin_view, view
 
+from ...patience import PATIENCE_S
+
 CONTENTS = {"plant.yaml": b"name: arboleda\n", "lib/own.py": b"\x00\xff"}
 FILES = PlantFiles(plant="plant.yaml", contents=CONTENTS)
 DEFAULT = Limits()
-PATIENCE_S = 30.0
 
 
 def with_everything(path: Path, patch: pytest.MonkeyPatch) -> Site:
@@ -80,7 +81,9 @@ class Site:
         self._limits = limits
         self._options = options
         patch.setattr(world, "Plant", self._new)
-        patch.setattr(thread, "PATIENCE_S", 60.0)  # a record is wanted whole here, on a busy machine too
+        patch.setattr(
+            thread, "PATIENCE_S", PATIENCE_S
+        )  # a record is wanted whole here, on a busy machine too
         self.rig = Rig(self.model)
 
     @property

@@ -8,14 +8,16 @@ from typing import Any
 
 import pytest
 
+from arboleda.core.plant import Plant
 from arboleda.dashboard.wording import words
-from arboleda.model.messages import Reason, Report
+from arboleda.model.messages import FaultByHand, Reason, Report
 from arboleda.model.plant_model import MotionState
 from arboleda.recorder.cause import BY_KEY, BY_REASON, PHRASES, Evidence, TaskCommand, cause_of
 from arboleda.recorder.incident import Reader
 from arboleda.recorder.replay import plant_of
 from arboleda.recorder.tape import TapedPlant
 from arboleda.recorder.troubles import ALARM, BOOT, BRIDGE, SILENCE, Trouble, Troubles
+from arboleda.runtime.fault_desk import INSTANT
 from arboleda.simulator.faults import KINDS, Fault
 from arboleda.simulator.world import World
 from arboleda.testing import shipped
@@ -71,13 +73,19 @@ def named(**changes: Any) -> str:
         ("part_lost", {"reason": Reason.PART_LOST, "key": "part.lost", "failed_at": 8.1}),  # on a later way
         ("part_lost", {"reason": Reason.PART_LOST, "key": "part.lost"}),
         ("foreign", {"reason": Reason.STOPPED}),  # the plant knows of no stop
-        ("other", {"reason": Reason.PRECONDITION, "key": "x", "said": "nobody knows"}),
-        ("other", {"reason": Reason.REJECTED, "key": "own", "robot": None, "said": "no clear reading"}),
+        ("other", {"reason": Reason.PRECONDITION, "key": "x", "sentence": "nobody knows"}),
+        ("other", {"reason": Reason.REJECTED, "key": "own", "robot": None, "sentence": "no clear reading"}),
         (
             "other",
-            {"reason": Reason.REJECTED, "key": "own", "robot": None, "said": "no", "absences": [(9.5, 1.2)]},
+            {
+                "reason": Reason.REJECTED,
+                "key": "own",
+                "robot": None,
+                "sentence": "no",
+                "absences": [(9.5, 1.2)],
+            },
         ),
-        ("other", {"reason": Reason.REJECTED, "key": "recipe.other_answer", "said": "the scale said so"}),
+        ("other", {"reason": Reason.REJECTED, "key": "recipe.other_answer", "sentence": "the scale said so"}),
         ("refused", {"reason": Reason.REJECTED, "key": "command.refused", "word": "ocupado"}),
     ],
 )
@@ -154,3 +162,31 @@ def test_what_an_operator_did_is_said_in_both_languages(word: str, spanish: str)
     verb, _, scope = word.partition(" ")
     assert str(cause.sentence) == f"an operator ended it: {verb} {scope or 'plant'}"
     assert words("es").say(cause.sentence) == spanish
+
+
+def test_a_fault_by_hand_at_the_robot_stands_beside_the_cause() -> None:
+    what = INSTANT(what="Reboot its board")
+
+    def sentence(at: float, robot: str) -> str:
+        known = {"reason": Reason.LINK_LOST, "key": "command.link_lost", "failed_at": 1000.0, "robot": ARM}
+        booted = trouble(BOOT, 999.9)
+        found = cause_of(Evidence(**known, troubles=[booted], provoked=[(at, robot, what)]))
+        assert found.kind == "boot"
+        return str(found.sentence)
+
+    assert sentence(999.0, ARM).endswith(f"Shortly before: {what}")
+    assert "by hand" not in sentence(999.0, "ra2")
+    assert "by hand" not in sentence(1000.5, ARM)
+    assert "by hand" not in sentence(500.0, ARM)
+
+
+def test_the_record_of_a_task_has_the_faults_by_hand_that_began() -> None:
+    reader = Reader("lot", shipped("sis_a"))
+    plant = Plant(shipped("sis_a"), epoch=1, now=0.0)
+    told = INSTANT(what="Reboot its board")
+    events = [
+        FaultByHand(at=0.5, robot=ARM, sentence=told),
+        FaultByHand(at=0.6, robot=ARM, sentence=told, is_over=True),
+    ]
+    reader.take(plant, 0, 0.6, events, plant.step(0.6, events))
+    assert reader.incident.provoked == [(0.5, ARM, told)]

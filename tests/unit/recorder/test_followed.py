@@ -42,13 +42,13 @@ def test_every_change_is_found_and_in_order(views: Views, monkeypatch: pytest.Mo
 
 def test_where_nothing_happens_nothing_is_read(views: Views, monkeypatch: pytest.MonkeyPatch) -> None:
     read: list[int] = []
-    told = views.told
+    changes = views.changes
 
     def counted(after_ns: int, until_ns: int) -> object:
         read.append(until_ns - after_ns)
-        return told(after_ns, until_ns)
+        return changes(after_ns, until_ns)
 
-    monkeypatch.setattr(views, "told", counted)
+    monkeypatch.setattr(views, "changes", counted)
     after_ns = views.began_ns + 20 * 10**9
     assert [*cell_history.followed(views, "sis_a", after_ns, after_ns + 70 * 10**9)] == []
     assert read == []

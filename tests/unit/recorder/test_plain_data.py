@@ -16,6 +16,7 @@ from arboleda.model.messages import (
     Event,
     Fact,
     Failure,
+    FaultByHand,
     Interference,
     Jog,
     KeptTask,
@@ -128,6 +129,7 @@ STRATEGIES = {
     ),
     Undelivered: st.builds(Undelivered, at=NUMBERS, id=TEXTS, robot=TEXTS, sentence=SENTENCES),
     LateDeparture: st.builds(LateDeparture, at=NUMBERS, id=TEXTS, late_s=NUMBERS),
+    FaultByHand: st.builds(FaultByHand, at=NUMBERS, robot=TEXTS, sentence=SENTENCES, is_over=st.booleans()),
     Interference: st.builds(Interference, at=NUMBERS, robot=TEXTS, sentence=SENTENCES),
     Shutdown: st.builds(Shutdown, at=NUMBERS, drops_waiting=st.booleans()),
     Revision: st.builds(

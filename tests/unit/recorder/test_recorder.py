@@ -26,7 +26,7 @@ from .recorded import DEFAULT, PATIENCE_S, Site, beginning_of
 STOPPED = "the record has stopped: {}; the plant goes on without it"
 
 
-def told(caplog: pytest.LogCaptureFixture) -> list[str]:
+def warnings(caplog: pytest.LogCaptureFixture) -> list[str]:
     return [each.getMessage() for each in caplog.records if each.levelno >= logging.WARNING]
 
 
@@ -38,7 +38,7 @@ def test_a_full_disk_stops_the_record_and_not_the_plant(
     site.end()
     why = "the disk has less than 1000000000000 MB left"
     assert site.recorders[0].trouble == why
-    assert told(caplog) == [STOPPED.format(why)]
+    assert warnings(caplog) == [STOPPED.format(why)]
     assert site.rig.changes[-1].state.value == "done"
 
 
@@ -59,7 +59,7 @@ def test_a_disk_that_fills_up_later_leaves_what_was_written(
     site.until(lambda: site.files and site.files[0].stat().st_size > 5000, "nothing was written")
     site.work(s=60.0)
     site.end()
-    assert told(caplog) == [STOPPED.format("No space left on device")]
+    assert warnings(caplog) == [STOPPED.format("No space left on device")]
     assert sum(1 for _ in reader.opened(site.files[0]).steps()) > 10
 
 
@@ -71,7 +71,7 @@ def test_a_folder_that_cannot_be_is_one_line(
     site.until(lambda: site.recorders[0].trouble, "the recorder goes on")
     site.work("sis_a 0B 7", s=5.0)
     site.end()
-    assert told(caplog) == [STOPPED.format("File exists")]
+    assert warnings(caplog) == [STOPPED.format("File exists")]
 
 
 def test_a_disk_that_hangs_holds_up_no_step(
@@ -83,7 +83,7 @@ def test_a_disk_that_hangs_holds_up_no_step(
     site = Site(tmp_path, monkeypatch)
     site.work("sis_a 0B 7")
     assert site.rig.changes[-1].state.value == "done"
-    assert told(caplog) == [STOPPED.format("the disk is too slow: 50 steps wait for it")]
+    assert warnings(caplog) == [STOPPED.format("the disk is too slow: 50 steps wait for it")]
     hangs.set()
     site.end()
 
@@ -96,7 +96,7 @@ def test_a_state_that_cannot_be_taken_stops_the_record_and_not_the_plant(
     site.work("sis_a 0B 7")
     site.end()
     assert site.rig.changes[-1].state.value == "done"
-    assert told(caplog) == [STOPPED.format("KeyError: 'odd'")]
+    assert warnings(caplog) == [STOPPED.format("KeyError: 'odd'")]
 
 
 def test_files_follow_each_other_and_the_oldest_go(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -146,7 +146,7 @@ def test_what_was_written_survives_a_power_cut_once_a_second_has_passed(
         if path.is_file():
             synced[path.name] = path.read_bytes()
 
-    monkeypatch.setattr(os, "fdatasync", sync)
+    monkeypatch.setattr(files, "sync_data", sync)
     writing = Writing(tmp_path, beginning_of(shipped()), DEFAULT, unix_ns=lambda: now_ns[0])
     writing.open()
     plant = Rig(shipped()).plant
@@ -280,7 +280,7 @@ def test_other_tools_find_what_is_in_a_file(tmp_path: Path, monkeypatch: pytest.
         counts = summary.statistics.channel_message_counts
         assert {each.topic: counts[each.id] for each in summary.channels.values()}["/arboleda/steps"] == count
         for schema, channel, message in make_reader(file).iter_messages():
-            said = json.loads(schema.data)
-            assert schema.encoding == "jsonschema" and said["title"] == schema.name
-            told = json.loads(message.data)
-            assert set(said["required"]) <= told.keys() <= said["properties"].keys(), channel.topic
+            schema_row = json.loads(schema.data)
+            assert schema.encoding == "jsonschema" and schema_row["title"] == schema.name
+            row = json.loads(message.data)
+            assert set(schema_row["required"]) <= row.keys() <= schema_row["properties"].keys(), channel.topic

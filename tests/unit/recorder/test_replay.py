@@ -128,7 +128,7 @@ def test_a_record_with_arguments_within_scopes_is_the_same_again(site: Site) -> 
         for each in again(site.files[0])
         if any(hasattr(it, "verb") for it in each.recorded.events)
     )
-    rows = {"now": step.now, "events": plain(step.events), **deepcopy(step.said), "hash": "another"}
+    rows = {"now": step.now, "events": plain(step.events), **deepcopy(step.result), "hash": "another"}
     for each in (*rows["events"], *rows["messages"]):
         if each.pop("arguments", None):
             each["scope"] = "sis_a 7"

@@ -50,7 +50,7 @@ def decoded(type: str, data: bytes) -> Any:
     return decode(data)
 
 
-def told(path: Path, topic: str) -> list[Any]:
+def messages_on(path: Path, topic: str) -> list[Any]:
     """The messages of a topic, decoded by a library that is not ours."""
     with path.open("rb") as file:
         reader = make_reader(file, decoder_factories=[DecoderFactory()])
@@ -59,31 +59,33 @@ def told(path: Path, topic: str) -> list[Any]:
 
 def test_joints_are_told_as_they_were_reported(site: Site) -> None:
     arm = site.model.robots["ra1"]
-    messages = told(site.files[0], f"/{arm.twin}/joint_states")
+    messages = messages_on(site.files[0], f"/{arm.twin}/joint_states")
     assert len(messages) > 20
     last = messages[-1]
     assert last.name == [f"{arm.twin}_{joint.name}" for joint in arm.joints]
     assert tuple(last.position) == site.rig.plant.dispatcher.beliefs["ra1"].q
     assert (list(last.velocity), list(last.effort)) == ([], [])
     assert 100 < last.header.stamp.sec <= site.rig.now
-    mobile = told(site.files[0], "/rm_sis_a/joint_states")
+    mobile = messages_on(site.files[0], "/rm_sis_a/joint_states")
     assert mobile[0].name == ["rm_sis_a_x_joint", "rm_sis_a_y_joint"] and len(mobile) > 2
 
 
 def test_states_are_told_where_they_change(site: Site) -> None:
-    states = [message.data for message in told(site.files[0], "/ra1/motion_state")]
+    states = [message.data for message in messages_on(site.files[0], "/ra1/motion_state")]
     assert {0, 1, 4} <= set(states)
     assert all(before != after for before, after in pairwise(states))
 
 
 def test_tasks_are_told_as_on_their_topic(site: Site) -> None:
-    said = [yaml.safe_load(message.data) for message in told(site.files[0], "/task_status")]
-    assert [each["state"] for each in said] == [change.state.value for change in site.rig.changes]
-    assert said[-1]["reason"] == "stopped"
+    texts = [yaml.safe_load(message.data) for message in messages_on(site.files[0], "/task_status")]
+    assert [each["state"] for each in texts] == [change.state.value for change in site.rig.changes]
+    assert texts[-1]["reason"] == "stopped"
 
 
 def test_diagnostics_are_those_of_the_last_snapshot(site: Site) -> None:
-    known = {status.name: status for array in told(site.files[0], "/diagnostics") for status in array.status}
+    known = {
+        status.name: status for array in messages_on(site.files[0], "/diagnostics") for status in array.status
+    }
     for name, hardware_id, level, message, values in diagnostics(site.seen[-1][1]):
         status = known[name]
         assert (status.hardware_id, status.level, status.message) == (hardware_id, level, message)
@@ -92,12 +94,12 @@ def test_diagnostics_are_those_of_the_last_snapshot(site: Site) -> None:
 
 def test_a_file_begins_with_what_was_said_last(site: Site, log: RosLog) -> None:
     again = {topic: data for topic, _, data in filter(None, log.whole())}
-    last = {topic: told(site.files[0], topic)[-1] for topic in again if topic != DIAGNOSTICS}
+    last = {topic: messages_on(site.files[0], topic)[-1] for topic in again if topic != DIAGNOSTICS}
     assert {"/ra1/motion_state", "/rm_sis_a/joint_states"} <= again.keys()
     for topic, message in last.items():
-        said = decoded(UINT8 if topic.endswith("motion_state") else JOINT_STATE, again[topic])
-        fields = [name for name in ("data", "name", "position") if hasattr(said, name)]
-        assert [getattr(said, name) for name in fields] == [getattr(message, name) for name in fields]
+        message_read = decoded(UINT8 if topic.endswith("motion_state") else JOINT_STATE, again[topic])
+        fields = [name for name in ("data", "name", "position") if hasattr(message_read, name)]
+        assert [getattr(message_read, name) for name in fields] == [getattr(message, name) for name in fields]
     whole = decoded(ros_types.DIAGNOSTICS, again[DIAGNOSTICS])
     assert len(whole.status) == len(site.model.robots) + len(site.model.cells)
 
@@ -121,9 +123,9 @@ def test_each_topic_says_how_it_is_delivered(site: Site) -> None:
 @given(st.lists(st.tuples(TEXTS, st.floats(allow_nan=False)), max_size=4))
 def test_joints_of_any_names_are_read_back(joints: list[tuple[str, float]]) -> None:
     names, positions = [name for name, _ in joints], [position for _, position in joints]
-    said = decoded(JOINT_STATE, cdr.JointStates(names).of(1_700_000_000_123_456_789, positions))
-    assert (said.name, list(said.position)) == (names, positions)
-    assert (said.header.stamp.sec, said.header.stamp.nanosec) == (1_700_000_000, 123_456_789)
+    message_read = decoded(JOINT_STATE, cdr.JointStates(names).of(1_700_000_000_123_456_789, positions))
+    assert (message_read.name, list(message_read.position)) == (names, positions)
+    assert (message_read.header.stamp.sec, message_read.header.stamp.nanosec) == (1_700_000_000, 123_456_789)
 
 
 STATUSES = st.tuples(TEXTS, TEXTS, st.integers(0, 3), TEXTS, st.dictionaries(TEXTS, TEXTS, max_size=3))
@@ -131,7 +133,7 @@ STATUSES = st.tuples(TEXTS, TEXTS, st.integers(0, 3), TEXTS, st.dictionaries(TEX
 
 @given(st.lists(STATUSES, max_size=3))
 def test_diagnostics_of_any_texts_are_read_back(statuses: list[cdr.Status]) -> None:
-    said = decoded(ros_types.DIAGNOSTICS, cdr.diagnostics(5, statuses))
+    message_read = decoded(ros_types.DIAGNOSTICS, cdr.diagnostics(5, statuses))
     assert [
         (
             each.name,
@@ -140,7 +142,7 @@ def test_diagnostics_of_any_texts_are_read_back(statuses: list[cdr.Status]) -> N
             each.message,
             {pair.key: pair.value for pair in each.values},
         )
-        for each in said.status
+        for each in message_read.status
     ] == statuses
 
 

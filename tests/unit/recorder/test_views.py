@@ -25,25 +25,25 @@ from .recorded import Site, beginning_of
 SPANS = ("age_s", "since_s", "deadline_s", "left_s", "elapsed_s")
 
 
-def same(told: Any, shown: Any, where: str = "") -> None:
+def same(read: Any, shown: Any, where: str = "") -> None:
     """Whether what was told is what was shown: spans to a tenth of a second, what is fresh to a second."""
     key = where.rpartition(".")[2]
     if isinstance(shown, dict):
-        assert isinstance(told, dict) and told.keys() == shown.keys(), where
+        assert isinstance(read, dict) and read.keys() == shown.keys(), where
         for name, value in shown.items():
-            same(told[name], value, f"{where}.{name}")
+            same(read[name], value, f"{where}.{name}")
     elif isinstance(shown, tuple | list):
-        assert len(told) == len(shown), where
-        for number, (one, other) in enumerate(zip(told, shown, strict=True)):
+        assert len(read) == len(shown), where
+        for number, (one, other) in enumerate(zip(read, shown, strict=True)):
             same(one, other, f"{where}[{number}]")
     elif isinstance(shown, Sentence):
-        assert isinstance(told, Sentence) and told == shown and str(told) == str(shown), where
+        assert isinstance(read, Sentence) and read == shown and str(read) == str(shown), where
     elif isinstance(shown, float):
         least = 1.0 if where.endswith("age_s") and "command" not in where else 0.06
         within = least if key in (*SPANS, "heard_at", "position_at", "telemetry_hz") else 1e-5
-        assert told == pytest.approx(shown, abs=max(within, 1.0 if key.endswith("_at") else 0.0)), where
+        assert read == pytest.approx(shown, abs=max(within, 1.0 if key.endswith("_at") else 0.0)), where
     else:
-        assert told == shown, where
+        assert read == shown, where
 
 
 @pytest.fixture

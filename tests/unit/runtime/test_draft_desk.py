@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from arboleda.model.errors import StartError
-from arboleda.plant_file.draft_check import Checked
+from arboleda.plant_file.draft_check import CheckResult
 from arboleda.plant_file.versions import Version, Versions
 from arboleda.recorder.preamble import PlantFiles
 from arboleda.runtime import at_work
@@ -24,18 +24,18 @@ DWELL = ("timing", "dwell_s")
 Open = Callable[..., DraftDesk]
 
 
-def good(files: PlantFiles, plant_file: Path) -> Checked:
-    return Checked(read=files, warnings=("careful",))
+def good(files: PlantFiles, plant_file: Path) -> CheckResult:
+    return CheckResult(read=files, warnings=("careful",))
 
 
-def bad(files: PlantFiles, plant_file: Path) -> Checked:
-    return Checked(problems=(f"{plant_file}:2:1: no",))
+def bad(files: PlantFiles, plant_file: Path) -> CheckResult:
+    return CheckResult(problems=(f"{plant_file}:2:1: no",))
 
 
 class Checker:
     """Checks files as it is told to."""
 
-    def __init__(self, check: Callable[[PlantFiles, Path], Checked]) -> None:
+    def __init__(self, check: Callable[[PlantFiles, Path], CheckResult]) -> None:
         self.check = check
 
     def stop(self) -> None: ...
@@ -164,7 +164,7 @@ def test_a_draft_that_changes_nothing_goes_on_with_what_somebody_wrote_meanwhile
 
 
 def test_a_draft_that_is_changed_while_it_is_checked_is_not_kept(open_desk: Open, plant: Path) -> None:
-    def slow(files: PlantFiles, plant_file: Path) -> Checked:
+    def slow(files: PlantFiles, plant_file: Path) -> CheckResult:
         desk.set(ANA, DWELL, 3)
         return good(files, plant_file)
 
@@ -232,7 +232,7 @@ def test_what_only_a_restart_takes_is_said_before_it_is_kept(open_desk: Open) ->
 def test_a_draft_is_put_to_work_as_the_version_that_it_is_kept_as(plant: Path) -> None:
     put: list[tuple[int, str]] = []
 
-    def work_by(version: Version, found: Checked, by: str) -> dict[str, Any]:
+    def work_by(version: Version, found: CheckResult, by: str) -> dict[str, Any]:
         put.append((version.number, by))
         return {"version": version.number}
 

@@ -15,9 +15,9 @@ from arboleda.model.messages import Heartbeat, Report, Undelivered
 from arboleda.model.plant_model import DriverUse, Link, MotionState, PlantModel, Robot, Timing
 from arboleda.runtime.parts.drivers import DriversPart
 
+from ...patience import PATIENCE_S
 from ..kinds.station import STATION, plant
 
-WAIT_S = 10.0
 EPOCH = 9
 GO = STATION.command(id="9-1", robot="station", verb="go", values={})
 LIGHT = STATION.command(id="9-2", robot="station", verb="light", values={"on": True})
@@ -72,7 +72,7 @@ class Plant:
 
     def hears(self, holds: Callable[[Any], bool]) -> Any:
         """The next of what it hears of which this is true."""
-        while not holds(event := self.heard.get(timeout=WAIT_S)):
+        while not holds(event := self.heard.get(timeout=PATIENCE_S)):
             pass
         return event
 
@@ -113,7 +113,7 @@ def test_a_command_is_sent_by_the_driver_and_it_is_stopped_at_the_end(running: C
     there = running(driver)
     there.is_up()
     there.part.send(GO)
-    assert driver.sent.get(timeout=WAIT_S) == GO
+    assert driver.sent.get(timeout=PATIENCE_S) == GO
     there.part.stop()
     assert driver.stopped.is_set()
 
@@ -157,11 +157,11 @@ def test_a_polite_refusal_leaves_the_link_as_it_is(running: Callable[..., Plant]
     there = running(Polite())
     there.is_up()
     there.part.send(GO)
-    event = there.heard.get(timeout=WAIT_S)
+    event = there.heard.get(timeout=PATIENCE_S)
     assert isinstance(event, Undelivered)
     assert str(event.sentence) == "its driver plc could not send a command (the valve is shut)"
     there.made[0].speak()
-    assert isinstance(there.heard.get(timeout=WAIT_S), Report)
+    assert isinstance(there.heard.get(timeout=PATIENCE_S), Report)
 
 
 class Threaded(Tame):
@@ -174,7 +174,7 @@ class Threaded(Tame):
         self.thread.start()
 
     def read(self) -> None:
-        self.go.wait(WAIT_S)
+        self.go.wait(PATIENCE_S)
         raise EOFError("the line is cut")
 
     def stop(self) -> None:
@@ -185,7 +185,7 @@ class Threaded(Tame):
 
 class Helper:
     def read(self, go: threading.Event) -> None:
-        go.wait(WAIT_S)
+        go.wait(PATIENCE_S)
         raise EOFError("the line is cut")
 
 
@@ -243,7 +243,7 @@ def test_a_driver_that_hangs_loses_its_device_and_holds_up_nobody(
 
     class Hanging(Tame):
         def send(self, command: Command) -> None:
-            go.wait(WAIT_S)
+            go.wait(PATIENCE_S)
 
     monkeypatch.setattr("arboleda.runtime.parts.drivers.PATIENCE_S", 0.0)
     there = running(Hanging(), stale_after_s=0.3)
@@ -258,7 +258,7 @@ def test_a_driver_that_hangs_loses_its_device_and_holds_up_nobody(
     finally:
         go.set()
         speaker.join()
-    assert there.made[0].stopped.wait(WAIT_S)
+    assert there.made[0].stopped.wait(PATIENCE_S)
 
 
 def test_a_command_that_waited_for_its_driver_for_too_long_never_leaves_and_a_stop_does(
@@ -269,7 +269,7 @@ def test_a_command_that_waited_for_its_driver_for_too_long_never_leaves_and_a_st
     class Slow(Tame):
         def send(self, command: Command) -> None:
             super().send(command)
-            go.wait(WAIT_S)
+            go.wait(PATIENCE_S)
 
     there = running(Slow(), stale_after_s=1.0)
     there.is_up()
@@ -282,7 +282,7 @@ def test_a_command_that_waited_for_its_driver_for_too_long_never_leaves_and_a_st
     speaker.join()
     undelivered = there.hears(lambda event: isinstance(event, Undelivered))
     assert undelivered.id == LIGHT.id and "must not leave any more" in str(undelivered.sentence)
-    assert [there.made[0].sent.get(timeout=WAIT_S) for _ in range(2)] == [GO, HALT]
+    assert [there.made[0].sent.get(timeout=PATIENCE_S) for _ in range(2)] == [GO, HALT]
 
 
 def speak(driver: Tame, until: threading.Event) -> None:
@@ -317,7 +317,7 @@ def test_devices_with_the_same_driver_and_equal_settings_share_one() -> None:
     part = DriversPart(model, EPOCH, lambda name, error: None)
     part.start()
     try:
-        assert {starts.get(timeout=WAIT_S), starts.get(timeout=WAIT_S)} == {("a", "c"), ("b",)}
+        assert {starts.get(timeout=PATIENCE_S), starts.get(timeout=PATIENCE_S)} == {("a", "c"), ("b",)}
     finally:
         part.stop()
 
@@ -339,7 +339,7 @@ def test_whoever_works_is_halted_when_the_plant_is_not_heard(running: Callable[.
     there.is_up()
     there.part.send(Heartbeat(epoch=EPOCH))
     there.part.send(GO)
-    sent = [driver.sent.get(timeout=WAIT_S) for _ in range(2)]
+    sent = [driver.sent.get(timeout=PATIENCE_S) for _ in range(2)]
     assert sent == [GO, Stop(id="", robot="station", mode=StopMode.HALT)]
 
 

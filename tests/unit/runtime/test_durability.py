@@ -14,7 +14,7 @@ from arboleda.model.errors import ArboledaError
 from arboleda.runtime.parts.durability import Durability
 from arboleda.store.sqlite import Store
 
-SOON_S = 20.0
+from ...patience import SOON_S
 
 
 class Disk(Store):

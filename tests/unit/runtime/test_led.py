@@ -6,7 +6,7 @@ import socket
 
 import pytest
 
-from arboleda.runtime.standby.leader import LeaderInfo, of_standby, said_of
+from arboleda.runtime.standby.leader import LeaderInfo, leader_row, of_standby
 from arboleda.runtime.web_options import WebOptions
 
 LED = LeaderInfo(plant="demo", host="host-a", process=7, url="http://10.0.0.5:8080", epoch=3)
@@ -30,14 +30,14 @@ def test_other_addresses_lead_there_from_everywhere(url: str) -> None:
 
 
 def test_what_a_standby_says_is_read_as_it_was_known() -> None:
-    assert of_standby({"plant": "demo", **said_of(LED)}) == LED
+    assert of_standby({"plant": "demo", **leader_row(LED)}) == LED
 
 
 @pytest.mark.parametrize(
     "said",
     [
         {},
-        said_of(None),
+        leader_row(None),
         {"leader": "javascript:alert(1)", "host": "a\x1b[2J", "process": "7", "epoch": None},
         {"leader": "http://user:word@a/x"},
         {"leader": ["http://a"]},

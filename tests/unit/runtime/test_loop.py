@@ -9,6 +9,8 @@ import pytest
 from arboleda.model.errors import ArboledaError
 from arboleda.runtime.loop import Loop, StepInFlight
 
+from ...patience import PATIENCE_S
+
 
 class Echo:
     """Answers each event with itself; `alarm` is its next deadline, which it answers once."""
@@ -56,7 +58,7 @@ class Sent(list):
 
     def wait(self, *messages) -> None:
         with self._more:
-            assert self._more.wait_for(lambda: self == list(messages), timeout=5), self
+            assert self._more.wait_for(lambda: self == list(messages), timeout=PATIENCE_S), self
 
 
 @pytest.fixture

@@ -11,7 +11,7 @@ import pytest
 from arboleda.adapters.webhook import DeliveryRefused, NotDelivered
 from arboleda.runtime.parts.outbox import Outbox
 
-PATIENCE_S = 20.0
+from ...patience import PATIENCE_S
 
 
 class Receiver:

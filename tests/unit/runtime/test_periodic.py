@@ -8,6 +8,8 @@ from arboleda.model.errors import ArboledaError
 from arboleda.runtime.parts import periodic
 from arboleda.runtime.parts.periodic import Periodic
 
+from ...patience import PATIENCE_S
+
 
 def test_all_are_looked_at_until_one_says_that_the_plant_must_end() -> None:
     seen: list[str] = []
@@ -36,7 +38,7 @@ def test_its_thread_looks_and_after_a_crash_no_more(monkeypatch) -> None:
 
     part = Periodic("place", [fails], lambda *_: crashed.set())
     part.start()
-    assert crashed.wait(30.0)
+    assert crashed.wait(PATIENCE_S)
     part.stop()
     part.stop()
     assert looks == [1]

@@ -11,7 +11,7 @@ import pytest
 from arboleda.recorder.errors import NoRecord
 from arboleda.recorder.files import part_path
 from arboleda.recorder.preamble import Limits, PlantFiles
-from arboleda.recorder.simulated import SimulatedRecorder
+from arboleda.recorder.simulated_recorder import SimulatedRecorder
 from arboleda.runtime.parts import records
 from arboleda.runtime.parts.records import Records
 from arboleda.simulator.world import World

@@ -35,7 +35,8 @@ from arboleda.store.sqlite import Store
 from arboleda.store.task_rows import TaskQuery
 from arboleda.testing.plants import shipped
 
-SOON_S = 20.0  # nothing here takes as long; a machine that is busy may
+from ...patience import SOON_S
+
 MODEL = shipped("sis_a", "sis_b")
 ROBOTS = set(MODEL.robots)
 

@@ -14,6 +14,8 @@ import pytest
 from arboleda.adapters import clock
 from arboleda.runtime.parts.systemd import SystemdPart, systemd_part
 
+from ...patience import PATIENCE_S
+
 LONG_S = 60.0
 
 
@@ -22,7 +24,7 @@ def heard(tmp_path: Path) -> Iterator[socket.socket]:
     """The socket on which systemd listens."""
     with socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM) as listens:
         listens.bind(str(tmp_path / "notify"))
-        listens.settimeout(10.0)
+        listens.settimeout(PATIENCE_S)
         yield listens
 
 
@@ -52,7 +54,7 @@ def test_a_plant_that_makes_no_steps_any_more_is_not_said_to_live(heard: socket.
 
     part = SystemdPart(heard.getsockname(), 0.03, stepped_at)
     part.start()
-    assert thrice.wait(10.0)
+    assert thrice.wait(PATIENCE_S)
     part.stop()
     assert [heard.recv(100), heard.recv(100)] == [b"READY=1", b"STOPPING=1"]
 

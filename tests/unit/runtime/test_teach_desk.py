@@ -15,7 +15,7 @@ import yaml
 from arboleda.core.plant import Plant
 from arboleda.dashboard.twin import bodies, kinematics
 from arboleda.model.messages import Jog, Verb
-from arboleda.plant_file.draft_check import Checked
+from arboleda.plant_file.draft_check import CheckResult
 from arboleda.plant_file.loader import load
 from arboleda.plant_file.urdf import robot_urdf
 from arboleda.recorder.preamble import PlantFiles
@@ -61,8 +61,8 @@ OF_SIX |= {"deg: [60, 20], mm: 80, approach_mm: 40": "deg: [60, 20, 0, 0, 0, 0]"
 class Unchecked:
     """Finds nothing wrong with any files."""
 
-    def check(self, files: PlantFiles, plant_file: Path) -> Checked:
-        return Checked(read=files)
+    def check(self, files: PlantFiles, plant_file: Path) -> CheckResult:
+        return CheckResult(read=files)
 
     def stop(self) -> None: ...
 

@@ -12,6 +12,8 @@ import pytest
 
 from arboleda.runtime import waiting
 
+from ...patience import PATIENCE_S
+
 
 @pytest.fixture(autouse=True)
 def ctrl_c_raises() -> Iterator[None]:
@@ -84,7 +86,7 @@ with interruptible():
 def test_a_signal_that_comes_in_a_finalizer_ends_the_next_wait_and_no_later_one(name: str) -> None:
     """Python drops what is raised there, and tells of it only where something went wrong."""
     ran = subprocess.run(
-        [sys.executable, "-c", DROPPED.format(name=name)], capture_output=True, text=True, timeout=30
+        [sys.executable, "-c", DROPPED.format(name=name)], capture_output=True, text=True, timeout=PATIENCE_S
     )
     assert (ran.returncode, ran.stdout) == (0, "a clean end\n")
     assert ran.stderr.count("Exception ignored") == ran.stderr.count("OSError: no signal") == 1

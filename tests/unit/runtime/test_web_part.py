@@ -44,7 +44,7 @@ class Plant:
     def promises(self, _text: str) -> list[dict]:
         return []
 
-    def submit(self, _text: str, _asked_by: str, _choice: str = "") -> Future:
+    def submit(self, _text: str, _asked_by: str, _choice: str = "", version: str = "") -> Future:
         self.asked.append(Future())
         return self.asked[-1]
 

@@ -16,6 +16,7 @@ from arboleda.simulator.plants.devices.steps import (
     Choose,
     Fail,
     Fallback,
+    Invert,
     Parallel,
     Param,
     Recipe,
@@ -34,6 +35,7 @@ from arboleda.simulator.plants.devices.steps import (
 from ...mutants.mutant import edit
 
 OPEN, CLOSE = Tell(role="oven", verb="open"), Tell(role="oven", verb="close")
+REFUSED = Tell(role="oven", verb="open", refused=True)
 ASKED = Ask(role="ana", question="Again?", answers=("yes", "no"), at_most_s=9.0, answer="a1")
 BY_ANSWER = Choose(answer="a1", ways=(("yes", OPEN), ("no", Fail(sentence="no"))))
 FOUR_S = {("open", ()): 4.0}
@@ -42,7 +44,7 @@ FOUR_S = {("open", ()): 4.0}
 def told(step: Step, **answers: Sequence[Value]) -> tuple[bool, list[str]]:
     """Whether a recipe of this step succeeds, and the verbs that it tells the oven."""
     meaning = Meaning([Recipe(name="it", parameters=(), step=step)], answers, lambda role, told: FOUR_S[told])
-    return meaning.run("it", {}), [verb for verb, _ in meaning.told.get("oven", [])]
+    return meaning.run("it", {}), [verb for verb, _ in meaning.orders.get("oven", [])]
 
 
 @pytest.mark.parametrize(
@@ -59,10 +61,28 @@ def told(step: Step, **answers: Sequence[Value]) -> tuple[bool, list[str]]:
         (Recover(work=Fail(sentence="so"), rescue=CLOSE), False, ["close"]),
         (Recover(work=OPEN, rescue=CLOSE), True, ["open"]),
         (Parallel(branches=(OPEN, Wait(seconds=1))), True, ["open"]),
+        (Parallel(branches=(Work(steps=(Wait(seconds=1), Fail(sentence="so"))), OPEN)), False, ["open"]),
+        (Work(steps=(Invert(step=REFUSED), CLOSE)), True, ["close"]),
+        (Work(steps=(REFUSED, CLOSE)), False, []),
     ],
 )
 def test_what_a_step_means(step: Step, succeeds: bool, verbs: list[str]) -> None:
     assert told(step) == (succeeds, verbs)
+
+
+@pytest.mark.parametrize(
+    ("step", "cause"),
+    [
+        (Work(steps=(Fallback(steps=(Fail(sentence="a"), OPEN)), Fail(sentence="b"))), "b"),
+        (Recover(work=Fail(sentence="a"), rescue=Fallback(steps=(Fail(sentence="b"), CLOSE))), "a"),
+        (Work(steps=(Invert(step=Fail(sentence="a")), Timeout(step=OPEN, seconds=2))), None),
+        (Work(steps=(Invert(step=Fail(sentence="a")), REFUSED)), None),
+    ],
+)
+def test_the_words_of_the_step_that_failed_last(step: Step, cause: str | None) -> None:
+    meaning = Meaning([Recipe(name="it", parameters=(), step=step)], {}, lambda role, told: FOUR_S[told])
+    assert not meaning.run("it", {})
+    assert meaning.cause == cause
 
 
 def test_each_turn_goes_by_its_own_answer() -> None:
@@ -83,7 +103,7 @@ def test_a_recipe_within_another_has_values_of_its_own() -> None:
     outer = Recipe(name="outer", parameters=(), step=Run(recipe="inner", values=(("p1", Param(name="p2")),)))
     meaning = Meaning([inner, outer], {}, lambda role, told: 0.0)
     assert meaning.run("outer", {"p2": "7"})
-    assert meaning.told == {"oven": [("heat", (7.0,))]}
+    assert meaning.orders == {"oven": [("heat", (7.0,))]}
 
 
 @pytest.mark.parametrize(

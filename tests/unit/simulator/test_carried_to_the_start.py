@@ -15,7 +15,7 @@ def test_the_way_to_the_start_is_left_out_where_the_robot_is_there_by_then() -> 
     def look() -> None:
         for said in world.moment.sent:
             if isinstance(said, TaskChanged) and said.state is TaskState.RUNNING and driven:  # it is away
-                world.at(world.now + 0.02, world.put_at_reference, "rm_sis_a")
+                world.at(world.now + 0.02, world.manual.put_at_reference, "rm_sis_a")
             if isinstance(said, FollowPath):
                 driven.append(said.nodes)
 

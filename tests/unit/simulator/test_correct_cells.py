@@ -17,7 +17,7 @@ from arboleda.model.plant_model import Cell, Evidence, Link, PlantModel
 from arboleda.plant_file.loader import load
 from arboleda.recipes import Choice, Kit, recipe, work
 from arboleda.recipes import Number as Blows
-from arboleda.simulator import world
+from arboleda.simulator import plant_process
 from arboleda.simulator.climate import Climate
 from arboleda.simulator.faults import Fault
 from arboleda.simulator.judged_world import BrokenInvariant, JudgedWorld
@@ -97,7 +97,7 @@ def test_what_nobody_reports_settles_from_when_it_left(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, *, hears: bool
 ) -> None:
     if not hears:
-        monkeypatch.setattr(world, "late_departure", lambda *_: None)
+        monkeypatch.setattr(plant_process, "late_departure", lambda *_: None)
     watched = JudgedWorld(cell_of(tmp_path, ONE_KILN, air))
     watched.world.disk.slow.append(0.5)
     watched.world.request_task("raku air 1")

@@ -17,15 +17,16 @@ from arboleda.simulator.faults import KINDS, OF_CRASHES, Fault
 from arboleda.simulator.faults.crashes import IN_ONE_PROCESS
 from arboleda.simulator.judged_world import JudgedWorld
 from arboleda.simulator.people import Customers
+from arboleda.simulator.plant_process import Fuse, Side
 from arboleda.simulator.run import Simulation
-from arboleda.simulator.world import PLANT, Fuse, Side, World
+from arboleda.simulator.world import PLANT, World
 from arboleda.testing import shipped
 
 from ...lengths import length, sample
 
 
 def dies(world: World, count: int, side: Side) -> None:
-    world.fuses.append(Fuse(count, side, world.stop_plant))
+    world.plant_process.fuses.append(Fuse(count, side, world.plant_process.stop))
 
 
 def sent(world: World) -> list[object]:
@@ -58,7 +59,7 @@ def test_it_dies_on_either_side_of_a_commit_and_of_a_message(count, side, on_dis
     assert not world.is_on(PLANT)
     assert ("lot" in world.disk.tasks) is on_disk
     assert (states(words, "lot") == [TaskState.QUEUED]) is told
-    world.start_plant()
+    world.plant_process.start()
     assert ("lot" in world.plant.intake.tasks) is on_disk
 
 
@@ -101,10 +102,10 @@ def test_what_waited_waits_again_and_who_asks_for_its_id_gets_the_same_task() ->
 def test_nobody_hears_what_is_said_while_it_is_down() -> None:
     world = World(shipped("sis_a"))
     world.advance(1.0)
-    world.stop_plant()
+    world.plant_process.stop()
     world.request_task("sis_a 0B 1 #lot")
     world.advance(2.0)
-    world.start_plant()
+    world.plant_process.start()
     world.advance(1.0)
     assert "lot" not in world.plant.intake.tasks
     assert world.plant.dispatcher.beliefs["ra1"].online
@@ -122,12 +123,12 @@ def test_a_power_cut_takes_the_bridge_along_and_what_nothing_has_synced() -> Non
     watched = JudgedWorld(shipped("sis_a"))
     world = watched.world
     world.request_task("sis_a 0B 1")
-    assert world.advance(60.0, lambda: world.memory.get(Fact.EFFECTOR, {}).get("ra1") == "on")
+    assert world.advance(60.0, lambda: world.disk.facts.get(Fact.EFFECTOR, {}).get("ra1") == "on")
     fault = Fault(kind="power_cut", at=0.0, target=PLANT, word="before", amount=1.0, seconds=5.0, seed=3)
     watched.begin(fault)
     assert world.advance(10.0, lambda: not world.is_on(PLANT))
     assert world.bridge is None
-    assert world.memory[Fact.EFFECTOR]["ra1"] in ("on", "switching")
+    assert world.disk.facts[Fact.EFFECTOR]["ra1"] in ("on", "switching")
     world.advance(6.0)
     assert world.bridge is not None and world.is_on(PLANT)
 
@@ -173,7 +174,7 @@ def test_what_cannot_be_kept_is_not_accepted_and_the_plant_ends() -> None:
     world.advance(10.0)
     assert not world.is_on(PLANT)
     assert states(words, "lot") == [] and "lot" not in world.disk.tasks
-    world.start_plant()
+    world.plant_process.start()
     assert not world.is_on(PLANT), "it is refused as long as there is no room"
     end()
     world.advance(1.0)
@@ -248,7 +249,7 @@ def simulated(
 def test_everything_holds_however_it_dies(kind: str, goes_on: bool) -> None:
     found = simulated(1, {kind: 8.0}, goes_on=goes_on)
     assert found.result.broken is None
-    assert found.world.starts > 2 or kind == "slow_disk"
+    assert found.world.plant_process.starts > 2 or kind == "slow_disk"
 
 
 def slows_down(world: World, seconds: float) -> Callable[[], None]:
@@ -290,7 +291,7 @@ def test_a_command_that_the_disk_made_too_late_is_not_sent_and_its_cell_is_held_
     watched = JudgedWorld(shipped("sis_a"))
     world = watched.world
     world.request_task("sis_a palletizing #lot")
-    assert world.advance(30.0, lambda: world.memory.get(Fact.EFFECTOR, {}).get("ra1") == "on")
+    assert world.advance(30.0, lambda: world.disk.facts.get(Fact.EFFECTOR, {}).get("ra1") == "on")
     end, left, heard = slows_down(world, 4.0), leaving(world), []
     world.watchers.append(lambda: heard.extend(world.moment.undelivered))
     assert world.advance(30.0, lambda: world.is_stalled(PLANT))

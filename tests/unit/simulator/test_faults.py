@@ -17,6 +17,7 @@ from arboleda.simulator.chance import Dice
 from arboleda.simulator.faults import KINDS, OF_CRASHES, OF_DEVICES, OF_HOSTS, ON_ONE_HOST, Fault
 from arboleda.simulator.faults.foreigners import GARBAGE
 from arboleda.simulator.faults.operators import SAID
+from arboleda.simulator.faults.orchestrators import LATEST
 from arboleda.simulator.world import BRIDGE, PLANT, World
 from arboleda.testing import shipped
 from arboleda.wire.payloads import decode
@@ -482,6 +483,16 @@ def orders(world: World, fault: Fault, seconds: float = 0.5) -> list[Any]:
 def test_a_superseded_orchestrator_has_no_say(world, robot, word):
     assert orders(world, fault("second_orchestrator", robot, word=word)) == []
     assert world.bridge.counters[robot].refused == (word != "beat")
+
+
+def test_an_orchestrator_is_superseded_only_by_a_start_that_the_bridge_has_heard(world):
+    world.to_bridge.troubles.append(lambda each: ())
+    for _ in range(LATEST + 1):
+        world.crash(PLANT)
+        world.advance(0.1)
+    assert world.plant.epoch - LATEST > world.epoch_at_bridge
+    assert orders(world, fault("second_orchestrator", "ra1", word="move")) == []
+    assert world.bridge.counters["ra1"].refused == 1
 
 
 def test_a_frozen_plant_finds_that_a_day_has_passed_and_everything_else_comes_so_much_later(world):

@@ -394,7 +394,7 @@ def any_answer_counts(patch: Patch) -> None:
 
 def tells_nobody(patch: Patch) -> None:
     """Commands of other nodes are refused without a word."""
-    patch.setattr(Bridge, "_told_of", lambda self, unsure: [])
+    patch.setattr(Bridge, "_report", lambda self, unsure: [])
 
 
 def obeys_anybody(patch: Patch) -> None:

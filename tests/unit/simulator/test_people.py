@@ -64,7 +64,7 @@ def test_a_robot_that_boots_while_it_is_put_right_is_put_right_once_more():
     world.watchers.append(look.truth.look)
     world.watchers.append(lambda: driven.extend(e for e in world.moment.sent if isinstance(e, FollowPath)))
     world.watchers.append(lambda: wrong.extend(no_move_after_a_boot_that_was_told.rule(look)))
-    for act in (world.crash, world.home_by_hand, world.crash):
+    for act in (world.crash, world.manual.home, world.crash):
         world.advance(0.5)
         act(MOBILE)
     world.advance(2.0)
@@ -81,11 +81,11 @@ def test_nobody_says_that_a_robot_is_homed_while_it_moves():
         lambda: told.extend(e for e in world.moment.asked if isinstance(e, OperatorRequest))
     )
     world.advance(1.0)
-    world.home_by_hand(MOBILE)
+    world.manual.home(MOBILE)
     world.request_task("sis_a 0B 7")
     world.advance(3.0)
     assert told == []
     world.advance(30.0)
-    world.home_by_hand(MOBILE)
+    world.manual.home(MOBILE)
     world.advance(1.1)
     assert [(event.verb, event.by_hand) for event in told] == [(Verb.HOME, True)]

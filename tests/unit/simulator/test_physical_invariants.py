@@ -339,7 +339,7 @@ def robbed_unnoticed(patch: Patch) -> Watch:
     watch = misses_no_part(patch)
     watch.world.request_task("sis_a 0B 7")
     watch.wait(60.0, until=lambda: watch.body.holding and watch.body.moving)
-    watch.world.open_effector(ARM)
+    watch.world.manual.open_effector(ARM)
     watch.wait(30.0)
     return watch
 

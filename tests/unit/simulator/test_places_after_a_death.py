@@ -7,7 +7,8 @@ import pytest
 from arboleda.model.messages import Fact, Remember, TaskChanged, TaskState
 from arboleda.simulator.invariants.part_places import books_of_parts_are_true
 from arboleda.simulator.judged_world import BrokenInvariant, JudgedWorld
-from arboleda.simulator.world import PLANT, Fuse, Side, World
+from arboleda.simulator.plant_process import Fuse, Side
+from arboleda.simulator.world import PLANT, World
 
 from .test_general_invariants import storing
 
@@ -16,7 +17,7 @@ class FuseOfADoneTask(Fuse):
     """Fuse that burns down once the plant has told that a task is done, `booked`: and books parts."""
 
     def __init__(self, world: World, *, booked: bool = False) -> None:
-        super().__init__(1, Side.AFTER, world.stop_plant)
+        super().__init__(1, Side.AFTER, world.plant_process.stop)
         self._world = world
         self._booked = booked
 
@@ -36,7 +37,7 @@ def _books(message: object) -> bool:
 
 def test_the_books_may_be_those_of_the_next_task_already_where_people_fill_a_place() -> None:
     world = JudgedWorld(storing(), invariants=[books_of_parts_are_true]).world
-    world.fuses.append(FuseOfADoneTask(world, booked=True))
+    world.plant_process.fuses.append(FuseOfADoneTask(world, booked=True))
     world.request_task("tending forgets")
     world.request_task("tending forgets")
     world.advance(60.0)
@@ -45,7 +46,7 @@ def test_the_books_may_be_those_of_the_next_task_already_where_people_fill_a_pla
 
 def test_what_a_recipe_says_of_its_end_is_judged_though_its_plant_dies_as_it_tells_of_that() -> None:
     world = JudgedWorld(storing()).world
-    world.fuses.append(FuseOfADoneTask(world))
+    world.plant_process.fuses.append(FuseOfADoneTask(world))
     world.request_task("tending bring")
     with pytest.raises(BrokenInvariant, match="recipes_end_as_they_say"):
         world.advance(60.0)

@@ -30,7 +30,7 @@ from arboleda.sim.freshness import Freshness
 from arboleda.sim.receipts import Receipts
 from arboleda.simulator.invariants.commands import COMMANDS
 from arboleda.simulator.invariants.invariant import Judges, Look
-from arboleda.simulator.invariants.liveness import LIVENESS
+from arboleda.simulator.invariants.liveness import LIVENESS, ready
 from arboleda.simulator.invariants.memory_bounds import BOOKS
 from arboleda.simulator.invariants.tasks import TASKS
 from arboleda.simulator.invariants.wire import WIRE
@@ -61,6 +61,10 @@ class Watch:
         self._judges = Judges(INVARIANTS)
         self.world.watchers.append(self._check)
         self.world.advance(0.5)
+
+    @property
+    def look(self) -> Look:
+        return self._look
 
     @property
     def record(self) -> Record:
@@ -497,7 +501,7 @@ def test_only_legal_cell_states(bites):
 def test_only_legal_cell_states__of_a_stop_that_was_forgotten(bites):
     watch = Watch()
     watch.verb(Verb.STOP, "sis_a", wait_s=1)
-    watch.world.memory.pop(Fact.LATCH)
+    watch.world.disk.facts.pop(Fact.LATCH)
     watch.world.crash(PLANT)
     watch.wait(0.5)
     bites(watch)
@@ -515,6 +519,17 @@ def test_rejected_input_changes_nothing(monkeypatch, bites):
     watch.wait(0.031)
     watch.task("nonsense")
     bites(watch)
+
+
+def test_rejected_input_changes_nothing__of_what_a_start_finds_in_a_hand(bites):
+    watch = Watch(shipped("sis_a", evidence=Evidence.JOINTS, assume_homed=True))
+    watch.world.disk.facts[Fact.EFFECTOR] = {"ra1": "switching"}
+    watch.world.to_plant.troubles.append(lambda each: ())
+    watch.world.crash(PLANT)
+    watch.world.stall(PLANT, 0.2)
+    watch.task("nonsense", wait_s=0.3)
+    assert watch.world.plant.cells["sis_a"].state is CellState.HELD
+    assert watch.found == {}
 
 
 def test_every_request_is_answered(monkeypatch, bites):
@@ -784,12 +799,63 @@ def test_no_starvation__of_an_arm_that_may_still_be_told_something():
     assert watch.found == {}
 
 
-def test_no_starvation__of_a_cell_whose_shared_arm_may_still_be_told_something(tmp_path):
-    """Seed 110 of drawn plants: it shares no zone, and has to be seen at home after its last command."""
+CART = """
+name: carts
+uses: [recipes.py]
+cells:
+  cell:
+    devices: {cart: {kind: mobile, grid: {origin_m: [0, 0]}, evidence: state}}
+    targets: {home: {cart: {node: 6}}, store: {cart: {node: 2}}}
+zones: {inside: {poses: [cell store]}}
+"""
+STORE = """
+from arboleda.recipes import recipe
+
+
+@recipe("store")
+def store(cell):
+    return cell.device("cart").visit("store", cell.wait(5))
+"""
+
+
+def test_no_starvation__of_a_cell_whose_cart_proves_no_place_and_was_led_into_a_zone(tmp_path):
+    """Seed 60502 of drawn plants: at `state` its word on its place is no evidence, where it was led is."""
+    (tmp_path / "plant.yaml").write_text(CART)
+    (tmp_path / "recipes.py").write_text(STORE)
+    watch = Watch(load(tmp_path / "plant.yaml"))
+    watch.wait(2.0)
+    cell, reached = watch.record.cells["cell"], watch.world.plant.dispatcher.reached
+    assert watch.record.robots["cart"].node == 6
+    assert ready(watch.look, cell), "nobody knows where it was led"
+    reached["cart"] = 2
+    assert not ready(watch.look, cell), "it was led into the zone, whatever it says"
+    reached["cart"] = 6
+    assert ready(watch.look, cell)
+
+
+def sharing(tmp_path: Path) -> PlantModel:
+    """Two cells that share an arm, and no zone."""
     shared = Path(__file__).parents[2] / "scenario" / "shared_arm"
     (tmp_path / "recipes.py").write_text((shared / "recipes.py").read_text())
     (tmp_path / "plant.yaml").write_text((shared / "plant.yaml").read_text().partition("zones:")[0])
-    watch = Watch(load(tmp_path / "plant.yaml"))
+    return load(tmp_path / "plant.yaml")
+
+
+def test_no_starvation__of_a_cell_whose_shared_arm_has_not_been_seen_at_home_since_the_start(tmp_path):
+    """Seed 51087 of drawn plants: what is heard just after a start may be older than its last move."""
+    watch = Watch(sharing(tmp_path))
+    watch.world.disk.facts[Fact.QUARANTINE] = {"arm": "left"}
+    watch.world.crash(PLANT)
+    watch.task("left press", wait_s=0.5)
+    assert [task.state for task in watch.record.tasks.open.values()] == [TaskState.QUEUED]
+    watch.wait(2)
+    assert watch.found == {}
+    assert [task.state for task in watch.record.tasks.open.values()] == [TaskState.RUNNING]
+
+
+def test_no_starvation__of_a_cell_whose_shared_arm_may_still_be_told_something(tmp_path):
+    """Seed 110 of drawn plants: it shares no zone, and has to be seen at home after its last command."""
+    watch = Watch(sharing(tmp_path))
     watch.world.to_bridge.troubles.append(lambda each: (0.0,) if isinstance(each, Heartbeat) else ())
     watch.verb(Verb.HOME, "arm", wait_s=1)
     watch.world.to_plant.troubles.append(lambda each: ())

@@ -229,7 +229,7 @@ def test_ended_tasks_are_forgotten_in_the_end():
     tasks = Tasks(["sis_a"])
     for number in range(KEPT + 5):
         for state in (TaskState.QUEUED, TaskState.RUNNING, TaskState.DONE):
-            tasks.take(change(f"t{number}", state), 0.0, asked_again=False)
+            tasks.take(change(f"t{number}", state), 0.0, is_repeated=False)
     assert len(tasks.ended) == KEPT
     assert tasks.known("t4") is None
     assert tasks.known(f"t{KEPT}").state is TaskState.DONE
@@ -339,28 +339,28 @@ def test_positions_are_those_that_boards_told_lately(world, record):
     world.advance(2.5)
     told = record.robots["rm_sis_a"].node
     assert told not in (0, 8)
-    assert board.said(None, told, record.told_since(world.now))
+    assert board.said(None, told, record.reports_from_s(world.now))
     assert not board.said(None, 8, 0.0)
     assert board.said(None, 0, 0.0)
     world.advance(10)
-    assert not board.said(None, 0, record.told_since(world.now))
+    assert not board.said(None, 0, record.reports_from_s(world.now))
 
 
 def test_a_slow_line_may_bring_old_positions(world, record):
-    assert record.told_since(world.now) == world.now - STALE_S
+    assert record.reports_from_s(world.now) == world.now - STALE_S
     world.to_plant.troubles.append(lambda report: [0.5])
     world.advance(0.5)
     world.to_plant.troubles.clear()
     world.advance(5.0)
-    assert record.told_since(world.now) == 0.0
+    assert record.reports_from_s(world.now) == 0.0
     world.advance(6.0)
-    assert record.told_since(world.now) == world.now - STALE_S
+    assert record.reports_from_s(world.now) == world.now - STALE_S
 
 
 def test_a_stalled_bridge_may_bring_old_positions(world, record):
     world.stall(BRIDGE, 1.0)
     world.advance(0.9)
-    assert record.told_since(world.now) == 0.0
+    assert record.reports_from_s(world.now) == 0.0
 
 
 def test_scopes_are_the_plant_a_cell_or_a_robot():
@@ -378,7 +378,7 @@ def test_what_was_said_before_the_record_began_is_known(world):
     record = Record(world)
     known = record.robots["ra1"]
     assert known.obstacles(world.now, world.plant.epoch) == frozenset()
-    assert record.boards.by_name["ra_1"].said(known.q, None, record.told_since(world.now))
+    assert record.boards.by_name["ra_1"].said(known.q, None, record.reports_from_s(world.now))
     assert replace(said(), robot="ra1").robot == known.robot.name
 
 

@@ -10,9 +10,10 @@ import pytest
 from arboleda.campaigns.request import Request
 from arboleda.model.messages import Report
 from arboleda.model.plant_model import MotionState
+from arboleda.simulator.moment import BridgeStep
 from arboleda.simulator.recorded.bridge import Bridges
 from arboleda.simulator.recorded.reported_telemetry import REPORTS
-from arboleda.simulator.world import BridgeStep, World
+from arboleda.simulator.world import World
 from arboleda.wire.transport import Delivery
 
 SETTLED_S = 3.0

@@ -8,9 +8,9 @@ from arboleda.model.messages import Check, KeptTask, TaskChanged, TaskState
 from arboleda.simulator.recorded.tasks import SURE, Tasks
 
 
-def say(tasks: Tasks, id: str, state: TaskState, *, asked_again: bool = False) -> None:
+def say(tasks: Tasks, id: str, state: TaskState, *, is_repeated: bool = False) -> None:
     said = TaskChanged(task=id, text="sis_a 0B 7", cell="sis_a", state=state)
-    tasks.take(said, 0.0, asked_again=asked_again)
+    tasks.take(said, 0.0, is_repeated=is_repeated)
 
 
 @pytest.fixture
@@ -25,18 +25,18 @@ def tasks() -> Tasks:
 
 
 def test_an_old_task_that_is_asked_for_again_is_answered_with_how_it_ended(tasks: Tasks) -> None:
-    say(tasks, "lot0", TaskState.DONE, asked_again=True)
+    say(tasks, "lot0", TaskState.DONE, is_repeated=True)
     assert [(change.before, change.answer) for change in tasks.changes] == [(TaskState.DONE, True)]
 
 
 def test_an_old_task_that_ends_once_more_is_no_answer(tasks: Tasks) -> None:
     say(tasks, "lot0", TaskState.DONE)
-    say(tasks, "lot1", TaskState.FAILED, asked_again=True)
+    say(tasks, "lot1", TaskState.FAILED, is_repeated=True)
     assert [change.answer for change in tasks.changes] == [False, False]
 
 
 def test_an_old_id_that_the_plant_has_forgotten_may_be_a_new_task(tasks: Tasks) -> None:
-    say(tasks, "lot0", TaskState.QUEUED, asked_again=True)
+    say(tasks, "lot0", TaskState.QUEUED, is_repeated=True)
     assert [(change.before, change.answer) for change in tasks.changes] == [(None, False)]
 
 

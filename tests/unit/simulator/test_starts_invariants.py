@@ -14,7 +14,7 @@ from arboleda.core.task_queue import TaskQueue
 from arboleda.model.messages import ENDED, KeptTask, TaskState
 from arboleda.model.plant_model import PlantModel
 from arboleda.model.task import Task
-from arboleda.simulator import world
+from arboleda.simulator import plant_process
 from arboleda.simulator.climate import Climate
 from arboleda.simulator.faults import KINDS, OF_CRASHES
 from arboleda.simulator.invariants.starts import STARTS
@@ -98,7 +98,7 @@ def goes_on_by_itself(patch: Patch) -> None:
 
 def says_what_it_cannot_keep(patch: Patch) -> None:
     """A plant that can keep nothing more goes on as if it had."""
-    patch.setattr(world, "leaves_unkept", lambda message: True)
+    patch.setattr(plant_process, "leaves_unkept", lambda message: True)
 
 
 BITES: list[tuple[str, Bug]] = [

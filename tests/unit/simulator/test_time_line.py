@@ -24,7 +24,7 @@ def test_the_last_event_is_known_also_where_pages_have_forgotten_it() -> None:
     for number in range(EVENTS + 10):
         line.see(shown(float(number), ("held", "free")[number % 2]))
     assert line.whole and line.last["zone", "quiet"]["what"] == "held"
-    assert line.told == shown(EVENTS + 9.0, ("held", "free")[(EVENTS + 9) % 2])
+    assert line.received == shown(EVENTS + 9.0, ("held", "free")[(EVENTS + 9) % 2])
 
 
 def test_it_knows_that_it_missed_events() -> None:

@@ -280,7 +280,7 @@ def test_a_restarted_plant_goes_on_only_with_a_task_of_which_it_knows_where_it_s
     task = stage.truth.storage.cells["sis_a"].task
     assert task is not None
     if not kept:
-        del stage.world.memory[Fact.STEP]
+        del stage.world.disk.facts[Fact.STEP]
     stage.world.crash()
     stage.world.advance(0.1)
     assert stage.truth.storage.cells["sis_a"].task == (task if kept else None)
@@ -314,7 +314,7 @@ def test_what_was_asked_may_have_come_before_a_boot_of_which_the_plant_hears_in_
     stage = Stage(shipped("sis_a", evidence=Evidence.JOINTS))
     told: list[bool] = []  # after each step in which the plant heard something
     stage.world.watchers.append(
-        lambda: told.append(stage.truth.boots.told("ra1")) if stage.world.moment.heard else None
+        lambda: told.append(stage.truth.boots.is_known("ra1")) if stage.world.moment.heard else None
     )
     stage.world.stall(PLANT, 1.0)
     stage.world.crash(ARM)
@@ -331,7 +331,7 @@ def test_who_was_put_right_after_a_told_boot_may_have_booted_unseen_since():
     for number, at in enumerate((1.0, 4.0, 6.0), start=1):
         heard = [Report(at=at, robot="ra1", epoch=1, plant=1000, boot_id=number)]
         stage.truth.boots.look(heard, asked=False)
-        told.append(stage.truth.boots.told("ra1"))
+        told.append(stage.truth.boots.is_known("ra1"))
     assert told == [False, False, True]
 
 

@@ -18,7 +18,7 @@ def kept() -> str:
     rig.wait(1.0)
     task = rig.submit("sis_a 0B 7").task
     rig.wait_for("sis_a", "drive path 0B")
-    return str(rig.memory[Fact.STEP][task])
+    return str(rig.disk.facts[Fact.STEP][task])
 
 
 def test_it_is_read_as_it_was_written(kept: str) -> None:

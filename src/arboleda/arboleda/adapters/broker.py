@@ -163,7 +163,7 @@ class EmbeddedBroker:
         await self._stopping.wait()
         server.close()
         sessions.end()
-        await asyncio.sleep(0)  # the connections are told that they are closed
+        await asyncio.sleep(0)  # the connections learn that they are closed
 
 
 def refuse_strangers(listener: socket.socket, tls: ssl.SSLContext | None = None) -> None:
@@ -180,8 +180,8 @@ def refuse_strangers(listener: socket.socket, tls: ssl.SSLContext | None = None)
             talks[who].sendall(hello)
         for who, talk in talks.items():
             try:
-                with talk.makefile("rb") as said:
-                    answer = said.read(4)
+                with talk.makefile("rb") as stream:
+                    answer = stream.read(4)
             except OSError as error:
                 raise StartError(f"The broker does not answer its own check: {error}.") from error
             if answer != connack(Answer.NOT_AUTHORIZED):

@@ -7,11 +7,11 @@ share of its own. This is the one place that divides them.
 
 from __future__ import annotations
 
-import resource
 import socket
 from dataclasses import dataclass
 from typing import Any
 
+from arboleda.host import limits
 from arboleda.model.errors import StartError
 
 RAISED_TO = 4096  # a higher limit serves nobody here, and programs that we start inherit it
@@ -37,16 +37,13 @@ class Shares:
 
 def raise_limit() -> None:
     """Raise this process's limit of open files as far as that is possible without being root."""
-    soft, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
-    wanted = RAISED_TO if hard == resource.RLIM_INFINITY else min(hard, RAISED_TO)
-    if soft != resource.RLIM_INFINITY and soft < wanted:
-        resource.setrlimit(resource.RLIMIT_NOFILE, (wanted, hard))
+    limits.raise_open_files(RAISED_TO)
 
 
 def shares(boards: int) -> Shares:
     """The shares for a plant of so many boards, under the present limit; StartError if it is too low."""
-    soft, _ = resource.getrlimit(resource.RLIMIT_NOFILE)
-    return divided(RAISED_TO if soft == resource.RLIM_INFINITY else soft, boards)
+    limit = limits.open_files()
+    return divided(RAISED_TO if limit is None else limit, boards)
 
 
 def divided(limit: int, boards: int) -> Shares:

@@ -13,12 +13,12 @@ MOST = 120  # characters of a message that a sentence names
 
 
 @contextmanager
-def taking(said: object, lose: Callable[[str], object]) -> Iterator[None]:
-    """Context in which a message is handled; after an exception it calls `lose` with a sentence."""
+def taking(item: object, lose: Callable[[str], object]) -> Iterator[None]:
+    """Context in which an item is handled; after an exception it calls `lose` with a sentence."""
     try:
         yield
     except Exception as error:  # any error is blamed on the device, and reported
-        LOG.debug("%s could not be taken", quoted(said, MOST), exc_info=error)
+        LOG.debug("%s could not be taken", quoted(item, MOST), exc_info=error)
         lose(
-            plain(f"it has said what cannot be taken, {quoted(said, MOST)} ({type(error).__name__}: {error})")
+            plain(f"it has said what cannot be taken, {quoted(item, MOST)} ({type(error).__name__}: {error})")
         )

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import json
 import os
-import resource
 import signal
 import sys
 import time
@@ -20,6 +19,7 @@ from typing import Any
 import msgpack
 import zmq
 
+from arboleda.host import abilities, limits
 from arboleda.viewers.groot2 import WatchedTree
 
 DEFAULT_PORT = 1667
@@ -29,10 +29,11 @@ REQUEST_BYTES = 1 << 16
 WAITING = 100  # requests and replies of a client
 NICE = 10  # the plant goes first
 CHUNK_BYTES = 1 << 16
+NO_PIPES = "it is not there on Windows, where one process cannot wait for both another one and a network"
 
 
 class NoPort(Exception):
-    """Error: no port can be opened; the text tells the reason."""
+    """Error: no port can be opened; the text is the reason."""
 
 
 class Desk:
@@ -48,7 +49,7 @@ class Desk:
         self._watched = {cell: WatchedTree(_pack) for cell in cells}
         self._poller = zmq.Poller()
         self._desks: dict[Any, WatchedTree] = {}
-        self._publishers = []
+        self._publishers: list[zmq.Socket[bytes]] = []
         self.ports: dict[str, int] = {}
         free = _from(DEFAULT_PORT if port is None else port)
         for cell in cells:
@@ -66,7 +67,7 @@ class Desk:
                 if may_pass_by and error.errno == zmq.EADDRINUSE:
                     continue
                 where = f"{self._host}, ports {port} and {port + 1}"
-                raise NoPort(f"cannot listen on {where}, for {cell}: {zmq.strerror(error.errno)}") from error
+                raise NoPort(f"cannot listen on {where}, for {cell}: {error.strerror}") from error
             self.ports[cell] = port
             self._desks[server] = self._watched[cell]
             self._publishers.append(publisher)
@@ -102,7 +103,7 @@ class Desk:
 
     def _answer(self, server: Any) -> None:
         """Answer a request by hand on a ROUTER socket: a REP socket waits for ever for a broken one."""
-        with suppress(zmq.ZMQError):  # whoever asked is gone
+        with suppress(zmq.ZMQError):  # the client is gone
             parts = server.recv_multipart(zmq.NOBLOCK)
             if b"" in parts:
                 begin = parts.index(b"") + 1  # the parts before it route the reply to the client
@@ -126,8 +127,11 @@ def _pack(data: Any) -> bytes:
 def main(host: str, cells: Sequence[str], port: int | None) -> None:
     """Print the port of each cell, or the reason why there is none; then answer."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C ends the plant, which ends this
-    resource.setrlimit(resource.RLIMIT_AS, (MEMORY_BYTES, MEMORY_BYTES))
-    os.nice(NICE)
+    limits.limit_memory(MEMORY_BYTES)
+    limits.give_way(NICE)
+    if not abilities.WAITS_FOR_PIPES:
+        _say({"error": NO_PIPES})
+        return
     try:
         desk = Desk(host, cells, port)
     except NoPort as error:

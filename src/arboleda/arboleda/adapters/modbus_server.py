@@ -7,7 +7,7 @@ import logging
 import threading
 from collections.abc import Callable
 from concurrent.futures import Future
-from typing import Any, Protocol
+from typing import Any, Literal, Protocol
 
 from arboleda.drivers.modbus.registers import BITS
 
@@ -26,7 +26,8 @@ class Memory(Protocol):
 
 
 class ModbusServer:
-    """Serves one memory on TCP, or on a serial line at 19200 baud without parity.
+    """Serves one memory on TCP, also with the framing of RTU, or on a serial line at 19200 baud without
+    parity.
 
     `trace` may change each packet; True: it is sent.
     """
@@ -38,11 +39,13 @@ class ModbusServer:
         host: str = "127.0.0.1",
         port: int = 0,
         serial: str = "",
+        framing: Literal["tcp", "rtu"] = "tcp",
         trace: Trace | None = None,
     ) -> None:
         logging.getLogger("pymodbus.logging").setLevel(logging.CRITICAL)
         self._memory = memory
         self._where = (host, port, serial)
+        self._framing = framing
         self._trace = trace
         self._loop = asyncio.new_event_loop()
         self._started: Future[int] = Future()
@@ -68,7 +71,7 @@ class ModbusServer:
         asyncio.set_event_loop(self._loop)
         try:
             self._loop.run_until_complete(self._serve())
-        except Exception as error:  # noqa: BLE001 - whoever starts it is told
+        except Exception as error:  # noqa: BLE001 - raised again by `start`
             if not self._started.done():
                 self._started.set_exception(error)
         finally:
@@ -98,7 +101,8 @@ class ModbusServer:
             return ModbusSerialServer(
                 unit, framer=FramerType.RTU, port=serial, baudrate=19200, stopbits=2, trace_packet=self._trace
             )
-        return ModbusTcpServer(unit, address=(host, port), trace_packet=self._trace)
+        framer = FramerType.RTU if self._framing == "rtu" else FramerType.SOCKET
+        return ModbusTcpServer(unit, framer=framer, address=(host, port), trace_packet=self._trace)
 
     async def _act(
         self, code: int, start: int, address: int, count: int, held: list[int], values: list[Any] | None

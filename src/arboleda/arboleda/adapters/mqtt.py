@@ -99,11 +99,11 @@ class MqttClient:
         self._credentials = credentials
         self._version = PAHO_VERSION[version]
         self._announce = announce
-        self._told: str | None = None  # the trouble that the log already names
+        self._logged: str | None = None  # the trouble that the log already names
         self._answered = False  # True once the broker of this connection has answered
         self._refused: str | None = None  # the request that the broker of this connection refused
         self._early: list[Delivery] = []
-        self._asked: dict[int | None, tuple[str, ...]] = {}  # by packet id, until the broker has answered
+        self._pending: dict[int | None, tuple[str, ...]] = {}  # by packet id, until the broker has answered
         self._lock = threading.Lock()
         self._paho: Client | None = None  # only while up
         self._last: MQTTMessageInfo | None = None
@@ -297,19 +297,19 @@ class MqttClient:
             self._up(paho)
 
     def _subscribe(self, paho: Client) -> None:
-        self._asked = {}
+        self._pending = {}
         for first in range(0, len(self._subscriptions), AT_ONCE):
             topics = self._subscriptions[first : first + AT_ONCE]
             _, number = paho.subscribe([(topic, 1) for topic in topics])
-            self._asked[number] = topics
+            self._pending[number] = topics
 
     def _subscribed(self, paho: Client, _userdata: Any, mid: int, reasons: list[ReasonCode], _: Any) -> None:
-        topics = self._asked.pop(mid, ())
+        topics = self._pending.pop(mid, ())
         failed = [topic for topic, reason in zip(topics, reasons, strict=False) if reason.is_failure]
         if failed:
             self._refused = f"refused to subscribe {self.client_id} to {', '.join(failed)}"
             paho.disconnect()
-        elif not self._asked and self._refused is None:
+        elif not self._pending and self._refused is None:
             self._up(paho)
 
     def _received(self, paho: Client, _userdata: Any, message: MQTTMessage) -> None:
@@ -324,7 +324,7 @@ class MqttClient:
     def _up(self, paho: Client) -> None:
         with self._lock:
             self._paho, self._last = paho, None
-        if self._told is not None:
+        if self._logged is not None:
             self._tell(None, f"The MQTT broker at {self._address} is there.")
         self._on_event(Connection(at=self._clock(), client=self.client_id, up=True))
         for delivery in self._early:
@@ -345,6 +345,6 @@ class MqttClient:
 
     def _tell(self, trouble: str | None, sentence: str) -> None:
         """Log a change of the connection in one line, not one for each attempt."""
-        if self._announce and trouble != self._told:
+        if self._announce and trouble != self._logged:
             log.warning(sentence)
-        self._told = trouble
+        self._logged = trouble

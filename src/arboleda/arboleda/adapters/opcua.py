@@ -11,31 +11,25 @@ import threading
 from collections.abc import Iterable, Sequence
 from concurrent.futures import Future
 from concurrent.futures import TimeoutError as TooLate
-from contextlib import suppress
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from arboleda.drivers import Clock, Command, Hear, NotSent, Report, Robot, Stop, driver, lost
-from arboleda.drivers.opcua.machine import Call, OpcUaDevice, Read
+from arboleda.drivers.opcua.machine import Call, NodeValue, OpcUaDevice, Writing
 from arboleda.drivers.opcua.settings import Settings
 from arboleda.drivers.plc.plc_snapshot import UnreadableValue
+from arboleda.drivers.plc.variables import FORMS, LIMITS, Form
 from arboleda.drivers.port import DriverError
 
-from .opcua_login import Login, login
-
-if TYPE_CHECKING:
-    from asyncua import Client
-    from asyncua.ua import DataValue
+from .opcua_login import login
+from .opcua_session import Session, WriteRefused, opened
 
 MISSING = "asyncua is not installed, which it needs: pip install 'arboleda[opcua]'"
 BEAT_S = 0.2  # period of reads and reports without a change
 AGAIN_S = 0.5
-CONNECT_S = 4.0  # for a session with its certificates
-SESSION_MS = 30_000  # a server drops a silent session after this time: it has few of them
-GOODBYE_S = 0.5
 END_S = 1.0
 ORDER_S = 1.0  # for the loop to take a command, which it does between two others
-BEATS = 2**16
+MOST_BEATS = 2**16
 ENDS = (
     "BadSessionIdInvalid",
     "BadSessionClosed",
@@ -47,21 +41,6 @@ ENDS = (
     "BadTimeout",
 )
 """Status codes that say nothing of the method that was called: there is no session."""
-MODES = {"sign": "Sign", "sign_and_encrypt": "SignAndEncrypt"}
-TYPES = {
-    "bool": "Boolean",
-    "sbyte": "SByte",
-    "byte": "Byte",
-    "int16": "Int16",
-    "uint16": "UInt16",
-    "int32": "Int32",
-    "uint32": "UInt32",
-    "int64": "Int64",
-    "uint64": "UInt64",
-    "float": "Float",
-    "double": "Double",
-    "string": "String",
-}
 
 
 @driver("opcua", settings=Settings)
@@ -72,11 +51,11 @@ class OpcUa:
         self._settings = settings
         self._thread: threading.Thread | None = None
         self._changed, self._ending = asyncio.Event(), asyncio.Event()
-        self._client: Client | None = None
+        self._session: Session | None = None
         self._broken: Exception | None = None
         self._calls: set[asyncio.Task[None]] = set()
-        self._beats = 0
-        self._said: Report | None = None
+        self._beats = self._stops = 0
+        self._last: Report | None = None
 
     def start(self, devices: Sequence[Robot], hear: Hear, clock: Clock) -> None:
         if len(devices) != 1:
@@ -95,7 +74,7 @@ class OpcUa:
         self.start(devices, hear, clock)
 
     def send(self, command: Command) -> None:
-        if self._client is None:
+        if self._session is None:
             raise NotSent(f"{self._settings.url} is not connected")
         taken: Future[None] = Future()
         self._loop.call_soon_threadsafe(self._take, command, taken)
@@ -130,7 +109,7 @@ class OpcUa:
 
     async def _reach(self) -> None:
         while not self._ending.is_set():
-            self._broken = self._said = None
+            self._broken = self._last = None
             try:
                 await self._serve()
             except Exception as error:  # noqa: BLE001 - asyncua raises its own and others; all mean: no link
@@ -141,38 +120,30 @@ class OpcUa:
 
     async def _serve(self) -> None:
         """Report the values of the server until something breaks."""
-        client = await _connected(self._settings, self._login)
+        session = await opened(self._settings, self._login)
         try:
-            nodes = [client.get_node(node) for node in self._device.nodes]
-            changes = Changes(self._changed)
-            watched = await client.create_subscription(1000 * self._settings.publish_s, changes)
-            await watched.subscribe_data_change(nodes)
-            self._device.begin(await self._read(client, nodes))
-            self._client = client
+            nodes = self._device.places
+            await session.subscribe(nodes, self._settings.publish_s, Changes(self._changed))
+            self._device.begin(await session.read(nodes))
+            self._session = session
             while self._broken is None:
                 self._changed.clear()
                 at = self._clock()
-                self._say(self._device.report(at, await self._read(client, nodes)))
-                await self._beat(client)
+                self._say(self._device.report(at, await session.read(nodes)))
+                await self._beat(session)
                 await self._rest()
             raise self._broken
         finally:
-            self._client = None
+            self._session = None
             for call in self._calls:
                 call.cancel()
-            await _goodbye(client)
+            await session.leave()
 
     async def _rest(self) -> None:
         """Wait for a change, or until a report is due without one."""
         beat = self._loop.call_later(BEAT_S, self._changed.set)
         await self._changed.wait()
         beat.cancel()
-
-    async def _read(self, client: Client, nodes: list[Any]) -> Read:
-        from asyncua import ua
-
-        asked = client.uaclient.read_attributes([node.nodeid for node in nodes], ua.AttributeIds.Value)
-        return values(self._device.nodes, await asyncio.wait_for(asked, self._settings.timeout_s))
 
     def _take(self, command: Command, taken: Future[None]) -> None:
         """Begin the call of a command, unless its sender has given up."""
@@ -185,56 +156,94 @@ class OpcUa:
             taken.set_exception(error)
 
     def _begin(self, command: Command) -> None:
-        client = self._client
-        if client is None:
+        session = self._session
+        if session is None:
             raise NotSent(f"{self._settings.url} is not connected")
         order = self._device.order(command)
+        if isinstance(command, Stop):
+            self._stops += 1
         if order is not None:
-            call = self._loop.create_task(self._call(client, command, order))
+            call = self._loop.create_task(self._give(session, command, order, self._stops))
             self._calls.add(call)
             call.add_done_callback(self._calls.discard)
 
-    async def _call(self, client: Client, command: Command, order: Call) -> None:
-        """Call the method of a command; a bad status code rejects it, anything else ends the session.
+    async def _give(self, session: Session, command: Command, order: Call | Writing, stops: int) -> None:
+        """Call or write what a command is; a bad status code rejects it, anything else ends the session.
 
-        A stop that is refused ends it as well: nobody knows any more what the device will do.
+        A stop that is refused ends it as well: nobody knows any more what the device will do. `stops` is the
+        number of stops before the command.
         """
         from asyncua import ua
 
         try:
-            given = [ua.Variant(value, getattr(ua.VariantType, TYPES[type])) for type, value in order.given]
-            called = client.get_node(order.on).call_method(ua.NodeId.from_string(order.method), *given)
-            await asyncio.wait_for(called, self._settings.timeout_s)
-        except ua.UaStatusCodeError as error:
-            name = ua.status_codes.get_name_and_doc(error.code)[0]
-            if name in ENDS:
-                self._broken = error
-            elif isinstance(command, Stop):
-                self._broken = UnreadableValue(f"{order.method} was refused: {name}")
+            if isinstance(order, Writing):
+                await self._write(session, command, order, stops)
             else:
-                self._hear(Report(at=self._clock(), robot=self._name, rejected=command.id, refusal=name))
+                await session.call(order)
+        except (ua.UaStatusCodeError, WriteRefused) as error:
+            self._refused(command, order, error)
         except asyncio.TimeoutError:
-            self._broken = ConnectionError(f"{order.method} has not returned; methods must return at once")
+            what = "the server has not answered a write"
+            if isinstance(order, Call):
+                what = f"{order.method} has not returned; methods must return at once"
+            self._broken = ConnectionError(what)
         except Exception as error:  # noqa: BLE001 - as above; nobody waits for this task
             self._broken = error
         self._changed.set()
 
-    async def _beat(self, client: Client) -> None:
-        """Write the heartbeat to the server, which has to stop by itself once it ends."""
+    async def _write(self, session: Session, command: Command, order: Writing, stops: int) -> None:
+        """Write step by step, unless a stop comes between two: what has not begun then must not begin."""
+        for at, step in enumerate(order.steps):
+            if self._stops != stops and not isinstance(command, Stop):
+                if order.begins_last:
+                    self._reject(command, "stopped")
+                return
+            try:
+                await session.write(step)
+            except WriteRefused as error:
+                if at > 0 and not order.begins_last:
+                    raise UnreadableValue(f"{error}; what was written before may have begun") from error
+                raise
+
+    def _refused(self, command: Command, order: Call | Writing, error: Exception) -> None:
+        """Take a bad status code for a command."""
         from asyncua import ua
 
-        if self._settings.heartbeat is not None:
-            self._beats = (self._beats + 1) % BEATS
-            value = ua.DataValue(ua.Variant(self._beats, ua.VariantType.UInt16))
-            written = client.get_node(self._settings.heartbeat).write_value(value)
-            await asyncio.wait_for(written, self._settings.timeout_s)
+        name = error.status if isinstance(error, WriteRefused) else ""
+        if isinstance(error, ua.UaStatusCodeError):
+            name = ua.status_codes.get_name_and_doc(error.code)[0]
+        if name in ENDS:
+            self._broken = error
+        elif isinstance(command, Stop):
+            what = (
+                f"{order.method} was refused: {name}" if isinstance(order, Call) else f"{error}, for a stop"
+            )
+            self._broken = UnreadableValue(what)
+        else:
+            self._reject(command, str(error) if isinstance(error, WriteRefused) else name)
+
+    def _reject(self, command: Command, refusal: str) -> None:
+        self._hear(Report(at=self._clock(), robot=self._name, rejected=command.id, refusal=refusal))
+
+    async def _beat(self, session: Session) -> None:
+        """Write the heartbeat to the server, which has to stop by itself once it ends."""
+        node, type = self._settings.heartbeat, self._settings.heartbeat_type
+        if node is None:
+            return
+        self._beats = (self._beats + 1) % beats(type)
+        value = float(self._beats) if type in FORMS[float] else self._beats
+        try:
+            await session.write([NodeValue(node=node, type=type, value=value)])
+        except WriteRefused as error:
+            hint = f"it was written as heartbeat_type: {type}"
+            raise UnreadableValue(f"the heartbeat is refused: {error}; {hint}") from error
 
     def _say(self, report: Report) -> None:
         """Hand over a report if it is news, and otherwise from time to time."""
-        before = self._said
+        before = self._last
         if before is not None and report.again(before.at) == before and report.at - before.at < BEAT_S:
             return
-        self._said = report
+        self._last = report
         self._hear(report)
 
 
@@ -248,45 +257,9 @@ class Changes:
         self._changed.set()
 
 
-def values(nodes: Sequence[str], answers: Sequence[DataValue]) -> Read:
-    """The values that a server answered, by node; raises UnreadableValue if one of them is not good."""
-    if len(answers) != len(nodes):
-        raise UnreadableValue(f"the server has answered with {len(answers)} values, not {len(nodes)}")
-    read: dict[str, object] = {}
-    for node, answer in zip(nodes, answers, strict=True):
-        if answer.StatusCode is not None and not answer.StatusCode.is_good():
-            raise UnreadableValue(f"{node} is {answer.StatusCode.name}")
-        read[node] = None if answer.Value is None else answer.Value.Value
-    return read
-
-
-async def _connected(settings: Settings, found: Login) -> Client:
-    from asyncua import Client, ua
-    from asyncua.crypto.security_policies import SecurityPolicyBasic256Sha256
-
-    client = Client(settings.url, timeout=CONNECT_S)
-    client.session_timeout = SESSION_MS
-    if found.user is not None:
-        client.set_user(found.user)
-        client.set_password(found.password)
-    if settings.security != "none":
-        client.application_uri = found.application
-        mode = getattr(ua.MessageSecurityMode, MODES[settings.security])
-        policy = SecurityPolicyBasic256Sha256
-        await client.set_security(policy, found.certificate, found.key, None, found.server, mode=mode)
-    try:
-        await asyncio.wait_for(client.connect(), CONNECT_S)
-    except BaseException:  # a cancellation too: a socket that is half open would stay
-        await _goodbye(client)
-        raise
-    return client
-
-
-async def _goodbye(client: Client) -> None:
-    """Disconnect politely, without waiting for an answer."""
-    with suppress(Exception):
-        await asyncio.wait_for(client.disconnect(), GOODBYE_S)
-    client.disconnect_socket()
+def beats(type: Form) -> int:
+    """After how many heartbeats their number is 0 again: what fits into that type."""
+    return min(MOST_BEATS, LIMITS[type][1] + 1) if type in LIMITS else MOST_BEATS
 
 
 async def _ended(tasks: Iterable[asyncio.Task[Any]]) -> None:
@@ -322,5 +295,5 @@ def _why(settings: Settings, error: Exception) -> str:
     from asyncua.ua.uaerrors import UaError
 
     if isinstance(error, UaError | OSError) and not isinstance(error, NotEnoughData):
-        return f"{settings.url}: {error or type(error).__name__}"
-    return f"{settings.url} has sent what cannot be read: {error or type(error).__name__}"
+        return f"{settings.url}: {str(error) or type(error).__name__}"
+    return f"{settings.url} has sent what cannot be read: {str(error) or type(error).__name__}"

@@ -25,7 +25,7 @@ class Login:
 
 
 def login(settings: Settings) -> Login:
-    """The login for this server from the environment; raises DriverError, which names what is missing."""
+    """The login for this server from the environment; raises DriverError, which names the missing one."""
     user = os.environ.get(f"{settings.secrets}_USER") or None
     password = os.environ.get(f"{settings.secrets}_PASSWORD", "")
     if settings.security == "none":

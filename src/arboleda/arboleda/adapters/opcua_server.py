@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
 
-from arboleda.adapters.opcua import TYPES
+from arboleda.adapters.opcua_session import TYPES
 
 if TYPE_CHECKING:
     from asyncua import Server
@@ -46,7 +46,7 @@ class Program(Protocol):
     def show(self) -> Mapping[str, object]:
         """The present value of each variable: a value, None, or `Bad`."""
 
-    def call(self, method: str, given: Sequence[object]) -> str | None:
+    def call(self, method: str, arguments: Sequence[object]) -> str | None:
         """Carry out a method; returns the name of a bad status code if it refuses."""
 
     def beat(self, value: object) -> None:
@@ -88,11 +88,12 @@ class OpcUaServer:
         try:
             server = await self._made()
             await server.start()
-        except Exception as error:  # noqa: BLE001 - whoever starts it is told
+        except Exception as error:  # noqa: BLE001 - raised again by `start`
             where = f"{self._host}:{self._port}"
-            told = OSError(f"nothing can listen on {where}; name another port, or 0 for any that is free")
-            self._started.set_exception(told if isinstance(error, OSError) else error)
+            failure = OSError(f"nothing can listen on {where}; name another port, or 0 for any that is free")
+            self._started.set_exception(failure if isinstance(error, OSError) else error)
             return
+        assert server.bserver is not None  # from `start` on
         self._started.set_result(server.bserver.port)
         while not self._ending.is_set():
             await self._tick(server)
@@ -126,10 +127,10 @@ class OpcUaServer:
         return server
 
     def _method(self, server: Server, name: str) -> Any:
-        async def called(parent: object, *given: Any) -> Any:
+        async def called(parent: object, *arguments: Any) -> Any:
             from asyncua import ua
 
-            refused = self._program.call(name, [each.Value for each in given])
+            refused = self._program.call(name, [each.Value for each in arguments])
             await self._show(server)
             return [] if refused is None else ua.StatusCode(getattr(ua.StatusCodes, refused))
 
@@ -158,7 +159,7 @@ async def _set(server: Server, name: str, data: Any, type: str) -> None:
 def _node(name: str) -> Any:
     from asyncua import ua
 
-    return ua.NodeId(name, 2)
+    return ua.NodeId(ua.String(name), ua.Int16(2))
 
 
 def _name(name: str) -> Any:

@@ -12,13 +12,13 @@ class RateLimit:
     """Filter that lets the same words through once in EVERY_S."""
 
     def __init__(self) -> None:
-        self._said: dict[Hashable, float] = {}
+        self._last: dict[Hashable, float] = {}
 
     def is_due(self, words: Hashable, now: float) -> bool:
         """True if these words may be logged at `now` (s): they were not let through in the EVERY_S before."""
-        if now - self._said.get(words, -EVERY_S) < EVERY_S:
+        if now - self._last.get(words, -EVERY_S) < EVERY_S:
             return False
-        if len(self._said) >= REMEMBERED:
-            self._said.clear()
-        self._said[words] = now
+        if len(self._last) >= REMEMBERED:
+            self._last.clear()
+        self._last[words] = now
         return True

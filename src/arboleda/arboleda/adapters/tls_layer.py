@@ -89,10 +89,10 @@ class TlsLayer(asyncio.BufferedProtocol):
     def resume_writing(self) -> None:
         self.inner.resume_writing()
 
-    # --- called by what `inner` has for a transport ---
+    # --- called by the transport of `inner` ---
 
     def certificate(self) -> dict[str, Any]:
-        """The client's certificate; empty if it was not asked for one, or showed none."""
+        """The client's certificate; empty if none was requested or shown."""
         return self._tls.getpeercert() or {} if self._agreed else {}
 
     def pause(self) -> None:
@@ -140,7 +140,7 @@ class TlsLayer(asyncio.BufferedProtocol):
         """Hand decrypted bytes to the inner protocol; returns their number, 0 once the other end closed."""
         if isinstance(self.inner, asyncio.BufferedProtocol):
             buffer = self.inner.get_buffer(READ_BYTES)
-            count = self._tls.read(len(buffer), buffer)  # type: ignore[arg-type]
+            count = int(self._tls.read(len(buffer), buffer))  # type: ignore[arg-type]
             if count:
                 self.inner.buffer_updated(count)
         else:

@@ -24,7 +24,7 @@ PARALLELS = ("Parallel", "ParallelAll")
 
 
 @dataclass(frozen=True, kw_only=True)
-class Checked:
+class CheckResult:
     """Result of a check: the number of nodes, and leaves of unknown kinds with the first place of each."""
 
     nodes: int
@@ -37,7 +37,7 @@ def check(
     known: Mapping[str, Kind] | None = None,
     *,
     leaves_are_checked_later: bool = False,
-) -> Checked:
+) -> CheckResult:
     """Check a forest and keep all findings. `known`: the only kinds of a user's own nodes that there are.
 
     None: there may be any kinds; those that the files declare count, unless they are checked later, in a
@@ -58,7 +58,7 @@ def check(
     for clash in variable_types.clashes(forest, checker.kind):
         is_sure = all(checker.knows(use.node) for use in (clash.first, clash.other))
         (findings.mistake if is_sure else findings.warning)(clash.other.place, str(clash))
-    return Checked(nodes=checker.number, unknown=checker.unknown)
+    return CheckResult(nodes=checker.number, unknown=checker.unknown)
 
 
 def _named(node: Node) -> str:
@@ -211,21 +211,21 @@ class _Checker:
             if not isinstance(values.read(port.name, attribute.value), Variable):  # made while the tree runs
                 self._check_script(node, attribute)
             return
-        said = values.read(port.name, attribute.value)
+        value = values.read(port.name, attribute.value)
         place = Place(node.place.file, attribute.mark)
-        if isinstance(said, Variable):
+        if isinstance(value, Variable):
             return
         if port.way is PortDirection.OUT:
             how = f'version 4 wants {port.name}="{{...}}"'
             self.findings.warning(place, f"{port.name} of {node.kind} names a variable; {how}")
-        elif (wanted := values.objection(port.type, said)) is not None:
-            self.findings.mistake(place, f"{port.name} of {node.kind} must be {wanted}, is {quoted(said)}")
-        elif port.words and said not in port.words:
-            sentence = f"{port.name} of {node.kind} is {quoted(said)}; {among(said, port.words)}"
+        elif (wanted := values.objection(port.type, value)) is not None:
+            self.findings.mistake(place, f"{port.name} of {node.kind} must be {wanted}, is {quoted(value)}")
+        elif port.words and value not in port.words:
+            sentence = f"{port.name} of {node.kind} is {quoted(value)}; {among(value, port.words)}"
             self.findings.mistake(place, sentence)
-        elif port.limits is not None and not port.limits[0] <= values.number(said) <= port.limits[1]:
+        elif port.limits is not None and not port.limits[0] <= values.number(value) <= port.limits[1]:
             lower, upper = port.limits
-            sentence = f"{port.name} of {node.kind} must be from {lower:g} to {upper:g}, is {quoted(said)}"
+            sentence = f"{port.name} of {node.kind} must be from {lower:g} to {upper:g}, is {quoted(value)}"
             self.findings.mistake(place, sentence)
 
     def _check_script(self, node: Node, attribute: Attribute) -> None:

@@ -84,8 +84,8 @@ def _for_ever(port: str, kept: str) -> Callable[[Node, list[Node]], Ends]:
 
     def ends(node: Node, unreached: list[Node]) -> Ends:
         below = _alone(node, unreached)
-        said = values.read(port, node.port(port) or "")
-        return below & {kept, SKIPPED} if said == "-1" else ANY
+        value = values.read(port, node.port(port) or "")
+        return below & {kept, SKIPPED} if value == "-1" else ANY
 
     return ends
 

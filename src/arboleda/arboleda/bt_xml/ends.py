@@ -37,7 +37,7 @@ class End:
 
 def of_tree(forest: Forest, tree: str) -> tuple[End, ...]:
     """The end that a tree says it has; what cannot be read is left out, `check` finds it."""
-    return tuple(end for each in _told(forest, tree) for end in _read(each) if isinstance(end, End))
+    return tuple(end for each in _metadata(forest, tree) for end in _read(each) if isinstance(end, End))
 
 
 def check(forest: Forest, findings: Findings) -> None:
@@ -46,10 +46,10 @@ def check(forest: Forest, findings: Findings) -> None:
         for each in metadata:
             near = get_close_matches(each.key, KEYS, n=1, cutoff=0.8)
             if each.key not in KEYS and near:
-                told = f"nobody here knows {quoted(each.key)} of {tree}; did you mean {near[0]}?"
-                findings.warning(each.place, told)
+                sentence = f"nobody here knows {quoted(each.key)} of {tree}; did you mean {near[0]}?"
+                findings.warning(each.place, sentence)
         known: set[str] = set()
-        for end in (end for each in _told(forest, tree) for end in _read(each)):
+        for end in (end for each in _metadata(forest, tree) for end in _read(each)):
             if isinstance(end, _Unread):
                 findings.mistake(end.place, f"{KEY} of {tree}: {quoted(end.text)} is not read; write {HOW}")
             elif end.what in known:
@@ -75,7 +75,7 @@ class _Unread:
     place: Place
 
 
-def _told(forest: Forest, tree: str) -> Iterator[Metadata]:
+def _metadata(forest: Forest, tree: str) -> Iterator[Metadata]:
     return (each for each in forest.metadata.get(tree, ()) if each.key == KEY)
 
 

@@ -116,12 +116,12 @@ class _Writer:
         if control is not None and below:
             return Tag(control[0], {"name": node.title, **control[1]}, below)
         kind = self._kind(row, around=len(below))
-        given = {
+        attributes = {
             name: str(value)
             for name, value in row.get("parameters", {}).items()
             if name in (kind.ports or {})
         }
-        return Tag(kind.name, {"name": node.title, **given}, below)
+        return Tag(kind.name, {"name": node.title, **attributes}, below)
 
     def _below(self, node: _Node) -> Tag:
         return self._subtree(node) if node.is_apart else self._tag(node)
@@ -133,8 +133,8 @@ class _Writer:
             category = Category.DECORATOR if around == 1 else Category.CONTROL
         name = _name(f"{row['kind']}_{category.value}" if around else row["kind"])
         known = self.kinds.get(name)
-        given = [Port(name=each) for each in row.get("parameters", {}) if names.of_port(str(each)) is None]
-        ports = {**(known.ports or {} if known is not None else {}), **by_name(given)}
+        new = [Port(name=each) for each in row.get("parameters", {}) if names.of_port(str(each)) is None]
+        ports = {**(known.ports or {} if known is not None else {}), **by_name(new)}
         fewest, most = children(category)
         self.kinds[name] = Kind(name=name, category=category, ports=ports, fewest=fewest, most=most)
         return self.kinds[name]

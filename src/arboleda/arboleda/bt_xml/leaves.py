@@ -1,6 +1,6 @@
-"""Nodes for the devices of a cell: an action for each verb, conditions on the facts that they report.
+"""Nodes for the devices of a cell: an action for each verb, and conditions on their facts.
 
-A node is called by the role of its device and what that does: `mill_run`, `loader_visit`, `mill_says`.
+A node is named by the role of its device and the verb: `mill_run`, `loader_visit`, `mill_says`.
 """
 
 from __future__ import annotations
@@ -105,10 +105,10 @@ def _of_verb(role: str, verb: DeviceVerb) -> Kind:
 def _of_facts(role: str, facts: Mapping[str, FactType]) -> Iterator[Kind]:
     ports = [_port(name, type, is_needed=False) for name, type in facts.items()]
     within = Port(name="at_most_s", type="double", is_needed=True, about="how long it is waited for, in s")
-    told = [replace(each, way=PortDirection.OUT) for each in ports]
+    outputs = [replace(each, way=PortDirection.OUT) for each in ports]
     for kind in (
         _kind(Category.CONDITION, f"{role}_says", *ports),
-        _kind(Category.ACTION, f"{role}_{TELLS}", *told),
+        _kind(Category.ACTION, f"{role}_{TELLS}", *outputs),
         _kind(Category.ACTION, f"{role}_becomes", *ports, within),
     ):
         yield replace(kind, some_of=tuple(facts))
@@ -118,7 +118,7 @@ def _of_python(cell: Cell, node: WrittenNode) -> Kind:
     return Kind(
         name=node.name,
         category=_category(node),
-        ports=by_name([*(_taken(cell, each) for each in node.takes), *map(_given, node.gives.items())]),
+        ports=by_name([*(_taken(cell, each) for each in node.takes), *map(_output, node.gives.items())]),
         fewest=node.fewest,
         most=MANY if node.most is None else node.most,
         about=node.about,
@@ -136,7 +136,7 @@ def _category(node: WrittenNode) -> Category:
 def _taken(cell: Cell, taken: Taken) -> Port:
     words = tuple(taken.words(cell))
     limits = None if taken.limits is None else (taken.limits.lower, taken.limits.upper)
-    kind = _said(taken.type)
+    kind = _type_words(taken.type)
     about = ", ".join(words) or kind if limits is None else f"{kind} from {limits[0]:g} to {limits[1]:g}"
     return Port(
         name=taken.name,
@@ -149,11 +149,11 @@ def _taken(cell: Cell, taken: Taken) -> Port:
     )
 
 
-def _given(row: tuple[str, type]) -> Port:
-    return Port(name=row[0], type=TYPES[row[1]], way=PortDirection.OUT, about=_said(row[1]))
+def _output(row: tuple[str, type]) -> Port:
+    return Port(name=row[0], type=TYPES[row[1]], way=PortDirection.OUT, about=_type_words(row[1]))
 
 
-def _said(type: type) -> str:
+def _type_words(type: type) -> str:
     """A value of Python in words."""
     known = values.TYPES.get(TYPES[type])
     return "text" if known is None else known[0]

@@ -93,11 +93,11 @@ def parse(content: bytes) -> Markup:
     try:
         reader.parser.Parse(bytes(tamed), True)
     except expat.ExpatError as error:
-        raise XmlFault(lines.mark(max(reader.parser.ErrorByteIndex, 0)), _said(error, content)) from None
+        raise XmlFault(lines.mark(max(reader.parser.ErrorByteIndex, 0)), _no_xml(error, content)) from None
     return Markup(reader.top.children[0], raw)
 
 
-def _said(error: expat.ExpatError, content: bytes) -> str:
+def _no_xml(error: expat.ExpatError, content: bytes) -> str:
     hint = "; an XML file begins with a tag" if not content.strip().startswith(b"<") else ""
     return f"this is not XML: {expat.ErrorString(error.code)}{hint}"
 
@@ -141,7 +141,7 @@ def _tamed(content: bytes, lines: _Lines) -> tuple[bytearray, dict[int, int], li
             continue
         tag = TAG.match(content, start)
         if tag is None:
-            break  # expat says what is wrong there
+            break  # expat names the mistake
         end = ends[start] = tag.end()
         for index, letter in _write_over(tamed, RAW, start + 1, end):
             raw.append((lines.mark(index), letter))
@@ -201,4 +201,4 @@ def _letter(match: re.Match[str]) -> str:
     if not name.startswith("#"):
         return NAMED[name]
     number = int(name[2:], 16) if name[1] == "x" else int(name[1:])
-    return chr(number)  # expat has refused what is no letter
+    return chr(number)  # expat has refused all but letters

@@ -50,7 +50,7 @@ class Port:
 
 @dataclass(frozen=True, kw_only=True)
 class Kind:
-    """Kind of node; `ports` None: unknown. Without any port of `some_of` it says nothing."""
+    """Kind of node; `ports` None: unknown. At least one port of `some_of` is needed."""
 
     name: str
     category: Category

@@ -17,13 +17,13 @@ from .nodes import Kind, Port, PortDirection
 from .values import NUMBERS, WHOLE, Variable
 
 MOST_LEVELS = 50
-LARGEST = 1_000_000_000  # of a number of which nobody says its limits
+LARGEST = 1_000_000_000  # of a number without limits
 BOOLS = ("true", "false")
 KindsOf = Callable[[Cell], Mapping[str, Kind]]
 
 
 @dataclass(frozen=True)
-class _Allowed:
+class _ValueSet:
     """Values of a parameter; `words` are all of them, or examples within the limits of a number."""
 
     words: Sequence[str]
@@ -62,20 +62,20 @@ def parameter(
     end of the tree says how many parts are there, so that it can only be a place.
     """
 
-    def allowed(cell: Cell) -> _Allowed:
+    def allowed(cell: Cell) -> _ValueSet:
         uses = [use.port for use in _uses(forest, kinds(cell), main, port.name, 0)]
         found = _allowed(port, uses)
         if listed is not None:
-            found = _Allowed(
+            found = _ValueSet(
                 [each for each in listed if all(_takes(taking, each) for taking in (port, *uses))]
             )
         if group is not None:
             targets = target_groups.words(cell, group)
-            found = _Allowed([each for each in targets if each in found.words or not found.words])
+            found = _ValueSet([each for each in targets if each in found.words or not found.words])
         if not names_place:
             return found
         places = {place.target for place in cell.places}
-        return _Allowed([word for word in found.words if word in places])
+        return _ValueSet([word for word in found.words if word in places])
 
     def value(cell: Cell, word: str) -> object:
         limits = allowed(cell).limits
@@ -110,22 +110,22 @@ def _as(type: str, word: str) -> object:
     return values.number(word) if type == "double" else int(values.number(word)) if type in WHOLE else word
 
 
-def _allowed(port: Port, uses: Sequence[Port]) -> _Allowed:
+def _allowed(port: Port, uses: Sequence[Port]) -> _ValueSet:
     """The values of a parameter that all of these ports accept."""
     is_one_type = all(values.fits(port.type, each.type) for each in uses)
     all_of_it = [port, *uses] if is_one_type else uses  # else the tree is refused where they are given
     listed = [each.words or BOOLS for each in all_of_it if each.words or each.type == "bool"]
     if listed:
-        return _Allowed([each for each in listed[0] if all(_takes(taking, each) for taking in all_of_it)])
+        return _ValueSet([each for each in listed[0] if all(_takes(taking, each) for taking in all_of_it)])
     if not any(each.type in NUMBERS for each in all_of_it):
-        return _Allowed([])
+        return _ValueSet([])
     limits = _limits(all_of_it)
     if limits.lower > limits.upper:
-        return _Allowed([])
+        return _ValueSet([])
     known = any(each.limits is not None for each in uses)
     examples = (limits.lower, limits.upper) if known else (1, 2)
     read = int if limits.whole else float
-    return _Allowed([shown(read(each)) for each in examples], limits)
+    return _ValueSet([shown(read(each)) for each in examples], limits)
 
 
 def _takes(port: Port, word: str) -> bool:
@@ -154,7 +154,7 @@ def _uses(
     if level > MOST_LEVELS or tree not in forest.trees:
         return
     for node in forest.trees[tree].root.iterate():
-        for port_name in _given(node, name):
+        for port_name in _ports_with(node, name):
             if node.is_subtree:
                 yield from _uses(forest, kinds, node.own["ID"].value, port_name, level + 1)
                 continue
@@ -164,11 +164,11 @@ def _uses(
                 yield _ParameterUse(node, port, Place(node.place.file, node.ports[port_name].mark))
 
 
-def _given(node: Node, variable: str) -> Iterator[str]:
+def _ports_with(node: Node, variable: str) -> Iterator[str]:
     """The ports of a node that are given a variable."""
     for name, attribute in node.ports.items():
-        said = values.read(name, attribute.value)
-        if isinstance(said, Variable) and said.name == variable:
+        value = values.read(name, attribute.value)
+        if isinstance(value, Variable) and value.name == variable:
             yield name
     if node.shares(variable):
         yield variable

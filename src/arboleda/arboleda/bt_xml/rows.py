@@ -31,8 +31,8 @@ def title(node: Node) -> str:
     kind = node.own["ID"].value if node.is_subtree else node.kind
     if node.name and node.name != kind:
         return f"{node.name} ({kind})"
-    given = " ".join(f"{name}={attribute.value}" for name, attribute in node.ports.items())
-    return f"{kind} {given}".strip() if len(given) <= 60 else f"{kind} {given[:57]}..."
+    ports = " ".join(f"{name}={attribute.value}" for name, attribute in node.ports.items())
+    return f"{kind} {ports}".strip() if len(ports) <= 60 else f"{kind} {ports[:57]}..."
 
 
 def _below(forest: Forest, node: Node, around: tuple[str, ...]) -> tuple[tuple[Node, ...], tuple[str, ...]]:

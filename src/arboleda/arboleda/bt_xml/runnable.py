@@ -107,17 +107,17 @@ def _check_node(forest: Forest, node: Node, findings: Findings) -> None:
     for name, attribute in node.ports.items():
         port = (kind.ports or {}).get(name)
         place = Place(node.place.file, attribute.mark)
-        said = values.read(name, attribute.value)
-        if port is not None and port.type == "script" and isinstance(said, Variable):
+        value = values.read(name, attribute.value)
+        if port is not None and port.type == "script" and isinstance(value, Variable):
             sentence = f"{name} of {node.kind} is a variable; write the script itself"
             findings.mistake(place, sentence)
-        if name == "catch_on_halt" and said not in NO:
+        if name == "catch_on_halt" and value not in NO:
             sentence = (
                 f"{name} of {node.kind} must be false: while a tree is left, no device is told anything"
             )
             findings.mistake(place, sentence)
-        if port is not None and port.type == "status" and said in ("RUNNING", "IDLE"):
-            sentence = f"{name} of {node.kind} must be SUCCESS, FAILURE or SKIPPED: {said} would never end"
+        if port is not None and port.type == "status" and value in ("RUNNING", "IDLE"):
+            sentence = f"{name} of {node.kind} must be SUCCESS, FAILURE or SKIPPED: {value} would never end"
             findings.mistake(place, sentence)
 
 

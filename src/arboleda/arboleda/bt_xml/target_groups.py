@@ -23,8 +23,8 @@ def of_tree(forest: Forest, tree: str) -> dict[str, str]:
 
 
 def pairs(forest: Forest, tree: str, key: str, form: re.Pattern[str]) -> Iterator[tuple[str, str]]:
-    """The parameters of a tree with what the metadata of this key say of each, as far as it can be read."""
-    found = (form.fullmatch(text) for each in _told(forest, tree, key) for text in _parts(each))
+    """The parameters of a tree and their values in the metadata of this key, as far as those can be read."""
+    found = (form.fullmatch(text) for each in _metadata(forest, tree, key) for text in _parts(each))
     return ((pair[1], pair[2]) for pair in found if pair is not None)
 
 
@@ -44,18 +44,18 @@ def check_pairs(forest: Forest, findings: Findings, key: str, form: re.Pattern[s
         model = forest.models.get(tree)
         ports = (model.ports or {}).values() if model is not None else ()
         names = [each.name for each in ports if each.way is PortDirection.IN]
-        for metadata in _told(forest, tree, key):
+        for metadata in _metadata(forest, tree, key):
             for text in _parts(metadata):
                 pair = form.fullmatch(text)
                 if pair is None:
-                    told = f"{key} of {tree}: {quoted(text.strip())} is not read; write {how}"
-                    findings.mistake(metadata.place, told)
+                    sentence = f"{key} of {tree}: {quoted(text.strip())} is not read; write {how}"
+                    findings.mistake(metadata.place, sentence)
                 elif pair[1] not in names:
                     known = among(pair[1], names) if names else "it has no parameter"
                     findings.mistake(metadata.place, f"{key} of {tree} names {quoted(pair[1])}; {known}")
 
 
-def _told(forest: Forest, tree: str, key: str) -> Iterator[Metadata]:
+def _metadata(forest: Forest, tree: str, key: str) -> Iterator[Metadata]:
     return (each for each in forest.metadata.get(tree, ()) if each.key == key)
 
 

@@ -20,10 +20,10 @@ class Variable:
     name: str
 
 
-Said = str | Variable
+AttributeValue = str | Variable
 
 
-def read(attribute: str, text: str) -> Said:
+def read(attribute: str, text: str) -> AttributeValue:
     """The constant or variable that an attribute holds; `{=}` is the variable with the attribute's own name.
 
     Text with a variable in it, `to {goal}`, is text: BehaviorTree.CPP puts no value in there.

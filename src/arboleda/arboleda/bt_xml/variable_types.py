@@ -68,7 +68,7 @@ class _Uses:
 
 
 def clashes(forest: Forest, kind: KindOf) -> list[Clash]:
-    """The clashes in all trees; a tree also gets what trees around it give to the same variable."""
+    """The clashes in all trees; a variable of a tree also has the types of trees around it."""
     found: list[Clash] = []
     known: dict[str, Mapping[str, _Uses]] = {}
     passed = 0
@@ -117,10 +117,10 @@ def _in_order(
 def _of_node(node: Node, kind: Kind | None) -> Iterator[tuple[str, VariableUse]]:
     ports = {} if kind is None or kind.ports is None else kind.ports
     for name, attribute in node.ports.items():
-        said = values.read(name, attribute.value)
-        if isinstance(said, Variable):
+        value = values.read(name, attribute.value)
+        if isinstance(value, Variable):
             type = ports[name].type if name in ports else ""
-            yield said.name, VariableUse(node=node, port=name, type=SAME.get(type, type))
+            yield value.name, VariableUse(node=node, port=name, type=SAME.get(type, type))
 
 
 def _outside(node: Node, inner: str, forest: Forest) -> str | None:
@@ -131,5 +131,5 @@ def _outside(node: Node, inner: str, forest: Forest) -> str | None:
     model = None if node.shares_names else forest.models.get(node.own["ID"].value)
     if written is None and model is not None and inner in (model.ports or {}):
         written = (model.ports or {})[inner].default
-    said = None if written is None else values.read(inner, written)
-    return said.name if isinstance(said, Variable) else None
+    value = None if written is None else values.read(inner, written)
+    return value.name if isinstance(value, Variable) else None

@@ -28,14 +28,14 @@ class _TreeVariables:
 def unwritten(forest: Forest, kind: KindOf) -> Iterator[tuple[Place, str]]:
     """Each variable that is read and never written, with the place of its first reading."""
     uses = {name: _use(tree, kind) for name, tree in forest.trees.items()}
-    given = _given(forest, uses)
+    inputs = _inputs(forest, uses)
     outer = {name[1:] for use in uses.values() for name in use.written if name.startswith(OUTER)}
     main = uses.get(forest.main or "")
-    outer |= set() if main is None else main.written | given[forest.main or ""]
+    outer |= set() if main is None else main.written | inputs[forest.main or ""]
     for name, use in uses.items():
         if use.is_open:
             continue
-        known = use.written | given[name] | _written_below(use, forest, uses)
+        known = use.written | inputs[name] | _written_below(use, forest, uses)
         if name == forest.main:
             known |= outer
         for variable, place in use.read.items():
@@ -44,21 +44,21 @@ def unwritten(forest: Forest, kind: KindOf) -> Iterator[tuple[Place, str]]:
                 yield place, variable
 
 
-def _given(forest: Forest, uses: Mapping[str, _TreeVariables]) -> dict[str, set[str]]:
+def _inputs(forest: Forest, uses: Mapping[str, _TreeVariables]) -> dict[str, set[str]]:
     """The variables that each tree gets from trees around it, or by its own model."""
-    given: dict[str, set[str]] = defaultdict(set)
+    inputs: dict[str, set[str]] = defaultdict(set)
     for tree in forest.trees.values():
         for node in tree.root.iterate():
             if not node.is_subtree:
                 continue
             name = node.own["ID"].value
-            given[name] |= set(node.ports)
+            inputs[name] |= set(node.ports)
             if node.shares_names and name in uses:
                 uses[name].is_open = uses[tree.name].is_open = True
     for name, model in forest.models.items():
         if model.category is Category.SUBTREE and model.ports is not None:
-            given[name] |= set(model.ports)
-    return given
+            inputs[name] |= set(model.ports)
+    return inputs
 
 
 def _written_below(use: _TreeVariables, forest: Forest, uses: Mapping[str, _TreeVariables]) -> set[str]:
@@ -68,10 +68,10 @@ def _written_below(use: _TreeVariables, forest: Forest, uses: Mapping[str, _Tree
         below = uses.get(tree)
         model = forest.models.get(tree)
         port = (model.ports or {}).get(there) if model is not None else None
-        is_given = port is not None and port.way is not PortDirection.IN
+        is_output = port is not None and port.way is not PortDirection.IN
         if (
             below is None
-            or is_given
+            or is_output
             or there in below.written
             or any(there == each[0] for each in below.passed)
         ):
@@ -97,28 +97,28 @@ def _add_ports(use: _TreeVariables, node: Node, kind: Kind | None) -> None:
         if port is not None and port.type == "script":
             _add_script(use, attribute.value, place)
             continue
-        said = values.read(name, attribute.value)
+        value = values.read(name, attribute.value)
         if node.kind == "SetBlackboard" and name == "output_key":
-            use.written.add(said.name if isinstance(said, Variable) else said)
-        elif node.is_subtree and isinstance(said, Variable):
-            use.passed.append((said.name, node.own["ID"].value, name))
-            use.read.setdefault(said.name, place)
-        elif isinstance(said, Variable) and (port is None or port.way is not PortDirection.IN):
-            use.written.add(said.name)  # an unknown leaf may do so, too
-        elif isinstance(said, Variable):
-            use.read.setdefault(said.name, place)
+            use.written.add(value.name if isinstance(value, Variable) else value)
+        elif node.is_subtree and isinstance(value, Variable):
+            use.passed.append((value.name, node.own["ID"].value, name))
+            use.read.setdefault(value.name, place)
+        elif isinstance(value, Variable) and (port is None or port.way is not PortDirection.IN):
+            use.written.add(value.name)  # an unknown leaf may do so, too
+        elif isinstance(value, Variable):
+            use.read.setdefault(value.name, place)
         elif port is not None and port.way is PortDirection.OUT:
-            use.written.add(said)
+            use.written.add(value)
 
 
 def _add_script(use: _TreeVariables, text: str, place: Place) -> None:
-    if isinstance(said := values.read("code", text), Variable):
-        use.read.setdefault(said.name, place)
+    if isinstance(value := values.read("code", text), Variable):
+        use.read.setdefault(value.name, place)
         return
     try:
         statements = script.parse(text)
     except script.ScriptFault:
-        return  # told elsewhere
+        return  # reported elsewhere
     for name in sorted(script.reads(statements)):
         use.read.setdefault(name, place)
     use.written |= script.writes(statements)

@@ -13,7 +13,7 @@ from arboleda.model.errors import ArboledaError
 from arboleda.recorder import copying, reader
 from arboleda.recorder.files import parts_in
 from arboleda.recorder.preamble import Limits
-from arboleda.recorder.simulated import RecordNotWritten, SimulatedRecorder
+from arboleda.recorder.simulated_recorder import RecordNotWritten, SimulatedRecorder
 from arboleda.recorder.tape import SECOND
 from arboleda.simulator.world import START_S
 

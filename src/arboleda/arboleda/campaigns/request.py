@@ -29,9 +29,13 @@ OF_DRAWN = "drawn plants: whatever link a robot declares, it is simulated with a
 
 @dataclass(frozen=True, kw_only=True)
 class Request:
-    """Request: the options; None stands for one that was not given."""
+    """Request: the options; None stands for one that was not given.
+
+    `plant_here` is the plant file of the working directory, for where no plant is named.
+    """
 
     plant: Path | None = None
+    plant_here: Path | None = None
     drawn_plants: bool = False
     seed: int | None = None
     seeds: int | None = None
@@ -95,9 +99,12 @@ class Request:
 
     @property
     def _by_files(self) -> tuple[Plant, ...]:
-        known = [loader.load_with_files(self.plant)] if self.plant else [_shared(), loader.load_with_files()]
-        plants = tuple(Plant(declared=model, files=read) for model, read in known)
         wanted = self.told.plant if self.told else None
+        named = self.plant or self.plant_here
+        known = [loader.load_with_files(named)] if named else []
+        if named is None or (self.plant is None and wanted not in (None, known[0][0].name)):
+            known += [_shared(), loader.load_with_files()]
+        plants = tuple(Plant(declared=model, files=read) for model, read in known)
         if wanted is None:
             return plants
         if found := tuple(plant for plant in plants if plant.name == wanted):
@@ -168,5 +175,5 @@ def shared() -> PlantModel:
 
 
 def _shared() -> tuple[PlantModel, PlantFiles]:
-    with as_file(files("arboleda").joinpath("plants", "shared.yaml")) as path:
+    with as_file(files("arboleda") / "plants" / "shared.yaml") as path:
         return loader.load_with_files(path)

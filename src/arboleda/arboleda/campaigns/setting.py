@@ -11,11 +11,13 @@ from arboleda.core.plant import Plant as CorePlant
 from arboleda.model.plant_model import PlantModel
 from arboleda.simulator.climate import Climate
 from arboleda.simulator.faults import Fault
+from arboleda.simulator.findings import FindingKind
 from arboleda.simulator.invariants import Invariant
 from arboleda.simulator.invariants.as_drawn import as_drawn
 from arboleda.simulator.judged import judged_by
+from arboleda.simulator.judged_world import BrokenInvariant
 from arboleda.simulator.plants.devices import Form
-from arboleda.simulator.run import NO_EXCEPTION, BrokenInvariant, Plan, Result, Simulation
+from arboleda.simulator.run import NO_EXCEPTION, Plan, Result, Simulation
 from arboleda.simulator.scripted_people import Script, script_from
 
 from .campaign import Tick as Tick
@@ -94,7 +96,9 @@ class Setting:
             standby=self.standby,
             revises=self.revises,
         )
-        return simulation.run(seconds=self.seconds, cycles=self.cycles)
+        result = simulation.run(seconds=self.seconds, cycles=self.cycles)
+        _leave_out_drawn_refusals(result, self.plants.of(seed))
+        return result
 
     def attempt(self, plant: Plant, seed: int, plan: Plan, seconds: float, *, keep: bool = False) -> Result:
         """A seed on such a plant with these faults, for so long."""
@@ -118,6 +122,18 @@ class Setting:
         if drawn is None:
             return judges
         return (*judges, as_drawn(drawn.recipes, pauses=drawn.form is Form.PYTHON))
+
+
+def _leave_out_drawn_refusals(result: Result, plant: Plant) -> None:
+    """Leave out of the findings the commands that a drawn recipe has refused on purpose."""
+    if plant.drawn is None or not plant.drawn.refused:
+        return
+    cells, refused = plant.model.cells, plant.drawn.refused
+    names = [f"{cell.roles[role].name}: doing {verb}" for cell in cells for role, verb in refused]
+    for finding in list(result.findings):
+        is_drawn = any(finding.step == name or finding.step.startswith(f"{name} ") for name in names)
+        if finding.kind is FindingKind.COMMAND and is_drawn:
+            del result.findings[finding]
 
 
 def rules() -> dict[str, str]:

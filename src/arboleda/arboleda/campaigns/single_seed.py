@@ -48,8 +48,8 @@ def run(
     for line in flown:
         console.print(Text(line), soft_wrap=True)
     console.print(Text(f"digest {result.digest}: {report.amount(tally)}"), soft_wrap=True)
-    for line in report.findings(tally):
-        console.print(line, soft_wrap=True)
+    for finding in report.findings(tally):
+        console.print(finding, soft_wrap=True)
     console.print(report.verdict(tally), soft_wrap=True)
     breach_text.kept(console, request.plants.of(result.seed), keep)
     return BROKEN if result.broken or result.findings else HELD

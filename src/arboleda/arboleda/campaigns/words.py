@@ -22,7 +22,7 @@ def short(number: int) -> str:
     return str(number)
 
 
-def told(fault: Fault) -> str:
+def fault_words(fault: Fault) -> str:
     """The fault with its target and its duration; without its time."""
     much = f"{fault.amount:g}" if fault.amount else ""
     lasting = f"for {fault.seconds:.3f} s" if fault.seconds else ""

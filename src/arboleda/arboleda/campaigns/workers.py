@@ -65,7 +65,7 @@ class Workers(Campaign[R]):
 
     @property
     def minutes(self) -> int:
-        return self._passed_by.get_obj().value  # without the lock, which a killed worker may hold
+        return int(self._passed_by.get_obj().value)  # without the lock, which a killed worker may hold
 
     def _run(self) -> Iterator[R]:
         while self._under_way:

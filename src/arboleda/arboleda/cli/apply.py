@@ -13,6 +13,7 @@ import typer
 
 from arboleda.model.errors import ArboledaError, ConfigError
 from arboleda.model.outside import plain
+from arboleda.model.sentence import Phrase
 from arboleda.plant_file import draft_check, loader, plant_check
 from arboleda.plant_file.changes import Change, changes
 from arboleda.plant_file.restart import needing_restart
@@ -20,19 +21,11 @@ from arboleda.plant_file.versions import Version, Versions, version_of, whole
 from arboleda.runtime import at_work
 from arboleda.runtime.state import Running, default_state, find_running
 
+from .language import say
 from .plant_options import PlantFile, StateFolder, client
 
 LONGEST = 500  # characters of a line
-NOT_SHIPPED = (
-    "the shipped plant cannot be changed: write one of your own with `arboleda new`, or copy its file, and"
-    " name it with --plant"
-)
 NOT_TAKEN = 1
-RESTART = (
-    "the plant that runs goes on as it is, and has it from its next start on; so has the next leader of"
-    " two, as after `arboleda handover`; `--restart`, or the page, has it restart once all its cells rest"
-)
-RESTARTS = "the plant that runs restarts with it once all its cells rest; until then no further task begins"
 Back = Annotated[
     int | None,
     typer.Option("--back", metavar="N", min=1, help="Bring version N back: its plant file and its trees."),
@@ -45,6 +38,56 @@ Restart = Annotated[
     ),
 ]
 Yes = Annotated[bool, typer.Option("--yes", help="Do not ask.")]
+SHIPPED = Phrase(
+    "cli.apply.shipped",
+    "the shipped plant cannot be changed: write one of your own with `arboleda new`, or copy its file, "
+    "and name it with --plant",
+)
+NEEDS_RESTART = Phrase(
+    "cli.apply.needs_restart",
+    "the plant that runs goes on as it is, and has it from its next start on; so has the next leader of"
+    " two, as after `arboleda handover`; `--restart`, or the page, has it restart once all its cells "
+    "rest",
+)
+RESTARTS = Phrase(
+    "cli.apply.restarts",
+    "the plant that runs restarts with it once all its cells rest; until then no further task begins",
+)
+FIRST_VERSION = Phrase("cli.apply.first", "nothing was kept before; this is the first version")
+VERSION_OF = Phrase("cli.apply.version_of", "version {number} of {time}")
+STARTED_WITH = Phrase("cli.apply.started_with", "what the plant was started with at {time}")
+BRING_BACK = Phrase("cli.apply.bring_back", "Bring its files back?")
+NOTHING_TO_DO = Phrase("cli.apply.nothing", "{file}: as in {base}; there is nothing to put to work")
+COMPARED = Phrase("cli.apply.compared", "{file}: compared with {base}:")
+A_RESTART = Phrase(
+    "cli.apply.a_restart",
+    "this needs a restart, or a handover; until then the plant that runs goes on as it is:",
+)
+PUT_TO_WORK = Phrase("cli.apply.put_to_work", "Put this to work?")
+AGAIN = Phrase("cli.apply.again", "version {number} again")
+KEPT_FOR_NEXT = Phrase(
+    "cli.apply.kept_for_next",
+    "version {number} is kept; the next start of the plant has it",
+)
+KEPT = Phrase("cli.apply.kept", "version {number} is kept")
+NONE_KEPT = Phrase("cli.apply.none_kept", "{file}: no version is kept; `arboleda apply` keeps one")
+WARNING = Phrase("cli.check.warning", "{file}: warning: {warning}")
+NOT_BACK = Phrase("cli.apply.not_back", "version {number} cannot be brought back:")
+OTHER_FILE = Phrase(
+    "cli.apply.other_file",
+    "{file}: another file than with version {number}; it stays as it is",
+)
+AS_STARTED = Phrase("cli.apply.as_started", "as the plant was started")
+NOT_TAKEN_NOW = Phrase(
+    "cli.apply.not_taken",
+    "the plant that runs goes on as it is, and has it from its next start on: {why}",
+)
+TAKES_IT = Phrase("cli.apply.takes_it", "{cell} takes it {when}")
+CANCELLED = Phrase(
+    "cli.apply.cancelled",
+    "task {task} waited, and is cancelled: the plant does not take it any more",
+)
+AT_WORK = Phrase("cli.apply.at_work", "at work")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -57,10 +100,9 @@ class _Base:
     @property
     def name(self) -> str:
         if self.version is None:
-            return "nothing was kept before; this is the first version"
-        kept = f"version {self.version.number} of {_minute(self.version)}"
-        started = f"what the plant was started with at {_minute(self.version)}"
-        return kept if self.version.number else started
+            return say(FIRST_VERSION())
+        number, time = self.version.number, _minute(self.version)
+        return say(VERSION_OF(number=number, time=time) if number else STARTED_WITH(time=time))
 
 
 def apply(
@@ -71,7 +113,7 @@ def apply(
     yes: Yes = False,
     state: StateFolder = None,
 ) -> None:
-    """Check a plant file and all that it uses, show what is another than what is at work, and put it to work.
+    """Check a plant file and all that it uses, show how it differs from what is at work, and put it to work.
 
     Versions are kept in the folder .arboleda beside the plant file. A plant that runs takes the version: each
     cell once its task has ended. What needs a restart is said before anything is done. Exit status: 0 kept,
@@ -86,27 +128,28 @@ def apply(
     lines = tuple(each.words for each in _told(base.version, wanted))
     if base.version is not None and not lines:
         if back is not None and not kept.is_in_place(wanted.version):
-            _ask("Bring its files back?", yes=yes)
+            _ask(say(BRING_BACK()), yes=yes)
             kept.bring_back(wanted.version)
-        _print(f"{file}: as in {base.name}; there is nothing to put to work")
+        _print(say(NOTHING_TO_DO(file=str(file), base=base.name)))
         return
-    _print(f"{file}: compared with {base.name}:" if base.version else f"{file}: {base.name}")
+    compared = say(COMPARED(file=str(file), base=base.name))
+    _print(compared if base.version else f"{file}: {base.name}")
     for line in lines:
         _print(f"  {line}")
     if base.running is not None and (needing := needing_restart(_told(base.version, wanted))):
-        _print("this needs a restart, or a handover; until then the plant that runs goes on as it is:")
+        _print(say(A_RESTART()))
         for line in needing:
             _print(f"  {line}")
-    _ask("Put this to work?", yes=yes)
+    _ask(say(PUT_TO_WORK()), yes=yes)
     if back is not None:
         kept.bring_back(wanted.version)
         wanted = replace(wanted, version=version_of(loader.load_with_files(file)[1], at=_now()))
-    fresh = replace(wanted.version, changes=lines, note=note or (f"version {back} again" if back else ""))
+    fresh = replace(wanted.version, changes=lines, note=note or (str(AGAIN(number=back)) if back else ""))
     number = _keep(kept, base, fresh)
     if base.running is None:
-        _print(f"version {number} is kept; the next start of the plant has it")
+        _print(say(KEPT_FOR_NEXT(number=number)))
         return
-    _print(f"version {number} is kept")
+    _print(say(KEPT(number=number)))
     _put_to_work(number, plant, state, restarts=restart)
 
 
@@ -121,7 +164,7 @@ def versions(plant: PlantFile = None, state: StateFolder = None) -> None:
     runs = base.version.digest if base.running and base.version else ""
     known = kept.all()
     if not known:
-        _print(f"{file}: no version is kept; `arboleda apply` keeps one")
+        _print(say(NONE_KEPT(file=str(file))))
     for each in known:
         _print("  ".join(_heading(each, is_running=each.digest == runs)))
         for line in each.changes:
@@ -144,7 +187,7 @@ def _ask(question: str, *, yes: bool) -> None:
 
 def _named(plant: Path | None) -> Path:
     if plant is None:
-        raise ConfigError((NOT_SHIPPED,))
+        raise ConfigError((say(SHIPPED()),))
     return plant
 
 
@@ -152,7 +195,7 @@ def _on_disk(file: Path) -> _Wanted:
     """The files as they are now; ConfigError with every problem. Prints what `check` warns of."""
     model, files = loader.load_with_files(file)
     for warning in plant_check.warnings(model):
-        _print(f"{file}: warning: {warning}")
+        _print(say(WARNING(file=str(file), warning=warning)))
     return _Wanted(version=version_of(files, at=_now()), plant_name=model.name)
 
 
@@ -160,11 +203,11 @@ def _checked(file: Path, kept: Versions, version: Version) -> _Wanted:
     """A version that is to come back; ConfigError where it is no plant beside the other files of today."""
     found = draft_check.check(version.files, file)
     if found.plant is None:
-        raise ConfigError((f"version {version.number} cannot be brought back:", *found.problems))
+        raise ConfigError((say(NOT_BACK(number=version.number)), *found.problems))
     for warning in found.warnings:
-        _print(f"{file}: warning: {warning}")
+        _print(say(WARNING(file=str(file), warning=warning)))
     for name in kept.others_now(version):
-        _print(f"{name}: another file than with version {version.number}; it stays as it is")
+        _print(say(OTHER_FILE(file=str(name), number=version.number)))
     return _Wanted(version=version, plant_name=found.plant.name, comes_back=True)
 
 
@@ -190,7 +233,7 @@ def _keep(kept: Versions, base: _Base, version: Version) -> int:
     """Keep a version, before it what is at work if no version has that; its number."""
     before = base.version
     if before is not None and not before.number:
-        kept.keep(replace(before, note="as the plant was started"))
+        kept.keep(replace(before, note=str(AS_STARTED())))
     last = kept.last()
     if last is not None and last.digest == version.digest:  # kept before, and not at work yet
         return last.number
@@ -205,22 +248,22 @@ def _put_to_work(number: int, plant: Path | None, state: Path | None, *, restart
         if answer["restart"] and restarts:
             reached.restart_at_rest(getpass.getuser())
     except ArboledaError as error:
-        _print(f"the plant that runs goes on as it is, and has it from its next start on: {error}")
+        _print(say(NOT_TAKEN_NOW(why=error.sentence)))
         raise typer.Exit(NOT_TAKEN) from error
     for line in answer["restart"]:
         _print(f"  {line}")
     if answer["restart"]:
-        _print(RESTARTS if restarts else RESTART)
+        _print(say(RESTARTS() if restarts else NEEDS_RESTART()))
         return
     for cell, when in answer["cells"].items():
-        _print(f"  {cell} takes it {when}")
+        _print(f"  {say(TAKES_IT(cell=cell, when=when))}")
     for task in answer["cancelled"]:
-        _print(f"  task {task} waited, and is cancelled: the plant does not take it any more")
+        _print(f"  {say(CANCELLED(task=task))}")
 
 
 def _heading(version: Version, *, is_running: bool) -> Iterator[str]:
     yield f"{version.number:>3}  {_minute(version)}"
-    yield from (each for each in (version.by, "at work" if is_running else "", version.note) if each)
+    yield from (each for each in (version.by, say(AT_WORK()) if is_running else "", version.note) if each)
 
 
 def _minute(version: Version) -> str:

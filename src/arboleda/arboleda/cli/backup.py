@@ -8,11 +8,13 @@ from typing import Annotated
 import typer
 
 from arboleda.model.errors import StartError
+from arboleda.model.sentence import Phrase
 from arboleda.plant_file import loader
 from arboleda.runtime.state import STORE, StateDir, find_running, holder
 from arboleda.store import backups
 
-from .plant_options import PlantFile, StateFolder, folder, located, name_of, store_of
+from .language import say
+from .plant_options import PlantFile, RunningPlant, StateFolder, folder, located, name_of, store_of
 
 MEMORY = "Tasks, stop latches, what effectors hold, quarantined zones and the operators' journal are in it."
 COPY = "Copy the plant's memory to a file, while the plant runs or not."
@@ -22,6 +24,14 @@ CAUTION = (
     "backup: look at the robots before you start the plant."
 )
 EXIT = "Exit status: 0 done, 1 it could not be, 2 bad input."
+COPIED = Phrase("cli.backup.copied", "{memory} is copied to {file}")
+END_FIRST = Phrase("cli.backup.end_first", "{held} End it first.")
+RESTORED = Phrase("cli.backup.restored", "{memory} is now {file}; what was there is {memory}.before-restore")
+IN_DATABASE = Phrase(
+    "cli.backup.in_database",
+    "This plant's memory is in {store}: `pg_dump --schema 'plant_*'` copies it while the plant runs, "
+    "pg_restore puts it back; see docs/how-to/two-hosts.md.",
+)
 
 
 def add_to(cli: typer.Typer) -> None:
@@ -32,14 +42,14 @@ def add_to(cli: typer.Typer) -> None:
 
 def backup(
     file: Annotated[Path, typer.Argument(metavar="FILE", help="The file to make.")],
-    plant: PlantFile = None,
+    plant: RunningPlant = None,
     state: StateFolder = None,
 ) -> None:
     where = located(plant, state)
     _refuse_database(plant, where)
     memory = where / STORE
     backups.back_up(memory, file, name_of(plant))
-    print(f"{memory} is copied to {file}")
+    print(say(COPIED(memory=str(memory), file=str(file))))
 
 
 def restore(
@@ -50,11 +60,11 @@ def restore(
     where = folder(plant, state)
     _refuse_database(plant, where)
     if find_running(where) is not None:
-        raise StartError(f"{holder(where)} End it first.")
+        raise StartError(END_FIRST(held=holder(where)))
     name = loader.load(plant, recipes=False).name if plant or not state else ""
     with backups.opened(file) as source, StateDir(where):
         backups.restore(source, file, where / STORE, name)
-    print(f"{where / STORE} is now {file}; what was there is {where / STORE}.before-restore")
+    print(say(RESTORED(memory=str(where / STORE), file=str(file))))
 
 
 def _refuse_database(plant: Path | None, where: Path) -> None:
@@ -62,7 +72,4 @@ def _refuse_database(plant: Path | None, where: Path) -> None:
     running = find_running(where)
     store = running.store if running else store_of(plant)
     if store:
-        raise StartError(
-            f"This plant's memory is in {store}: `pg_dump --schema 'plant_*'` copies it while the plant runs,"
-            " pg_restore puts it back; see docs/how-to/two-hosts.md."
-        )
+        raise StartError(IN_DATABASE(store=str(store)))

@@ -12,22 +12,28 @@ from arboleda.model.errors import StartError
 
 GROUP = "arboleda.bench"
 MISSING = "the benchmarks are not installed here; `make install` in Arboleda's own folder brings them"
-HELP = """Measure this machine: ours against a floor of the same run, so that figures of two machines compare.
+HELP = """Measure this machine: our figures beside the least that the same run can take, so that two
+machines can be compared.
 
 \b
 arboleda bench                   all of them, about twenty minutes
 arboleda bench --quick           all of them, at most ten minutes, figures less certain
-arboleda bench reaction chain    these two
-arboleda bench --list            which there are
+arboleda bench reaction chain    only these two
+arboleda bench --list            name all that there are
 
 Leave the machine alone meanwhile. What falls short of its aim is marked.
 What the figures mean: docs/performance.md.
 
 Exit status: 0 measured, 1 a benchmark could not run, 2 bad input, 130 Ctrl-C."""
 
-Names = Annotated[list[str] | None, typer.Argument(metavar="[NAME]...", help="Benchmarks. [default: all]")]
+Names = Annotated[list[str] | None, typer.Argument(metavar="NAME", help="Benchmarks. [default: all]")]
 Json = Annotated[
-    Path | None, typer.Option("--json", metavar="FILE", help="Write every figure and the machine there.")
+    Path | None,
+    typer.Option(
+        "--json",
+        metavar="FILE",
+        help="Write every figure, and on which machine it was measured, to this file.",
+    ),
 ]
 Quick = Annotated[bool, typer.Option("--quick", help="Short runs: at most ten minutes for all of them.")]
 Listed = Annotated[bool, typer.Option("--list", help="Name the benchmarks and what they measure, and exit.")]

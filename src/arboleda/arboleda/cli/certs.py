@@ -40,13 +40,13 @@ NAME = re.compile(
 )
 ADDRESS = re.compile(r"[0-9.]+|[0-9A-Fa-f:.]*:[0-9A-Fa-f:.]*")
 
-Folder = Annotated[Path, typer.Argument(metavar="FOLDER", help="Where they are, or are to be.")]
+Folder = Annotated[Path, typer.Argument(metavar="FOLDER", help="Folder of the certificates.")]
 Names = Annotated[
     list[str] | None,
     typer.Option(
         "--name",
         metavar="NAME",
-        help="Another name or address by which this machine is called; those that it has itself are there.",
+        help="One more name or address of this machine; those that it has itself are added anyhow.",
     ),
 ]
 Mosquitto = Annotated[
@@ -58,9 +58,11 @@ Mosquitto = Annotated[
     ),
 ]
 At = Annotated[
-    Path, typer.Option(metavar="PATH", help="Where the machine of that broker is to have that folder.")
+    Path, typer.Option(metavar="PATH", help="Path that the folder will have on the machine of that broker.")
 ]
-Days = Annotated[int, typer.Option(metavar="N", min=1, max=3650, help="How long a new certificate holds.")]
+Days = Annotated[
+    int, typer.Option(metavar="N", min=1, max=3650, help="For how long a new certificate is valid.")
+]
 Renew = Annotated[
     list[str] | None,
     typer.Option(metavar="WHO", help="Make that one anew: plant, or a board's MQTT name."),

@@ -11,15 +11,19 @@ from pathlib import Path
 from typing import Any
 from urllib.parse import quote, urlencode
 
+from arboleda.client.errors import NoAnswer
+from arboleda.client.http import TIMEOUT_S
 from arboleda.model.errors import ArboledaError
 from arboleda.model.messages import ENDED, Outcome, TaskState, Verb
 from arboleda.model.outside import plain
+from arboleda.model.sentence import Phrase, Sentence
 from arboleda.model.verbs import Arguments
 from arboleda.runtime import endpoints
 from arboleda.runtime.standby.leader import of_standby
 from arboleda.runtime.state import Running, find_running, running_plants
 
-from .line import TIMEOUT_S, Answer, FarLine, Line, PlantSilent
+from .language import say
+from .line import Answer, FarLine, Line
 from .remote_plant import NoLeader, RemotePlant
 
 LONGEST = 500  # characters of a line
@@ -29,18 +33,40 @@ LOOK_S = 0.2
 FOLLOWED_S = 120.0  # a homing may take a minute
 CHECKED_S = 330.0  # a check of the plant's files has five minutes
 URGENT_S = 1.5  # a stop is answered within some ms
-STANDS_BY = "this process stands by and does nothing itself: it {it}"
-LOST_TASK = (
-    "It may have taken the task: `arboleda tasks` says so. With an id of yours, as in `sis_a 0B 7 #lot42`, it"
-    " can be sent again and is one task."
+STANDS_BY = Phrase("cli.client.stands_by", "this process stands by and does nothing itself: it {it}")
+LOST_TASK = Phrase(
+    "cli.client.lost_task",
+    "{error} It may have taken the task: `arboleda tasks` says so. With an id of yours, as in `sis_a 0B 7 "
+    "#lot42`, it can be sent again and is one task.",
 )
+ENDED_PLANT = Phrase("cli.client.ended", "the plant has ended")
+ENDED_BEFORE = Phrase(
+    "cli.client.ended_before", "the plant has ended, and #{id} has not: its next start has it again"
+)
+THE_PLANT = Phrase("cli.client.the_plant", "The plant on {folder} (process {process})")
+NONE_RUNS = Phrase("cli.client.none_runs", "No plant is running on {folder}")
+NOT_READY = Phrase(
+    "cli.client.not_ready", "The plant on {folder} (process {process}) is still starting or ending"
+)
+TWO_SENTENCES = Phrase("cli.client.two", "{first}. {second}")
+AND_OTHERS = Phrase("cli.client.and_others", "{first}; {others}.")
+ONE_SENTENCE = Phrase("cli.client.one", "{first}.")
+LED_NOW = Phrase("cli.client.led_now", "{silent} Plant {plant} is led on {host} now.")
+ASKED_THERE = Phrase("cli.client.asked_there", "plant {plant} is led on {host}: asked there")
+FOLLOWED_THERE = Phrase("cli.client.followed_there", "plant {plant} is led on {host}: followed there")
+START_ONE = Phrase(
+    "cli.client.start_one",
+    "start one with `arboleda up`, or name its directory where it was started with --state",
+)
+THE_ONE = Phrase("cli.client.the_one", "the one that runs is {named}")
+THOSE = Phrase("cli.client.those", "those that run are {named}")
 
 
 class PlantGone(ArboledaError):
     """The plant has ended while it was followed."""
 
     def __init__(self) -> None:
-        super().__init__("the plant has ended")
+        super().__init__(ENDED_PLANT())
 
 
 class PlantClient:
@@ -59,19 +85,19 @@ class PlantClient:
         """The queued task; TextError if the text is refused, QueueFull if the plant takes no task now."""
         try:
             # An id makes it one task, however often it is sent; without one it is never sent again.
-            return self._ask("POST", "/api/tasks", {"text": text}, repeatable="#" in text)
-        except PlantSilent as error:
+            return self._row("POST", "/api/tasks", {"text": text}, repeatable="#" in text)
+        except NoAnswer as error:
             if not error.may_have_heard:
                 raise
-            raise PlantSilent(f"{error} {LOST_TASK}", may_have_heard=True) from error
+            raise NoAnswer(say(LOST_TASK(error=str(error))), may_have_heard=True) from error
 
     def status(self) -> dict[str, Any]:
         """The view of the plant."""
-        return self._ask("GET", "/api/plant")
+        return self._row("GET", "/api/plant")
 
     def task(self, task: str) -> dict[str, Any]:
         """One task by its id."""
-        return self._ask("GET", f"/api/tasks/{task}")
+        return self._row("GET", f"/api/tasks/{task}")
 
     def operate(
         self, verb: Verb, scope: str = "", *, by_hand: bool = False, arguments: Arguments = ()
@@ -80,22 +106,36 @@ class PlantClient:
         where = f"cells/{quote(scope, safe='')}" if scope else "plant"
         body = (dict(arguments) | ({"by_hand": True} if by_hand else {})) or None
         stops = verb.row.stops
-        return self._ask("POST", f"/api/{where}/{verb.value}", body, repeatable=stops, urgent=stops)
+        return self._row("POST", f"/api/{where}/{verb.value}", body, repeatable=stops, urgent=stops)
 
     def put_to_work(self, version: int, name: str) -> dict[str, Any]:
         """Have the plant put a kept version to work; the answer says when each cell takes it."""
         path = f"/api/versions/{version}/put"
-        return self._ask("POST", path, {"name": name}, repeatable=True, within_s=CHECKED_S)
+        return self._row("POST", path, {"name": name}, repeatable=True, within_s=CHECKED_S)
 
     def restart_at_rest(self, name: str) -> None:
         """Have the plant restart once all its cells rest; Refused where it cannot restart itself."""
         self._ask("POST", "/api/versions/restart", {"name": name}, repeatable=True)
 
+    def faults(self) -> dict[str, Any]:
+        """The faults that go on at virtual devices, and those that can be provoked."""
+        return self._row("GET", "/api/faults")
+
+    def provoke(self, kind: str, robot: str, seconds: float | None) -> dict[str, Any]:
+        """Have a fault happen to a virtual device; Refused if it cannot."""
+        lasting = {} if seconds is None else {"seconds": seconds}
+        return self._row("POST", "/api/faults", {"kind": kind, "robot": robot, **lasting})
+
+    def end_faults(self, robot: str) -> list[dict[str, Any]]:
+        """End the faults of a device ("": of all); those that went on."""
+        ended: Any = self._ask("POST", "/api/faults/end", {"robot": robot}, repeatable=True)
+        return list(ended)
+
     def outcome(self, act: int) -> dict[str, Any]:
         """The row of an act once it has ended; after FOLLOWED_S as it is then."""
         until = time.monotonic() + FOLLOWED_S
         while True:
-            row: dict[str, Any] = self._ask("GET", f"/api/acts/{act}")
+            row = self._row("GET", f"/api/acts/{act}")
             if row["outcome"] != Outcome.UNDER_WAY.value or time.monotonic() > until:
                 return row
             time.sleep(LOOK_S)
@@ -113,7 +153,7 @@ class PlantClient:
                 line = self._leading()
                 for kind, row in line.events():
                     if kind == "snapshot":
-                        self._say(line, "asked" if epoch in (None, row["epoch"]) else "followed")
+                        self._say(line, ASKED_THERE if epoch in (None, row["epoch"]) else FOLLOWED_THERE)
                         epoch = row["epoch"]
                     self._listening, cut_at = line, None
                     yield kind, row
@@ -139,17 +179,15 @@ class PlantClient:
         if TaskState(task["state"]) in ENDED:
             return
         try:
-            for now in self._told_of(task["id"]):
+            for now in self._news_of(task["id"]):
                 if now["state"] != task["state"]:
                     yield (task := now)
                 if TaskState(task["state"]) in ENDED:
                     return
         except PlantGone as error:
-            raise ArboledaError(
-                f"the plant has ended, and #{task['id']} has not: its next start has it again"
-            ) from error
+            raise ArboledaError(ENDED_BEFORE(id=task["id"])) from error
 
-    def _told_of(self, id: str) -> Iterator[dict[str, Any]]:
+    def _news_of(self, id: str) -> Iterator[dict[str, Any]]:
         for kind, row in self.changes():
             rows = row["tasks"] if kind == "snapshot" else [row] if kind == "task" else []
             found = [each for each in rows if each["id"] == id]
@@ -159,6 +197,11 @@ class PlantClient:
         """The task from the history: a leader may not know tasks that ended under the one before."""
         rows = self._ask("GET", f"/api/history?{urlencode({'words': id})}")
         return [row for row in rows if row["id"] == id]
+
+    def _row(self, method: str, path: str, body: dict[str, Any] | None = None, **how: Any) -> dict[str, Any]:
+        """The answer of a route that answers with an object; `how` as for `_ask`."""
+        row: dict[str, Any] = self._ask(method, path, body, **how)
+        return row
 
     def _ask(
         self,
@@ -176,7 +219,7 @@ class PlantClient:
         hurries = urgent and self._elsewhere.is_known and not isinstance(line, FarLine)
         try:
             answer = line.ask(method, path, body, within_s=URGENT_S if hurries else within_s)
-        except PlantSilent as error:
+        except NoAnswer as error:
             other = self._instead(line, error, repeatable=repeatable or method == "GET")
             if other is None and not hurries:
                 raise
@@ -185,7 +228,7 @@ class PlantClient:
         if answer.stands_by and not isinstance(line, FarLine):
             line = self._beyond(answer)
             answer = line.ask(method, path, body)
-        self._say(line, "asked")
+        self._say(line, ASKED_THERE)
         return line.taken(answer)
 
     def _leading(self) -> Line:
@@ -202,40 +245,43 @@ class PlantClient:
         if running is None or running.port is None:
             return None
         return Line(
-            endpoints.here(self._state, running), f"The plant on {self._state} (process {running.pid})"
+            endpoints.here(self._state, running), say(THE_PLANT(folder=str(self._state), process=running.pid))
         )
 
     def _beyond(self, answer: Answer) -> FarLine:
         """The line to the process that leads the plant, as a process that stands by names it."""
-        sentence = answer.sentence if answer.status >= 300 else STANDS_BY.format(it=answer.sentence)
+        sentence = answer.sentence if answer.status >= 300 else say(STANDS_BY(it=answer.sentence))
         led = of_standby(answer.said)
         if not led.url:
             raise ArboledaError(sentence)
         try:
             return self._elsewhere.line(led)
         except ArboledaError as error:
-            raise ArboledaError(f"{sentence}. {error}") from error
+            raise ArboledaError(TWO_SENTENCES(first=sentence, second=error.sentence)) from error
 
     def _far(self) -> FarLine:
         """The line to the leader that the plant's database names; else an error about the process here."""
         running = find_running(self._state)
         if running is None:
-            here = f"No plant is running on {self._state}"
+            here = NONE_RUNS(folder=str(self._state))
         else:
-            here = f"The plant on {self._state} (process {running.pid}) is still starting or ending"
+            here = NOT_READY(folder=str(self._state), process=running.pid)
         try:
             led = self._elsewhere.led()
             if led is not None:
                 return self._elsewhere.line(led)
         except NoLeader as error:
-            raise NoLeader(f"{here}. {error}", awaited=error.awaited or running is not None) from error
+            both = say(TWO_SENTENCES(first=here, second=error.sentence))
+            raise NoLeader(both, awaited=error.awaited or running is not None) from error
         except ArboledaError as error:
-            raise ArboledaError(f"{here}. {error}") from error
-        raise ArboledaError(f"{here}; {_others()}." if running is None else f"{here}.")
+            raise ArboledaError(TWO_SENTENCES(first=here, second=error.sentence)) from error
+        raise ArboledaError(
+            AND_OTHERS(first=here, others=_others()) if running is None else ONE_SENTENCE(first=here)
+        )
 
-    def _instead(self, line: Line, silent: PlantSilent, *, repeatable: bool) -> Line | None:
+    def _instead(self, line: Line, silent: NoAnswer, *, repeatable: bool) -> Line | None:
         """The line to another process that leads the plant, after one on this host was silent. None if there
-        is none; PlantSilent if that one must not be asked as well."""
+        is none; NoAnswer if that one must not be asked as well."""
         led, running = None, find_running(self._state)
         if not isinstance(line, FarLine):
             with suppress(ArboledaError):  # then the silence of the one here is reported
@@ -243,24 +289,24 @@ class PlantClient:
         if led is None or (led.here and running is not None and led.process == running.pid):
             return None
         if silent.may_have_heard and not repeatable:
-            sentence = f"{silent} Plant {led.plant} is led on {led.host} now."
-            raise PlantSilent(sentence, may_have_heard=True) from silent
+            sentence = say(LED_NOW(silent=str(silent), plant=led.plant, host=led.host))
+            raise NoAnswer(sentence, may_have_heard=True) from silent
         return self._elsewhere.line(led)
 
-    def _say(self, line: Line, done: str) -> None:
+    def _say(self, line: Line, done: Phrase) -> None:
         """Tell the person which host is asked, if that is not this process's own."""
-        if not isinstance(line, FarLine) and done == "asked":
+        if not isinstance(line, FarLine) and done is ASKED_THERE:
             return
-        notice = f"plant {line.place.plant} is led on {line.host}: {done} there"
+        notice = say(done(plant=line.place.plant, host=line.host))
         if notice != self._said:
             print(plain(notice, LONGEST), file=sys.stderr, flush=True)
             self._said = notice
 
 
-def _others() -> str:
+def _others() -> Sentence:
     """Advice for a state directory on which no plant runs: names those that do run."""
     found = running_plants()
     if not found:
-        return "start one with `arboleda up`, or name its directory where it was started with --state"
+        return START_ONE()
     named = ", ".join(f"{plain(path.name)} (--state {plain(str(path), LONGEST)})" for path in found)
-    return f"{'the one that runs is' if len(found) == 1 else 'those that run are'} {named}"
+    return (THE_ONE if len(found) == 1 else THOSE)(named=named)

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from arboleda.board_kit.conformance.judge import Finding, Judge
 
 PASSED, FAILED = 0, 1
-HELP = """Run the contract against the board of an arm or of a declared kind, and say which level it reaches.
+HELP = """Test the board of an arm or of a declared kind against the contract, and say which level it reaches.
 
 It moves the arm: from one limit to the other and to its reference. Of a device of a declared kind it tries
 every verb, as often as it has to. Nobody may be near it, no part in its effector or its clamp, and no plant

@@ -15,7 +15,7 @@ from arboleda.plant_file import loader
 
 from .plant_options import PlantFile
 
-HELP = """Write the header that has the boards' firmware play a device of a declared kind.
+HELP = """Write the header with which the boards' firmware becomes a device of a declared kind.
 
 WIRING is a YAML file that says which pins are inputs, outputs, servos and analog inputs, what each fact of
 the kind is read from, and what each verb drives. Every mistake is named with its line. What no input looks
@@ -28,7 +28,8 @@ Name = Annotated[
 ]
 Wiring = Annotated[Path, typer.Argument(metavar="WIRING", help="How it is wired, in YAML.")]
 Output = Annotated[
-    Path | None, typer.Option("--output", "-o", metavar="FILE", help="Where to. [default: printed]")
+    Path | None,
+    typer.Option("--output", "-o", metavar="FILE", help="The file to write. [default: it is printed]"),
 ]
 
 

@@ -149,7 +149,7 @@ def _table(pairs: list[Pair], at: Callable[[float], str]) -> Iterator[str]:
     yield f"  {'recorded':<{TIME}}  {'fork':<{TIME}}"
     for pair in pairs[:ROWS]:
         times = [at(each.at) if each else "-" for each in (pair.recorded, pair.fork)]
-        yield f"  {times[0]:<{TIME}}  {times[1]:<{TIME}}  {pair.either.said}"
+        yield f"  {times[0]:<{TIME}}  {times[1]:<{TIME}}  {pair.either.text}"
     if len(pairs) > ROWS:
         yield f"  and {len(pairs) - ROWS} more; --task ID shows those of one task"
 
@@ -160,7 +160,7 @@ def _ends(pairs: list[Pair], at: Callable[[float], str]) -> Iterator[str]:
     for pair in pairs:
         for side, each in enumerate((pair.recorded, pair.fork)):
             if each is not None and each.stream.startswith(TASK):
-                ends.setdefault(each.stream, ["not there", "not there"])[side] = f"{at(each.at)} {each.said}"
+                ends.setdefault(each.stream, ["not there", "not there"])[side] = f"{at(each.at)} {each.text}"
     for stream, (recorded, fork) in ends.items():
         yield stream
         yield f"  recorded  {recorded}"

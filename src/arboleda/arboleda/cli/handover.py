@@ -5,14 +5,32 @@ from __future__ import annotations
 import time
 
 from arboleda.model.errors import ArboledaError, StartError
+from arboleda.model.sentence import Phrase
 
-from .plant_options import PlantFile, StateFolder, StoreAddress, database
+from .language import say
+from .plant_options import RunningPlant, StateFolder, StoreAddress, database
 
 PATIENCE_S = 30.0
 LOOK_S = 0.05
+NOBODY_LEADS = Phrase(
+    "cli.handover.nobody_leads", "Nobody leads the plant of {plant}; start it with `arboleda up`."
+)
+NOBODY_WAITS = Phrase(
+    "cli.handover.nobody_waits",
+    "Nobody waits to lead the plant of {plant}: start `arboleda up --standby` on another host.",
+)
+LEADS_NOW = Phrase(
+    "cli.handover.leads_now",
+    "process {process} on {host} leads the plant now, {seconds} s after it was asked; "
+    "for {gap} s of them nobody did",
+)
+STILL_LEADS = Phrase(
+    "cli.handover.still_leads",
+    "After {seconds} s process {process} on {host} still leads the plant; its log says why.",
+)
 
 
-def handover(plant: PlantFile = None, state: StateFolder = None, store: StoreAddress = "") -> None:
+def handover(plant: RunningPlant = None, state: StateFolder = None, store: StoreAddress = "") -> None:
     """Have the standby of a plant lead it: what is at work is held, and goes on there.
 
     From any host that reaches the plant's database. Exit status: 0 the other one leads, 1 it could not be.
@@ -21,12 +39,9 @@ def handover(plant: PlantFile = None, state: StateFolder = None, store: StoreAdd
     try:
         before = others.leader()
         if not before.leads:
-            raise StartError(f"Nobody leads the plant of {others.name}; start it with `arboleda up`.")
+            raise StartError(NOBODY_LEADS(plant=others.name))
         if not before.standbys:
-            raise StartError(
-                f"Nobody waits to lead the plant of {others.name}: start `arboleda up --standby` on"
-                " another host."
-            )
+            raise StartError(NOBODY_WAITS(plant=others.name))
         others.ask_for_handover()
         began = now = time.monotonic()
         free_at = None
@@ -36,15 +51,12 @@ def handover(plant: PlantFile = None, state: StateFolder = None, store: StoreAdd
                 free_at = now
             if leader.epoch != before.epoch and leader.leads:
                 gap_s = now - (free_at or now)
-                print(
-                    f"process {leader.process} on {leader.host} leads the plant now, {now - began:.1f} s"
-                    f" after it was asked; for {gap_s:.1f} s of them nobody did"
-                )
+                seconds, gap = f"{now - began:.1f}", f"{gap_s:.1f}"
+                process, host = leader.process, leader.host
+                print(say(LEADS_NOW(process=process, host=host, seconds=seconds, gap=gap)))
                 return
             time.sleep(LOOK_S)
-        raise ArboledaError(
-            f"After {PATIENCE_S:g} s process {before.process} on {before.host} still leads the plant; its"
-            " log says why."
-        )
+        seconds = f"{PATIENCE_S:g}"
+        raise ArboledaError(STILL_LEADS(seconds=seconds, process=before.process, host=before.host))
     finally:
         others.close()

@@ -13,11 +13,13 @@ import typer
 import yaml
 
 from arboleda.model.errors import ConfigError
-from arboleda.model.outside import among, plain
+from arboleda.model.outside import plain
+from arboleda.model.sentence import Phrase
 from arboleda.playback.record_text import moment, sentence_of
 from arboleda.recorder.errors import NoRecord
 from arboleda.runtime.state import find_running
 
+from .language import allowed, say, word
 from .plant_options import PlantFile, StateFolder, folder
 from .record import last_of
 
@@ -33,10 +35,15 @@ HOW = "Times are local, with date. What a plant that runs did last is in its rec
 EXIT = "Exit status: 0 shown, 2 no record, one that cannot be read, or no such cell."
 File = Annotated[
     Path | None,
-    typer.Argument(metavar="[FILE]", help="A file of the record of one start. [default: all records]"),
+    typer.Argument(metavar="FILE", help="A file of the record of one start. [default: all records]"),
 ]
 NEWS = frozenset({"held", "stopped", "aborted"})  # states of cells that nothing else says
 Told = tuple[str, int, bytes]  # topic, ns of Unix time, content
+LEFT_OUT = Phrase("cli.logs.left_out", "left out: {error}")
+NO_SUCH_CELL = Phrase("cli.logs.no_cell", "no record has a cell '{cell}'; {others}")
+WAS_AWAY = Phrase("cli.logs.was_away", "the plant was away for {seconds} s")
+DEFECT = Phrase("cli.logs.defect", "internal error in {where} ({error})")
+REFUSED_VERB = Phrase("cli.logs.refused", "{verb} {scope} was refused: {why}")
 
 
 def add_to(cli: typer.Typer) -> None:
@@ -46,8 +53,10 @@ def add_to(cli: typer.Typer) -> None:
 
 def logs(
     file: File = None,
-    follow: Annotated[bool, typer.Option("--follow", "-f", help="Go on while the plant runs.")] = False,
-    cell: Annotated[str | None, typer.Option(metavar="CELL", help="What concerns this cell only.")] = None,
+    follow: Annotated[
+        bool, typer.Option("--follow", "-f", help="Go on showing what happens while the plant runs.")
+    ] = False,
+    cell: Annotated[str | None, typer.Option(metavar="CELL", help="Only what concerns this cell.")] = None,
     plant: PlantFile = None,
     state: StateFolder = None,
 ) -> None:
@@ -87,7 +96,7 @@ def _starts(last: Path) -> list[Path]:
         try:
             reader.opened(first_of[epoch])
         except NoRecord as error:
-            typer.echo(plain(f"left out: {error}", LONGEST), err=True)
+            typer.echo(plain(say(LEFT_OUT(error=str(error))), LONGEST), err=True)
         else:
             found.append(first_of[epoch])
     return found
@@ -103,12 +112,12 @@ def _refuse_unknown(cell: str, paths: list[Path]) -> None:
         content = yaml.safe_load(recorded.contents.get(recorded.plant, b"")) or {}
         known |= dict.fromkeys(content.get("cells", {}))
     if known and cell not in known:
-        raise ConfigError((f"no record has a cell '{cell}'; {among(cell, known)}",))
+        raise ConfigError((say(NO_SUCH_CELL(cell=cell, others=allowed(cell, known))),))
 
 
 def _all(record: Any) -> Iterator[Told]:
     for opened in record.readers():
-        yield from opened.told(STEPS, EVENTS)
+        yield from opened.messages_of(STEPS, EVENTS)
 
 
 def _followed(path: Path, state: Path) -> Iterator[Told]:
@@ -121,7 +130,7 @@ def _followed(path: Path, state: Path) -> Iterator[Told]:
         with closing(reader.PartReader(first)) as opened:
             while True:
                 runs = find_running(state) is not None
-                yield from opened.told(STEPS, EVENTS)
+                yield from opened.messages_of(STEPS, EVENTS)
                 if opened.read.whole or not runs:
                     break
                 time.sleep(LOOK_S)
@@ -135,8 +144,11 @@ def _followed(path: Path, state: Path) -> Iterator[Told]:
 def _lines(topic: str, message: dict[str, Any]) -> Iterator[tuple[str | None, str]]:
     """The lines of a message, each with its cell, None for all of them."""
     if topic == EVENTS and message["kind"] == "cell" and message["what"] in NEWS:
-        why = sentence_of(message["sentence"])
-        yield message["cell"], f"{message['what']:<9} {message['subject']}" + (f"  {why}" if why else "")
+        why = sentence_of(message["sentence"], say)
+        yield (
+            message["cell"],
+            f"{word('cell_state', message['what']):<9} {message['subject']}" + (f"  {why}" if why else ""),
+        )
     for row in message["messages"] if topic == STEPS else ():
         write = WRITERS.get(row["type"])
         if write is not None and (line := write(row)):
@@ -144,25 +156,25 @@ def _lines(topic: str, message: dict[str, Any]) -> Iterator[tuple[str | None, st
 
 
 def _task(row: dict[str, Any]) -> str:
-    why = sentence_of(row.get("sentence"))
-    return f"{row['state']:<9} {row['text']}" + (f"  {why}" if why else "")
+    why = sentence_of(row.get("sentence"), say)
+    return f"{word('task_state', row['state']):<9} {row['text']}" + (f"  {why}" if why else "")
 
 
 def _act(row: dict[str, Any]) -> str:
-    return sentence_of(row["sentence"])
+    return sentence_of(row["sentence"], say)
 
 
 def _refusal(row: dict[str, Any]) -> str:
-    why = sentence_of(row.get("refusal"))
-    return f"{row['verb']} {row['scope'] or 'plant'} was refused: {why}" if why else ""
+    why = sentence_of(row.get("refusal"), say)
+    return say(REFUSED_VERB(verb=row["verb"], scope=row["scope"] or "plant", why=why)) if why else ""
 
 
 def _absence(row: dict[str, Any]) -> str:
-    return f"the plant was away for {row['seconds']:.1f} s"
+    return say(WAS_AWAY(seconds=f"{row['seconds']:.1f}"))
 
 
 def _defect(row: dict[str, Any]) -> str:
-    return f"internal error in {row['cell'] or 'plant'} ({row['error']})"
+    return say(DEFECT(where=row["cell"] or "plant", error=row["error"]))
 
 
 WRITERS = {

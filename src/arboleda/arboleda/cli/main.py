@@ -19,12 +19,14 @@ from rich.text import Text
 
 from arboleda import __version__
 from arboleda.adapters.broker_login import PASSWORD, TLS_PORT, USER, address, login
+from arboleda.client.errors import Conflict, NoAnswer
 from arboleda.core import text
 from arboleda.model.errors import ArboledaError, ConfigError, QueueFull, StartError, TextError
 from arboleda.model.messages import TaskState
 from arboleda.model.outside import plain
 from arboleda.model.plant_model import Link, PlantModel
-from arboleda.plant_file import advance_check, loader, plant_check, tree_file
+from arboleda.model.sentence import Phrase
+from arboleda.plant_file import loader
 from arboleda.plant_file.urdf import robot_urdf
 from arboleda.plant_file.versions import Versions
 from arboleda.recorder.errors import NoRecord
@@ -41,9 +43,13 @@ from . import (
     backup,
     bench,
     certs,
+    check,
     examples,
+    exercise,
+    fault,
     handover,
     logs,
+    mcp,
     new,
     nodes,
     oee,
@@ -63,9 +69,17 @@ from . import conformance as conformance
 from . import firmware_config as firmware_config
 from . import simulate as simulate
 from .client import PlantClient, PlantGone
-from .line import PlantSilent, VerbRefused
+from .language import say, say_error, say_row, word
 from .overview import Overview
-from .plant_options import PlantFile, StateFolder, StoreAddress, TokensFile, client, folder
+from .plant_options import (
+    PlantFile,
+    RunningPlant,
+    StateFolder,
+    StoreAddress,
+    TokensFile,
+    client,
+    folder,
+)
 from .screen import table
 
 if TYPE_CHECKING:
@@ -75,6 +89,32 @@ if TYPE_CHECKING:
 FAILED, BAD_INPUT = 1, 2
 UNDONE = {TaskState.FAILED.value, TaskState.CANCELLED.value}
 LONGEST = 1000  # characters of a line on the terminal
+
+TASK_OVER = Phrase("cli.task_over", "the task #{id} is over; give another id to do it once more")
+IS_HELD = Phrase("cli.run.beside", "{held} To have it do this, type:")
+ANOTHER_PLANT = Phrase(
+    "cli.run.another",
+    "Another plant beside it needs a directory and, on ROS 2, a domain of its own: "
+    "ROS_DOMAIN_ID=N {command} ...",
+)
+NEEDS_CERTIFICATE = Phrase("cli.up.needs_certificate", "{option} needs a certificate: --tls-cert FILE")
+CA_NEEDS_TLS = Phrase(
+    "cli.up.ca_needs_tls", "--broker-ca is for boards that speak TLS: it needs --broker-tls"
+)
+TWO_BROKERS = Phrase(
+    "cli.up.two_brokers",
+    "--broker names another broker, --broker-host opens the plant's own: choose one",
+)
+HOST_AND_USERS = Phrase(
+    "cli.up.host_and_users", "--broker-host and --broker-users go together: who may log in, and where"
+)
+TLS_NEEDS_HOST = Phrase(
+    "cli.up.tls_needs_host", "--broker-tls is for boards of other machines: it needs --broker-host"
+)
+RATE_IS_VIRTUAL = Phrase("cli.up.rate", "--rate is for virtual boards; the others have the speed they have")
+DEMO_IS_VIRTUAL = Phrase("cli.up.demo", "--demo has boards fail, so it is for virtual ones alone")
+WITHOUT_ROS = Phrase("cli.up.without_ros", "Without ROS 2, over MQTT alone: {why}")
+SIMULATED = Phrase("cli.up.simulated", "{names}: simulated; with --boards real their drivers reach them")
 
 cli = typer.Typer(
     cls=Overview,
@@ -108,7 +148,7 @@ def _public_url(value: str | None) -> str | None:
 
 
 def _rate(value: float) -> float:
-    return _or_bad_parameter(check_rate, value)
+    return float(_or_bad_parameter(check_rate, value))
 
 
 def _or_bad_parameter(check: Any, value: Any) -> Any:
@@ -163,7 +203,7 @@ BrokerCa = Annotated[
     Path | None,
     typer.Option(
         metavar="FILE",
-        help="Have them show a certificate of this authority as well, with their name; needs --broker-tls.",
+        help="Have boards show a certificate of this authority as well, with their name; needs --broker-tls.",
     ),
 ]
 TlsCert = Annotated[
@@ -179,7 +219,7 @@ TlsKey = Annotated[
     typer.Option(
         metavar="FILE",
         envvar="ARBOLEDA_TLS_KEY",
-        help="Its key. [default: in the file of --tls-cert]",
+        help="Key of that certificate. [default: in the file of --tls-cert]",
         show_default=False,
     ),
 ]
@@ -187,8 +227,9 @@ BoardsOption = Annotated[
     Boards | None,
     typer.Option(
         "--boards",
-        help="Start virtual boards, the firmware's as programs (SCARA), virtual ones beside real drivers, "
-        "or expect real ones. [default: virtual; real with --broker-host]",
+        help="Which devices answer: virtual boards (virtual), the firmware as programs (linux, SCARA arms), "
+        "real drivers beside virtual boards (drivers), or real ones (real). [default: virtual; real with "
+        "--broker-host]",
     ),
 ]
 Rate = Annotated[
@@ -226,7 +267,8 @@ PublicUrl = Annotated[
     typer.Option(
         metavar="URL",
         callback=_public_url,
-        help="How people reach a proxy before the HTTP API, e.g. https://plant.example; demands a token.",
+        help="Address of a proxy before the HTTP API, e.g. https://plant.example; everybody then needs "
+        "a token.",
     ),
 ]
 Groot2 = Annotated[
@@ -248,7 +290,9 @@ DemoOption = Annotated[
     bool,
     typer.Option("--demo", help="Give tasks without end, and have a virtual board fail now and then."),
 ]
-Tasks = Annotated[list[str] | None, typer.Argument(help="Tasks to begin with, e.g. 'sis_a 0B 7'.")]
+Tasks = Annotated[
+    list[str] | None, typer.Argument(metavar="TASK", help="Tasks to begin with, e.g. 'sis_a 0B 7'.")
+]
 
 
 @cli.command()
@@ -295,7 +339,9 @@ def up(
 
 @cli.command()
 def run(
-    tasks: Annotated[list[str], typer.Argument(help="Tasks to do, e.g. 'sis_a 0B 7' 'sis_b 1C 3'.")],
+    tasks: Annotated[
+        list[str], typer.Argument(metavar="TASK", help="Tasks to do, e.g. 'sis_a 0B 7' 'sis_b 1C 3'.")
+    ],
     plant: PlantFile = None,
     ros: Ros = None,
     ros_lan: RosLan = False,
@@ -332,11 +378,13 @@ def run(
 
 @cli.command()
 def submit(
-    task: Annotated[str, typer.Argument(help="The task, e.g. 'sis_a 0B 7' or 'sis_a 0B 7 #lot42'.")],
+    task: Annotated[
+        str, typer.Argument(metavar="TASK", help="The task, e.g. 'sis_a 0B 7' or 'sis_a 0B 7 #lot42'.")
+    ],
     wait: Annotated[
         bool, typer.Option("--wait", help="Print what becomes of it until it has ended.")
     ] = False,
-    plant: PlantFile = None,
+    plant: RunningPlant = None,
     state: StateFolder = None,
     store: StoreAddress = "",
     tokens: TokensFile = None,
@@ -351,7 +399,7 @@ def submit(
     answer = reached.submit(task)
     _print_task(answer)
     if answer["state"] in UNDONE:
-        _complain(ArboledaError(f"the task #{answer['id']} is over; give another id to do it once more"))
+        _complain(ArboledaError(TASK_OVER(id=answer["id"])))
         raise typer.Exit(FAILED)
     if not wait:
         return
@@ -364,14 +412,16 @@ def submit(
 
 def _print_task(row: dict[str, Any]) -> None:
     choice = row.get("choice") if row["state"] == TaskState.QUEUED.value else ""
-    remarks = "; ".join(each for each in (choice, row["sentence"]) if each)
-    line = f"{row['state']}: {row['text']} (id {row['id']})" + (f"  {remarks}" if remarks else "")
+    remarks = "; ".join(each for each in (choice, say_row(row)) if each)
+    line = f"{word('task_state', row['state'])}: {row['text']} (id {row['id']})" + (
+        f"  {remarks}" if remarks else ""
+    )
     print(plain(line, LONGEST), flush=True)
 
 
 @cli.command()
 def status(
-    plant: PlantFile = None,
+    plant: RunningPlant = None,
     state: StateFolder = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print the whole snapshot as JSON.")] = False,
     watch: Annotated[bool, typer.Option("--watch", help="Show what changes, until Ctrl-C.")] = False,
@@ -402,7 +452,7 @@ def _watch(reached: PlantClient, *, as_json: bool) -> None:
             return
         with Live(console=Console(highlight=False), auto_refresh=False) as live:
             for _ in reached.changes():
-                with suppress(PlantSilent):  # it may end between a change and the table of it
+                with suppress(NoAnswer):  # it may end between a change and the table of it
                     live.update(table(reached.status()), refresh=True)
 
 
@@ -415,42 +465,7 @@ bench.add_to(cli)
 verbs.add_to(cli)
 
 
-@cli.command()
-def check(
-    file: Annotated[
-        Path, typer.Argument(metavar="FILE", help="The plant file to check, or a file of trees, *.xml.")
-    ],
-    plant: Annotated[
-        Path | None,
-        typer.Option("--plant", metavar="FILE", help="The plant whose devices a tree is to tell what to do."),
-    ] = None,
-    cell: nodes.CellName = None,
-    ends: Annotated[
-        bool, typer.Option("--ends", help="Say what is so once a task of each recipe is done.")
-    ] = False,
-) -> None:
-    """Check a plant file, or behavior trees in the XML of BehaviorTree.CPP; every problem at once, each with
-    its line. Exit status: 0 good, 2 problems.
-
-    Trees are checked without a plant: leaves that nobody here knows are listed, not refused. With --plant
-    they have to be nodes of its devices, which `arboleda nodes` lists.
-    """
-    if tree_file.is_tree_file(file):
-        known = None if plant is None else nodes.of_plant(loader.load(plant), cell)
-        print("\n".join(tree_file.report(file, known)))
-        return
-    if plant is not None or cell is not None:
-        raise typer.BadParameter("--plant and --cell are for files of trees, *.xml")
-    model, missed = loader.load_with_offers(file)
-    for note in loader.notes(model):
-        print(f"{file}: note: {note}")
-    for warning in plant_check.warnings(model):
-        print(f"{file}: warning: {warning}")
-    print(f"{file}: good: plant {model.name}; cells {', '.join(cell.name for cell in model.cells)}")
-    for line in (*loader.offers(model, missed), *(advance_check.ends(model) if ends else ())):
-        print(f"  {line}")
-
-
+check.add_to(cli)
 cli.command()(tree.tree)
 cli.command()(nodes.nodes)
 cli.command()(new.new)
@@ -461,13 +476,16 @@ cli.command()(tasks.tasks)
 cli.command()(oee.oee)
 cli.command()(certs.certs)
 cli.command()(handover.handover)
+cli.command()(fault.fault)
 cli.command()(site.site)
 backup.add_to(cli)
 cli.add_typer(service.cli, name="service")
 cli.add_typer(record.cli, name="record")
 cli.add_typer(virtual.cli, name="virtual")
+cli.add_typer(exercise.cli, name="exercise")
 replay.add_to(cli)
 report.add_to(cli)
+mcp.add_to(cli)
 logs.add_to(cli)
 
 
@@ -532,10 +550,9 @@ def _refuse_beside(tasks: list[str], plant: Path | None, state: Path | None) -> 
     raise StartError(
         "\n".join(
             [
-                f"{holder(where)} To have it do this, type:",
+                say(IS_HELD(held=holder(where))),
                 *(f"  {line}" for line in lines),
-                f"Another plant beside it needs a directory and, on ROS 2, a domain of its own: "
-                f"ROS_DOMAIN_ID=N {beside} ...",
+                say(ANOTHER_PLANT(command=beside)),
             ]
         )
     )
@@ -551,11 +568,10 @@ class _Certificates:
         self.by_broker: ServerTls | None = None
         self.notes: tuple[str, ...] = ()
         if certificate is None and (key is not None or broker_tls):
-            raise typer.BadParameter(
-                f"{'--broker-tls' if broker_tls else '--tls-key'} needs a certificate: --tls-cert FILE"
-            )
+            option = "--broker-tls" if broker_tls else "--tls-key"
+            raise typer.BadParameter(say(NEEDS_CERTIFICATE(option=option)))
         if broker_ca is not None and not broker_tls:
-            raise typer.BadParameter("--broker-ca is for boards that speak TLS: it needs --broker-tls")
+            raise typer.BadParameter(say(CA_NEEDS_TLS()))
         if certificate is None:
             return
         from arboleda.adapters.server_tls import server_tls
@@ -581,13 +597,11 @@ def _options(
     from arboleda.runtime.build import Options  # slow to load, and only needed to run a plant
 
     if broker and host:
-        raise typer.BadParameter(
-            "--broker names another broker, --broker-host opens the plant's own: choose one"
-        )
+        raise typer.BadParameter(say(TWO_BROKERS()))
     if (host is None) != (users is None):
-        raise typer.BadParameter("--broker-host and --broker-users go together: who may log in, and where")
+        raise typer.BadParameter(say(HOST_AND_USERS()))
     if shown.by_broker is not None and host is None:
-        raise typer.BadParameter("--broker-tls is for boards of other machines: it needs --broker-host")
+        raise typer.BadParameter(say(TLS_NEEDS_HOST()))
     return Options(
         broker=broker,
         broker_host=host or "127.0.0.1",
@@ -623,9 +637,9 @@ def _run(
 
     boards = boards or (Boards.REAL if options.broker_users else Boards.VIRTUAL)
     if boards is not Boards.VIRTUAL and options.rate != 1.0:
-        raise typer.BadParameter("--rate is for virtual boards; the others have the speed they have")
+        raise typer.BadParameter(say(RATE_IS_VIRTUAL()))
     if boards is not Boards.VIRTUAL and options.demo:
-        raise typer.BadParameter("--demo has boards fail, so it is for virtual ones alone")
+        raise typer.BadParameter(say(DEMO_IS_VIRTUAL()))
     is_virtual = boards in (Boards.VIRTUAL, Boards.LINUX)
     if is_virtual:
         options = replace(options, notes=(*options.notes, *_virtual(model)))
@@ -679,21 +693,20 @@ def _ros(model: PlantModel, wanted: bool | None, *, lan: bool) -> tuple[Any, tup
     except session.RosMissing as error:
         if wanted or lan or any(robot.link is Link.ROS for robot in model.robots.values()):
             raise
-        return None, (f"Without ROS 2, over MQTT alone: {error}",)
+        return None, (say(WITHOUT_ROS(why=error.sentence)),)
 
 
 def _virtual(model: PlantModel) -> tuple[str, ...]:
     """The note on devices whose drivers are not used."""
-    names = ", ".join(robot.name for robot in model.driven)
-    how = "simulated; with --boards real their drivers reach them"
-    return (f"{names}: {how}",) if names else ()
+    names = tuple(robot.name for robot in model.driven)
+    return (say(SIMULATED(names=names)),) if names else ()
 
 
 def main() -> None:
     """The entry point: prints any trouble as one sentence on standard error."""
     try:
         cli(prog_name="arboleda")
-    except (ConfigError, NoRecord, TextError, QueueFull, VerbRefused) as error:
+    except (ConfigError, NoRecord, TextError, QueueFull, Conflict) as error:
         _complain(error)
         sys.exit(BAD_INPUT)
     except ArboledaError as error:
@@ -702,5 +715,5 @@ def main() -> None:
 
 
 def _complain(error: ArboledaError) -> None:
-    lines = "\n".join(plain(line, LONGEST) for line in f"arboleda: {error}".splitlines())
+    lines = "\n".join(plain(line, LONGEST) for line in f"arboleda: {say_error(error)}".splitlines())
     Console(stderr=True, highlight=False).print(Text(lines, style="red"), soft_wrap=True)

@@ -12,11 +12,32 @@ import typer
 
 from arboleda.model.errors import ConfigError, StartError
 from arboleda.model.outside import quoted
+from arboleda.model.sentence import Phrase
 from arboleda.plant_file.shapes import PLANT_NAME_RULE, is_plant_name
 from arboleda.runtime import invocation
 
+from .language import say
+
 # by what they are called here; pytest must not take the tests of the new plant for tests of Arboleda
 WRITTEN = {"plant.yaml": "plant.yaml", "recipes.py": "recipes.py", "tests_of_plant.py": "test_plant.py"}
+WROTE = Phrase("cli.wrote", "wrote {file}")
+NAME_RULE = Phrase("cli.new.name_rule", PLANT_NAME_RULE)
+BAD_NAME = Phrase("cli.new.bad_name", "{name} cannot be the name of a plant; it must be {rule}")
+IS_THERE = Phrase("cli.new.is_there", "{file} is there already; nothing was written. Choose another folder")
+NOT_WRITTEN = Phrase("cli.new.not_written", "{folder} cannot be written: {error}")
+NEXT = Phrase(
+    "cli.new.next",
+    """
+What is wrong with it, line by line:
+  {command} check {plant}
+On virtual devices, with a page:
+  {command} up "cell press feed 3" --plant {plant}
+With faults; the first line once, for pytest has to be beside Arboleda:
+  {python} -m pip install pytest
+  {python} -m pytest {folder}
+
+What the devices can do is in plant.yaml, what they do together in recipes.py. Change them, check again.""",
+)
 NAMED = "PLANT"  # stands for the plant's name in what is written
 
 
@@ -29,26 +50,16 @@ def new(
     written = write(folder)
     command, plant = invocation.command(), shlex.quote(str(written[0]))
     for file in written:
-        typer.echo(f"wrote {file}")
-    typer.echo(
-        f"""
-What is wrong with it, line by line:
-  {command} check {plant}
-On virtual devices, with a page:
-  {command} up "cell press feed 3" --plant {plant}
-With faults; the first line once, for pytest has to be beside Arboleda:
-  {invocation.python()} -m pip install pytest
-  {invocation.python()} -m pytest {shlex.quote(str(folder))}
-
-What the devices can do is in plant.yaml, what they do together in recipes.py. Change them, check again."""
-    )
+        typer.echo(say(WROTE(file=str(file))))
+    python, named = invocation.python(), shlex.quote(str(folder))
+    typer.echo(say(NEXT(command=command, plant=plant, python=python, folder=named)))
 
 
 def write(folder: Path) -> list[Path]:
     """The files of a new plant; errors are those of `write_files`, and ConfigError for a bad name."""
     name = folder.resolve().name
     if not is_plant_name(name):
-        raise ConfigError((f"{quoted(name)} cannot be the name of a plant; it must be {PLANT_NAME_RULE}",))
+        raise ConfigError((say(BAD_NAME(name=quoted(name), rule=NAME_RULE())),))
     starter = files("arboleda").joinpath("starter")
     texts = {called: starter.joinpath(source).read_text("utf-8") for source, called in WRITTEN.items()}
     return write_files(folder, {called: text.replace(NAMED, name) for called, text in texts.items()})
@@ -63,11 +74,11 @@ def write_files(folder: Path, texts: Mapping[str, str]) -> list[Path]:
     targets = {folder / called: text for called, text in texts.items()}
     there = next((each for each in targets if each.exists()), None)
     if there is not None:
-        raise ConfigError((f"{there} is there already; nothing was written. Choose another folder",))
+        raise ConfigError((say(IS_THERE(file=str(there))),))
     try:
         for target, text in targets.items():
             target.parent.mkdir(parents=True, exist_ok=True)
             target.write_text(text, "utf-8")
     except OSError as error:
-        raise StartError(f"{folder} cannot be written: {error.strerror or error}") from error
+        raise StartError(NOT_WRITTEN(folder=str(folder), error=str(error.strerror or error))) from error
     return list(targets)

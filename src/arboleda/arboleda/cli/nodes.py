@@ -13,9 +13,11 @@ from arboleda.bt_xml.recipe import own_nodes
 from arboleda.model.plant_model import PlantModel
 from arboleda.plant_file import loader
 
+from .language import allowed, say
 from .plant_options import PlantFile
+from .tree import NO_CELL
 
-CellName = Annotated[str | None, typer.Option("--cell", help="Those of one cell. [default: of all]")]
+CellName = Annotated[str | None, typer.Option("--cell", help="Only for this cell. [default: for all]")]
 
 
 def nodes(
@@ -42,7 +44,7 @@ def of_plant(model: PlantModel, cell: str | None) -> Mapping[str, Kind]:
     """The kinds of nodes of a plant, or of one of its cells, by name; those in Python with them."""
     names = [each.name for each in model.cells]
     if cell is not None and cell not in names:
-        raise typer.BadParameter(f"'{cell}' is not a cell; there are {', '.join(names)}", param_hint="--cell")
+        raise typer.BadParameter(say(NO_CELL(name=cell, others=allowed(cell, names))), param_hint="--cell")
     chosen = [each for each in model.cells if cell in (None, each.name)]
     return leaves.of_cells(chosen, own_nodes(model.recipes).values())
 

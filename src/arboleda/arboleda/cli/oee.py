@@ -13,24 +13,37 @@ from rich.table import Table
 from rich.text import Text
 
 from arboleda.model.outside import plain
+from arboleda.model.sentence import Phrase
 from arboleda.store.oee_rows import OeeQuery
 from arboleda.views.oee import Oee
 
 from . import plant_options
-from .plant_options import PlantFile, StateFolder, StoreAddress
+from .language import say
+from .plant_options import RunningPlant, StateFolder, StoreAddress
 from .tasks import moment
 
-HEADINGS = ("cell", "OEE", "availability", "performance", "quality", "planned", "done", "failed")
+HEADINGS = (
+    Phrase("cli.oee.cell", "cell"),
+    Phrase("cli.oee.oee", "OEE"),
+    Phrase("cli.oee.availability", "availability"),
+    Phrase("cli.oee.performance", "performance"),
+    Phrase("cli.oee.quality", "quality"),
+    Phrase("cli.oee.planned", "planned"),
+    Phrase("cli.oee.done", "done"),
+    Phrase("cli.oee.failed", "failed"),
+)
+NO_CELL = Phrase("cli.oee.no_cell", "no cell had a task in that time")
+SINCE = Phrase("cli.oee.since", "since {begin}")
 
 
 def oee(
     cell: Annotated[str, typer.Option(metavar="CELL", help="Only this cell.")] = "",
     since: Annotated[
-        str, typer.Option(metavar="TIME", help="From then on: 8h ago, 7d, or 2026-11-21T06:00.")
+        str, typer.Option(metavar="TIME", help="From then on: 8h (eight hours ago), 7d, or 2026-11-21T06:00.")
     ] = "24h",
     until: Annotated[str | None, typer.Option(metavar="TIME", help="Until then. [default: now]")] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print an object per line.")] = False,
-    plant: PlantFile = None,
+    plant: RunningPlant = None,
     state: StateFolder = None,
     store: StoreAddress = "",
 ) -> None:
@@ -49,19 +62,19 @@ def oee(
         return
     console = Console(highlight=False)
     if not rows:
-        console.print("no cell had a task in that time")
+        console.print(say(NO_CELL()))
         return
     console.print(_table(rows))
     for row in rows:
         if row.missing is not None:
-            console.print(Text(f"{plain(row.cell)}: {row.missing}"), soft_wrap=True)
+            console.print(Text(f"{plain(row.cell)}: {say(row.missing)}"), soft_wrap=True)
 
 
 def _table(rows: Sequence[Oee]) -> Table:
     begin = datetime.fromtimestamp(max(row.since_s for row in rows)).isoformat(sep=" ", timespec="minutes")
-    drawn = Table(box=None, pad_edge=False, title=f"since {begin}", title_justify="left")
+    drawn = Table(box=None, pad_edge=False, title=say(SINCE(begin=begin)), title_justify="left")
     for heading in HEADINGS:
-        drawn.add_column(heading, overflow="fold")
+        drawn.add_column(say(heading()), overflow="fold")
     for row in rows:
         shares = (row.oee, row.availability, row.performance, row.quality)
         numbers = (f"{row.planned_s / 3600:.1f} h", str(row.done), str(row.failed))

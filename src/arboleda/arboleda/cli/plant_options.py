@@ -22,10 +22,32 @@ if TYPE_CHECKING:
     from arboleda.store.postgres.leadership import Leadership
 
 LONGEST = 500  # characters of a line
+IN_FOLDER = Path("plant.yaml")  # as `arboleda new` calls it
+
+
+def plant_here(named: Path | None) -> Path | None:
+    """The plant file that was named, else that of the working directory; None where there is none: the
+    shipped plant."""
+    return IN_FOLDER if named is None and IN_FOLDER.is_file() else named
+
+
 PlantFile = Annotated[
     Path | None,
     typer.Option(
-        "--plant", metavar="FILE", envvar="ARBOLEDA_PLANT", help="Plant file. [default: the shipped plant]"
+        "--plant",
+        metavar="FILE",
+        envvar="ARBOLEDA_PLANT",
+        callback=plant_here,
+        help=f"Plant file. [default: {IN_FOLDER} of this folder, else the shipped plant]",
+    ),
+]
+RunningPlant = Annotated[
+    Path | None,
+    typer.Option(
+        "--plant",
+        metavar="FILE",
+        envvar="ARBOLEDA_PLANT",
+        help=f"Plant file. [default: {IN_FOLDER} of this folder if it runs, else the plant that runs]",
     ),
 ]
 StateFolder = Annotated[
@@ -79,9 +101,13 @@ def client(
 
 
 def located(plant: Path | None, state: Path | None) -> Path:
-    """The `folder`; where neither is named and the shipped plant does not run, that of the only plant that
-    runs, else of the only one that other hosts may lead, which is said then."""
+    """The `folder`; where neither is named, that of the plant file in the working directory if it runs, else
+    of the shipped plant if that does, else of the only plant that runs, else of the only one that other hosts
+    may lead. Of the last two it is said which it is."""
     named = folder(plant, state)
+    here = None if plant or state else plant_here(None)
+    if here is not None and find_running(beside := folder(here, None)) is not None:
+        return beside
     if plant is not None or state is not None or find_running(named) is not None:
         return named
     found, why = running_plants(), "that runs"

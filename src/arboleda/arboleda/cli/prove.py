@@ -10,15 +10,17 @@ from typing import Annotated
 
 import typer
 
+from arboleda.model.sentence import Phrase
 from arboleda.plant_file.user_file import check_writable
 
-from .plant_options import StateFolder, folder
+from .language import say
+from .plant_options import IN_FOLDER, StateFolder, folder, plant_here
 
 BUDGET = "10m"
 HELP = f"""Try every single fault at every moment of every recipe, and judge each run.
 
 \b
-arboleda prove                          the shipped plant, for {BUDGET}
+arboleda prove                          the plant of this folder, for {BUDGET}
 arboleda prove my_plant.yaml            your plant; what is kept is not run again
 arboleda prove my_plant.yaml --recipe weigh --budget all
 arboleda prove my_plant.yaml --html out.html --tests test_found.py
@@ -34,7 +36,12 @@ SECONDS = {"s": 1.0, "m": 60.0, "h": 3600.0}
 ALL = "all"
 
 PlantArgument = Annotated[
-    Path | None, typer.Argument(metavar="[PLANT]", help="Plant file. [default: the shipped plant]")
+    Path | None,
+    typer.Argument(
+        metavar="PLANT",
+        callback=plant_here,
+        help=f"Plant file. [default: {IN_FOLDER} of this folder, else the shipped plant]",
+    ),
 ]
 Recipes = Annotated[
     list[str] | None,
@@ -71,7 +78,7 @@ Tests = Annotated[
 Badge = Annotated[
     Path | None, typer.Option("--badge", metavar="FILE", help="Write a badge as SVG, for one's own README.")
 ]
-Anew = Annotated[bool, typer.Option("--anew", help="Run again what is kept from before, too.")]
+Anew = Annotated[bool, typer.Option("--anew", help="Run again also what was run before.")]
 Pairs = Annotated[
     bool,
     typer.Option(
@@ -79,10 +86,21 @@ Pairs = Annotated[
         help="Then try two faults in one run, the most likely ones first, for the rest of the budget.",
     ),
 ]
+Mend = Annotated[
+    bool,
+    typer.Option(
+        "--mend",
+        help="Then look for a change of the files that mends what is found: each is tried, for some minutes.",
+    ),
+]
 Jobs = Annotated[
     int | None,
     typer.Option(metavar="N", min=1, help="How many processes share the runs. [default: one per processor]"),
 ]
+PAIRS_TAKE = Phrase(
+    "cli.prove.pairs_take", "--pairs: all pairs take years; give a --budget that is a time, not {all}"
+)
+NO_BUDGET = Phrase("cli.prove.no_budget", "--budget: {budget} is no time; write 30s, 10m, 2h or {all}")
 
 
 def add_to(cli: typer.Typer) -> None:
@@ -101,13 +119,15 @@ def prove(
     tests: Tests = None,
     badge: Badge = None,
     pairs: Pairs = False,
+    mend: Mend = False,
     anew: Anew = False,
     jobs: Jobs = None,
     state: StateFolder = None,
 ) -> None:
     from arboleda.campaigns import screen  # the simulator takes a while to load
-    from arboleda.campaigns.proof.proof_campaign import ProofCampaign, ProofRequest
+    from arboleda.campaigns.proof.proof_campaign import ProofCampaign
     from arboleda.campaigns.proof.proof_lines import STANDARD_OUTPUT, ProofLines
+    from arboleda.campaigns.proof.proof_request import ProofRequest
     from arboleda.campaigns.workers import processors
 
     is_read_along = json is not None and str(json) == STANDARD_OUTPUT
@@ -116,7 +136,7 @@ def prove(
         if file is not None:
             check_writable(file)
     if pairs and budget == ALL:
-        raise typer.BadParameter(f"--pairs: all pairs take years; give a --budget that is a time, not {ALL}")
+        raise typer.BadParameter(say(PAIRS_TAKE(all=ALL)))
     request = ProofRequest(
         plant=plant,
         recipes=tuple(recipe or ()),
@@ -125,6 +145,7 @@ def prove(
         folder=folder(plant, state) / "prove",
         anew=anew,
         pairs=pairs,
+        mend=mend,
         json=json,
         html=html,
         junit=junit,
@@ -142,5 +163,5 @@ def seconds_of(budget: str) -> float:
         return math.inf
     found = BUDGETS.fullmatch(budget)
     if found is None:
-        raise typer.BadParameter(f"--budget: {budget!r} is no time; write 30s, 10m, 2h or {ALL}")
+        raise typer.BadParameter(say(NO_BUDGET(budget=repr(budget), all=ALL)))
     return float(found[1]) * SECONDS[found[2]]

@@ -11,13 +11,14 @@ from typing import Annotated, Any
 
 import typer
 
-from arboleda.model.counting import counted
 from arboleda.model.errors import ConfigError
 from arboleda.model.messages import ENDED
 from arboleda.model.outside import plain
+from arboleda.model.sentence import Phrase, Sentence
 from arboleda.playback.record_text import moment
 from arboleda.recorder.errors import NoRecord
 
+from .language import say, word
 from .overview import WholeSentences
 from .plant_options import PlantFile, StateFolder, folder
 
@@ -25,7 +26,7 @@ LONGEST = 300  # characters of a line
 EXIT = "Exit status: 0 done, 2 no record, or one that cannot be read."
 File = Annotated[
     Path | None,
-    typer.Argument(metavar="[FILE]", help="A file of the record. [default: the plant's last record]"),
+    typer.Argument(metavar="FILE", help="A file of the record. [default: the plant's last record]"),
 ]
 cli = typer.Typer(
     cls=WholeSentences,
@@ -33,6 +34,48 @@ cli = typer.Typer(
     no_args_is_help=True,
     rich_markup_mode=None,
 )
+NO_RECORD_YET = Phrase(
+    "cli.record.none_yet",
+    "{folder} has no record: a plant that runs writes one, but for `record: off`",
+)
+NO_RECORD = Phrase("cli.record.none", "{folder} has no record")
+FIRST_GONE = Phrase("cli.record.first_gone", "its first {number} files are gone")
+WRITTEN_BY = Phrase("cli.record.written_by", "plant {plant}, written by Arboleda {version}, start {epoch}")
+SPAN = Phrase("cli.record.span", "from {begin} to {end}: {steps} steps")
+SIZE = Phrase("cli.record.size", "{files} files, {megabytes} MB")
+PLANT_FILES = Phrase("cli.record.plant_files", "plant file: {files}")
+TASKS = Phrase("cli.record.tasks", "tasks: {counts}")
+NONE_ENDED = Phrase("cli.record.none_ended", "none ended")
+OPEN = Phrase("cli.record.open", "{number} open")
+ONLY_READ = Phrase(
+    "cli.record.only_read",
+    "its first {number} files are gone, to make room: it can be read, but not replayed",
+)
+ENDS_EARLY = Phrase("cli.record.ends_early", "it ends early: {why}")
+NOT_CLOSED = Phrase(
+    "cli.record.not_closed",
+    "it was not closed: its plant runs, or was killed; `arboleda record recover` makes it whole",
+)
+HAS_STEPS = Phrase("cli.record.has_steps", "{file} has {steps} steps")
+HAS_STEPS_UNTIL = Phrase("cli.record.has_steps_until", "{file} has {steps} steps; the last is of {time}")
+HAS_STEPS_SIZE = Phrase("cli.record.has_steps_size", "{file} has {steps} steps, {megabytes} MB")
+HAS_KB = Phrase("cli.record.has_kb", "{file} has {kilobytes} kB")
+BAD_ENDING = Phrase("cli.record.bad_ending", "{file}: must end in {endings}")
+TASK_OF = Phrase("cli.record.task_of", "{file}: --task ID is for files that end in .btlog or .yaml")
+OF_ONE_TASK = Phrase("cli.record.of_one_task", "{file}: a .btlog is of one task; say which with --task ID")
+NOT_REPLAYED = Phrase(
+    "cli.record.not_replayed",
+    "{file} cannot be replayed, only read: its first {number} files were deleted to make room.",
+)
+CASE = Phrase("cli.record.case", "{file} has {tasks}, {acts}, {faults} in {seconds} s")
+COUNTS = {  # of one, and of more or none
+    "tasks": (Phrase("cli.record.task", "{number} task"), Phrase("cli.record.tasks_of", "{number} tasks")),
+    "acts": (
+        Phrase("cli.record.act", "{number} act of operators"),
+        Phrase("cli.record.acts", "{number} acts of operators"),
+    ),
+    "faults": (Phrase("cli.record.fault", "{number} fault"), Phrase("cli.record.faults", "{number} faults")),
+}
 
 
 def last_of(file: Path | None, plant: Path | None, state: Path | None) -> Path:
@@ -44,7 +87,7 @@ def last_of(file: Path | None, plant: Path | None, state: Path | None) -> Path:
     where = folder(plant, state) / files.FOLDER
     parts = files.parts_in(where)
     if not parts:
-        raise ConfigError((f"{where} has no record: a plant that runs writes one, but for `record: off`",))
+        raise ConfigError((say(NO_RECORD_YET(folder=str(where))),))
     return parts[-1].path
 
 
@@ -58,7 +101,7 @@ def list_records(plant: PlantFile = None, state: StateFolder = None) -> None:
     for part in files.parts_in(where):
         records.setdefault(part.epoch, []).append(part)
     if not records:
-        print(plain(f"{where} has no record", LONGEST))
+        print(plain(say(NO_RECORD(folder=str(where))), LONGEST))
     for parts in records.values():
         print(plain(_row(parts), LONGEST))
 
@@ -74,7 +117,7 @@ def _row(parts: list[Any]) -> str:
         return f"{'?':<28}{size}  {parts[0].path}  {error}"
     began = moment(read.first.began_ns)
     lasted = timedelta(seconds=max(0, round(ended_s - read.first.began_ns / 1e9)))
-    rest = f"  its first {read.missing} files are gone" if read.missing else ""
+    rest = f"  {say(FIRST_GONE(number=read.missing))}" if read.missing else ""
     return f"{began:<20}{lasted!s:>16}{size}  {parts[0].path}{rest}"
 
 
@@ -116,25 +159,27 @@ def info(file: File = None, plant: PlantFile = None, state: StateFolder = None) 
 def _lines(record: Any, found: Summary) -> Iterator[str]:
     first = record.first
     began = first.beginning
-    yield f"plant {began.plant}, written by Arboleda {began.version}, start {began.epoch}"
-    yield f"from {moment(first.began_ns)} to {moment(found.until_ns)}: {found.steps} steps"
-    yield f"{len(record.paths)} files, {sum(path.stat().st_size for path in record.paths) / 1e6:.1f} MB"
-    yield f"plant file: {', '.join(began.files.contents)}"
+    yield say(WRITTEN_BY(plant=began.plant, version=began.version, epoch=began.epoch))
+    yield say(SPAN(begin=moment(first.began_ns), end=moment(found.until_ns), steps=found.steps))
+    size = sum(path.stat().st_size for path in record.paths)
+    yield say(SIZE(files=len(record.paths), megabytes=f"{size / 1e6:.1f}"))
+    yield say(PLANT_FILES(files=tuple(began.files.contents)))
     states = [row["state"] for row in found.tasks.values()]
     ended = [state.value for state in ENDED if state.value in states]
-    counts = ", ".join(f"{states.count(state)} {state}" for state in sorted(ended))
+    counts = ", ".join(f"{states.count(state)} {word('task_state', state)}" for state in sorted(ended))
     open_ = sum(state not in ended for state in states)
-    yield f"tasks: {counts or 'none ended'}{f', {open_} open' if open_ else ''}"
+    left = [say(OPEN(number=open_))] if open_ else []
+    yield say(TASKS(counts=", ".join([counts or say(NONE_ENDED()), *left])))
     if record.missing:
-        yield f"its first {record.missing} files are gone, to make room: it can be read, but not replayed"
+        yield say(ONLY_READ(number=record.missing))
     if record.broken:
-        yield f"it ends early: {record.broken}"
+        yield say(ENDS_EARLY(why=str(record.broken)))
     elif record.last is None or not record.last.whole:
-        yield "it was not closed: its plant runs, or was killed; `arboleda record recover` makes it whole"
+        yield say(NOT_CLOSED())
 
 
 @cli.command(
-    help=f"Write a whole file of one that was not closed, for other tools.\n\n{EXIT}",
+    help=f"Write a whole file from a record that was not closed, for other tools.\n\n{EXIT}",
     short_help="Write a whole file of one that was not closed.",
 )
 def recover(
@@ -148,8 +193,8 @@ def recover(
     record = reader.alone(file)
     target = output or file.with_name(f"{file.stem}.recovered.mcap")
     count = copying.as_mcap(record, target, record.first.numbers)
-    until = f"; the last is of {moment(record.last_ns)}" if count else ""
-    print(plain(f"{target} has {count} steps{until}", LONGEST))
+    last = HAS_STEPS_UNTIL(file=str(target), steps=count, time=moment(record.last_ns)) if count else None
+    print(plain(say(last or HAS_STEPS(file=str(target), steps=count)), LONGEST))
 
 
 EXPORT = "Write a record to one file: MCAP, to be kept or replayed elsewhere, or lines of JSON (.jsonl)."
@@ -158,8 +203,8 @@ OF_TASK = (
     "`arboleda record export lot42.btlog --task lot42`."
 )
 OF_CASE = (
-    "Or a case of the simulator, of all or of a task: `arboleda record export night.yaml`, then "
-    "`arboleda simulate --faults night.yaml`."
+    "Or a case for the simulator, of the whole record or of a task: `arboleda record export night.yaml`, "
+    "then `arboleda simulate --faults night.yaml`."
 )
 OUTPUTS = (".mcap", ".jsonl", ".btlog", ".yaml")
 
@@ -179,16 +224,17 @@ def export(
     from arboleda.recorder import copying, reader
 
     if output.suffix not in OUTPUTS:
-        raise ConfigError((f"{output}: must end in {', '.join(OUTPUTS[:-1])} or {OUTPUTS[-1]}",))
+        raise ConfigError((say(BAD_ENDING(file=str(output), endings=OUTPUTS)),))
     if task is not None and output.suffix not in (".btlog", ".yaml"):
-        raise ConfigError((f"{output}: --task ID is for files that end in .btlog or .yaml",))
+        raise ConfigError((say(TASK_OF(file=str(output))),))
     if task is None and output.suffix == ".btlog":
-        raise ConfigError((f"{output}: a .btlog is of one task; say which with --task ID",))
+        raise ConfigError((say(OF_ONE_TASK(file=str(output))),))
     record = reader.opened(last_of(file, plant, state))
     if output.suffix == ".btlog":
         from arboleda.playback import btlog_export
 
-        print(plain(f"{output} has {btlog_export.write(record, task or '', output) / 1e3:.1f} kB", LONGEST))
+        size = btlog_export.write(record, task or "", output)
+        print(plain(say(HAS_KB(file=str(output), kilobytes=f"{size / 1e3:.1f}")), LONGEST))
         return
     if output.suffix == ".yaml":
         _export_case(record, task, output)
@@ -197,11 +243,12 @@ def export(
     else:
         _say_exported(output, copying.as_mcap(record, output, record.numbers))
     if record.broken:
-        print(plain(f"it ends early: {record.broken}", LONGEST))
+        print(plain(say(ENDS_EARLY(why=str(record.broken))), LONGEST))
 
 
 def _say_exported(output: Path, count: int) -> None:
-    print(plain(f"{output} has {count} steps, {output.stat().st_size / 1e6:.1f} MB", LONGEST))
+    megabytes = f"{output.stat().st_size / 1e6:.1f}"
+    print(plain(say(HAS_STEPS_SIZE(file=str(output), steps=count, megabytes=megabytes)), LONGEST))
 
 
 def _export_case(record: Any, task: str | None, output: Path) -> None:
@@ -211,12 +258,16 @@ def _export_case(record: Any, task: str | None, output: Path) -> None:
 
     check_new(output)
     if record.missing:
-        gone = f"its first {record.missing} files were deleted to make room"
-        raise NoRecord(f"{record.paths[0]} cannot be replayed, only read: {gone}.")
+        raise NoRecord(say(NOT_REPLAYED(file=str(record.paths[0]), number=record.missing)))
     case = case_of(record, task)
     writing.write(output, writing.as_yaml(case, record.first.beginning, output.name))
     tasks = sum(act.task is not None for act in case.people)
     acts = len(case.people) - tasks
-    faults = counted(len(case.faults), "fault")
-    people = f"{counted(tasks, 'task')}, {counted(acts, 'act')} of operators"
-    print(plain(f"{output} has {people}, {faults} in {case.seconds:.1f} s", LONGEST))
+    made = _counted("tasks", tasks), _counted("acts", acts), _counted("faults", len(case.faults))
+    line = CASE(file=str(output), seconds=f"{case.seconds:.1f}", tasks=made[0], acts=made[1], faults=made[2])
+    print(plain(say(line), LONGEST))
+
+
+def _counted(of: str, number: int) -> Sentence:
+    one, more = COUNTS[of]
+    return (one if number == 1 else more)(number=number)

@@ -38,8 +38,7 @@ LONGEST = 500  # characters of a line
 SHOWN = 120  # characters of a value that differs
 WHAT = "Execute a record again, and compare every step with what it was."
 HOW = (
-    "The plant file of the record and the files of Python that it uses are those that are run: replay only "
-    "records that you trust."
+    "It runs the plant file and the Python files that are in the record: replay only records that you trust."
 )
 EXIT = (
     "Exit status: 0 all steps are equal, or all of a fork happens as recorded; 1 something does not, or is "
@@ -80,29 +79,33 @@ def replay(
         typer.Option(
             "--plant",
             metavar="FILE",
-            help="Another plant file: where it first does otherwise, or what it does in a fork.",
+            help="Take another plant file: where it first acts otherwise, or what it does in a fork.",
         ),
     ] = None,
     fork_at: Annotated[
         str | None,
-        typer.Option(metavar="TIME", help="From there on with virtual devices: what is otherwise."),
+        typer.Option(
+            metavar="TIME", help="Go on from there with virtual devices, and say what turns out otherwise."
+        ),
     ] = None,
     setting: Annotated[
         list[str] | None,
-        typer.Option("--set", metavar="KEY=VALUE", help="A fork with another value: timing.stale_after_s=3"),
+        typer.Option(
+            "--set", metavar="KEY=VALUE", help="A fork with another value, e.g. timing.stale_after_s=3."
+        ),
     ] = None,
     recipe: Annotated[
         Path | None,
-        typer.Option(metavar="FILE", help="A fork whose new tasks have the recipes of this file of Python."),
+        typer.Option(metavar="FILE", help="A fork whose new tasks take their recipes from this Python file."),
     ] = None,
     healthy: Annotated[
-        bool, typer.Option("--healthy", help="A fork in which nothing befalls devices any more.")
+        bool, typer.Option("--healthy", help="A fork in which devices have no faults any more.")
     ] = False,
     page: Annotated[
         bool, typer.Option("--page", help="Look at it on the page, from --until or the end of --task on.")
     ] = False,
     port: Annotated[
-        int | None, typer.Option(metavar="PORT", min=0, max=65535, help="Of the page. [default: 8080]")
+        int | None, typer.Option(metavar="PORT", min=0, max=65535, help="Port of the page. [default: 8080]")
     ] = None,
     state: StateFolder = None,
 ) -> None:
@@ -229,7 +232,7 @@ def _run(record: Record, model: PlantModel, chosen: Chosen) -> ReplayedStep | No
     plant = plant_of(record.first.beginning, model, versions_of(record))
     for last in replayed(plant, _until(record, chosen.until_ns)):
         pace.wait(last.recorded.now)
-        rows = [row for row in changes(last.recorded.said) if chosen.task in (None, row["task"])]
+        rows = [row for row in changes(last.recorded.result) if chosen.task in (None, row["task"])]
         for row in rows:
             known = True
             _say(f"{moment(last.recorded.unix_ns, 'milliseconds')} {_line(row)}")

@@ -9,9 +9,12 @@ import typer
 
 from arboleda.model.errors import ConfigError
 from arboleda.model.outside import plain
+from arboleda.model.sentence import Phrase
 from arboleda.recorder.errors import NoRecord
 
+from .language import say, word
 from .plant_options import PlantFile, StateFolder, folder
+from .record import HAS_KB
 
 LONGEST = 300  # characters of a line
 WHAT = "Write why a task failed: one HTML file, without network, in English and Spanish."
@@ -20,6 +23,10 @@ HOW = (
     "trust. The plant may run meanwhile."
 )
 EXIT = "Exit status: 0 written, 2 no such task, one that has not failed, or no record that can be replayed."
+GONE = Phrase("cli.report.gone", "{file} cannot be replayed: its first files were deleted.")
+NOT_FAILED = Phrase("cli.report.not_failed", "{task}: it is {state}, so there is nothing to report")
+NO_STATE = Phrase("cli.report.no_state", "{task}: its state is unknown, so there is nothing to report")
+UNWRITTEN = Phrase("cli.report.unwritten", "{file}: cannot be written: {error}")
 
 
 def add_to(cli: typer.Typer) -> None:
@@ -46,15 +53,17 @@ def report(
     where = folder(plant, state) / FOLDER if record is None else record.parent
     found = read(task, record, where)
     if found.record.missing:
-        raise NoRecord(f"{found.record.paths[0]} cannot be replayed: its first files were deleted.")
+        raise NoRecord(say(GONE(file=str(found.record.paths[0]))))
     if found.incident.failure is None:
-        state_now = found.incident.state.value if found.incident.state else "unknown"
-        raise ConfigError((f"{plain(task, 80)}: it is {state_now}, so there is nothing to report",))
+        named, state_now = plain(task, 80), found.incident.state
+        shown = NOT_FAILED(task=named, state=word("task_state", state_now.value)) if state_now else None
+        raise ConfigError((say(shown or NO_STATE(task=named)),))
     target = output or Path(f"{plain(task, 80).replace('/', '_')}.html")
     cause, content = made(found)
     try:
         target.write_text(content, "utf-8")
     except OSError as error:
-        raise ConfigError((f"{target}: cannot be written: {error.strerror}",)) from error
-    print(plain(str(cause.sentence), LONGEST))
-    print(plain(f"{target} has {len(content.encode()) / 1e3:.0f} kB", LONGEST))
+        raise ConfigError((say(UNWRITTEN(file=str(target), error=str(error.strerror))),)) from error
+    print(plain(say(cause.sentence), LONGEST))
+    size = f"{len(content.encode()) / 1e3:.0f}"
+    print(plain(say(HAS_KB(file=str(target), kilobytes=size)), LONGEST))

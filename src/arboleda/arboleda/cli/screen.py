@@ -23,26 +23,61 @@ from arboleda.model.facts import Value, shown
 from arboleda.model.messages import TaskChanged, TaskState
 from arboleda.model.outside import plain
 from arboleda.model.plant_model import MotionState
-from arboleda.model.sentence import Sentence
+from arboleda.model.sentence import Phrase, Sentence
 from arboleda.views import view
+
+from .language import say, word
 
 REFRESH_HZ = 5
 LONGEST = 1000  # characters of one text
 OUTPUT_BYTES = 10_000_000  # of the file that standard output goes to; it goes on once the file is emptied
 EFFECTOR = "effector"
-SWITCHED = {True: "on", False: "off"}  # as an effector is, where other facts are so or not
+SWITCHED = {  # as an effector is, where other facts are so or not
+    True: Phrase("cli.status.on", "on"),
+    False: Phrase("cli.status.off", "off"),
+}
+TRUE = {True: Phrase("cli.status.yes", "yes"), False: Phrase("cli.status.no", "no")}
 MOST_ANSWERS = 3  # of a task that runs
 ROLES = 3  # so many columns of robots a row of a cell may have; more are told below, a row for each
-SHORT = ("cell", "state", "task", "time")  # columns that take one line, however narrow the terminal is
 STATES = {
-    None: "?",
-    MotionState.STOPPED: "still",
-    MotionState.MOVING: "at work",
-    MotionState.FAULT: "fault",
-    MotionState.NOT_HOMED: "not homed",
-    MotionState.STOP_LATCHED: "latched",
-    MotionState.NO_LINK: "no link",
+    None: Phrase("cli.status.unknown", "?"),
+    MotionState.STOPPED: Phrase("cli.status.still", "still"),
+    MotionState.MOVING: Phrase("cli.status.at_work", "at work"),
+    MotionState.FAULT: Phrase("cli.status.fault", "fault"),
+    MotionState.NOT_HOMED: Phrase("cli.status.not_homed", "not homed"),
+    MotionState.STOP_LATCHED: Phrase("cli.status.latched", "latched"),
+    MotionState.NO_LINK: Phrase("cli.status.no_link", "no link"),
 }
+OFFLINE = Phrase("cli.status.offline", "offline")
+PLANT = Phrase("cli.status.plant", "plant {name}")
+CELL = Phrase("cli.status.cell", "cell")
+STATE = Phrase("cli.status.state", "state")
+TASK = Phrase("cli.status.task", "task")
+STEP = Phrase("cli.status.step", "step")
+TIME = Phrase("cli.status.time", "time")
+DEVICE = Phrase("cli.status.device", "device")
+KIND = Phrase("cli.status.kind", "kind")
+SAYS = Phrase("cli.status.says", "says")
+LAST_COMMAND = Phrase("cli.status.last_command", "last command")
+ZONE = Phrase("cli.status.zone", "zone")
+ROBOT = Phrase("cli.status.robot", "robot")
+WAITING = Phrase("cli.status.waiting", "waiting")
+HELD_BY = Phrase("cli.status.held_by", "held by {cell}")
+NODE = Phrase("cli.status.node", "node {node}")
+IS_ASKED = Phrase("cli.status.is_asked", "{person} is asked, {seconds} s left: {question}")
+HEARD = Phrase("cli.status.heard", "{cell} heard: {answers}")
+LATCHED = Phrase("cli.status.stop_latched", "stop (software) latched: {robots}; clear, then reset")
+STANDS = Phrase("cli.status.stands", "{cell} is {state}; {advice}")
+TO_DO = Phrase("cli.status.to_do", "{cell}: {advice}")
+FULL = Phrase("cli.log.full", "this file has {megabytes} MB and gets no more lines; they go on in {file}")
+LEFT_OVER = Phrase("cli.parting.left_over", "{cell}: {task} is left for the next start")
+LEFT_OFFLINE = Phrase("cli.parting.offline", "{robot}: offline, not known to be still{grip}")
+LEFT_STILL = Phrase("cli.parting.still", "{robot}: still{grip}")
+LEFT_MOVING = Phrase("cli.parting.moving", "{robot}: NOT confirmed still{grip}")
+SUMMARY = Phrase("cli.summary", "summary")
+OUTCOME = Phrase("cli.summary.outcome", "outcome")
+REASON = Phrase("cli.summary.reason", "reason")
+SHORT = (CELL, STATE, TASK, TIME)  # columns that take one line, however narrow the terminal is
 STATE_WIDTH = 9  # letters of a task's state at the beginning of its line
 STANDING = {"idle": "", "execute": "cyan", **dict.fromkeys(("manual", "paused", "blocked"), "yellow")}
 STYLES = {
@@ -92,8 +127,8 @@ class Screen:
         """True if the output is a file that has grown too large, as years of a service make it. Said once."""
         before, self._full = self._full, _size(self.console) >= OUTPUT_BYTES
         if self._full and not before:
-            grown = f"this file has {OUTPUT_BYTES // 1_000_000} MB and gets no more lines"
-            self.console.print(Text(f"{grown}; they go on in {self._log_file}"))
+            full = FULL(megabytes=OUTPUT_BYTES // 1_000_000, file=str(self._log_file))
+            self.console.print(Text(say(full)))
         return self._full
 
     def stepped(self, snapshot: dict[str, Any], at: float) -> None:
@@ -102,7 +137,7 @@ class Screen:
             return
         for cell in snapshot["cells"]:
             if cell["step"] != self._steps.get(cell["name"]) and cell["step"] is not None:
-                self.say(_words(f"  {cell['name']}: {cell['step']}"), at)
+                self.say(_words(f"  {cell['name']}: {say(cell['step'])}"), at)
             self._steps[cell["name"]] = cell["step"]
         for robot in snapshot["robots"]:
             question_id = robot["question"] and robot["question"]["id"]
@@ -117,11 +152,21 @@ def logged(line: logging.LogRecord) -> Text:
     change = getattr(line, "change", None)
     if change is None:
         style = "dim" if line.levelno < logging.WARNING else "yellow"
-        return Text(line.getMessage(), style="red" if line.levelno >= logging.ERROR else style)
-    text = Text(line.getMessage())
+        sentence = getattr(line, "sentence", None)
+        said = line.getMessage() if sentence is None else plain(say(sentence), LONGEST)
+        return Text(said, style="red" if line.levelno >= logging.ERROR else style)
+    text = Text(_of_task(change))
     text.stylize(STYLES[change.state], 0, STATE_WIDTH)
     text.stylize("bold", STATE_WIDTH + 1, STATE_WIDTH + 1 + len(change.text))
     return text
+
+
+def _of_task(change: TaskChanged) -> str:
+    """The line on a change of a task."""
+    why = f"  {say(change.sentence)}" if change.sentence else ""
+    cause = f" ({word('reason', change.reason.value)})" if change.reason else ""
+    state = word("task_state", change.state.value)
+    return plain(f"{state:<{STATE_WIDTH}} {change.text}{why}{cause}", LONGEST)
 
 
 def table(snapshot: dict[str, Any]) -> Group:
@@ -129,8 +174,8 @@ def table(snapshot: dict[str, Any]) -> Group:
     questions to people, answers to the tasks that run, and obstacles."""
     robots = {robot["name"]: robot for robot in snapshot["robots"]}
     columns = _columns(snapshot["cells"])
-    headings = ["cell", "state", "task", "step", *columns, "time"]
-    title = _words(f"plant {snapshot['plant']}", "italic")
+    headings = [*map(_said, (CELL, STATE, TASK, STEP)), *columns, _said(TIME)]
+    title = _words(PLANT(name=snapshot["plant"]), "italic")
     drawn = _table(headings, title=title, title_justify="left")
     for cell in snapshot["cells"]:
         drawn.add_row(*_row(cell, robots, by_role=bool(columns)))
@@ -144,9 +189,14 @@ def table(snapshot: dict[str, Any]) -> Group:
 
 def _table(headings: list[str], **settings: Any) -> Table:
     drawn = Table(box=SIMPLE_HEAD, padding=(0, 1, 0, 0), **settings)
+    short = {_said(each) for each in SHORT}
     for heading in headings:
-        drawn.add_column(heading, no_wrap=heading in SHORT)
+        drawn.add_column(heading, no_wrap=heading in short)
     return drawn
+
+
+def _said(phrase: Phrase) -> str:
+    return say(phrase())
 
 
 def _columns(cells: list[dict[str, Any]]) -> list[str]:
@@ -162,13 +212,13 @@ def _heading(device: dict[str, Any]) -> str:
 
 def _devices(cells: list[dict[str, Any]], robots: dict[str, dict[str, Any]]) -> Table:
     """The table of the devices: state, facts and last command of each."""
-    drawn = _table(["cell", "device", "kind", "state", "says", "last command"])
+    drawn = _table([*map(_said, (CELL, DEVICE, KIND, STATE, SAYS, LAST_COMMAND))])
     for _, device in view.devices_once(cells):
         name = device["name"]
         robot = robots[name]
-        state = STATES[robot["state"]] if robot["online"] else "offline"
+        state = _said(STATES[robot["state"]] if robot["online"] else OFFLINE)
         having = [cell["name"] for cell in cells if any(each["name"] == name for each in cell["devices"])]
-        held = [f"held by {robot['holder']}"] if robot.get("holder") else []
+        held = [say(HELD_BY(cell=robot["holder"]))] if robot.get("holder") else []
         words = (
             ", ".join(having),
             name,
@@ -185,7 +235,7 @@ def _told(robot: dict[str, Any]) -> str:
     command, answer = robot["command"], robot["answer"]
     if command is None:
         return ""
-    line = f"{command['what']}: {command['state']}"
+    line = f"{say(command['what'])}: {word('command_state', command['state'])}"
     return line if answer is None else f"{line}, {answered(answer)}"
 
 
@@ -199,23 +249,23 @@ def place(robot: dict[str, Any]) -> list[str]:
     """The reported position of a robot; empty if it reports none."""
     if robot["q"] is not None:
         return [joints(robot)]
-    return [] if robot["node"] is None else [f"node {robot['node']}"]
+    return [] if robot["node"] is None else [say(NODE(node=robot["node"]))]
 
 
 def fact(name: str, value: Value | None) -> str:
     """A fact for a person; `?` if it was not reported yet."""
     if value is None:
         return "?"
-    return SWITCHED[value] if name == EFFECTOR and isinstance(value, bool) else answered(value)
+    return _said(SWITCHED[value]) if name == EFFECTOR and isinstance(value, bool) else answered(value)
 
 
 def answered(value: Value) -> str:
-    return ("yes" if value else "no") if isinstance(value, bool) else shown(value)
+    return _said(TRUE[value]) if isinstance(value, bool) else shown(value)
 
 
 def _words(text: str | Sentence, style: str = "") -> Text:
     """A text of a snapshot, perhaps of another program: without markup and codes that a terminal obeys."""
-    return Text(plain(str(text), LONGEST), style=style)
+    return Text(plain(say(text), LONGEST), style=style)
 
 
 def _size(console: Console) -> int:
@@ -230,11 +280,16 @@ def _size(console: Console) -> int:
 def _zones(zones: list[dict[str, Any]]) -> Table:
     """The table of the shared zones: the robot in each, and those that wait for it."""
     drawn = Table(box=SIMPLE_HEAD, padding=(0, 1, 0, 0))
-    for heading in ("zone", "state", "robot", "waiting"):
-        drawn.add_column(heading)
+    for heading in (ZONE, STATE, ROBOT, WAITING):
+        drawn.add_column(_said(heading))
     for each in zones:
         style = {"free": "dim", "quarantined": "red"}.get(each["state"], "")
-        words = (each["zone"], each["state"], each["robot"] or "", ", ".join(each["waiting"]))
+        words = (
+            each["zone"],
+            word("zone_state", each["state"]),
+            each["robot"] or "",
+            ", ".join(each["waiting"]),
+        )
         drawn.add_row(*(_words(word, style) for word in words))
     return drawn
 
@@ -246,12 +301,19 @@ def _row(cell: dict[str, Any], robots: dict[str, dict[str, Any]], *, by_role: bo
     style = STANDING.get(standing, "red")
     tasks = [task["text"].removeprefix(f"{cell['name']} ")] if task else []
     tasks += [f"+{len(cell['queue'])}"] if cell["queue"] else []
-    words = (cell["name"], view.standing_said(cell), " ".join(tasks), cell["step"] or "")
+    words = (cell["name"], _standing(cell), " ".join(tasks), cell["step"] or "")
     return [
         *(_words(word, style) for word in words),
         *(_of(robots[device["name"]], device["holds"]) for device in (cell["devices"] if by_role else ())),
         Text(f"{task['elapsed_s']:.1f} s" if task else "", style=style),
     ]
+
+
+def _standing(cell: dict[str, Any]) -> str:
+    """The word for a cell's state, and for an idle cell that cannot work."""
+    state, stands = str(cell["state"]), view.standing(cell)
+    known = word("cell_state", state if stands == state else stands)
+    return view.standing_text(cell) if known in (state, stands) else known
 
 
 def _of(robot: dict[str, Any], holds: str | None) -> Text:
@@ -266,14 +328,18 @@ def _question(robot: dict[str, Any]) -> list[str]:
     question = robot["question"]
     if question is None:
         return []
-    line = f"{robot['name']} is asked, {question['left_s']:.0f} s left: {question['text']}"
-    return [line, *(f"  {_command(robot['name'], question['id'], answer)}" for answer in question["answers"])]
+    left = f"{question['left_s']:.0f}"
+    line = IS_ASKED(person=robot["name"], seconds=left, question=question["text"])
+    return [
+        say(line),
+        *(f"  {_command(robot['name'], question['id'], answer)}" for answer in question["answers"]),
+    ]
 
 
 def _answers(cell: dict[str, Any]) -> list[str]:
     """The last answers to the task of a cell."""
     answers = (cell["task"] or {}).get("answers", [])[-MOST_ANSWERS:]
-    return [f"{cell['name']} heard: {heard(answers)}"] if answers else []
+    return [say(HEARD(cell=cell["name"], answers=heard(answers)))] if answers else []
 
 
 def heard(answers: Iterable[Mapping[str, Any]]) -> str:
@@ -287,24 +353,26 @@ def _command(person: str, question: str, answer: str) -> str:
     return shlex.join(["arboleda", "answer", "--question", question, *dashes, person, answer])
 
 
-def _in_the_way(snapshot: dict[str, Any]) -> list[str]:
+def _in_the_way(snapshot: dict[str, Any]) -> list[Sentence | str]:
     held = [why for cell in snapshot["cells"] if (why := _why(cell))]
     latched = [each["name"] for each in snapshot["robots"] if each.get("latched")]
-    stopped = [f"stop (software) latched: {', '.join(latched)}; clear, then reset"] if latched else []
-    return held + stopped + _obstacles(snapshot)
+    stopped = [LATCHED(robots=tuple(latched))] if latched else []
+    return [*held, *stopped, *_obstacles(snapshot)]
 
 
-def _why(cell: dict[str, Any]) -> str | None:
+def _why(cell: dict[str, Any]) -> Sentence | str | None:
     """The obstacle of a cell and its remedy; a latch is reported for all robots together."""
     if cell["state"] == CellState.STOPPED and cell["advice"]:
-        return f"{cell['name']} is {cell['state']}; {cell['advice'][0]['said']}"
+        return STANDS(
+            cell=cell["name"], state=word("cell_state", cell["state"]), advice=cell["advice"][0]["said"]
+        )
     return cell["held_by"] or cell["not_ready"] or _to_do_by_hand(cell)
 
 
-def _to_do_by_hand(cell: dict[str, Any]) -> str | None:
+def _to_do_by_hand(cell: dict[str, Any]) -> Sentence | None:
     """The first advice to a person at a cell that takes tasks all the same."""
     first = next(iter(cell["advice"]), None)
-    return f"{cell['name']}: {first['said']}" if first is not None and first["hand"] else None
+    return TO_DO(cell=cell["name"], advice=first["said"]) if first is not None and first["hand"] else None
 
 
 def _obstacles(snapshot: dict[str, Any]) -> list[str]:
@@ -333,25 +401,25 @@ def parting(snapshot: dict[str, Any]) -> list[str]:
     heard = [robot for robot in robots if robot["age_s"] is not None]
     left = [_left(robot, holds[robot["name"]]) for robot in heard]
     tasks = [cell for cell in snapshot["cells"] if cell["task"] is not None and snapshot["ending"]]
-    return left + [f"{cell['name']}: {cell['task']['text']} is left for the next start" for cell in tasks]
+    return left + [say(LEFT_OVER(cell=cell["name"], task=cell["task"]["text"])) for cell in tasks]
 
 
 def _left(robot: dict[str, Any], holds: str | None) -> str:
     held = robot["facts"][holds] if holds else None
     grip = f", {holds} {fact(holds, held)}" if holds and held is not None else ""
     if not robot["online"]:
-        return f"{robot['name']}: offline, not known to be still{grip}"
+        return say(LEFT_OFFLINE(robot=robot["name"], grip=grip))
     still = robot["state"] in (MotionState.STOPPED, MotionState.NOT_HOMED, MotionState.STOP_LATCHED)
-    return f"{robot['name']}: {'still' if still else 'NOT confirmed still'}{grip}"
+    return say((LEFT_STILL if still else LEFT_MOVING)(robot=robot["name"], grip=grip))
 
 
 def summary(results: dict[str, TaskChanged], seconds: dict[str, float]) -> Table:
     """The table of outcomes of the tasks, in the order they were asked for; keys are task ids."""
-    drawn = Table(title="summary", title_justify="left")
-    for heading in ("task", "outcome", "time", "reason"):
-        drawn.add_column(heading)
+    drawn = Table(title=_said(SUMMARY), title_justify="left")
+    for heading in (TASK, OUTCOME, TIME, REASON):
+        drawn.add_column(_said(heading))
     for task, change in results.items():
         took = f"{seconds[task]:.1f} s" if task in seconds else ""
-        outcome = Text(change.state.value, style=STYLES[change.state])
+        outcome = Text(word("task_state", change.state.value), style=STYLES[change.state])
         drawn.add_row(_words(change.text), outcome, took, _words(change.sentence))
     return drawn

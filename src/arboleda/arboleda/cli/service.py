@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import getpass
 import os
-import pwd
 import shutil
 import subprocess
 import sys
@@ -14,6 +13,7 @@ from typing import Annotated
 
 import typer
 
+from arboleda.host.users import home_of
 from arboleda.model.errors import StartError
 from arboleda.model.outside import plain
 from arboleda.plant_file import loader
@@ -43,7 +43,7 @@ def install(
     words: Annotated[
         list[str] | None,
         typer.Argument(
-            metavar="[-- OPTIONS OF up]", help="How `arboleda up` is to be called, e.g. -- --boards real."
+            metavar="-- OPTIONS OF up", help="How `arboleda up` is to be called, e.g. -- --boards real."
         ),
     ] = None,
     plant: PlantFile = None,
@@ -217,8 +217,7 @@ def _state_of(plant: str, user: str | None) -> Path:
     """The state directory of a plant of this user."""
     if user is None:
         return default_state(plant)
-    try:
-        home = Path(pwd.getpwnam(user).pw_dir)
-    except KeyError as error:
-        raise StartError(f"this machine has no user {plain(user)}; name one with --user") from error
+    home = home_of(user)
+    if home is None:
+        raise StartError(f"this machine has no user {plain(user)}; name one with --user")
     return home / ".local/state/arboleda" / plant

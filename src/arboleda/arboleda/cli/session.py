@@ -16,6 +16,7 @@ from rich.text import Text
 
 from arboleda.model.errors import StartError
 from arboleda.model.outside import plain
+from arboleda.model.sentence import Phrase
 from arboleda.runtime import invocation
 from arboleda.runtime.build import App
 from arboleda.runtime.log_file import LogFile
@@ -23,11 +24,24 @@ from arboleda.runtime.log_queue import LogQueue, log_to
 from arboleda.runtime.waiting import interruptible, taken_from, until_interrupted
 
 from .errand import Errand
+from .language import say
 from .screen import LONGEST, Screen, logged, parting, summary
 
-NO_ROS = (
+NO_ROS = Phrase(
+    "cli.no_ros",
     "ROS 2 for Python is not installed here; install it with `pip install 'arboleda[ros]'`, "
-    "or source a ROS 2 installation"
+    "or source a ROS 2 installation",
+)
+ROS_BROKEN = Phrase("cli.ros_broken", "{no_ros} ({error})")
+STARTING = Phrase("cli.session.starting", "starting ...")
+STOPPING = Phrase("cli.session.stopping", "stopping: whatever moves is halted ...")
+WAITED = Phrase(
+    "cli.session.waited",
+    "After {seconds} s no task can begin without devices that are offline; "
+    "--wait-for-devices SECONDS waits longer:",
+)
+STAYS = Phrase(
+    "cli.session.stays", "The plant stays up for more tasks: {command} submit 'TASK'. Ctrl-C ends it."
 )
 
 
@@ -39,11 +53,11 @@ def ros_link(*, lan: bool) -> Any:
     """The ROS 2 link of the entry point `arboleda.links: ros`; RosMissing if there is none."""
     found = next(iter(entry_points(group="arboleda.links", name="ros")), None)
     if found is None:
-        raise RosMissing(NO_ROS)
+        raise RosMissing(NO_ROS())
     try:
         connect = found.load()
     except ImportError as error:
-        raise RosMissing(f"{NO_ROS} ({error})") from error
+        raise RosMissing(ROS_BROKEN(no_ros=NO_ROS(), error=str(error))) from error
     return connect(lan=lan)
 
 
@@ -115,7 +129,7 @@ class Session:
             news()
 
     def _start(self) -> None:
-        with self._console.status("starting ..."):
+        with self._console.status(say(STARTING())):
             self._app.start()
 
     def _tell_notes(self) -> None:
@@ -127,20 +141,19 @@ class Session:
             return
         self._console.print(summary(self._errand.results, self._errand.seconds))
         if self._errand.missing:
-            waited = f"After {self._patience_s:g} s no task can begin without devices that are offline"
-            self._console.print(Text(f"{waited}; --wait-for-devices SECONDS waits longer:", style="red"))
+            waited = WAITED(seconds=f"{self._patience_s:g}")
+            self._console.print(Text(say(waited), style="red"))
         for line in self._errand.missing:
-            self._console.print(Text(f"  {plain(str(line), LONGEST)}", style="red"), soft_wrap=True)
+            self._console.print(Text(f"  {plain(say(line), LONGEST)}", style="red"), soft_wrap=True)
         if not self._stay:
             self._app.end()
             return
-        hint = f"The plant stays up for more tasks: {invocation.command()} submit 'TASK'. Ctrl-C ends it."
-        self._console.print(Text(hint))
+        self._console.print(Text(say(STAYS(command=invocation.command()))))
 
     def _stop(self) -> None:
         """Halt everything and print the state in which each robot was left."""
         self._stopping = True
-        self._console.print(Text("stopping: whatever moves is halted ...", style="dim"))
+        self._console.print(Text(say(STOPPING()), style="dim"))
         self._app.stop()
         self._log.flush()
         self._news.put(None)

@@ -9,16 +9,18 @@ import typer
 from rich.text import Text
 
 from arboleda.campaigns.defaults import CYCLES, LEVEL, SEED, SEEDS
+from arboleda.model.sentence import Phrase
 from arboleda.plant_file.user_file import check_new, check_writable
 from arboleda.runtime.stores import refuse_without_library
 from arboleda.simulator.levels import CRASHES, LEVELS
 
-from .plant_options import StoreAddress
+from .language import say
+from .plant_options import IN_FOLDER, StoreAddress, plant_here
 
 HELP = f"""Run whole plants under virtual time, with faults drawn from a seed, and judge every step.
 
 \b
-arboleda simulate                            {SEEDS} seeds on two plants
+arboleda simulate                            {SEEDS} seeds on the plant of this folder, else on two
 arboleda simulate --plant my_plant.yaml      your plant
 arboleda simulate --drawn-plants             a plant of its own for each seed
 arboleda simulate --standby                  on two hosts, of which one stands by
@@ -38,7 +40,8 @@ Plant = Annotated[
     Path | None,
     typer.Option(
         metavar="FILE",
-        help="Plant file. [default: odd seeds the shipped plant, even seeds one with shared zones]",
+        help=f"Plant file. [default: {IN_FOLDER} of this folder, else odd seeds the shipped plant and even"
+        " seeds one with shared zones]",
     ),
 ]
 DrawnPlants = Annotated[
@@ -119,6 +122,17 @@ Worker = Annotated[
         help="Share the seeds with every worker of the same options: they are rows of the --store.",
     ),
 ]
+ONE_SEED = Phrase("cli.simulate.one_seed", "--trace and --record are for one seed; choose it with --seed")
+DRAWN_OR_PLANT = Phrase("cli.simulate.drawn_or_plant", "--drawn-plants and --plant exclude each other")
+STANDBY_OR_REVISIONS = Phrase(
+    "cli.simulate.standby_or_revisions", "--standby and --revisions exclude each other"
+)
+OWN_DEATHS = Phrase("cli.simulate.own_deaths", "--standby has deaths of its own: leave out --faults crashes")
+WORKER_ALONE = Phrase(
+    "cli.simulate.worker_alone",
+    "--worker needs --store, and is one process: not with --jobs, --trace, --record, --until-failure",
+)
+NO_KEEPING = Phrase("cli.simulate.no_keeping", "--keep-plant is not for a --worker, which shrinks nothing")
 
 
 def add_to(cli: typer.Typer) -> None:
@@ -156,15 +170,16 @@ def simulate(
 
     alone = trace or record is not None
     if alone and ((seeds or 1) > 1 or until_failure):
-        raise typer.BadParameter("--trace and --record are for one seed; choose it with --seed")
+        raise typer.BadParameter(say(ONE_SEED()))
     if drawn_plants and plant is not None:
-        raise typer.BadParameter("--drawn-plants and --plant exclude each other")
+        raise typer.BadParameter(say(DRAWN_OR_PLANT()))
     if standby and revisions:
-        raise typer.BadParameter("--standby and --revisions exclude each other")
+        raise typer.BadParameter(say(STANDBY_OR_REVISIONS()))
     if standby and faults == CRASHES:
-        raise typer.BadParameter("--standby has deaths of its own: leave out --faults crashes")
+        raise typer.BadParameter(say(OWN_DEATHS()))
     request = Request(
         plant=plant,
+        plant_here=plant_here(None),
         drawn_plants=drawn_plants,
         seed=seed,
         seeds=1 if alone else seeds,
@@ -176,11 +191,9 @@ def simulate(
         revises=revisions,
     )
     if worker and (not store or alone or until_failure or jobs is not None):
-        raise typer.BadParameter(
-            "--worker needs --store, and is one process: not with --jobs, --trace, --record, --until-failure"
-        )
+        raise typer.BadParameter(say(WORKER_ALONE()))
     if keep_plant is not None and worker:
-        raise typer.BadParameter("--keep-plant is not for a --worker, which shrinks nothing")
+        raise typer.BadParameter(say(NO_KEEPING()))
     if json is not None:
         check_writable(json)
     if record is not None:

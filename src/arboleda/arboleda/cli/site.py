@@ -20,7 +20,7 @@ if TYPE_CHECKING:  # they take a while to load, and only who shows a page needs 
 Addresses = Annotated[
     list[str] | None,
     typer.Argument(
-        metavar="[ADDRESS]...",
+        metavar="ADDRESS",
         help="Where plants are, e.g. http://127.0.0.1:8080. [default: those that run on this machine]",
         show_default=False,
     ),
@@ -57,7 +57,8 @@ Port = Annotated[
     ),
 ]
 PublicUrl = Annotated[
-    str | None, typer.Option(metavar="URL", help="How people reach a proxy before it; demands a token.")
+    str | None,
+    typer.Option(metavar="URL", help="Address of a proxy before the page; everybody then needs a token."),
 ]
 TlsCert = Annotated[
     Path | None,
@@ -70,7 +71,7 @@ TlsKey = Annotated[
     typer.Option(
         metavar="FILE",
         envvar="ARBOLEDA_TLS_KEY",
-        help="Its key. [default: in the file of --tls-cert]",
+        help="Key of that certificate. [default: in the file of --tls-cert]",
         show_default=False,
     ),
 ]

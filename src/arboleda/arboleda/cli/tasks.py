@@ -18,17 +18,34 @@ from rich.text import Text
 
 from arboleda.model.messages import TaskState
 from arboleda.model.outside import plain
+from arboleda.model.sentence import Phrase
 from arboleda.store.task_rows import History, TaskQuery, TaskRow, answers_of, choice_of, table, unchecked_of
 
 from . import plant_options
-from .plant_options import PlantFile, StateFolder, StoreAddress
+from .language import say, word
+from .plant_options import RunningPlant, StateFolder, StoreAddress
 from .screen import STYLES, heard
 
 AGO = re.compile(r"(\d{1,6})\s*([smhdw])")
 SECONDS = {"s": 1.0, "m": 60.0, "h": 3600.0, "d": 86_400.0, "w": 604_800.0}
 LOOK_S = 0.5  # a file tells nobody that it has changed
-HEADINGS = ("accepted", "by", "id", "task", "state", "tries", "took", "why")
-ANSWERS = "answers"  # a column, if a task of the list has any
+HEADINGS = {
+    "accepted": Phrase("cli.tasks.accepted", "accepted"),
+    "by": Phrase("cli.tasks.by", "by"),
+    "id": Phrase("cli.tasks.id", "id"),
+    "task": Phrase("cli.tasks.task", "task"),
+    "state": Phrase("cli.tasks.state", "state"),
+    "tries": Phrase("cli.tasks.tries", "tries"),
+    "took": Phrase("cli.tasks.took", "took"),
+    "why": Phrase("cli.tasks.why", "why"),
+}
+ANSWERS = Phrase("cli.tasks.answers", "answers")  # a column, if a task of the list has any
+NO_TIME = Phrase(
+    "cli.tasks.no_time",
+    "'{text}' is no time; write how long ago, as 30m, 2h or 7d, or when, as 2026-11-21T14:30",
+)
+ONE_FORM = Phrase("cli.tasks.one_form", "choose one of --json and --csv")
+NONE_KEPT = Phrase("cli.tasks.none_kept", "no such task was kept")
 
 
 class KeptState(str, Enum):
@@ -50,9 +67,7 @@ def moment(text: str | None) -> float | None:
     try:
         return datetime.fromisoformat(text.strip()).timestamp()
     except ValueError:
-        raise typer.BadParameter(
-            f"'{text}' is no time; write how long ago, as 30m, 2h or 7d, or when, as 2026-11-21T14:30"
-        ) from None
+        raise typer.BadParameter(say(NO_TIME(text=text))) from None
 
 
 def tasks(
@@ -63,7 +78,8 @@ def tasks(
     status: Annotated[KeptState | None, typer.Option(help="Only tasks in this state.")] = None,
     recipe: Annotated[str, typer.Option(metavar="NAME", help="Only tasks of this recipe.")] = "",
     since: Annotated[
-        str | None, typer.Option(metavar="TIME", help="Accepted since then: 2h ago, or 2026-11-21T14:30.")
+        str | None,
+        typer.Option(metavar="TIME", help="Accepted since then: 2h (two hours ago), or 2026-11-21T14:30."),
     ] = None,
     until: Annotated[str | None, typer.Option(metavar="TIME", help="Accepted before then.")] = None,
     limit: Annotated[int, typer.Option(metavar="N", min=1, help="At most so many, the last ones.")] = 50,
@@ -72,7 +88,7 @@ def tasks(
     follow: Annotated[
         bool, typer.Option("--follow", help="Go on printing what changes, until Ctrl-C.")
     ] = False,
-    plant: PlantFile = None,
+    plant: RunningPlant = None,
     state: StateFolder = None,
     store: StoreAddress = "",
 ) -> None:
@@ -83,7 +99,7 @@ def tasks(
     Exit status: 0 printed, 1 the plant's memory cannot be read, 2 bad input, 130 Ctrl-C.
     """
     if as_json and as_csv:
-        raise typer.BadParameter("choose one of --json and --csv")
+        raise typer.BadParameter(say(ONE_FORM()))
     query = TaskQuery(
         cell=cell,
         state=status.value if status else "",
@@ -117,16 +133,16 @@ def _changes(history: History, query: TaskQuery) -> Iterator[Sequence[TaskRow]]:
 def _table(rows: Sequence[TaskRow], *, first: bool) -> None:
     console = Console(highlight=False)
     if not rows:
-        console.print("no such task was kept")
+        console.print(say(NONE_KEPT()))
         return
     drawn = Table(box=None, pad_edge=False)
-    answered = [ANSWERS] if any(row.answers for row in rows) else []
-    for heading in (*HEADINGS, *answered):
-        whole = max(len(plain(row.id)) for row in rows) if heading == "id" else None  # it is copied
-        drawn.add_column(heading, overflow="fold", min_width=whole)
+    answered = {"answers": ANSWERS} if any(row.answers for row in rows) else {}
+    for name, heading in {**HEADINGS, **answered}.items():
+        whole = max(len(plain(row.id)) for row in rows) if name == "id" else None  # it is copied
+        drawn.add_column(say(heading()), overflow="fold", min_width=whole)
     for row in rows:
         at, by, id, text, _, took, why, answers = _said(row)
-        state = Text(row.state, style=STYLES[TaskState(row.state)])
+        state = Text(word("task_state", row.state), style=STYLES[TaskState(row.state)])
         tries, last = str(row.attempts or ""), [Text(answers)] if answered else []
         drawn.add_row(at, Text(by), Text(id), Text(text), state, tries, took, Text(why), *last)
     console.print(drawn)
@@ -155,7 +171,16 @@ def _csv(rows: Sequence[TaskRow], *, first: bool) -> None:
 
 def _said(row: TaskRow) -> tuple[str, ...]:
     at = datetime.fromtimestamp(row.accepted_s).isoformat(sep=" ", timespec="seconds")
-    took = "" if None in (row.started_s, row.ended_s) else f"{row.ended_s - row.started_s:.1f} s"
+    took = ""
+    if row.started_s is not None and row.ended_s is not None:
+        took = f"{row.ended_s - row.started_s:.1f} s"
     texts = (plain(each) for each in (row.asked_by or "", row.id, row.text))
     why = row.sentence or str(choice_of(row) or "")
-    return at, *texts, row.state, took, plain(why), plain(heard(map(vars, answers_of(row))))
+    return (
+        at,
+        *texts,
+        word("task_state", row.state),
+        took,
+        plain(why),
+        plain(heard(map(vars, answers_of(row)))),
+    )

@@ -13,26 +13,39 @@ from arboleda.core import text
 from arboleda.core.plant import Plant
 from arboleda.model.errors import ArboledaError, ConfigError
 from arboleda.model.plant_model import Cell, PlantModel
+from arboleda.model.sentence import Phrase
 from arboleda.model.task import Order
 from arboleda.plant_file import loader, tree_file
 from arboleda.views import tree_view
 
 from .client import PlantClient
 from .draw import Format, draw
+from .language import allowed, say
 from .plant_options import PlantFile, StateFolder, StoreAddress, TokensFile, client
 
 Drawn = Annotated[
     Format, typer.Option("--format", help="How to draw it; svg and png need no Graphviz, xml is for editors.")
 ]
 Live = Annotated[bool, typer.Option("--live", help="The tree that runs now, with its statuses.")]
+NO_PNG = Phrase("cli.tree.no_png", "a PNG is not for a terminal; add > {recipe}.png")
+XML_ALREADY = Phrase("cli.tree.xml_already", "{recipe} is XML already")
+WHICH_TREE = Phrase("cli.tree.which", '{file}: which tree? <root main_tree_to_execute="...">; {others}')
+NO_RECIPE = Phrase("cli.tree.no_recipe", "'{recipe}' is not a recipe of {cell}; {others}")
+NONE_IN = Phrase("cli.tree.none_in", "No {recipe} runs in {cell} now")
+NONE_ANYWHERE = Phrase("cli.tree.none_anywhere", "No {recipe} runs in any cell now")
+OTHERS_RUN = Phrase("cli.tree.others_run", "{none}; {others}.")
+NONE_RUNS = Phrase("cli.tree.none_runs", "{none}.")
+RUNS = Phrase("cli.tree.runs", "{cell} runs {recipe}")
+NO_CELL = Phrase("cli.tree.no_cell", "'{name}' is not a cell; {others}")
 
 
 def tree(
     recipe: Annotated[
         str,
         typer.Argument(
+            metavar="RECIPE",
             help="The recipe to draw: storage, palletizing; or a task of it, 'sis_a 0B 7'; or a file of "
-            "trees, tend.xml."
+            "trees, tend.xml.",
         ),
     ],
     plant: PlantFile = None,
@@ -48,10 +61,10 @@ def tree(
     A picture of it: `arboleda tree storage --format svg > storage.svg`.
     """
     if format is Format.PNG and sys.stdout.isatty():
-        raise typer.BadParameter(f"a PNG is not for a terminal; add > {recipe}.png", param_hint="--format")
+        raise typer.BadParameter(say(NO_PNG(recipe=recipe)), param_hint="--format")
     if tree_file.is_tree_file(Path(recipe)) and not live:
         if format is Format.XML:
-            raise typer.BadParameter(f"{recipe} is XML already", param_hint="--format")
+            raise typer.BadParameter(say(XML_ALREADY(recipe=recipe)), param_hint="--format")
         rows = _of_file(Path(recipe))
     else:
         reached = client(plant, state, store, tokens) if live else None
@@ -64,8 +77,7 @@ def _of_file(path: Path) -> list[dict[str, Any]]:
     """The tree that a file of trees names as its main one, or its only one."""
     forest = tree_file.load(path).forest
     if forest.main is None:
-        there = ", ".join(forest.trees) or "none"
-        raise ConfigError((f'{path}: which tree? <root main_tree_to_execute="...">; there are {there}',))
+        raise ConfigError((say(WHICH_TREE(file=str(path), others=allowed("", forest.trees))),))
     return tree_rows.rows(forest, forest.main)
 
 
@@ -77,8 +89,8 @@ def _planned(recipe: str, cell: str | None, model: PlantModel) -> list[dict[str,
     name = _cell(cell, [each.name for each in model.cells if cell is None and _offers(each, recipe)] or names)
     where = model.cell(name)
     if not _offers(where, recipe):
-        there = ", ".join(each.name for each in where.recipes)
-        raise typer.BadParameter(f"'{recipe}' is not a recipe of {name}; there are {there}")
+        others = allowed(recipe, [each.name for each in where.recipes])
+        raise typer.BadParameter(say(NO_RECIPE(recipe=recipe, cell=name, others=others)))
     return _rows(model, text.example(where, where.recipe(recipe)))
 
 
@@ -98,15 +110,18 @@ def _running(recipe: str, cell: str | None, reached: PlantClient) -> list[dict[s
     cells = reached.status()["cells"]
     if cell is not None:
         _cell(cell, [each["name"] for each in cells])
-    trees = {each["name"]: each["tree"] for each in cells if each["tree"] and cell in (None, each["name"])}
+    trees: dict[str, list[dict[str, Any]]] = {
+        each["name"]: each["tree"] for each in cells if each["tree"] and cell in (None, each["name"])
+    }
     found = next((rows for rows in trees.values() if rows[0]["name"] == recipe), None)
     if found is None:
-        others = ", ".join(f"{name} runs {rows[0]['name']}" for name, rows in trees.items())
-        raise ArboledaError(f"No {recipe} runs in {cell or 'any cell'} now{others and f'; {others}'}.")
+        none = NONE_ANYWHERE(recipe=recipe) if cell is None else NONE_IN(recipe=recipe, cell=cell)
+        others = tuple(RUNS(cell=name, recipe=str(rows[0]["name"])) for name, rows in trees.items())
+        raise ArboledaError(OTHERS_RUN(none=none, others=others) if others else NONE_RUNS(none=none))
     return found
 
 
 def _cell(name: str | None, names: list[str]) -> str:
     if name is not None and name not in names:
-        raise typer.BadParameter(f"'{name}' is not a cell; there are {', '.join(names)}", param_hint="--cell")
+        raise typer.BadParameter(say(NO_CELL(name=name, others=allowed(name, names))), param_hint="--cell")
     return name or names[0]

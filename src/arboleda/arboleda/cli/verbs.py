@@ -8,19 +8,33 @@ from typing import Any
 
 import typer
 
+from arboleda.client.errors import Conflict
 from arboleda.model.errors import ArboledaError, TextError
 from arboleda.model.messages import Outcome
 from arboleda.model.outside import plain
+from arboleda.model.sentence import Phrase, Sentence
 from arboleda.model.verbs import Argument, Arguments, Scope, Verb, as_text, from_text
 from arboleda.views.verb_words import ABOUT, VerbWords, scope_words
 
 from .client import LONGEST, PlantClient
-from .line import VerbRefused
-from .plant_options import PlantFile, StateFolder, StoreAddress, TokensFile, client
+from .language import question, say
+from .plant_options import RunningPlant, StateFolder, StoreAddress, TokensFile, client
 
 STATUS = "Exit status: 0 done, 1 no plant, 2 refused, 3 failed, 4 still under way."
 FAILED, UNENDED = 3, 4
-WORDS = {Outcome.UNDER_WAY: "still under way", Outcome.UNCHECKED: "sent, not checked"}
+DID = {
+    Outcome.SENT: Phrase("cli.did.sent", "sent: {did}"),
+    Outcome.UNDER_WAY: Phrase("cli.did.under_way", "still under way: {did}"),
+    Outcome.DONE: Phrase("cli.did.done", "done: {did}"),
+    Outcome.UNCHECKED: Phrase("cli.did.unchecked", "sent, not checked: {did}"),
+    Outcome.FAILED: Phrase("cli.did.failed", "failed: {did}"),
+}
+BECAUSE = Phrase("cli.did.because", "{did}: {why}")
+OF_WHAT = Phrase("cli.did.of", "{verb}, {of}")
+BY_HAND = Phrase("cli.did.by_hand", "{verb} by hand")
+WHOLE_PLANT = Phrase("cli.did.whole_plant", "the whole plant")
+NO_NAME = Phrase("cli.did.no_name", "the name is empty")
+UNCONFIRMED = Phrase("cli.did.unconfirmed", "The stop was not confirmed, use the hard-wired button: {error}")
 BEHIND = "behind"  # the parameter of what stands behind the scope
 STATUSES = {Outcome.FAILED: FAILED, Outcome.UNDER_WAY: UNENDED}
 
@@ -43,7 +57,7 @@ def _command(verb: Verb) -> Callable[..., None]:
     def act(**options: Any) -> None:
         scope, sure = options["scope"], ABOUT[verb].sure
         if sure and not options["yes"]:
-            typer.confirm(sure.format(scope=scope), abort=True)
+            typer.confirm(question(verb.value, scope) or sure.format(scope=scope), abort=True)
         reached = client(*(options[each.name] for each in PLANT_OPTIONS))
         arguments = tuple(_values(verb, options))
         _ask(verb, scope, reached, by_hand=options.get("by_hand", False), arguments=arguments)
@@ -55,7 +69,7 @@ def _command(verb: Verb) -> Callable[..., None]:
 
 
 PLANT_OPTIONS = (
-    Parameter("plant", Parameter.KEYWORD_ONLY, default=None, annotation=PlantFile),
+    Parameter("plant", Parameter.KEYWORD_ONLY, default=None, annotation=RunningPlant),
     Parameter("state", Parameter.KEYWORD_ONLY, default=None, annotation=StateFolder),
     Parameter("store", Parameter.KEYWORD_ONLY, default="", annotation=StoreAddress),
     Parameter("tokens", Parameter.KEYWORD_ONLY, default=None, annotation=TokensFile),
@@ -111,7 +125,7 @@ def _scope(verb: Verb) -> Any:
 
 def _named(scope: str | None) -> str | None:
     if scope is not None and not scope.strip():
-        raise typer.BadParameter("the name is empty")  # an unset variable must not mean the whole plant
+        raise typer.BadParameter(say(NO_NAME()))  # an unset variable must not mean the whole plant
     return scope
 
 
@@ -129,17 +143,18 @@ def _ask(
         if answer.get("outcome") == Outcome.UNDER_WAY.value:
             answer = reached.outcome(answer["act"])
     except ArboledaError as error:
-        if not verb.row.stops or isinstance(error, VerbRefused | TextError):
+        if not verb.row.stops or isinstance(error, Conflict | TextError):
             raise
-        raise ArboledaError(f"The stop was not confirmed, use the hard-wired button: {error}") from error
-    did = (ABOUT[verb].called or verb.value) + (" by hand" if by_hand else "")
-    _tell(answer, f"{did}, {plain(as_text(verb, of, given) or 'the whole plant')}")
+        raise ArboledaError(UNCONFIRMED(error=error.sentence)) from error
+    called = ABOUT[verb].called or verb.value
+    named = plain(as_text(verb, of, given)) or WHOLE_PLANT()
+    _tell(answer, OF_WHAT(verb=BY_HAND(verb=called) if by_hand else called, of=named))
 
 
-def _tell(answer: dict[str, Any], did: str) -> None:
+def _tell(answer: dict[str, Any], did: Sentence) -> None:
     """Print the outcome of an act, and exit with its status."""
     outcome = Outcome(answer.get("outcome") or Outcome.DONE.value)
-    why = f": {plain(answer['why'], LONGEST)}" if answer.get("why") else ""
-    print(f"{WORDS.get(outcome, outcome.value)}: {did}{why}")
+    sentence = DID[outcome](did=did)
+    print(say(BECAUSE(did=sentence, why=plain(answer["why"], LONGEST)) if answer.get("why") else sentence))
     if outcome in STATUSES:
         raise typer.Exit(STATUSES[outcome])

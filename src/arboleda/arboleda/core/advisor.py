@@ -44,7 +44,7 @@ class Advisor:
         """
         run = self._cells[cell]
         lead = LEADS.get(run.state)
-        if lead is None or run.closed or run.teaching is not None:
+        if lead is None or run.closed or run.manual.teaching is not None:
             return ()
         found: dict[Advice, None] = dict.fromkeys(lead(self, run, asked | {cell}))
         return tuple(found)
@@ -75,6 +75,7 @@ class Advisor:
             for each in readying
             if each.do is Verb.HOME
             and each.scope in run.cell.workspaces
+            and not _is_cleared_by_homing(run, each.scope)
             and run.context.devices.has(each.scope)
         ]
         if run.task is None:
@@ -145,7 +146,9 @@ class Advisor:
             if obstacle.reason is Reason.STOPPED:
                 yield from _stopping(run, obstacle.sentence)
                 return
-            if obstacle.reason in HANDS:
+            if _is_cleared_by_homing(run, robot.name):
+                by_reason.append(Advice(do=Verb.HOME, scope=robot.name, why=obstacle.sentence))
+            elif obstacle.reason in HANDS:
                 by_reason.append(Advice(do=HANDS[obstacle.reason], scope=robot.name, why=obstacle.sentence))
             elif obstacle.reason is Reason.NOT_HOMED:
                 by_reason += self._homing(run, robot.name, obstacle.sentence, asked)
@@ -262,6 +265,12 @@ def _running_home(run: CellRun, robot: str, why: Sentence) -> Iterator[Advice]:
     if failed:
         yield Advice(do=Hand.REFERENCE, scope=robot, why=why)
     yield Advice(do=Verb.HOME, scope=robot, why=why, moves=(robot,), instead=failed)
+
+
+def _is_cleared_by_homing(run: CellRun, robot: str) -> bool:
+    """True where homing leads a robot out of its fault, unless that has failed: then a person does."""
+    failed = (Verb.HOME, robot) in run.in_vain
+    return not failed and run.context.robots.belief(robot).is_cleared_by_homing
 
 
 def _can_leave(run: CellRun, robot: str) -> bool:

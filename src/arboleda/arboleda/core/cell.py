@@ -11,7 +11,6 @@ from py_trees.common import Status
 from arboleda.dispatch.belief import Moment
 from arboleda.dispatch.dispatcher import BROKEN_OFF
 from arboleda.dispatch.ledger import State
-from arboleda.model.commands import Motion
 from arboleda.model.messages import Failure, Reason, TaskState, Verb
 from arboleda.model.plant_model import Cell, Timing
 from arboleda.model.recipe import Build
@@ -25,27 +24,14 @@ from arboleda.trees.leaves import title_of
 from arboleda.trees.part_places import trouble_in
 from arboleda.trees.step_token import hash_of
 from arboleda.trees.tree_run import TreeRun, path_of
-from arboleda.trees.walk_back import NO_PART
 
+from . import losses
+from .absence import Absence
 from .advice import Advice
 from .cell_states import TABLE, Cause, CellState, after
+from .manual_mode import ManualMode
 from .readiness import Readiness
 from .task_queue import TaskQueue
-from .teaching import Teaching
-
-
-@dataclass(frozen=True, kw_only=True)
-class GoesOn:
-    """A hold that an absence made and that ends by itself, `by` s of the plant's time at the latest.
-
-    It ends only while `trouble` is the one that made it, and once each device is seen at rest after `since`;
-    `paused` is how the queue was before.
-    """
-
-    trouble: Failure
-    since: dict[str, Moment]
-    by: float
-    paused: bool
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -88,14 +74,13 @@ class CellRun:
         self.stranded: Sentence | None = None  # why no step of a held task can go on from there
         self.place_trouble: Sentence | None = None  # for which the last task failed
         self.in_vain: set[tuple[Verb, str]] = set()  # what was done to get on, and failed, since it worked
-        self.teaching: Teaching | None = None  # its manual mode, while somebody teaches it
-        self.teaching_over: Callable[[CellRun, Teaching, Sentence], None] = lambda run, teaching, why: None
+        self.manual = ManualMode(self)
+        self.absence = Absence(self)
         self.dirty = False
         self.closed = False
         self.awaits_restart = False  # no further task begins before that
         self.following: NextVersion | None = None  # while it has not taken it
         self.version: RevisionName | None = None  # the one that it took while the plant ran
-        self.goes_on: GoesOn | None = None  # how it gets out of a hold by itself, after an absence
         self._changed = changed
         self._cancelling = False
         self._recovers_anew = False
@@ -112,17 +97,17 @@ class CellRun:
         """The time at which the cell is to be looked at although nothing happens, s of the plant's time."""
         walk = self.keeping.walk
         due = self.context.time.next_deadline if walk is None else walk.due
-        if self.teaching is None:
+        if self.manual.teaching is None:
             return due
-        return self.teaching.due if due is None else min(due, self.teaching.due)
+        return self.manual.teaching.due if due is None else min(due, self.manual.teaching.due)
 
     @property
     def not_ready(self) -> Sentence | None:
         """Why an idle cell would not start a task; None where it would, or is not idle."""
         if self.state is not CellState.IDLE:
             return None
-        if self.teaching is not None:
-            return self.teaching.sentence
+        if self.manual.teaching is not None:
+            return self.manual.teaching.sentence
         return self.readiness.objection() or (self.queue.why_paused if self.queue.paused else None)
 
     @property
@@ -136,7 +121,7 @@ class CellRun:
         self.dirty = self.context.time.woken() or woken or self.dirty
         if self.state is CellState.EXECUTE and not self.dirty:
             return False
-        did = self.teaching is not None and self._taught_on(self.teaching)
+        did = self.manual.teaching is not None and self.manual.go_on()
         did |= self._transit()
         if self.dirty and self.run.tree is not None and self.state is CellState.EXECUTE:
             self._look(self.run.tick())
@@ -154,32 +139,10 @@ class CellRun:
     def _may_begin(self) -> bool:
         return not self.closed and not self.awaits_restart and self.not_ready is None
 
-    def teach(self, teaching: Teaching) -> None:
-        """Begin its manual mode: its queue pauses, and no task starts before the end of that."""
-        self.queue.paused = True
-        for robot in filter(self.context.devices.has, self.cell.zone_users):
-            self.context.zones.claim_free(robot)
-        self.teaching, self.dirty = teaching, True
-
-    def end_teaching(self, why: Sentence) -> None:
-        """End its manual mode; what moves is halted."""
-        teaching, self.teaching = self.teaching, None
-        if teaching is not None:
-            teaching.end()
-            self.teaching_over(self, teaching, why)
-            self.dirty = True
-
-    def _taught_on(self, teaching: Teaching) -> bool:
-        """Go on with what its teacher holds; whether anything was done."""
-        if teaching.is_forgotten:
-            self.end_teaching(NOT_TOUCHED(seconds=self.cell.teach.ends_after_s))
-            return True
-        return teaching.look()
-
     @property
     def is_between_tasks(self) -> bool:
         """True where it can take another version: nobody teaches it, no task, tree or command is open."""
-        if self.teaching is not None or self.task is not None or self.run.tree is not None:
+        if self.manual.teaching is not None or self.task is not None or self.run.tree is not None:
             return False
         return self.state in BETWEEN_TASKS and not self.context.commands.open()
 
@@ -218,7 +181,7 @@ class CellRun:
     def stop(self) -> None:
         """The operator's stop (software): the task has failed; the robots are latched by the caller."""
         self.queue.paused = True
-        self.end_teaching(STOPPED(cell=self.cell.name))
+        self.manual.end(STOPPED(cell=self.cell.name))
         self.become(Cause.STOP)
         self.context.time.go_on()
         self.trouble = None
@@ -231,24 +194,10 @@ class CellRun:
 
     def hold(self) -> None:
         """Halt at once and keep everything for `resume`."""
-        self._hold(Cause.HOLD)
+        self.halt(Cause.HOLD)
 
-    def hold_after_absence(self, failure: Failure) -> None:
-        """The plant was away: what was at work is held; a cell with nothing under way goes on.
-
-        Where the plant file says so, a held one goes on too, as soon as its devices prove what they did. That
-        has to be within the time in which they confirm a stop: later nobody expects a move any more.
-        """
-        if self.state is CellState.EXECUTE:
-            paused = self.queue.paused
-            self._hold(Cause.AWAY, failure)
-            if self.cell.goes_on_after_absence and self.task is not None:
-                by = self.context.time.plant_now + self.context.timing.stop_timeout_s
-                moments = self.context.robots.moments()
-                self.goes_on = GoesOn(trouble=failure, since=moments, by=by, paused=paused)
-        self.context.commands.cancel_motions()
-
-    def _hold(self, cause: Cause, trouble: Failure | None = None) -> None:
+    def halt(self, cause: Cause, trouble: Failure | None = None) -> None:
+        """Hold the task for this cause, and halt what moves."""
         self.queue.paused = True
         self.trouble = trouble
         self.become(cause)
@@ -258,7 +207,7 @@ class CellRun:
     def resume(self) -> None:
         """Go on where `hold` interrupted, each interrupted step given anew; let an idle cell's queue run."""
         if self.state is CellState.HELD:
-            self._again(Cause.RESUME)
+            self.go_on(Cause.RESUME)
         self.queue.resume()
         self.dirty = True
 
@@ -266,7 +215,7 @@ class CellRun:
         """Give the step that failed anew; without a task, recover anew."""
         if self.task is not None:
             self.task.attempts += 1
-            self._again(Cause.RETRY)
+            self.go_on(Cause.RETRY)
         else:
             self.become(Cause.RETRY)
             self.context.start_afresh()
@@ -312,12 +261,12 @@ class CellRun:
         `drops_waiting`: there is no next start for the tasks of this one; they end.
         """
         self.closed = True
-        self.end_teaching(ASKED_TO_END())
+        self.manual.end(ASKED_TO_END())
         asked = Failure(reason=Reason.INTERRUPTED, sentence=ASKED_TO_END())
         if self.task is None or (drops_waiting and not self.task.is_kept):
             self.interrupt(asked)
         elif self.state is CellState.EXECUTE:
-            self._hold(Cause.HOLD)
+            self.halt(Cause.HOLD)
         for task in [each for each in self.queue if drops_waiting and not each.is_kept]:
             self.drop(task, asked)
         self.context.commands.cancel_all()
@@ -333,7 +282,7 @@ class CellRun:
     def break_down(self, failure: Failure) -> None:
         """Something of the cell raised: its task has failed, and it is held unless it is stopped."""
         self.context.time.go_on()
-        self.end_teaching(failure.sentence)
+        self.manual.end(failure.sentence)
         self.interrupt(failure)
         if (self.state, Cause.STUCK) in TABLE:
             self._stuck(failure)
@@ -354,7 +303,7 @@ class CellRun:
             return False
         self.become(Cause.HALTED)
         self.trouble = self.trouble or self._fault()
-        self._miss_part()
+        losses.miss_part(self)
         return True
 
     def _cleared(self) -> bool:
@@ -366,7 +315,7 @@ class CellRun:
 
     def _found_unsettled(self) -> bool:
         """Leave `idle` where a part may hang in the effector; while it is taught that is as it should be."""
-        if self.teaching is not None:
+        if self.manual.teaching is not None:
             return False
         unsettled = self.readiness.part_in_hand()
         if unsettled is None or self.context.commands.open():
@@ -383,22 +332,8 @@ class CellRun:
             return self._judged()
         if self.task is not None and self.trouble is None:
             self.trouble = self._fault()
-        self._miss_part()
-        return self._gone_on()
-
-    def _gone_on(self) -> bool:
-        """Leave `held` after an absence, where nothing else is in the way and what was at work is proved."""
-        goes_on, self.goes_on = self.goes_on, None
-        if goes_on is None or self.trouble is not goes_on.trouble or self.stranded:
-            return False
-        if self.context.time.plant_now > goes_on.by:
-            return False
-        if self.context.commands.open() or not self._proved(goes_on.since):
-            self.goes_on = goes_on  # until its devices have said what they did
-            return False
-        self._again(Cause.RETRY)
-        self.queue.paused = goes_on.paused
-        return True
+        losses.miss_part(self)
+        return self.absence.is_over()
 
     def _judged(self) -> bool:
         """Look what devices say of the steps at which an earlier start ended; whether that is news.
@@ -412,14 +347,6 @@ class CellRun:
         self.trouble = self.trouble or found.failure
         self.stranded = self.stranded or found.stranded
         return before != (self.awaits, self.trouble, self.stranded)
-
-    def _miss_part(self) -> None:
-        """A held task whose effector was opened meanwhile has nothing to go on with."""
-        gone = self.context.failures.opened_effector()
-        if gone is not None and self.task is not None and not self.stranded:
-            self.trouble = gone
-            self.stranded = NO_PART(arm=self.context.parts.opened_by or "")
-            self.dirty = True
 
     def _leave_as_it_is(self) -> None:
         """From held to idle without a move; a recovery that was held is given up."""
@@ -449,20 +376,8 @@ class CellRun:
         found = (self.context.robots.obstacle(robot.name, was=True) for robot in self.cell.reached)
         return next((failure for failure in found if failure), None)
 
-    def _proved(self, since: dict[str, Moment]) -> bool:
-        """True where its devices are at rest and can work, and what was at work may be given anew.
-
-        A motion whose robot was not heard meanwhile may: it begins wherever the robot stands now.
-        """
-        for entry in [act.entry for act in self.run.interrupted() if act.entry is not None]:
-            lost = entry.failure is not None and entry.failure.reason is Reason.LINK_LOST
-            anew = entry.too_early or (lost and isinstance(entry.command, Motion))
-            if entry.state is State.FAILED and not anew:
-                return False
-        able = all(self.context.robots.obstacle(robot.name) is None for robot in self.cell.reached)
-        return able and not self.context.robots.moving_since(since)
-
-    def _again(self, cause: Cause) -> None:
+    def go_on(self, cause: Cause) -> None:
+        """Leave a hold, each interrupted step given anew."""
         self.become(cause)
         self.trouble = None
         self.context.time.go_on()
@@ -483,17 +398,6 @@ class CellRun:
         self.context.start_afresh()
         self.context.places.begin()
         self._look(self.run.begin(lambda: self.keeping.make(task.order)))
-
-    def uproot(self, robot: str) -> None:
-        """A robot that goes from pose to pose is homed: a task that is held can only be abandoned."""
-        if self.task is not None and robot in self.cell.workspaces and self.context.devices.has(robot):
-            self.stranded = HOMED_MEANWHILE(arm=robot)
-
-    def let_go(self, robot: str) -> None:
-        """The operator has an effector opened: a task that is held has lost the part in it."""
-        if self.task is not None and robot in self.context.parts.holding:
-            self.trouble = self.trouble or Failure(reason=Reason.PART_LOST, sentence=LET_GO(arm=robot))
-            self.stranded = NO_PART(arm=robot)
 
     def _recover(self, *, anew: bool = False) -> None:
         """Drop what runs, halting it, and run the recovery alone; `anew`: after one that failed."""
@@ -560,7 +464,6 @@ class CellRun:
         self._changed(task)
 
 
-NOT_TOUCHED = Phrase("teach.not_touched", "nobody touched it for {seconds:g} s")
 BETWEEN_TASKS = (CellState.IDLE, CellState.STOPPED, CellState.ABORTED)
 STOPPED = Phrase("cell.stopped", "{cell} was stopped by the operator")
 ABANDONED = Phrase("task.abandoned", "abandoned by the operator")
@@ -568,8 +471,6 @@ ASKED_TO_END = Phrase("task.plant_ends", "the plant was asked to end")
 NO_CAUSE = Phrase("cell.no_cause", "{cell} failed without a cause")
 STOP_UNCONFIRMED = Phrase("cell.stop_unconfirmed", "{robots} did not confirm the stop")
 NOT_YET = Phrase("walk.not_yet", "{why}; until then nobody can tell what became of the step of {cell}")
-LET_GO = Phrase("part.let_go", "{arm} let go of its part on the operator's word")
-HOMED_MEANWHILE = Phrase("cell.homed_meanwhile", "{arm} was homed meanwhile")
 
 WAITS: dict[CellState, Callable[[CellRun], bool]] = {
     CellState.HOLDING: CellRun._halted,

@@ -16,6 +16,13 @@ ENDING = Phrase("task.plant_ending", "the plant is ending; no new task is taken"
 ID_TAKEN = Phrase("task.id_taken", "#{id} is already the id of '{text}'; use another id")
 GONE = Phrase("task.gone", "the plant as it is now does not take it: {why}")
 OTHER_WORK = Phrase("task.other_work", "'{text}' would now be other work, by {recipe}")
+OTHER_VERSION = Phrase(
+    "task.other_version", "it was allowed for another version of the plant than the one at work"
+)
+OTHER_START = Phrase(
+    "task.other_start",
+    "it was allowed in an earlier start of the plant and had not begun; it has to be asked for again",
+)
 CUT_OFF = Phrase(
     "task.cut_off",
     "the plant ended while this was at work; nobody knows how far it came, so it is not done again",
@@ -65,6 +72,8 @@ class Intake:
         if kept.ended_at is None:
             try:
                 task = Task.of(kept, text.parse(kept.text, self.model))
+                if kept.is_bound and kept.state is TaskState.QUEUED:
+                    raise TextError(OTHER_START())
             except TextError as error:
                 if kept.state is TaskState.QUEUED:
                     task.fail(gone(error.sentence))
@@ -78,6 +87,13 @@ class Intake:
         if found.recipe != order.recipe or [*found.values] != [*order.values]:
             raise TextError(OTHER_WORK(text=order.text, recipe=found.recipe))
         return found
+
+    def still_allowed(self, task: Task, version: str) -> Order:
+        """The order of a task that waits, read again; TextError also where it was allowed for another version
+        than this one."""
+        if task.version not in ("", version):
+            raise TextError(OTHER_VERSION())
+        return self.read_again(task.order)
 
     def recall(self, kept: KeptTask) -> None:
         """A task that has ended so long ago that only its keeper knew it."""

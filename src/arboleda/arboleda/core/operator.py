@@ -20,7 +20,7 @@ from arboleda.model.recipe import known
 from arboleda.model.sentence import Phrase, Sentence, Value
 from arboleda.model.verbs import Arguments, Scope, as_text, lasting
 
-from . import reasons
+from . import losses, reasons
 from .acts import ENDED, Acts, OperatorAct, outcome_of
 from .advice import AND, DO, OR, sentence
 from .cell import NOT_YET, CellRun
@@ -166,7 +166,7 @@ class Operator:
         cells_of = dispatcher.model.cells_of.items()
         self._alone = {name: cells[found[0].name] for name, found in cells_of if len(found) == 1}
         for cell in cells.values():
-            cell.teaching_over = self._teaching_over
+            cell.manual.when_over = self._teaching_over
         self.acts = Acts()
         self._sent: list[Entry] = []  # the commands of the act that is being done
         self._defects: list[Sentence] = []  # what broke in it
@@ -509,7 +509,7 @@ class Operator:
 
     def _empty(self, holding: list[tuple[CellRun, str]]) -> None:
         for cell, name in holding:
-            cell.let_go(name)
+            losses.let_go(cell, name)
             self._dispatcher.effectors.declare_empty(self._dispatcher.beliefs[name])
             self._dispatcher.wake([name])
 
@@ -546,7 +546,8 @@ class Operator:
     def home(self, name: str) -> Entry:
         """Have a robot run its homing routine; it keeps everybody out of its zones meanwhile."""
         cell = self.in_charge(name)
-        cell.uproot(name)
+        if not self._dispatcher.beliefs[name].is_cleared_by_homing:
+            losses.uproot(cell, name)
         users = [run for run in self._of_robots({name}) if name in run.cell.zone_users]
         for run in (each for each in users if each.state in AT_REST):
             run.context.zones.forsake()
@@ -557,7 +558,7 @@ class Operator:
         return self._dispatcher.home(name, cell.cell.name, self._clock())
 
     def _uproot(self, name: str) -> None:
-        self.in_charge(name).uproot(name)
+        losses.uproot(self.in_charge(name), name)
 
     def not_free_for_homing(self, robots: set[str]) -> Sentence | None:
         """Why robots may not set out for their reference: from where they stand they may cross any zone."""
@@ -587,8 +588,8 @@ class Operator:
 
     def _not_teachable(self, cell: CellRun) -> Sentence | None:
         name, rests = cell.cell.name, cell.state in AT_REST and cell.task is None
-        if cell.teaching is not None:
-            return OTHER_TEACHES(cell=name, teacher=cell.teaching.teacher)
+        if cell.manual.teaching is not None:
+            return OTHER_TEACHES(cell=name, teacher=cell.manual.teaching.teacher)
         if cell.closed:
             return reasons.ENDING()
         if not rests:
@@ -614,7 +615,7 @@ class Operator:
     def _teach(self, cell: CellRun, teacher: str) -> None:
         cell.context.zones.forsake()
         self._dispatcher.memory.remember(Fact.MANUAL, cell.cell.name, teacher)
-        cell.teach(Teaching(cell.context, session=self.acts.next_number, teacher=teacher))
+        cell.manual.begin(Teaching(cell.context, session=self.acts.next_number, teacher=teacher))
 
     def _teaching_over(self, cell: CellRun, teaching: Teaching, why: Sentence) -> None:
         """Forget who taught a cell; what no operator has asked for is journalled here."""
@@ -630,8 +631,8 @@ class Operator:
         belief = self._dispatcher.beliefs[name]
         if refusal := _at_rest(self, cell, set()):
             return refusal
-        if cell.teaching is not None and not by_hand:
-            return cell.teaching.sentence
+        if cell.manual.teaching is not None and not by_hand:
+            return cell.manual.teaching.sentence
         if name in cell.cell.shared and (stopped := cell.context.devices.not_reset(name)) is not None:
             return stopped.sentence
         if name not in self._reached:
@@ -702,8 +703,8 @@ class Operator:
         cell.become(Cause.READY)
 
     def _not_resumable(self, cell: CellRun, robots: set[str]) -> Sentence | None:
-        if cell.teaching is not None:
-            return cell.teaching.sentence
+        if cell.manual.teaching is not None:
+            return cell.manual.teaching.sentence
         if cell.state is CellState.IDLE:
             return None if cell.queue.paused else QUEUE_RUNS(cell=cell.cell.name)
         if cell.state is not CellState.HELD:
@@ -715,8 +716,8 @@ class Operator:
     def _not_releasable(self, cell: CellRun, robots: set[str]) -> Sentence | None:
         if cell.state in AT_WORK:
             return HOLD_FIRST(cell=cell.cell.name, state=cell.state.said)
-        if cell.teaching is not None:
-            return cell.teaching.sentence
+        if cell.manual.teaching is not None:
+            return cell.manual.teaching.sentence
         able = self._holders(cell, robots)
         if not able:
             first = next(each.name for each in cell.cell.robots if each.name in robots)
@@ -729,7 +730,7 @@ class Operator:
         for name in self._holders(cell, robots):
             if name in cell.cell.shared:
                 cell.context.devices.claim(name)
-            cell.let_go(name)
+            losses.let_go(cell, name)
             make = self._dispatcher.model.robots[name].let_go
             now, name_of_cell = self._clock(), cell.cell.name
             self._sent.append(self._dispatcher.send(make, name_of_cell, RELEASING(), now, by_hand=True))
@@ -820,8 +821,8 @@ def _not_holdable(operator: Operator, cell: CellRun, robots: set[str]) -> Senten
 
 
 def _not_retryable(operator: Operator, cell: CellRun, robots: set[str]) -> Sentence | None:
-    if cell.teaching is not None:
-        return cell.teaching.sentence
+    if cell.manual.teaching is not None:
+        return cell.manual.teaching.sentence
     refusal = _held(operator, cell, robots)
     if refusal is None and cell.stranded:
         return reasons.of_hold(cell)
@@ -836,12 +837,12 @@ def _not_yet(cell: CellRun) -> Sentence | None:
 
 
 def _not_taught(operator: Operator, cell: CellRun, robots: set[str]) -> Sentence | None:
-    return NOT_TAUGHT(cell=cell.cell.name) if cell.teaching is None else None
+    return NOT_TAUGHT(cell=cell.cell.name) if cell.manual.teaching is None else None
 
 
 def _not_abandonable(operator: Operator, cell: CellRun, robots: set[str]) -> Sentence | None:
-    if cell.teaching is not None:
-        return cell.teaching.sentence
+    if cell.manual.teaching is not None:
+        return cell.manual.teaching.sentence
     refusal = _held(operator, cell, robots)
     if refusal is None and cell.task is None and (holding := cell.context.parts.holding):
         return _release_first(holding)
@@ -965,7 +966,5 @@ TABLE: dict[Verb, Procedure] = {
     Verb.LOAD: Procedure(plan=Operator._planned_loading),
     Verb.ANSWER: Procedure(plan=Operator._planned_answer),
     Verb.TEACH: Procedure(plan=Operator._planned_teaching),
-    Verb.AUTOMATIC: Procedure(
-        check=_not_taught, do=lambda operator, cell, robots: cell.end_teaching(BY_VERB)
-    ),
+    Verb.AUTOMATIC: Procedure(check=_not_taught, do=lambda operator, cell, robots: cell.manual.end(BY_VERB)),
 }

@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from functools import partial
+from itertools import filterfalse
 from typing import Any
 
 from py_trees.behaviour import Behaviour
@@ -21,6 +22,7 @@ from arboleda.model.messages import (
     Event,
     Fact,
     Failure,
+    FaultByHand,
     Heartbeat,
     Interference,
     InternalError,
@@ -59,7 +61,7 @@ from .advisor import Advisor
 from .cell import CellRun, NextVersion
 from .cell_states import CellState
 from .choosing import PastTimes, Prospect, best, prospect
-from .intake import CUT_OFF, Intake, gone
+from .intake import CUT_OFF, OTHER_VERSION, Intake, gone
 from .operator import (
     NO_SCOPE,
     PUT_TO_WORK,
@@ -68,6 +70,7 @@ from .operator import (
     Operator,
     VerbRefusal,
 )
+from .provoked import ProvokedFaults
 from .teaching import NOT_TAUGHT, OTHER_TEACHES, Teaching
 
 HEARTBEAT_S = 0.25
@@ -111,6 +114,7 @@ class Plant:
         memory = memory or {}
         self._builders = recipes or {}
         self.versions = {**(versions or {})}
+        self._put_last = ""  # the digest of the version that was put to work last, in this start
         self.restart_by = ""  # who wants a restart once all cells rest
         self.model = model
         self.epoch = epoch
@@ -125,6 +129,7 @@ class Plant:
         self._operator = Operator(
             self.cells, self.dispatcher, self.zones, self.intake, self._clock, self._break_down
         )
+        self.provoked = ProvokedFaults()
         self._advisor = Advisor(self.cells, self._operator.refusal)
         self._interlocked = [
             (run, device)
@@ -143,7 +148,7 @@ class Plant:
         self._wakes: dict[str, float] = {}  # when trees are to be woken, by cell
         self._next_wake = math.inf
         self._changes = 0
-        self._told_errors: dict[str, Sentence] = {}  # by cell, since somebody asked for something
+        self._reported_errors: dict[str, Sentence] = {}  # by cell, since somebody asked for something
         self._next_beat = now
         self._steps = False
         self._take_back(kept)
@@ -173,7 +178,7 @@ class Plant:
                 ):  # that is the business of the cell which takes it
                     self._touched.update(self.cells)
                     self._revised.update(self.cells)
-                self._told_errors.clear()
+                self._reported_errors.clear()
                 HANDLERS[type(event)](self, event)
         self._expire(now)
         if self._interlocked:
@@ -238,11 +243,11 @@ class Plant:
         run = self.cells.get(jog.cell)
         if run is None:
             return NO_SCOPE(scope=quoted(jog.cell), known=(*self.cells,))
-        if run.teaching is None:
+        if run.manual.teaching is None:
             return NOT_TAUGHT(cell=jog.cell)
-        if run.teaching.session != jog.session:
-            return OTHER_TEACHES(cell=jog.cell, teacher=run.teaching.teacher)
-        return run.teaching.refusal(jog)
+        if run.manual.teaching.session != jog.session:
+            return OTHER_TEACHES(cell=jog.cell, teacher=run.manual.teaching.teacher)
+        return run.manual.teaching.refusal(jog)
 
     def prospects(self, text: str) -> list[Prospect]:
         """The promise of each cell that a task text names; TextError or QueueFull where there is none."""
@@ -258,7 +263,11 @@ class Plant:
     @property
     def may_restart(self) -> bool:
         """True where a restart is wanted, and it would cut nothing short: no task, command or teaching."""
-        return self.restart_by != "" and self.at_rest and not any(run.teaching for run in self.cells.values())
+        return (
+            self.restart_by != ""
+            and self.at_rest
+            and not any(run.manual.teaching for run in self.cells.values())
+        )
 
     def sleepers(self) -> list[str]:
         """Cells whose tree runs with nothing left to wake it; anything here is a defect."""
@@ -436,8 +445,8 @@ class Plant:
         text = plain(" ".join(str(error).split()))
         sentence = BROKE_IN_STEP(cell=cell, kind=type(error).__name__, error=text)
         failure = Failure(reason=Reason.INTERNAL, sentence=sentence)
-        if self._told_errors.get(cell) != sentence:
-            self._told_errors[cell] = sentence
+        if self._reported_errors.get(cell) != sentence:
+            self._reported_errors[cell] = sentence
             self.dispatcher.outbox.append(InternalError(cell=cell, error=error))
         self.dispatcher.give_up(cell, failure, self.now)
         self.cells[cell].break_down(failure)
@@ -465,7 +474,7 @@ class Plant:
         for name, cell in self.cells.items():
             if cell.state is CellState.EXECUTE:
                 cell.context.time.pause(at=left)
-            self._guard(name, partial(cell.hold_after_absence, failure))
+            self._guard(name, partial(cell.absence.begin, failure))
 
     def _watch_interlocks(self) -> None:
         for run, device in self._interlocked:
@@ -475,7 +484,8 @@ class Plant:
         inside = self.zones.robots
         for name, cell in self.cells.items() if inside else ():
             movers = filter(cell.context.devices.answers_for, cell.cell.zone_users)
-            for robot in (*movers, *cell.cell.interlocked):
+            machines = filterfalse(cell.context.devices.is_lent, cell.cell.interlocked)
+            for robot in (*movers, *machines):
                 if robot in inside:
                     self._guard(name, partial(self._watch_zones_of, cell, robot))
         self._watch_shared()
@@ -486,7 +496,7 @@ class Plant:
             holder = self.cells.get(self.zones.holder(device) or "")
             if holder is not None:
                 # a cell that is held, stopped or taught keeps what it has
-                ended = holder.state is CellState.IDLE and holder.teaching is None
+                ended = holder.state is CellState.IDLE and holder.manual.teaching is None
                 self._guard(holder.cell.name, partial(holder.context.devices.keep, device, ended=ended))
 
     def _watch_zones_of(self, cell: CellRun, robot: str) -> None:
@@ -494,7 +504,7 @@ class Plant:
         belief = self.dispatcher.beliefs[robot]
         if not belief.online or belief.unhomed:
             self.zones.quarantine(robot)
-        elif cell.teaching is None and (
+        elif cell.manual.teaching is None and (
             cell.tree is None or cell.stranded
         ):  # no step of it needs them any more
             cell.context.zones.leave(robot)
@@ -532,7 +542,7 @@ class Plant:
         if not belief.answered or belief.homed is None:
             return
         run = self._operator.in_charge(robot)
-        if run.state not in (CellState.IDLE, CellState.HELD) or run.teaching is not None:
+        if run.state not in (CellState.IDLE, CellState.HELD) or run.manual.teaching is not None:
             return
         if belief.unhomed and self._operator.not_free_for_homing({robot}):
             return
@@ -550,12 +560,22 @@ class Plant:
         if event.robot in self.dispatcher.beliefs:
             self.dispatcher.interfere(event.robot, event.sentence, event.at, obeyed=True)
 
+    def _on_fault_by_hand(self, event: FaultByHand) -> None:
+        self._changes += 1
+        self.provoked.note(event)
+        cell = next((cell.name for cell in self.model.cells_of.get(event.robot, ())), None)
+        entry = Journal(verb=None, scope=event.robot, cell=cell, sentence=event.sentence)
+        self.dispatcher.outbox.append(entry)
+
     def _on_task_request(self, request: TaskRequest) -> None:
         try:
             if request.kept is not None:
                 self.intake.recall(request.kept)
             task = self.intake.task(request.text, lambda orders: best(self._prospects(orders)))
             if not self.intake.knows(task):
+                if request.version and self._put_last not in ("", request.version):
+                    raise TextError(OTHER_VERSION())
+                task.version = request.version
                 if request.choice and task.choice is None:
                     task.choice = OWN(text=plain(request.choice))
                 self._refuse_trigger(request, task)
@@ -611,9 +631,9 @@ class Plant:
     def _on_jog(self, jog: Jog) -> None:
         """Take what a teacher holds; what is of no teaching, or of an earlier one, is nothing."""
         run = self.cells.get(jog.cell)
-        if run is None or run.teaching is None or run.teaching.session != jog.session:
+        if run is None or run.manual.teaching is None or run.manual.teaching.session != jog.session:
             return
-        self._guard(jog.cell, partial(self._take_jog, run, run.teaching, jog))
+        self._guard(jog.cell, partial(self._take_jog, run, run.manual.teaching, jog))
 
     def _take_jog(self, run: CellRun, teaching: Teaching, jog: Jog) -> None:
         self._touched.add(jog.cell)
@@ -633,9 +653,10 @@ class Plant:
             self._refuse_revision(event, NOT_WHILE_IT_RUNS(number=number, why=why))
             return
         cells = tuple(map(revised, self.model.cells, model.cells))
+        self._put_last = version.digest
         self.dispatcher.outbox.append(_put_to_work(event))
         self.intake.model = replace(model, cells=cells)
-        cancelled = [id for run in self.cells.values() for id in self._without_unfit(run)]
+        cancelled = [id for run in self.cells.values() for id in self._without_unfit(run, version.digest)]
         for run, cell in zip(self.cells.values(), cells, strict=True):
             run.following = NextVersion(
                 version=version, cell=cell, timing=model.timing, taken=self._revised_cell
@@ -652,12 +673,12 @@ class Plant:
             RevisionAnswer(version=event.version, refusal=why, request=event.request)
         )
 
-    def _without_unfit(self, run: CellRun) -> list[str]:
-        """Read again what waits in a cell; the ids of those that are no tasks any more, which end."""
+    def _without_unfit(self, run: CellRun, version: str) -> list[str]:
+        """Read again what waits in a cell for this version; the ids of those that end by it."""
         unfit = []
         for task in [*run.queue]:
             try:
-                task.order = self.intake.read_again(task.order)
+                task.order = self.intake.still_allowed(task, version)
             except TextError as error:
                 unfit.append(task.id)
                 run.drop(task, gone(error.sentence))
@@ -742,6 +763,7 @@ HANDLERS: dict[type, Callable[[Plant, Any], None]] = {
     Jog: Plant._on_jog,
     Undelivered: Plant._on_undelivered,
     Interference: Plant._on_interference,
+    FaultByHand: Plant._on_fault_by_hand,
     Shutdown: Plant._on_shutdown,
     Revision: Plant._on_revision,
     RestartRequest: Plant._on_restart_request,

@@ -12,17 +12,16 @@ from typing import TypeVar
 from fastapi.concurrency import run_in_threadpool
 from nicegui import Client
 
-from arboleda.core.advice import BY_HAND
 from arboleda.model.errors import ArboledaError
 from arboleda.model.messages import Outcome, Verb
-from arboleda.model.sentence import Sentence, in_json
-from arboleda.model.verbs import Arguments, as_text, lasting
+from arboleda.model.sentence import in_json
 from arboleda.store.task_rows import PAGE
 from arboleda.web.access.auth import SUBMIT, allowed
 
-from . import demo
+from . import demo, fault_form, outcomes
 from .feed import Feed
 from .open_page import OpenPage
+from .outcomes import Said
 from .page_api import PageApi
 from .wording import Words
 
@@ -30,7 +29,6 @@ ANSWER_S = 5.0
 LOOK_S = 0.2
 FOLLOWED_S = 120.0  # a homing may take a minute
 DOWNLOAD = "download"
-GOOD = {Outcome.UNDER_WAY: None, Outcome.UNCHECKED: None, Outcome.FAILED: False}
 
 Answer = TypeVar("Answer")
 
@@ -47,7 +45,7 @@ class Desk(OpenPage):
         """Do what the page asks for; `more` is True for what was done by hand, or has a verb's arguments."""
         if act == DOWNLOAD:
             self._download()
-        elif act not in {SUBMIT, demo.END} and act not in VERBS:
+        elif act not in {SUBMIT, demo.END, fault_form.BEGIN, fault_form.END} and act not in VERBS:
             return
         elif not allowed(self.role, act):
             self.say(self._words("page.not_allowed", act=self._name(act)), good=False)
@@ -56,38 +54,47 @@ class Desk(OpenPage):
         elif act == demo.END:
             self._plant.end_demo()
             self.say(self._words("demo.ended"), good=True)
+        elif act in (fault_form.BEGIN, fault_form.END):
+            await self._provoke(act, of, more)
         elif act != Verb.STOP or not self._is_stopped(of):
             await self._operate(Verb(act), of, more)
 
     def _name(self, act: str) -> str:
-        return self._words("demo.end") if act == demo.END else self._words.of("verb", act)
+        known = {demo.END: "demo.end", fault_form.BEGIN: "faults.title", fault_form.END: "faults.end"}
+        return self._words(known[act]) if act in known else self._words.of("verb", act)
+
+    async def _provoke(self, act: str, of: str, more: object) -> None:
+        """Have a fault begin at a virtual device, or end the one of this number."""
+        desk, wanted = self._plant.faults, more if isinstance(more, dict) else {}
+        kind, seconds = str(wanted.get("kind", "")), wanted.get("seconds")
+        if desk is None or not (kind if act == fault_form.BEGIN else of.isdecimal()):
+            return
+        try:
+            if act == fault_form.END:
+                await run_in_threadpool(desk.end, "", int(of))
+                self.say(self._words("faults.ended"), good=True)
+                return
+            instant = {offer.kind for offer in desk.offers() if not offer.lasts}
+            lasting = float(seconds) if isinstance(seconds, int | float) and kind not in instant else None
+            begun = await run_in_threadpool(desk.begin, kind, of, lasting)
+            self.say(f"{begun.robot}: {self._words.say(begun.about)}", good=True)
+        except ArboledaError as error:
+            self.say(self._words.say(error.sentence), good=False)
 
     async def _submit(self, text: str) -> None:
         # The plant may look its id up in the history, and a stop must not wait for that.
         task = await self._answered(await run_in_threadpool(self._plant.submit, text, PAGE))
-        if task is not None and task["state"] == "refused":
-            self.say(self._words.say(task["sentence"]), good=False)
-        elif task is not None:
-            self.say(self._words("tasks.taken", text=task["text"], id=task["id"]), good=True)
+        if task is not None:
+            self._tell(outcomes.of_task(self._words, task))
 
     async def _operate(self, verb: Verb, scope: str, more: object) -> None:
-        by_hand, arguments = more is True, _arguments(verb, more)
+        by_hand, arguments = more is True, outcomes.arguments_of(verb, more)
         call = self._plant.operate(verb, scope, by_hand=by_hand, arguments=arguments)
         answer = await self._answered(call)
         if answer is None:
             return
-        if answer.refusal is not None:
-            self.say(self._words.say(answer.refusal), good=False)
-            return
-        if (
-            answer.outcome is Outcome.SENT and answer.why is not None
-        ):  # a stop that left but could not be kept
-            self.say(self._words.say(answer.why), good=False)
-            return
-        name = f"{verb.value}_by_hand" if by_hand and verb in BY_HAND else verb.value
-        where = as_text(verb, scope, lasting(verb, arguments)) or self._words("panel.plant")
-        act = {"what": self._words.of("verb", name), "where": where}
-        self._tell(answer.outcome or Outcome.DONE, answer.why, act)
+        act = outcomes.act(self._words, verb, scope, arguments, by_hand=by_hand)
+        self._tell(outcomes.of_answer(self._words, answer, act))
         if answer.outcome is Outcome.UNDER_WAY and answer.act is not None:
             await self._follow(answer.act, act)
 
@@ -100,12 +107,12 @@ class Desk(OpenPage):
             if row is None:
                 return
             if row["outcome"] != Outcome.UNDER_WAY.value:
-                self._tell(Outcome(row["outcome"]), row["why"], act)
+                self._tell(outcomes.of_outcome(self._words, Outcome(row["outcome"]), row["why"], act))
                 return
 
-    def _tell(self, outcome: Outcome, why: Sentence | None, act: dict[str, str]) -> None:
-        reason = {} if why is None else {"why": self._words.say(why)}
-        self.say(self._words(f"panel.{outcome.value}", **act, **reason), good=GOOD.get(outcome, True))
+    def _tell(self, said: Said) -> None:
+        sentence, good = said
+        self.say(sentence, good=good)
 
     async def _answered(self, future: Future[Answer]) -> Answer | None:
         """The plant's answer; None if there is none, after the page was told the reason."""
@@ -133,13 +140,6 @@ class Desk(OpenPage):
     def _download(self) -> None:
         whole = json.dumps(self._feed.events, ensure_ascii=False, indent=1, default=in_json)
         self._client.download(whole.encode(), "arboleda-timeline.json", "application/json")
-
-
-def _arguments(verb: Verb, more: object) -> Arguments:
-    """The arguments of a verb in what a page sends."""
-    values = more if isinstance(more, dict) else {}
-    takes = [each for each in verb.arguments if type(values.get(each.name)) is each.type]
-    return tuple((each.name, values[each.name]) for each in takes)
 
 
 VERBS = frozenset(verb.value for verb in Verb)

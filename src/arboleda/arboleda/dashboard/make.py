@@ -9,7 +9,7 @@ from .page_api import Layout
 from .tags import tag, way
 from .wording import Words
 
-PANELS = ("draft", "cells", "try", "prove", "device")
+PANELS = ("draft", "cells", "try", "prove", "device", "proposals")
 STEPS = ("undo", "redo", "check", "discard")
 BUDGETS_S = (30, 120, 600)
 EFFECTS = ("motion", "process", "switch", "query")
@@ -155,7 +155,21 @@ def _device(words: Words) -> None:
         tag("p", words("make.reach_how"), id="make-reach-state", role="status", classes="hint")
 
 
-_BUILD = {"draft": _draft, "cells": _cells, "try": _try, "prove": _prove, "device": _device}
+def _proposals(words: Words) -> None:
+    with _box(words, "proposals"):
+        tag("ul", id="make-proposal-list", classes="make-lines")
+        tag("p", id="make-proposals-note", role="status", classes="act-note")
+        tag("div", id="make-proposal")
+
+
+_BUILD = {
+    "draft": _draft,
+    "cells": _cells,
+    "try": _try,
+    "prove": _prove,
+    "device": _device,
+    "proposals": _proposals,
+}
 
 
 @contextmanager

@@ -33,7 +33,8 @@ class OpenPage:
     @property
     def role(self) -> Role | None:
         """The role of the connection behind the page, as the guard put it into its scope."""
-        return (self._client.environ or {}).get("asgi.scope", {}).get("arboleda.role")
+        role: Role | None = (self._client.environ or {}).get("asgi.scope", {}).get("arboleda.role")
+        return role
 
     def show(self, number: int, patch: str) -> None:
         """Send one frame."""

@@ -16,6 +16,7 @@ from arboleda.web.access.auth import Role
 
 from . import (
     demo,
+    fault_form,
     header,
     links,
     make,
@@ -29,6 +30,7 @@ from . import (
     tree_editor,
     trees,
 )
+from .body import Parts, body
 from .desk import Desk
 from .faces import history, oee, versions
 from .feed import Feed
@@ -38,7 +40,7 @@ from .past import page as past_page
 from .past.frame_queue import BESIDE_S, FrameQueue
 from .past.side import PastSide
 from .past.stills import Stills
-from .shell import Parts, is_operator, language_of, role_shown
+from .shell import is_operator, language_of, role_shown
 from .twin import pane, window
 from .twin.show import Show
 from .wording import words
@@ -83,8 +85,10 @@ def mount(server: FastAPI, plant: PageApi) -> None:
             header.build(layout, wording, [name for name in names if name not in FROM_CARDS], role)
             if layout.get("demo"):
                 demo.build(wording)
+            if role != Role.VIEWER.value:
+                fault_form.drawer(layout, wording)
 
-        return shell.body(layout, wording, parts, header=top)
+        return body(layout, wording, parts, header=top)
 
     def build(request: Request, client: Client) -> None:
         if past_page.is_of_draft(request) and is_operator(request):
@@ -110,7 +114,9 @@ def mount(server: FastAPI, plant: PageApi) -> None:
 def parts_for(role: str | None) -> Parts:
     """The parts of the page of a role: only operators make or teach something."""
     return {
-        name: part for name, part in PARTS.items() if name not in OF_OPERATORS or role != Role.VIEWER.value
+        name: part
+        for name, part in PARTS.items()
+        if name not in OF_OPERATORS or role in (None, Role.OPERATOR.value)
     }
 
 

@@ -20,7 +20,7 @@ class PageApi(PlantApi, Protocol):
 
     def layout(self) -> Layout:
         """`views.view.layout`: what never changes. With `recorded` there is a `past`, with `demo` a
-        demonstration."""
+        demonstration, `faults` are what can be provoked at virtual devices {robot, kind, about, lasts}."""
 
     def positions(self) -> dict[str, Any]:
         """`views.twin_view.positions` as of now, and `now` on the plant's clock."""
@@ -35,10 +35,6 @@ class PageApi(PlantApi, Protocol):
     def starts(self) -> list[Start]:
         """The starts of which there are records, the last first; it waits for the disk, too."""
 
-    def report(self, task: str) -> str | None:
-        """The report on a failed task, as one HTML file; None: it is being written now, ask again. It waits
-        for the disk; an ArboledaError says why there is none."""
-
     def tried(self) -> PastSide:
         """The last tryout of the draft; an ArboledaError says that there is none. It reads files."""
 
@@ -48,7 +44,8 @@ class PageApi(PlantApi, Protocol):
     def links(self) -> Links:
         """`broker` {address, connected} or None, `ros` {notes} or None, `refused` {robot: {count, last}},
         `standbys` [{host, url}], whose url is "" where it leads there from no other host, `demo`: whether a
-        demonstration gives tasks now, `memory` {typical_s, worst_s, is_slow}: how long commits take."""
+        demonstration gives tasks now, `memory` {typical_s, worst_s, is_slow}: how long commits take,
+        `faults` that were provoked and go on {number, robot, kind, about, left_s}."""
 
     def end_demo(self) -> None:
         """Have the demonstration give no more tasks, of a plant whose layout has `demo`."""

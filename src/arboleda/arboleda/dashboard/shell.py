@@ -16,16 +16,14 @@ from arboleda.web.access.auth import Role
 from arboleda.web.api import refuse
 from arboleda.web.languages import spoken
 
-from . import trees
+from .body import Parts, parts_of, script_data
 from .page_api import Layout
 from .page_budget import PageBudget
-from .tags import markup, tag
 from .wording import Words
 
 RECONNECT_S = 30.0
 STYLES = ("page", "twin", "record", "draw", "teach", "make")
 LANGUAGE_COOKIE = "arboleda_language"
-Parts = dict[str, Callable[[Layout, Words], None]]
 _here: list[FastAPI] = []
 
 
@@ -55,7 +53,7 @@ def serve(server: FastAPI, layout: Layout, build: Callable[[Request, Client], No
         binding_refresh_interval=None,
         reconnect_timeout=RECONNECT_S,
         show_welcome_message=False,
-        favicon=str(resources.files(__package__).joinpath("assets", "tree.svg")),
+        favicon=str(resources.files(__package__) / "assets" / "tree.svg"),
     )
 
 
@@ -83,39 +81,9 @@ def fill(layout: Layout, wording: Words, parts: Parts, *, script: str, made: str
     ui.html(made, sanitize=False).classes("app")
 
 
-def body(
-    layout: Layout,
-    wording: Words,
-    parts: Parts,
-    *,
-    header: Callable[[list[str]], None],
-    footer: Callable[[], None] = lambda: None,
-) -> str:
-    """The HTML of a page, the same for each browser; `header` is called with the names of the parts."""
-    shown = parts_of(parts, layout)
-
-    def build() -> None:
-        header(list(shown))
-        with tag("div", id="parts"):
-            for name, build_part in shown.items():
-                label = wording(f"tab.{name}")
-                with tag("section", id=f"part-{name}", classes="part", data_part=name, aria_label=label):
-                    build_part(layout, wording)
-        trees.detail(wording)
-        footer()
-
-    return markup(build)
-
-
-def parts_of(parts: Parts, layout: Layout) -> Parts:
-    """The parts of the page that have something to show for this plant: no twin if no robot is drawn."""
-    return {name: build for name, build in parts.items() if name != "twin" or layout["places"]["robots"]}
-
-
 def head(wording: Words, *scripts: str) -> str:
     """The page's head: its styles, its scripts, and the few words that these use themselves."""
-    used = {key[3:]: text for key, text in wording.flat.items() if key.startswith("js.")}
-    data = json.dumps({"language": wording.language, "words": used}).replace("<", "\\u003c")
+    data = json.dumps(script_data(wording)).replace("<", "\\u003c")
     styles = "".join(f'<link rel="stylesheet" href="{assets()}/{name}.css">' for name in STYLES)
     modules = "".join(f'<script type="module" src="{assets()}/{name}"></script>' for name in scripts)
     return f"{styles}<script>window.arboledaPage = {data};</script>{modules}"

@@ -24,6 +24,14 @@ def build(layout: Layout, words: Words) -> None:
         _history(words)
 
 
+def of_start(layout: Layout, words: Words) -> None:
+    """Draw the form, and the tasks of this start alone, for whom nothing is kept beyond it."""
+    task_form.build(layout, words)
+    with tag("div", classes="lists"):
+        _one(layout, words)
+        _list(layout, words, COLUMNS)
+
+
 def of_record(layout: Layout, words: Words) -> None:
     """Draw queue and history of a record."""
     with tag("div", classes="lists"):

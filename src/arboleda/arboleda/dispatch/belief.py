@@ -9,10 +9,10 @@ from operator import attrgetter, methodcaller
 from typing import NamedTuple
 
 from arboleda.model.commands import Position
-from arboleda.model.facts import Facts, Value
+from arboleda.model.facts import HEALTH, WELL, Facts, Value
 from arboleda.model.messages import BUILT_IN, Failure, Reason, Receipt, Report, Tokens
 from arboleda.model.plant_model import Evidence, Link, MotionState, Robot
-from arboleda.model.sentence import Phrase, Sentence
+from arboleda.model.sentence import OWN, Phrase, Sentence
 
 STILL = frozenset({MotionState.STOPPED, MotionState.STOP_LATCHED, MotionState.NOT_HOMED})
 APART_S = 0.2  # two telemetry periods: by how much a state and a position of one instant may come apart
@@ -49,7 +49,7 @@ class Belief:
 
     `supervised`: whether silence means anything; a robot at `state` speaks only when it moves.
     `stale_at`: when silence will have lasted too long; None where that cannot happen (again).
-    `barred`: its bridge has refused a command because of a stop, which a robot without one cannot tell.
+    `barred`: a command was refused because of a stop which it does not tell: it has none, or did not hear it.
     """
 
     def __init__(self, robot: Robot, stale_after_s: float, plant_epoch: int) -> None:
@@ -101,8 +101,13 @@ class Belief:
 
     @property
     def numbers_commands(self) -> bool:
-        """True where its board numbers the commands that it takes, and has reported its boot."""
-        return self.robot.evidence is Evidence.IDS and self.boot_id is not None
+        """True where its board numbers the commands that it takes, and has reported its boot.
+
+        A board on MQTT always does; of anything else only the numbers themselves show it.
+        """
+        if self.robot.evidence is not Evidence.IDS or self.boot_id is None:
+            return False
+        return self.robot.link is Link.MQTT or self.receipt is not None
 
     @property
     def senses_pieces(self) -> bool:
@@ -306,6 +311,20 @@ class Belief:
         return OFFLINE if self.heard_at is not None else UNHEARD
 
     @property
+    def is_cleared_by_homing(self) -> bool:
+        """True where it is in a fault that its driver's homing leads out of, without a move."""
+        trouble, driver = self.trouble, self.robot.driver
+        in_fault = trouble is not None and trouble.reason is Reason.DEVICE_FAULT
+        return in_fault and driver is not None and driver.recovers
+
+    @property
+    def is_led_out_by_homing(self) -> bool:
+        """True where homing ends all that keeps it from other commands."""
+        trouble = self.trouble
+        unhomed = trouble is not None and trouble.reason is Reason.NOT_HOMED
+        return unhomed or self.is_cleared_by_homing
+
+    @property
     def trouble(self) -> Trouble | None:
         """The first trouble that keeps it from a command; None where it is ready."""
         if self.drawn:
@@ -315,6 +334,8 @@ class Belief:
         if self.plant != self.plant_epoch and not self.answered:
             return self._unanswered()
         trouble = TROUBLES.get(self.state)
+        if trouble is FAULTY and (word := self.fact(HEALTH)) not in (None, WELL):
+            return FAULTY_BECAUSE._replace(more={"why": OWN(text=str(word))})
         if self.barred and trouble is None:
             return STOPPED
         return UNHOMED if self.unhomed and (trouble is None or trouble is MOVING) else trouble
@@ -382,6 +403,11 @@ FAULTY = Trouble(
     Reason.DEVICE_FAULT,
     Phrase("robot.in_fault", "{robot} is in fault"),
     Phrase("robot.was_in_fault", "{robot} was in fault"),
+)
+FAULTY_BECAUSE = Trouble(
+    Reason.DEVICE_FAULT,
+    Phrase("robot.in_fault_because", "{robot} is in fault: {why}"),
+    Phrase("robot.was_in_fault_because", "{robot} was in fault: {why}"),
 )
 TROUBLES: dict[MotionState | None, Trouble] = {
     MotionState.MOVING: MOVING,

@@ -439,10 +439,13 @@ class Dispatcher:
         self._leave(Stop(id=self._new_id(), robot=robot, mode=mode))
 
     def _leave(self, command: Command, token: str | None = None) -> None:
-        if self.model.robots[command.robot].link in UNSENT:
+        link = self.model.robots[command.robot].link
+        if link in UNSENT:
             return
         heard = None if isinstance(command, Stop) else self.beliefs[command.robot].number
-        self.outbox.append(command if heard is None else replace(command, heard=heard, token=token))
+        if heard is not None or (token is not None and link is Link.DRIVER):
+            command = replace(command, heard=heard, token=token)
+        self.outbox.append(command)
         self.under_way.left(command)
         self.unnamed.left(command)
 
@@ -474,7 +477,7 @@ class Dispatcher:
         if isinstance(command, Work) and (tool := self.effectors.opening_tool(robot)) is not None:
             return Failure(reason=Reason.REJECTED, sentence=MAY_LET_GO(robot=robot, tool=tool))
         obstacle = self.obstacle(robot, was=was)
-        if isinstance(command, Home) and obstacle and obstacle.reason is Reason.NOT_HOMED:
+        if isinstance(command, Home) and obstacle and self.beliefs[robot].is_led_out_by_homing:
             return None
         moving = obstacle is not None and obstacle.reason is Reason.REJECTED
         if moving and self._shows_its_own_end(command) and not self._breaks_its_work(command):
@@ -549,7 +552,7 @@ class Dispatcher:
             return timing.effector_timeout_s
         here = self.beliefs[robot.name].known_position
         way = command.way if isinstance(command, Motion) else ()
-        travel_s = robot.motion.travel_s(here, way) if way else HOMING_S
+        travel_s = robot.motion.travel_s(here, way) / robot.pace if way else HOMING_S
         return max(robot.timeout_s, travel_s * timing.deadline_factor + timing.deadline_floor_s)
 
     def _settles_at(self, entry: Entry, now: float) -> float | None:
@@ -599,8 +602,8 @@ class Dispatcher:
     def _reject(self, robot: str, failure: Failure | None) -> None:
         count, _ = self.rejected.get(robot, (0, None))
         self.rejected[robot] = (count + 1, failure.sentence if failure else None)
-        stopped = failure is not None and failure.reason is Reason.STOPPED
-        self.beliefs[robot].barred |= stopped and not self.model.robots[robot].has_stop
+        belief, stopped = self.beliefs[robot], failure is not None and failure.reason is Reason.STOPPED
+        belief.barred |= stopped and belief.state is not MotionState.STOP_LATCHED
 
     def _done(self, command: Command) -> None:
         if command.robot in self.unfinished.by_device:

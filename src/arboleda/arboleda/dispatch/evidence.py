@@ -97,20 +97,20 @@ def judge(entry: Entry, before: Before | None, belief: Belief, report: Report) -
     if broken is not None or report.at < entry.sent_at:
         return broken
     _look(entry, belief, report)
-    return _device(entry, report) or _progress(entry, belief, report) or _stopping(entry, belief)
+    return _device(entry, belief, report) or _progress(entry, belief, report) or _stopping(entry, belief)
 
 
 def _look(entry: Entry, belief: Belief, report: Report) -> None:
     """Keep what a report shows about the command since it was sent."""
-    seen = entry.seen
+    observed = entry.observations
     _look_at_goal(entry, belief, report)
-    seen.moving = seen.moving or report.state is MotionState.MOVING
+    observed.moving = observed.moving or report.state is MotionState.MOVING
     if report.state is not None:
-        seen.stopped_since = (seen.stopped_since or report.at) if _rests(entry, report) else None
-    if report.done not in (None, seen.ended, entry.command.id):
-        seen.unhomed = False  # the end of another command is told only now: what was seen is from before ours
-    seen.unhomed = seen.unhomed or report.homed is False
-    seen.ended = report.done or seen.ended
+        observed.stopped_since = (observed.stopped_since or report.at) if _rests(entry, report) else None
+    if report.done not in (None, observed.ended, entry.command.id):
+        observed.unhomed = False  # another command's end is reported only now: that was before ours
+    observed.unhomed = observed.unhomed or report.homed is False
+    observed.ended = report.done or observed.ended
 
 
 def _rests(entry: Entry, report: Report) -> bool:
@@ -121,14 +121,14 @@ def _rests(entry: Entry, report: Report) -> bool:
 
 def _look_at_goal(entry: Entry, belief: Belief, report: Report) -> None:
     """Keep since when all that is told is the goal, and how far along its way the robot was seen."""
-    seen, place = entry.seen, belief.position_in(report)
+    observed, place = entry.observations, belief.position_in(report)
     if place is None and not _tells(report, entry.sets):
         return
-    if place is not None and len(entry.way) > 1 and place != seen.place:
-        seen.place = place
-        ahead = entry.way[seen.passed + 1 :]
-        seen.passed += ahead.index(place) + 1 if place in ahead else 0
-    seen.on_goal_since = (seen.on_goal_since or report.at) if _at_end(entry, belief) else None
+    if place is not None and len(entry.way) > 1 and place != observed.place:
+        observed.place = place
+        ahead = entry.way[observed.passed + 1 :]
+        observed.passed += ahead.index(place) + 1 if place in ahead else 0
+    observed.on_goal_since = (observed.on_goal_since or report.at) if _at_end(entry, belief) else None
 
 
 def _tells(report: Report, facts: Facts) -> bool:
@@ -137,7 +137,7 @@ def _tells(report: Report, facts: Facts) -> bool:
 
 def _at_end(entry: Entry, belief: Belief) -> bool:
     """True where its last report shows the goal; a way that passes there before was driven to its end."""
-    driven = len(entry.way) <= 1 or entry.seen.passed == len(entry.way) - 1
+    driven = len(entry.way) <= 1 or entry.observations.passed == len(entry.way) - 1
     return driven and reached(entry, belief)
 
 
@@ -239,10 +239,12 @@ def _jumped(before: Before, belief: Belief, report: Report) -> bool:
     return not belief.robot.motion.can_have_moved(before.position, place, elapsed_s)
 
 
-def _device(entry: Entry, report: Report) -> Verdict | None:
+def _device(entry: Entry, belief: Belief, report: Report) -> Verdict | None:
     if report.state not in OBJECTIONS:
         return None
     if report.state is MotionState.FAULT:
+        if isinstance(entry.command, Home) and belief.is_cleared_by_homing:
+            return None  # it is being led out of that fault; its driver tells where it cannot be
         return _failed(entry, Reason.DEVICE_FAULT, BOARD_FAULT)
     if not entry.is_work:
         return None
@@ -292,14 +294,14 @@ def _move_by_joints(entry: Entry, belief: Belief, report: Report) -> Verdict | N
     Done is a robot on its goal that was seen to move and to stop since, or said nothing of moving for
     QUIET_S. It has stopped short where it has left its origin, says stopped and stays elsewhere for QUIET_S.
     """
-    seen = entry.seen
+    observed = entry.observations
     if belief.state is MotionState.STOPPED:
-        if seen.on_goal_since is not None:
-            if _stays_on_goal(entry, belief, report.at, since=seen.on_goal_since):
+        if observed.on_goal_since is not None:
+            if _stays_on_goal(entry, belief, report.at, since=observed.on_goal_since):
                 return Verdict(feed=Feed.DONE)
         elif _stays_short(entry, belief, report.at):
             return _short(entry)
-    return Verdict(feed=Feed.ACCEPTED) if seen.moving and entry.state is State.SENT else None
+    return Verdict(feed=Feed.ACCEPTED) if observed.moving and entry.state is State.SENT else None
 
 
 def _stays_on_goal(entry: Entry, belief: Belief, at: float, *, since: float) -> bool:
@@ -309,40 +311,40 @@ def _stays_on_goal(entry: Entry, belief: Belief, at: float, *, since: float) -> 
     its way was thought to begin, it comes by its goal and goes on. So a node counts that was told so long
     after the stop that it cannot be from before.
     """
-    seen = entry.seen
-    if not seen.moving:
+    observed = entry.observations
+    if not observed.moving:
         return at >= since + QUIET_S
-    if seen.stopped_since is None:
+    if observed.stopped_since is None:
         return False
-    return len(entry.way) <= 1 or belief.position_at >= seen.stopped_since + APART_S
+    return len(entry.way) <= 1 or belief.position_at >= observed.stopped_since + APART_S
 
 
 def _stays_short(entry: Entry, belief: Belief, at: float) -> bool:
-    seen = entry.seen
-    if not seen.moving or seen.stopped_since is None or at < seen.stopped_since + QUIET_S:
+    observed = entry.observations
+    if not observed.moving or observed.stopped_since is None or at < observed.stopped_since + QUIET_S:
         return False
     if not entry.way:
         return True
     if belief.position == entry.origin:
         return False  # who never left may have said only the end of an earlier move
-    return belief.rested_since(seen.stopped_since + APART_S)
+    return belief.rested_since(observed.stopped_since + APART_S)
 
 
 def _process_by_facts(entry: Entry, belief: Belief, report: Report) -> Verdict | None:
     """Judge a process by facts, which may be older than it: it has to be seen at work and at its end."""
-    seen = entry.seen
-    if seen.moving and seen.stopped_since is not None:
-        if not entry.sets or seen.on_goal_since is not None:
+    observed = entry.observations
+    if observed.moving and observed.stopped_since is not None:
+        if not entry.sets or observed.on_goal_since is not None:
             return Verdict(feed=Feed.DONE)
         if _stays_short(entry, belief, report.at):
             return _short(entry)
-    return Verdict(feed=Feed.ACCEPTED) if seen.moving and entry.state is State.SENT else None
+    return Verdict(feed=Feed.ACCEPTED) if observed.moving and entry.state is State.SENT else None
 
 
 def _work_by_state(entry: Entry, belief: Belief, report: Report) -> Verdict | None:
-    if entry.seen.moving and _rests(entry, report) and entry.cancelled_at is None:
+    if entry.observations.moving and _rests(entry, report) and entry.cancelled_at is None:
         return Verdict(feed=Feed.DONE)  # after a halt, the same edge proves no more than the halt
-    return Verdict(feed=Feed.ACCEPTED) if entry.seen.moving and entry.state is State.SENT else None
+    return Verdict(feed=Feed.ACCEPTED) if entry.observations.moving and entry.state is State.SENT else None
 
 
 def _unproven(entry: Entry, belief: Belief, report: Report) -> Verdict | None:
@@ -368,9 +370,9 @@ def _answered(entry: Entry, belief: Belief, report: Report) -> Verdict | None:
 
 def _homed_by_ids(entry: Entry, belief: Belief, report: Report) -> Verdict | None:
     """Homing shows in `homed`: seen false, then true, and still."""
-    if entry.seen.unhomed and report.homed and report.state is MotionState.STOPPED:
+    if entry.observations.unhomed and report.homed and report.state is MotionState.STOPPED:
         return Verdict(feed=Feed.DONE)
-    return Verdict(feed=Feed.ACCEPTED) if entry.seen.unhomed and entry.state is State.SENT else None
+    return Verdict(feed=Feed.ACCEPTED) if entry.observations.unhomed and entry.state is State.SENT else None
 
 
 def _off_target(entry: Entry, belief: Belief) -> Verdict:

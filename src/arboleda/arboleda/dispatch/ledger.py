@@ -97,7 +97,7 @@ class Entry:
         self.cancelled_after = Moment(0, -math.inf)
         self.failure: Failure | None = None
         self.interference: Sentence | None = None  # the last command of somebody else meanwhile
-        self.seen = Observations()
+        self.observations = Observations()
         self.rule: Callable[..., Any] | None = None  # what proves it, once it was looked up
         self.answer: Value | None = None  # to a query
         self.before: Receipt | None = None  # what its board said of numbers when it left

@@ -58,22 +58,22 @@ class UnderWay:
         self._naming = frozenset(robot.name for robot in users if _names_commands(robot))
         self._others = frozenset(robot.name for robot in users) - self._naming
         self.ids: dict[str, list[str]] = {}
-        self._heard_since: dict[str, float] = {}  # since the last one left
+        self._reporting_since: dict[str, float] = {}  # since the last one left
 
     def left(self, command: Command) -> None:
         """A command leaves for its robot."""
         works = command.robot in self._others and isinstance(command, Work)
         if works or command.robot in self._naming:
             self.ids[command.robot] = [*self.ids.get(command.robot, ())[-KEPT:], command.id]
-            self._heard_since.pop(command.robot, None)
+            self._reporting_since.pop(command.robot, None)
 
     def hear(self, report: Report, now: float) -> None:
         """A robot reports, and may name commands."""
         ids = self.ids.get(report.robot)
         if ids is None:
             return
-        heard_since = self._heard_since.setdefault(report.robot, now)
-        if report.robot in self._others and now >= heard_since + QUIET_S:
+        reporting_since = self._reporting_since.setdefault(report.robot, now)
+        if report.robot in self._others and now >= reporting_since + QUIET_S:
             ids.clear()
         _settle(ids, report)
         if not ids:
@@ -87,7 +87,7 @@ class UnderWay:
     def is_overdue(self, robot: str, now: float) -> bool:
         """True where one of them must have been lost."""
         waits = robot in self.ids and robot in self._naming
-        return waits and now >= self._heard_since.get(robot, now) + PATIENCE_S
+        return waits and now >= self._reporting_since.get(robot, now) + PATIENCE_S
 
 
 class Unfinished:

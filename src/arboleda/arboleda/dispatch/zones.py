@@ -154,7 +154,7 @@ class Zones:
         """It is back, homed and seen outside: its quarantined zones are free. Returns as `withdraw`."""
         return self._free(self.held_by(robot) & self._quarantined)
 
-    def is_heard(self, machine: str) -> None:
+    def lift_quarantine(self, machine: str) -> None:
         """A machine says itself which zones it is in the way of: those that it holds are not quarantined."""
         self._quarantined -= self.held_by(machine)
 

@@ -5,7 +5,7 @@ from arboleda.kinds.declared import VerbCall as VerbCommand
 from arboleda.kinds.joints import MoveJoints
 from arboleda.kinds.mobile import FollowPath
 from arboleda.model.commands import Command, Home, Stop, StopMode
-from arboleda.model.messages import Report
+from arboleda.model.messages import Receipt, Report, Tokens
 from arboleda.model.plant_model import MotionState, Robot
 
 from .port import Clock, Driver, DriverError, Hear, NotSent, driver, lost
@@ -21,11 +21,13 @@ __all__ = [
     "MotionState",
     "MoveJoints",
     "NotSent",
+    "Receipt",
     "Report",
     "Robot",
     "SetEffector",
     "Stop",
     "StopMode",
+    "Tokens",
     "VerbCommand",
     "driver",
     "lost",

@@ -27,7 +27,7 @@ class DrivenDevice:
         self._epoch = epoch
         self._silence_s = math.inf if robot.evidence is Evidence.STATE else stale_after_s
         self._longest_s = stale_after_s
-        self._said_at = -math.inf
+        self._reported_at = -math.inf
         self._boot_id: int | None = None
         self._known: OrderedDict[str, None] = OrderedDict()  # the ids of the commands that it was given
         self._work: Work | None = None  # the work that may still move it
@@ -62,8 +62,8 @@ class DrivenDevice:
 
     def refuse(self, at: float, command: Command, word: str) -> Report:
         state, why = (None, None) if self.up else (MotionState.NO_LINK, self._why)
-        said = Report(at=at, robot=self.robot.name, state=state, lost=why, rejected=command.id, refusal=word)
-        return self._stamped(said)
+        reply = Report(at=at, robot=self.robot.name, state=state, lost=why, rejected=command.id, refusal=word)
+        return self._stamped(reply)
 
     def halt(self) -> Stop | None:
         """The stop that ends work which may still go on; None if there is none, or the device cannot stop."""
@@ -100,7 +100,7 @@ class DrivenDevice:
 
     def is_late(self, report: Report, now: float) -> bool:
         """True if a newer report was heard, or this one is so old that its age alone would lose the link."""
-        return report.at < self._said_at or now - report.at > self._longest_s
+        return report.at < self._reported_at or now - report.at > self._longest_s
 
     def hear(self, report: Report) -> tuple[Report, Stop | None]:
         """The report for the plant, and a stop to send once more if the device may have forgotten its latch.
@@ -109,7 +109,7 @@ class DrivenDevice:
         """
         booted = report.boot_id is not None and report.boot_id != self._boot_id
         returned = booted or not self.up
-        self.up, self._said_at, self.stale_at = True, report.at, report.at + self._silence_s
+        self.up, self._reported_at, self.stale_at = True, report.at, report.at + self._silence_s
         self._boot_id = self._boot_id if report.boot_id is None else report.boot_id
         ended = (report.done, report.rejected, report.failed)
         if booted or (self._work is not None and self._work.id in ended):
@@ -138,7 +138,6 @@ class DrivenDevice:
             report,
             epoch=self._epoch,
             plant=self._epoch,
-            receipt=None,
             foreign=None,
             foreign_refused=None,
             foreign_obeyed=None,

@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from arboleda.model.messages import Report
+from arboleda.model.messages import Receipt, Report, Tokens
 from arboleda.model.outside import plain, quoted
 from arboleda.model.plant_model import MotionState, Robot
 from arboleda.model.sentence import Sentence
@@ -63,6 +63,16 @@ def _is_position(value: object) -> bool:
     return isinstance(value, tuple) and all(map(is_number, value))
 
 
+def _is_receipt(value: object) -> bool:
+    if not isinstance(value, Receipt):
+        return False
+    return all(map(_is_count, value[:2])) and (value.done is None or _is_count(value.done))
+
+
+def _are_tokens(value: object) -> bool:
+    return isinstance(value, Tokens) and all(each is None or _is_text(each) for each in value)
+
+
 TEXT = (_is_text, "a word or an id")
 FLAG = (_is_flag, "True or False")
 COUNT = (_is_count, "a whole number of 0 or more")
@@ -74,6 +84,8 @@ FIELDS: dict[str, tuple[Callable[[Any], bool], str]] = {
     "state": (lambda value: isinstance(value, MotionState), "a MotionState"),
     "q": (_is_position, "a tuple of numbers"),
     "facts": (_are_facts, 'a tuple of pairs, (("door", "open"),)'),
+    "receipt": (_is_receipt, "a Receipt of whole numbers of 0 or more"),
+    "tokens": (_are_tokens, "Tokens, as commands carried them"),
     "lost": (lambda value: isinstance(value, Sentence), "a Sentence, as lost() makes it"),
 }
 """The check of each field of a report, and the allowed values in words."""

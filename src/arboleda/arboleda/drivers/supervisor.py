@@ -84,7 +84,7 @@ class DriverCrash:
 class SendResult:
     """A driver came back from `send`; `error` says why the command did not leave.
 
-    `broken`: that was no refusal but a defect, and nobody knows what it has left behind.
+    `broken`: a defect, not a refusal; its effects are unknown.
     """
 
     at: float
@@ -155,7 +155,7 @@ class SupervisedDriver:
         self.life = Life(driver=number, number=0)
         self.begin_at = -math.inf  # time of the next start; inf while there is a life
         self._stuck_after_s = stuck_after_s
-        self._given: deque[float] = deque()  # start times of the calls of `send` that have not returned
+        self._sends: deque[float] = deque()  # start times of the calls of `send` that have not returned
         self._stuck = False
         self._began_at = 0.0
         self._delay_s = FIRST_RETRY_S
@@ -163,7 +163,7 @@ class SupervisedDriver:
     @property
     def next_deadline(self) -> float:
         stale_at = min(device.stale_at for device in self.devices.values())
-        stuck_at = self._given[0] + self._stuck_after_s if self._given and not self._stuck else math.inf
+        stuck_at = self._sends[0] + self._stuck_after_s if self._sends and not self._stuck else math.inf
         return min(self.begin_at, stuck_at, stale_at)
 
     def begin(self, now: float) -> list[Message]:
@@ -183,9 +183,9 @@ class SupervisedDriver:
 
     def taken(self, event: SendResult) -> list[Message]:
         """Note that the driver came back from `send`."""
-        if self._given:
-            self._given.popleft()
-        self._stuck = self._stuck and bool(self._given)
+        if self._sends:
+            self._sends.popleft()
+        self._stuck = self._stuck and bool(self._sends)
         if event.error is None:
             return []
         name = event.command.robot
@@ -201,12 +201,12 @@ class SupervisedDriver:
         self.begin_at = event.at + self._delay_s
         self._delay_s = min(2 * self._delay_s, LAST_RETRY_S)
         ended, self.life = End(life=self.life), replace(self.life, number=self.life.number + 1)
-        self._given.clear()
+        self._sends.clear()
         self._stuck = False
         why = what(driver=self.name, error=event.error)
         return [*(device.no_link(event.at, why) for device in self.devices.values()), ended]
 
-    def said(self, event: DriverOutput) -> list[Message]:
+    def output(self, event: DriverOutput) -> list[Message]:
         """Take a report of the driver's code: returned if it counts; a refusal for the log if invalid."""
         why = objection(event.report, self.robots)
         if why is not None:
@@ -218,14 +218,14 @@ class SupervisedDriver:
             return []
         if report.state is MotionState.NO_LINK:
             return [*device.say_lost(report.at, report.lost or UNSAID(driver=self.name))]
-        heard, stop = device.hear(report)
-        return [heard] if stop is None else [heard, self._give(event.at, device, stop)]
+        taken, stop = device.hear(report)
+        return [taken] if stop is None else [taken, self._give(event.at, device, stop)]
 
     def pass_time(self, now: float) -> list[Message]:
         """Losses that the passing of time brings: silent devices, and a `send` that does not return."""
         if self.begin_at <= now:
             return self.begin(now)
-        if self._given and not self._stuck and self._given[0] + self._stuck_after_s <= now:
+        if self._sends and not self._stuck and self._sends[0] + self._stuck_after_s <= now:
             self._stuck = True
             why = STUCK(driver=self.name, seconds=self._stuck_after_s)
             return [message for device in self.devices.values() for message in device.lose(now, why)]
@@ -245,17 +245,17 @@ class SupervisedDriver:
 
     def _unwatched(self, now: float, device: DrivenDevice) -> list[Message]:
         failed, stop = device.give_up(now)
-        said = UNWATCHED(seconds=PLANT_GONE_S, robot=device.robot.name, driver=self.name)
-        return [self._give(now, device, stop), failed, DeviceHalt(at=now, sentence=said)]
+        sentence = UNWATCHED(seconds=PLANT_GONE_S, robot=device.robot.name, driver=self.name)
+        return [self._give(now, device, stop), failed, DeviceHalt(at=now, sentence=sentence)]
 
     def leave(self, leaving: Leaving) -> list[Message]:
         """Halt everything that may still move, then end the driver."""
         halts = [(device, device.halt()) for device in self.devices.values()] if leaving.halts else []
-        given: list[Message] = [
+        halting: list[Message] = [
             self._give(leaving.at, device, halt) for device, halt in halts if halt is not None
         ]
         alive, self.begin_at = self.begin_at == math.inf, math.inf
-        return [*given, *([End(life=self.life)] if alive else [])]
+        return [*halting, *([End(life=self.life)] if alive else [])]
 
     def _give(self, at: float, device: DrivenDevice, command: Command) -> Give:
         """The message that hands a command to the driver's `send`.
@@ -263,8 +263,8 @@ class SupervisedDriver:
         It expires with a `send` that is stuck before it; a stop never expires.
         """
         device.leaves(command)
-        self._given.append(at)
-        until = math.inf if isinstance(command, Stop) else self._given[0] + self._stuck_after_s
+        self._sends.append(at)
+        until = math.inf if isinstance(command, Stop) else self._sends[0] + self._stuck_after_s
         return Give(life=self.life, command=command, until=until)
 
 
@@ -319,7 +319,7 @@ class Supervisor:
         if event.life != driver.life:
             return []
         if isinstance(event, DriverOutput):
-            return driver.said(event)
+            return driver.output(event)
         return driver.taken(event) if isinstance(event, SendResult) else driver.broken(event)
 
     def _hear_plant(self, event: PlantBeat | CommandRequest) -> list[Message]:

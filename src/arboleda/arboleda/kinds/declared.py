@@ -200,22 +200,22 @@ class DeviceKind:
             self._check_facts(f"{verb} sets", sets)
         return COMMANDS[known.effect](id=id, robot=robot, verb=verb, values=in_order, told=known, made=sets)
 
-    def shown_by(self, told: VerbCall, facts: Facts) -> Facts:
+    def shown_by(self, call: VerbCall, facts: Facts) -> Facts:
         """The further facts that a virtual device shows after this; raises UseError for an invalid one."""
-        if told.told.virtual is None:
+        if call.told.virtual is None:
             return ()
-        what = f"virtual of {told.verb}"
-        found = _facts(what, _computed(what, told.told.virtual, dict(facts), **dict(told.values)))
+        what = f"virtual of {call.verb}"
+        found = _facts(what, _computed(what, call.told.virtual, dict(facts), **dict(call.values)))
         self._check_facts(what, found)
         return found
 
-    def answer_of(self, told: VerbCall, facts: Facts) -> Value:
+    def answer_of(self, call: VerbCall, facts: Facts) -> Value:
         """The answer of a virtual device to a query; raises UseError if the query has no such answer."""
-        answers = told.told.answers
-        if told.told.virtual is None:
+        answers = call.told.answers
+        if call.told.virtual is None:
             return answers[0]
-        what = f"virtual of {told.verb}"
-        found = _computed(what, told.told.virtual, dict(facts), **dict(told.values))
+        what = f"virtual of {call.verb}"
+        found = _computed(what, call.told.virtual, dict(facts), **dict(call.values))
         if found not in answers:
             allowed = ", ".join(map(shown, answers))
             raise UseError(f"{what} answers {quoted(found)}; its answers are {allowed}")

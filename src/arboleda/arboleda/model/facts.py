@@ -6,6 +6,9 @@ Value = bool | int | float | str
 """What a fact can be: `"open"` of a door, True of a clamp, 1001 of a program."""
 Facts = tuple[tuple[str, Value], ...]
 """Facts by name."""
+HEALTH = "health"
+"""The fact of a robot whose hardware tells what keeps it from moving, a word; WELL where nothing does."""
+WELL = "ok"
 
 
 def shown(value: Value) -> str:

@@ -105,7 +105,8 @@ class KeptTask:
     """Task of an earlier start, as it was kept; times in s of this start's clock.
 
     `recipe` is "" where nobody knows; `choice` says why it is done in its cell, where several were allowed.
-    `course` is known of tasks that were done from their beginning in one start of the plant.
+    `course` is known of tasks that were done from their beginning in one start of the plant. `is_bound` marks
+    a task that may begin only in the start, and by the version of the plant, for which it was allowed.
     """
 
     id: str
@@ -121,6 +122,7 @@ class KeptTask:
     choice: Sentence | None = None
     course: Course | None = None
     unchecked: tuple[Check, ...] = field(default=(), repr=False)
+    is_bound: bool = field(default=False, repr=False)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -392,7 +394,8 @@ class TaskRequest:
 
     `trigger` marks a machine's start signal, which may be refused during the arm's own cycle. `kept` is the
     task of this id, where an earlier start has accepted it: no part of what is asked. `choice` is why it was
-    given to its cell, in the words of who chose between plants.
+    given to its cell, in the words of who chose between plants. `version` is the digest of the only version
+    of the plant for which it was allowed, "" where any will do.
     """
 
     at: float
@@ -401,6 +404,7 @@ class TaskRequest:
     trigger: bool = False
     kept: KeptTask | None = field(default=None, repr=False)
     choice: str = field(default="", repr=False)
+    version: str = field(default="", repr=False)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -511,6 +515,16 @@ class RestartRequest:
     wanted: bool = True
 
 
+@dataclass(frozen=True, kw_only=True)
+class FaultByHand:
+    """A person had something go wrong with a virtual device, or that is over: for people who look back."""
+
+    at: float
+    robot: str
+    sentence: Sentence
+    is_over: bool = False
+
+
 Event = (
     Jog
     | Report
@@ -522,4 +536,5 @@ Event = (
     | Shutdown
     | Revision
     | RestartRequest
+    | FaultByHand
 )

@@ -9,6 +9,7 @@ from enum import Enum
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
+from .assistants import NO_LIMITS, AssistantLimits, Assistants
 from .commands import Command, Position
 from .errors import ArboledaError
 from .facts import Facts, Value
@@ -76,11 +77,39 @@ class MotionState(int, Enum):
 
 @dataclass(frozen=True, kw_only=True)
 class DriverUse:
-    """The driver that reaches a robot, and its settings; `make` makes one with them."""
+    """The driver that reaches a robot, and its settings; `make` makes one with them. `pace` is the share of
+    its model's speed at which it moves the robot. `facts` names the facts that it reports beside those of the
+    robot's kind; `recovers`: homing leads the robot out of a fault, and does not move it.
+    """
 
     name: str
     settings: object = field(default=None, hash=False)
+    pace: float = 1.0
+    facts: tuple[str, ...] = ()
+    recovers: bool = False
     make: Callable[[], Any] = field(compare=False, repr=False)
+
+
+@dataclass(frozen=True, kw_only=True)
+class JointStates:
+    """Joint states of a robot on ROS 2, under the name `twin`: the names of its joints, none where it reports
+    no position, and their `measured` values in a report.
+    """
+
+    twin: str
+    joints: tuple[str, ...] = ()
+    measured: Callable[[Report], tuple[float, ...] | None] | None = None
+
+    @property
+    def topic(self) -> str:
+        """The topic on which they are published."""
+        return f"{self.twin}/joint_states"
+
+    def values(self, report: Report) -> tuple[float, ...] | None:
+        """The value of each joint, x and y of a mobile robot; None where there is none, or no link."""
+        if self.measured is None or report.state is MotionState.NO_LINK:
+            return None
+        return self.measured(report)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -121,6 +150,11 @@ class Robot:
         return self.position_key is not None
 
     @property
+    def pace(self) -> float:
+        """The share of its model's speed at which it moves."""
+        return 1.0 if self.driver is None else self.driver.pace
+
+    @property
     def verb_names(self) -> tuple[str, ...]:
         """The names of its verbs, besides those for going and holding."""
         return ()
@@ -133,7 +167,7 @@ class Robot:
     @property
     def fact_names(self) -> tuple[str, ...]:
         """The facts that it reports, in the order in which people read them."""
-        return ()
+        return () if self.driver is None else self.driver.facts
 
     def drawn(self) -> dict[str, object] | None:
         """Its place on the floor, its speeds and its reference, for drawings; None where it is not drawn."""
@@ -154,19 +188,10 @@ class Robot:
         """True where it holds parts with an effector; of any other device the fact has a name."""
         return self.held_fact == "effector"
 
-    @property
-    def joint_names(self) -> tuple[str, ...]:
-        """The names of its joints on ROS 2; empty where it reports no position."""
-        return ()
-
-    @property
-    def twin_name(self) -> str:
-        """Under which name its joints are published there."""
-        return self.name
-
-    def measured(self, report: Report) -> tuple[float, ...] | None:
-        """A report's value of each joint; None where it says none."""
-        return None
+    @cached_property
+    def joint_states(self) -> JointStates:
+        """Its joints on ROS 2."""
+        return JointStates(twin=self.name)
 
     @property
     def units(self) -> list[str] | None:
@@ -604,6 +629,14 @@ class Timing:
 
 
 @dataclass(frozen=True, kw_only=True)
+class OpcUaView:
+    """Port of the server of OPC UA that shows the plant, and the ISA-95 levels that the plant is in."""
+
+    port: int = 4840
+    isa95: tuple[str, ...] = ()  # enterprise, site, area, work center; as many as are given
+
+
+@dataclass(frozen=True, kw_only=True)
 class PlantModel:
     """The whole plant as its file describes it."""
 
@@ -615,7 +648,10 @@ class PlantModel:
     foreign_commands: ForeignCommands = ForeignCommands.REFUSE
     history_days: float = 90.0  # how long ended tasks are kept
     groot2_port: int | None = None  # where the first cell's tree is shown to Groot2
+    opcua_view: OpcUaView | None = None  # the plant as a server of OPC UA; None: off
     store: str = ""  # the database where its memory is, "": in a file of its own
+    assistants: Assistants = Assistants.OFF
+    assistant_limits: AssistantLimits = NO_LIMITS
 
     def cell(self, name: str) -> Cell:
         return next(cell for cell in self.cells if cell.name == name)

@@ -63,7 +63,7 @@ def _revised(space: Workspace, other: Workspace) -> Workspace:
 
 
 def _of_plant(plant: PlantModel) -> tuple[object, ...]:
-    links = (plant.mqtt_version, plant.foreign_commands, plant.groot2_port)
+    links = (plant.mqtt_version, plant.foreign_commands, plant.groot2_port, plant.opcua_view)
     return (plant.name, plant.store, plant.zones, *links, plant.timing.stale_after_s)
 
 

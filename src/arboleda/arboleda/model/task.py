@@ -59,6 +59,7 @@ class Task:
         self.answers: list[TaskAnswer] = []  # in the order in which they came
         self.course: Course | None = None  # how it went, once it is done
         self.unchecked: tuple[Check, ...] = ()  # what of it nobody confirmed, once it is done
+        self.version = ""  # the digest of the only version of the plant by which it may begin, "": of any
         self.is_kept = False  # whether an earlier start accepted it
 
     @classmethod

@@ -50,10 +50,12 @@ class Devices(str, Enum):
 
 
 class Role(str, Enum):
-    """Role of a person: a viewer looks and stops, an operator may do everything."""
+    """Role of whoever asks: a viewer looks and stops, an operator may do everything, an assistant proposes
+    besides, and gives tasks within limits."""
 
     VIEWER = "viewer"
     OPERATOR = "operator"
+    ASSISTANT = "assistant"
 
 
 QUESTION = Argument(

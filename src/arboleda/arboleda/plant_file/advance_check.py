@@ -9,11 +9,12 @@ from py_trees.behaviour import Behaviour
 
 from arboleda.bt_xml.recipe import TreeRecipe
 from arboleda.bt_xml.running.controls import Parallel, ParallelAll, Reactive, WhileDoElse
-from arboleda.bt_xml.running.decorators import Loop, Timed
+from arboleda.bt_xml.running.decorators import Loop, TimedDecorator
 from arboleda.bt_xml.running.memory import Scope
 from arboleda.bt_xml.running.node import Result
 from arboleda.bt_xml.running.scripts import ScriptError
 from arboleda.core.plant import Plant
+from arboleda.model.facts import Value
 from arboleda.model.plant_model import Cell, PlantModel
 from arboleda.model.recipe import Recipe
 from arboleda.model.task import Order
@@ -32,7 +33,7 @@ from .walkthrough import Rule, Walkthrough
 
 MOST_TRIES, LONGEST_S = 100, 3600.0  # of a retry, and the time of its pauses
 ENDLESS = "tries {step} again {how_often}; a task that cannot be done never ends so"
-LIMITS = (AtMost, Timed, Reactive, Parallel, ParallelAll, WhileDoElse)
+LIMITS = (AtMost, TimedDecorator, Reactive, Parallel, ParallelAll, WhileDoElse)
 RULES: Mapping[type[Behaviour], Rule] = {**STEP_RULES, **NODE_RULES}
 
 
@@ -57,7 +58,7 @@ class CellCheck:
 
     cell: Cell
     context: Context
-    said: dict[str, None] = field(default_factory=dict)
+    found: dict[str, None] = field(default_factory=dict)
     waits: dict[str, dict[str, str]] = field(default_factory=dict)  # by robot and recipe: where it ends
 
     def warnings(self) -> Iterable[str]:
@@ -67,11 +68,12 @@ class CellCheck:
                 self._check(recipe, order)
         for recipe in written:
             self._say(recipe, self._elsewhere(recipe))
-        return self.said
+        return self.found
 
     def ends(self) -> Iterator[str]:
         for recipe in (each for each in self.cell.recipes if _place(each) is not None):
-            ends, wanted = [], []
+            ends: list[Scene] = []
+            wanted: list[dict[str, Value]] = []
             for order in orders(self.cell, recipe):
                 ends += self._followed(recipe.build(order, self.context))[1]
                 wanted.append(recipe.end_of(order.values))
@@ -113,7 +115,7 @@ class CellCheck:
 
     def _say(self, recipe: Recipe, sentences: Iterable[str], place: str | None = None) -> None:
         where = f"{place or _place(recipe)}: {self.cell.name}: {recipe.name}"
-        self.said |= dict.fromkeys(f"{where} {sentence}" for sentence in sentences)
+        self.found |= dict.fromkeys(f"{where} {sentence}" for sentence in sentences)
 
 
 def _place(recipe: Recipe) -> str | None:

@@ -96,13 +96,13 @@ def poses(
             there = f"must be {choice(robots)}" if robots else "no device of this cell goes anywhere"
             document.problem(place, f"{there}, is {shown(role)}{nearest(role, robots)}", at=place)
             continue
-        given = document.value(place)
-        if not isinstance(given, list) or len(given) != len(array.corners):
+        rows = document.value(place)
+        if not isinstance(rows, list) or len(rows) != len(array.corners):
             which = ORDER if len(array.corners) > 2 else "the first and the last"
             document.problem(place, f"must be a list of {len(array.corners)} corners: {which}", at=place)
             found[role] = [None]
             continue
-        corners = [spot(document, (*place, index), robots[role], CORNER) for index in range(len(given))]
+        corners = [spot(document, (*place, index), robots[role], CORNER) for index in range(len(rows))]
         whole = [pose for pose in corners if pose is not None]
         if len(whole) < len(corners):
             found[role] = [None]
@@ -134,7 +134,7 @@ def _between(
 def _mixed(corners: Sequence[Position], weights: Sequence[float], robot: Robot) -> Position | None:
     """The position with these shares of the corners; None if that is no node."""
     if robot.floor_grid:
-        columns = robot.grid.columns
+        columns = robot.floor_grid.columns
         rows = _sums([divmod(node, columns) for node in corners if isinstance(node, int)], weights)
         row, column = map(round, rows)
         on_nodes = math.dist(rows, (row, column)) < ROUNDING

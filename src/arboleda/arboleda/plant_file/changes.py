@@ -82,7 +82,7 @@ def _of_plant(before: PlantFiles, after: PlantFiles) -> Iterator[Change]:
     old, new = before.contents.get(before.plant, b""), after.contents.get(after.plant, b"")
     try:
         values = [parse(each)[0].value for each in (old, new)]
-    except YamlFault:  # one cannot be read, which `check` says with its place
+    except YamlFault:  # one cannot be read; `check` reports its place
         if old != new:
             yield Change(file=after.plant, before=None, after=None)
         return
@@ -103,7 +103,7 @@ def _of_values(file: str, place: Place, before: Any, after: Any) -> Iterator[Cha
 
 
 def _is_group_of_poses(place: Place, before: Any, after: Any) -> bool:
-    """True for a target that is new or gone, of which each robot's pose is told."""
+    """True for a target that is new or gone: then the pose of each robot is listed."""
     if len(place) != 4 or (place[0], place[2]) != (CELLS, TARGETS):
         return False
     values = [each for each in (before, after) if each is not MISSING]

@@ -6,14 +6,12 @@ from collections.abc import Iterable
 
 from arboleda.dispatch.belief import APART_S
 from arboleda.dispatch.evidence import QUIET_S
-from arboleda.kinds.arm import Arm
-from arboleda.kinds.mobile import Mobile
 from arboleda.model.plant_model import Cell, Evidence, Robot, Timing
 
 from .document import Document, Place
 
 PERIOD_S = APART_S / 2  # of telemetry
-# by what an arrival shows: its own report; one of moving and one of the end; two with QUIET_S between them
+# by the reports of an arrival: its own; one of moving and one of the end; two with QUIET_S between them
 SHOWN_S = {
     Evidence.IDS: PERIOD_S,
     Evidence.STATE: APART_S + PERIOD_S,
@@ -31,7 +29,7 @@ def check_arrivals_show(document: Document, cells: Iterable[Cell], timing: Timin
             if not robot.goes:
                 continue  # a verb of a declared kind has a time of its own
             _check_patience(document, robot, timing)
-            spare_s, needed_s = _spare_s(robot, _longest_s(cell, robot), timing), _shown_s(robot)
+            spare_s, needed_s = _spare_s(robot, _longest_s(cell, robot) / robot.pace, timing), _shown_s(robot)
             if spare_s < needed_s - ROUNDING_S:
                 place: Place = ("cells", cell.name)
                 key: Place = ("devices", role) if document.has((*place, "devices")) else (role,)
@@ -59,15 +57,16 @@ def _spare_s(robot: Robot, longest_s: float, timing: Timing) -> float:
     return max(robot.timeout_s, even_s * factor + floor_s) - even_s
 
 
-def _longest_s(cell: Cell, robot: Arm | Mobile) -> float:
-    if robot.joints:
+def _longest_s(cell: Cell, robot: Robot) -> float:
+    if robot.reference is not None and robot.joints:
         return robot.motion.travel_s(None, [robot.reference])
-    space, nodes = cell.reach[robot.name], range(robot.grid.size)
+    space, grid = cell.reach[robot.name], robot.floor_grid
+    nodes = range(grid.size)
     ways = [path.nodes for path in space.paths]
     if ways and cell.drive_to_start:  # a drive that is given anew leads to the start of its path and over it
-        ways = [(*robot.grid.route(node, way[0]), *way[1:]) for way in ways for node in nodes]
+        ways = [(*grid.route(node, way[0]), *way[1:]) for way in ways for node in nodes]
     goals = [pose.q for pose in space.poses if isinstance(pose.q, int)]
-    ways += [robot.grid.route(node, goal) for goal in goals for node in nodes]
+    ways += [grid.route(node, goal) for goal in goals for node in nodes]
     return max(robot.motion.travel_s(None, way) for way in ways)
 
 

@@ -17,8 +17,8 @@ from . import loader, plant_check
 
 
 @dataclass(frozen=True, kw_only=True)
-class Checked:
-    """Checked files: the plant, None where there are `problems`; lines with file, line and column.
+class CheckResult:
+    """Result of checking files: the plant, None where there are `problems`; lines with file, line and column.
 
     `read`: all files that the plant was made of, by paths as those that were checked have.
     """
@@ -59,7 +59,7 @@ def shaded(files: PlantFiles, plant_file: Path) -> Iterator[Shade]:
         )
 
 
-def check(files: PlantFiles, plant_file: Path) -> Checked:
+def check(files: PlantFiles, plant_file: Path) -> CheckResult:
     """The verdict on `files` as if they were in the folder of `plant_file`, where all others are.
 
     Lines name the files by where they would be. Nothing is written there; recipes in Python run as in
@@ -70,9 +70,9 @@ def check(files: PlantFiles, plant_file: Path) -> Checked:
             plant, read = loader.load_with_files(shade.plant_file)
             warnings = plant_check.warnings(plant)
         except ConfigError as error:
-            return Checked(problems=tuple(map(shade.renamed, error.problems)))
-        same = read.plant == files.plant  # else it uses files by absolute paths, which have other names here
-        return Checked(plant=plant, read=read if same else None, warnings=tuple(map(shade.renamed, warnings)))
+            return CheckResult(problems=tuple(map(shade.renamed, error.problems)))
+        named = read if read.plant == files.plant else None  # absolute paths have other names here
+        return CheckResult(plant=plant, read=named, warnings=tuple(map(shade.renamed, warnings)))
 
 
 def root_of(files: PlantFiles, plant_file: Path) -> Path:

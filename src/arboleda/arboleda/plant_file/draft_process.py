@@ -11,11 +11,12 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from arboleda.host.limits import give_way
 from arboleda.model.errors import ArboledaError
 from arboleda.recorder.preamble import PlantFiles
 
 from . import draft_check
-from .draft_check import Checked
+from .draft_check import CheckResult
 from .recipe_trial import PATH
 
 START = PATH + "from arboleda.plant_file import draft_process; draft_process.main()"
@@ -36,7 +37,7 @@ class CheckProcess:
         self._waiting = 0
         self._ended = False
 
-    def check(self, files: PlantFiles, plant_file: Path) -> Checked:
+    def check(self, files: PlantFiles, plant_file: Path) -> CheckResult:
         """The same as `draft_check.check`, without the plant. It waits; ArboledaError if no answer comes."""
         request = {"plant_file": str(plant_file), "plant": files.plant, "contents": _texts(files.contents)}
         run = self._start()
@@ -76,7 +77,7 @@ class CheckProcess:
 
 def main() -> None:
     """Run as the other process: read the request, answer on the last line, end."""
-    os.nice(KINDNESS)
+    give_way(KINDNESS)
     request = json.load(sys.stdin)
     files = PlantFiles(plant=request["plant"], contents=_bytes(request["contents"]))
     found = draft_check.check(files, Path(request["plant_file"]))
@@ -86,12 +87,12 @@ def main() -> None:
     os._exit(0)  # whatever threads the plant's Python has started
 
 
-def _answer(output: bytes, plant: str) -> Checked:
-    """The verdict on the last line of what the process said; ArboledaError if there is none."""
+def _answer(output: bytes, plant: str) -> CheckResult:
+    """The verdict on the last line of the process's output; ArboledaError if there is none."""
     try:
         found: dict[str, Any] = json.loads(output.splitlines()[-1])
         read = found["read"]
-        return Checked(
+        return CheckResult(
             problems=tuple(found["problems"]),
             warnings=tuple(found["warnings"]),
             read=None if read is None else PlantFiles(plant=plant, contents=_bytes(read)),

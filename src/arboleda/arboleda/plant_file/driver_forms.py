@@ -20,7 +20,9 @@ from .yaml_flow import flow
 from .yaml_marks import YamlFault, parse
 
 Row = dict[str, Any]
-OF_ROBOTS = frozenset({"dobot", "follow_joint_trajectory", "follow_waypoints", "navigate_to_pose"})
+OF_ROBOTS = frozenset(
+    {"dobot", "follow_joint_trajectory", "follow_waypoints", "gcode", "navigate_to_pose", "serial_arm", "ur"}
+)
 """Those that come with Arboleda and reach only arms and mobile robots, which are of no declared kind."""
 FORMS = {bool: "bool", int: "int", float: "number", str: "text"}
 FITS: Mapping[str, tuple[type, ...]] = {"int": (int,), "number": (int, float), "bool": (bool,)}
@@ -141,7 +143,9 @@ def _spec(name: str, own: Mapping[str, DriverSpec]) -> DriverSpec:
 def _about(spec: DriverSpec) -> str:
     """Description of the settings by their author, else of the driver."""
     for each in (spec.settings, spec.made_by):
-        text = (each.__doc__ or "").strip() if isinstance(each, type) else ""
+        if not isinstance(each, type):
+            continue
+        text = (each.__doc__ or "").strip()
         if text and not text.startswith(f"{each.__name__}("):  # as dataclasses write it themselves
             return plain(" ".join(text.split()), LONGEST)
     return ""

@@ -60,10 +60,11 @@ def with_drivers(document: Document, plant: PlantModel | None, used: PythonUses)
     for name, place in named(document):
         if name in uses:
             _check(document, place, uses[name], plant.robots[name])
-    cells = tuple(
-        cell.with_robots(lambda robot: replace(robot, driver=uses.get(robot.name))) for cell in plant.cells
-    )
-    return replace(plant, cells=cells)
+
+    def driven(robot: Robot) -> Robot:
+        return replace(robot, driver=uses.get(robot.name))
+
+    return replace(plant, cells=tuple(cell.with_robots(driven) for cell in plant.cells))
 
 
 def named(document: Document) -> Iterator[tuple[str, Place]]:
@@ -98,7 +99,14 @@ def _use(document: Document, place: Place, used: PythonUses) -> DriverUse | None
     read = _settings(document, here, spec, used)
     if read is FAULTY:
         return None
-    return DriverUse(name=name, settings=read, make=partial(spec.make, read))
+    return DriverUse(
+        name=name,
+        settings=read,
+        make=partial(spec.make, read),
+        pace=_pace(document, here, read),
+        facts=_facts(document, here, read),
+        recovers=_offered(document, here, read, RECOVERS, False) is True,
+    )
 
 
 def _check(document: Document, place: Place, use: DriverUse, device: Robot) -> None:
@@ -111,6 +119,33 @@ def _check(document: Document, place: Place, use: DriverUse, device: Robot) -> N
         problems = [((), error_text(error))]
     for inside, sentence in problems:
         document.problem((*place, use.name, *inside), plain(sentence, LONGEST))
+
+
+def _pace(document: Document, place: Place, settings: object) -> float:
+    """The share of its model's speed at which a driver moves its robot, if its settings say that."""
+    share = _offered(document, place, settings, SHARE, 1.0)
+    if isinstance(share, int | float) and not isinstance(share, bool) and 0 < share <= 1:
+        return float(share)
+    document.problem(place, f"{SHARE} is {shown(share)}; allowed: more than 0, and at most 1")
+    return 1.0
+
+
+def _facts(document: Document, place: Place, settings: object) -> tuple[str, ...]:
+    """The facts that a driver reports beside those of its device's kind, if its settings say that."""
+    names = _offered(document, place, settings, FACTS, ())
+    if isinstance(names, tuple) and all(isinstance(name, str) and name.isidentifier() for name in names):
+        return names
+    document.problem(place, f"{FACTS} is {shown(names)}; it must be a tuple of names")
+    return ()
+
+
+def _offered(document: Document, place: Place, settings: object, name: str, default: Any) -> Any:
+    """The value of a property that settings may have; its default, with the problem kept, if it raises."""
+    try:
+        return getattr(settings, name, default)
+    except Exception as error:  # noqa: BLE001 - it is user code: whatever it raises is told
+        document.problem(place, plain(error_text(error), LONGEST))
+        return default
 
 
 def _installed(document: Document, place: Place, name: str, used: PythonUses) -> DriverSpec | None:
@@ -169,6 +204,7 @@ def _settings(document: Document, place: Place, spec: DriverSpec, used: PythonUs
     return FAULTY if read is None else read
 
 
+SHARE, FACTS, RECOVERS = "model_speed_share", "reported_facts", "home_clears_faults"
 FAULTY = object()
 OF_DEVICES = (Link.MQTT.value, Link.ROS.value)
 COME_WITH_IT = (*OF_DEVICES, Link.NONE.value)

@@ -196,12 +196,12 @@ def _facts(
             there = f"facts: {', '.join(facts)}" if facts else "this kind has none"
             document.problem(place, f"there is no fact {shown(name)}{nearest(name, facts)}; {there}", at=here)
         if type is None:
-            values[name] = None  # what is wrong with it is told there
+            values[name] = None  # its mistakes are reported there
         elif slots is not None and isinstance(value, str) and value.startswith(SLOT):
             values[name] = _slot(document, here, type, slots)
         else:
             values[name] = _value(document, here, type)
-    right = _right(values)
+    right: dict[str, Value | Slot] | None = _right(values)
     return None if mapping is None or right is None else tuple(right.items())
 
 
@@ -216,10 +216,10 @@ def _slot(document: Document, place: Place, fact: FactType, slots: Types) -> Slo
         there = f'"with" has {", ".join(slots)}' if slots else 'the verb has no "with"'
         document.problem(place, f"there is no parameter {shown(name)}{nearest(name, slots)}; {there}")
         return None
-    given = slots[name]
-    if given is None:
+    type = slots[name]
+    if type is None:
         return None
-    fits = _is_free_of(document, place, rules.slot_objection(name, given, str(place[-1]), fact))
+    fits = _is_free_of(document, place, rules.slot_objection(name, type, str(place[-1]), fact))
     return Slot(name=name) if fits else None
 
 

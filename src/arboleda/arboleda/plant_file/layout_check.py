@@ -15,13 +15,14 @@ from arboleda.dashboard.twin.parts import PART_HEIGHT_M, PART_RADIUS_M
 from arboleda.dashboard.twin.scene import deck
 from arboleda.kinds.arm import Arm
 from arboleda.kinds.floor import Placement
+from arboleda.kinds.joints import Joint
 from arboleda.kinds.mobile import Mobile
 from arboleda.model.errors import ArboledaError
-from arboleda.model.plant_model import Cell, PlantModel, Pose, Robot
+from arboleda.model.plant_model import Cell, PlantModel, Pose
 from arboleda.recipes.storage_layout import StorageLayout
 
 from .arrays import Array
-from .urdf import robot_urdf
+from .urdf import drawn_arm, robot_urdf
 
 BESIDE_M = 0.010  # a pick-up may be so far beside the part that it takes
 ABOVE_M = 0.010  # and so far above it, which a suction cup bridges
@@ -56,13 +57,14 @@ def _uneven(plant: PlantModel) -> Iterator[str]:
             array = Array(group=group, rows=rows, columns=columns)
             for space in cell.spaces:
                 poses = {pose.name: pose for pose in space.poses}
-                if space.robot.joints and space.robot.drawn() and array.names[0] in poses:
-                    yield from _uneven_of(plant, space.robot, array, [poses[name] for name in array.names])
+                arm = drawn_arm(space.robot)
+                if arm is not None and array.names[0] in poses:
+                    yield from _uneven_of(plant, arm, array, [poses[name] for name in array.names])
 
 
-def _uneven_of(plant: PlantModel, arm: Robot, array: Array, poses: Sequence[Pose]) -> Iterator[str]:
+def _uneven_of(plant: PlantModel, arm: Arm, array: Array, poses: Sequence[Pose]) -> Iterator[str]:
     body, base = _body(plant, arm.name), _frame(arm.base)
-    points = [kinematics.at(kinematics.tool(body, pose.q, base)) for pose in poses]
+    points = [kinematics.at(kinematics.tool(body, pose.joints, base)) for pose in poses]
     corners = [points[index] for index in array.corners]
     off = [math.dist(point, array.even(index, corners)) for index, point in enumerate(points)]
     worst = max(range(len(off)), key=off.__getitem__)
@@ -96,7 +98,7 @@ class Stand:
 
     def tool(self, pose: Pose) -> Matrix:
         """The tool's frame at a pose."""
-        return kinematics.tool(self.body, pose.q, _frame(self.cell.arm.base))
+        return kinematics.tool(self.body, pose.joints, _frame(self.cell.arm.base))
 
     def node(self, node: int) -> Point:
         """The upper end of a part that a mobile carries on this node."""
@@ -227,7 +229,7 @@ def _slide_m(arm: Arm, frames: Mapping[str, Matrix], link: Body, upright: bool) 
     """The length in plan that a sliding joint may add; 0 for an upright one if all else turns upright."""
     if link["moves"]["type"] == "turn" or (upright and _is_upright(frames, link)):
         return 0.0
-    joint = arm.joints[link["moves"]["index"]]
+    joint: Joint = arm.joints[link["moves"]["index"]]
     return max(abs(joint.lower), abs(joint.upper))
 
 

@@ -11,14 +11,24 @@ from pathlib import Path
 from typing import NamedTuple
 
 from arboleda.drivers.port import DriverSpec
+from arboleda.model.assistants import Assistants
 from arboleda.model.errors import ConfigError
-from arboleda.model.plant_model import Cell, ForeignCommands, MqttVersion, PlantModel, Robot, Timing
+from arboleda.model.plant_model import (
+    Cell,
+    ForeignCommands,
+    MqttVersion,
+    OpcUaView,
+    PlantModel,
+    Robot,
+    Timing,
+)
 from arboleda.model.recipe import Recipe
 from arboleda.recipes.storage import RECIPES
 from arboleda.recorder.preamble import Limits, PlantFiles, Recording
 from arboleda.store.address import has_password, is_address
 
 from . import drivers, own_kinds, own_recipes, user_file
+from .assistant_limits import assistant_limits
 from .deadlines import check_arrivals_show
 from .devices import CELLS, Kinds, device_cell, is_of_devices, shared_devices
 from .document import Document, Place, shown
@@ -27,9 +37,10 @@ from .names import check_names
 from .python_uses import PythonUses, Watch
 from .recipe_check import MOST, Trial, combinations
 from .recipe_trial import Verdict, brought
-from .shapes import FileShape, RecordShape, TimingShape
+from .shapes import FileShape, OpcUaViewShape, RecordShape, TimingShape
 from .shared import check_homes
 from .storage_form import check_sections, storage_cell
+from .urdf import own_description
 from .yaml_marks import LARGEST
 from .zones import with_zones, zones
 
@@ -41,13 +52,14 @@ REPORTS: Place = ("reports",)
 ON, OFF = "on", "off"
 
 
-def load(path: Path | None = None, *, recipes: bool = True) -> PlantModel:
+def load(path: Path | None = None, *, recipes: bool = True, apart: bool = True) -> PlantModel:
     """The plant that the file describes, None for the shipped one; ConfigError with every problem.
 
     Without `recipes` no Python is run: cells of devices offer nothing, and a plant with devices of kinds in
-    Python has no cells.
+    Python has no cells. Without `apart` it is tried in this process, which is far quicker, and nothing ends
+    Python that never comes back.
     """
-    return _parsed(*_content(path), recipes=recipes).plant
+    return _parsed(*_content(path), recipes=recipes, apart=apart).plant
 
 
 def load_with_offers(path: Path | None = None) -> tuple[PlantModel, Misses]:
@@ -89,24 +101,32 @@ def parse(name: str, content: bytes, folder: Path | None = None, *, recipes: boo
 def _content(path: Path | None) -> tuple[str, bytes, Path | None]:
     """The name of a plant file, its content, and the folder of the files beside it."""
     if path is None:
-        return SHIPPED, files("arboleda").joinpath("plants", SHIPPED).read_bytes(), None
+        return SHIPPED, (files("arboleda") / "plants" / SHIPPED).read_bytes(), None
     return str(path), user_file.read_bytes(path, LARGEST), path.parent
 
 
-class _Parsed(NamedTuple):
+class _Reading(NamedTuple):
     plant: PlantModel
     document: Document
     missed: Misses
     drivers: Mapping[str, DriverSpec]
 
 
-def _parsed(name: str, content: bytes, folder: Path | None, *, recipes: bool, runs: bool = False) -> _Parsed:
+def _parsed(
+    name: str,
+    content: bytes,
+    folder: Path | None,
+    *,
+    recipes: bool,
+    runs: bool = False,
+    apart: bool = True,
+) -> _Reading:
     document = Document(name, content, folder, runs=runs)
     document.files[(folder or Path()) / Path(name).name] = content
     missed: Misses = {}
     brings: Mapping[str, DriverSpec] = {}
     if recipes:
-        code = brought(document, content)
+        code = brought(document, content, apart=apart)
         missed, brings = code.missed, code.used.drivers
         plant = drivers.with_drivers(document, _plant(document, code.used, code.offered), code.used)
     elif own_kinds.needs_python(document):
@@ -116,7 +136,7 @@ def _parsed(name: str, content: bytes, folder: Path | None, *, recipes: bool, ru
     document.finish()
     if plant is None:
         raise ConfigError((f"{document.name}: the file cannot be read as a plant",))
-    return _Parsed(plant, document, missed, brings)
+    return _Reading(plant, document, missed, brings)
 
 
 def _files(document: Document) -> PlantFiles:
@@ -173,9 +193,9 @@ def warnings(plant: PlantModel) -> tuple[str, ...]:
 def notes(plant: PlantModel) -> tuple[str, ...]:
     """The assumptions made about models that are the plant's own, and about recipes tried only in part."""
     described = {
-        robot.description: robot.name
+        description: robot.name
         for robot in reversed(plant.robots.values())
-        if robot.joints and robot.description
+        if (description := own_description(robot)) is not None
     }
     own_models = [f"{name}: {note}" for own, name in described.items() for note in own.notes]
     many = [(cell, each, combinations(cell, each)) for cell in plant.cells for each in cell.recipes]
@@ -246,6 +266,7 @@ def _plant(document: Document, used: PythonUses, recipes: Offers) -> PlantModel 
     if timing is None:
         return None
     _limits(document)
+    limits = assistant_limits(document)
     times = Timing(**timing.model_dump())
     check_arrivals_show(document, whole, times)
     if shape is None or len(whole) < len(cells):
@@ -261,7 +282,10 @@ def _plant(document: Document, used: PythonUses, recipes: Offers) -> PlantModel 
         foreign_commands=ForeignCommands(shape.foreign_commands),
         history_days=shape.history_days,
         groot2_port=shape.groot2 or None,
+        opcua_view=_opcua_view(document),
         store=_store(document, shape.store),
+        assistants=Assistants(shape.assistants),
+        assistant_limits=limits,
     )
 
 
@@ -272,6 +296,15 @@ def _check_ports(document: Document, shape: FileShape | None) -> None:
         if shape.groot2 > last:
             rule = f"must be at most {last}, for each of the {len(shape.cells)} cells has two ports"
             document.problem(("groot2",), f"{rule}; is {shape.groot2}")
+
+
+def _opcua_view(document: Document) -> OpcUaView | None:
+    """The server that shows the plant; None if it is off, or cannot be read, with its problems kept."""
+    place = ("opcua_view",)
+    if not document.has(place):
+        return None
+    shape = document.read(OpcUaViewShape, place)
+    return None if shape is None else OpcUaView(port=shape.port, isa95=tuple(shape.isa95))
 
 
 def _store(document: Document, address: str) -> str:

@@ -8,12 +8,12 @@ from dataclasses import dataclass, field
 
 from py_trees.behaviour import Behaviour
 
-KEEP = "__made_by_a_statement__"  # what a statement calls with its value, in a file that is tried
+KEEP = "__made_by_a_statement__"  # function that a statement calls with its value, in a file that is tried
 
 
 @dataclass
 class LostSteps:
-    """Notes what statements of a user's files make, while a recipe is built."""
+    """Notes the steps that statements of a user's files make, while a recipe is built."""
 
     made: list[tuple[Behaviour, str, int]] = field(default_factory=list)
 
@@ -39,5 +39,5 @@ class _Noting(ast.NodeTransformer):
 
 
 def noting(tree: ast.Module) -> ast.Module:
-    """The same program, whose statements say what they make."""
+    """The same program, whose statements pass on their values."""
     return ast.fix_missing_locations(_Noting().visit(tree))  # type: ignore[no-any-return]

@@ -9,10 +9,11 @@ from itertools import combinations
 
 from arboleda.dashboard.twin import bodies, kinematics
 from arboleda.dashboard.twin.kinematics import Point
+from arboleda.kinds.arm import Arm
 from arboleda.model.errors import ArboledaError
 from arboleda.model.plant_model import Cell, PlantModel, Pose, Workspace
 
-from .urdf import robot_urdf
+from .urdf import drawn_arm, robot_urdf
 
 MEETING_M = 0.010  # two tools that come so near to each other meet
 MOST_NAMED = 3  # pairs of targets in one sentence
@@ -39,34 +40,31 @@ def _alike(cell: Cell, space: Workspace) -> Iterator[str]:
     """The targets of a robot that it cannot tell apart; ends of paths, and where those are met, may be so."""
     ends = {path.code for path in space.paths}
     met = () if cell.handover is None else (*cell.handover.targets, *cell.groups.get("pickups", ()))
-    given = {name: pose for name, pose in space.targets.items() if name not in ends.union(met)}
-    for (one, here), (other, there) in combinations(given.items(), 2):
+    targets = {name: pose for name, pose in space.targets.items() if name not in ends.union(met)}
+    for (one, here), (other, there) in combinations(targets.items(), 2):
         is_same = space.robot.motion.stands_at(here.q, there.q) and here.above == there.above
         if is_same and space.home not in (here, there):
             yield f"{cell.name}: {one} and {other} of {space.robot.name} are one place"
 
 
 def _meetings(plant: PlantModel) -> Iterator[str]:
-    arms = [(cell, space) for cell in plant.cells for space in cell.spaces if _is_placed(space)]
-    points = [_points(plant, space) for _, space in arms]
+    spaces = [(cell, space) for cell in plant.cells for space in cell.spaces]
+    arms = [(cell, space, arm) for cell, space in spaces if (arm := drawn_arm(space.robot)) is not None]
+    points = [_points(plant, space, arm) for _, space, arm in arms]
     for (one, other), (its, others) in zip(combinations(arms, 2), combinations(points, 2), strict=True):
-        if one[1].robot.name == other[1].robot.name or one[1].robot.base == other[1].robot.base:
-            continue  # one arm that cells share; or nobody has said where they stand
+        if one[2].name == other[2].name or one[2].base == other[2].base:
+            continue  # one arm that cells share; or their places are not declared
         near = list(_near(its, others))
         if near:
-            yield _sentence(one, other, near)
+            yield _sentence(one[:2], other[:2], near)
 
 
-def _is_placed(space: Workspace) -> bool:
-    return bool(space.robot.joints and space.robot.drawn())
-
-
-def _points(plant: PlantModel, space: Workspace) -> list[ToolPoint]:
-    body = bodies.read(robot_urdf(plant, space.robot.name))
-    base = space.robot.base
-    frame = kinematics.floor((base.x, base.y, base.yaw))
+def _points(plant: PlantModel, space: Workspace, arm: Arm) -> list[ToolPoint]:
+    body = bodies.read(robot_urdf(plant, arm.name))
+    frame = kinematics.floor((arm.base.x, arm.base.y, arm.base.yaw))
     return [
-        ToolPoint(pose=pose, at=kinematics.at(kinematics.tool(body, pose.q, frame))) for pose in space.poses
+        ToolPoint(pose=pose, at=kinematics.at(kinematics.tool(body, pose.joints, frame)))
+        for pose in space.poses
     ]
 
 

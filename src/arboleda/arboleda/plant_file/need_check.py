@@ -9,7 +9,7 @@ from arboleda.model.plant_model import Cell, Evidence, PlantModel
 
 
 def warnings(plant: PlantModel) -> tuple[str, ...]:
-    """A sentence for each verb that no device of a cell is ever told."""
+    """A sentence for each verb that is always refused, as a fact that it needs is never reported."""
     return tuple(f"{cell.name}: {sentence}" for cell in plant.cells for sentence in _unmet(cell))
 
 

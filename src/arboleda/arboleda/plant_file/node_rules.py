@@ -17,7 +17,7 @@ from arboleda.bt_xml.running.root import Main
 from arboleda.bt_xml.running.scripts import Script, ScriptError, is_true
 from arboleda.model.by_class import nearest
 from arboleda.model.errors import ArboledaError
-from arboleda.recipes.handles import asked_in
+from arboleda.recipes.handles import question_of
 
 from .foresight import Scene
 from .scene_variables import after_script, key_of, known_of, ports_in, run
@@ -109,12 +109,12 @@ def _script_condition(walk: Walkthrough, node: leaves.ScriptCondition, scenes: S
 
 
 def _set(walk: Walkthrough, node: leaves.SetBlackboard, scenes: Sequence[Scene]) -> Outcome:
-    key = key_of(node.scope.place(node.given.variable("output_key")))
+    key = key_of(node.scope.place(node.ports.variable("output_key")))
     done = []
     for scene in scenes:
-        given = replace(node.given, said={"value": node.given.said.get("value", "")})
-        known = ports_in(node.scope, given, scene)
-        done.append(scene.without({key}) if known is None else scene.put({key: given.text("value", known)}))
+        ports = replace(node.ports, texts={"value": node.ports.texts.get("value", "")})
+        known = ports_in(node.scope, ports, scene)
+        done.append(scene.without({key}) if known is None else scene.put({key: ports.text("value", known)}))
     return Outcome(done=tuple(done))
 
 
@@ -155,14 +155,14 @@ def _with_values(walk: Walkthrough, node: DeviceStep, scene: Scene) -> tuple[Out
     try:
         found = node.order.values(known)
         step = node.step if found == node.built else node.order.make(dict(found))
-    except ArboledaError:  # what the device does not take: the task fails
+    except ArboledaError:  # a value that the device does not take: the task fails
         return Outcome(), node.step
     return walk.follow(step, [scene]), step
 
 
 def _answered(node: DeviceStep, step: Behaviour, scenes: Sequence[Scene]) -> list[Scene]:
     """The scenes after a step; after a question one for each answer."""
-    question = asked_in(step) if isinstance(node, QuestionStep) else None
+    question = question_of(step) if isinstance(node, QuestionStep) else None
     if not isinstance(node, QuestionStep) or question is None:
         return list(scenes)
     key = key_of(node.scope.place(node.out))
@@ -211,7 +211,7 @@ def _parallel(
     walk: Walkthrough, node: controls.Parallel | controls.ParallelAll, scenes: Sequence[Scene]
 ) -> Outcome:
     """The outcome of children at once: as a rule all of them have to succeed."""
-    known = ports_in(node.scope, node.given, Scene())
+    known = ports_in(node.scope, node.ports, Scene())
     needs_all = known is not None and node.needs_all(known)
     return at_once(walk, node, scenes) if needs_all else walk.unsure(node, scenes)
 
@@ -227,7 +227,7 @@ def _if_then(walk: Walkthrough, node: controls.IfThenElse, scenes: Sequence[Scen
 
 def _switch(walk: Walkthrough, node: controls.Switch, scenes: Sequence[Scene]) -> Outcome:
     outcome = Outcome()
-    for chosen, begin in _alike(node, node.given, scenes, node.chosen):
+    for chosen, begin in _alike(node, node.ports, scenes, node.chosen):
         walk.doubts += chosen is None
         for child in node.below if chosen is None else [node.below[chosen]]:
             outcome = outcome.plus_all(walk.follow(child, begin))
@@ -235,12 +235,12 @@ def _switch(walk: Walkthrough, node: controls.Switch, scenes: Sequence[Scene]) -
 
 
 def _alike(
-    node: Node, given: NodePorts, scenes: Sequence[Scene], read: Callable[[Scope], int]
+    node: Node, ports: NodePorts, scenes: Sequence[Scene], read: Callable[[Scope], int]
 ) -> Iterable[tuple[int | None, list[Scene]]]:
-    """The scenes by what is read of a node's ports in them; None where that is not known."""
+    """The scenes by the values of a node's ports in them; None where those are not known."""
     rows: dict[int | None, list[Scene]] = {}
     for scene in scenes:
-        known = ports_in(node.scope, given, scene)
+        known = ports_in(node.scope, ports, scene)
         rows.setdefault(None if known is None else read(known), []).append(scene)
     return rows.items()
 
@@ -260,7 +260,7 @@ def _until_failure(
 
 def _loop(walk: Walkthrough, node: decorators.Loop, scenes: Sequence[Scene]) -> Outcome:
     outcome = Outcome()
-    for most, begin in _alike(node, node.given, scenes, node.most):
+    for most, begin in _alike(node, node.ports, scenes, node.most):
         found = walk.unsure(node, begin) if most is None else _rounds(walk, node, begin, most)
         outcome = outcome.plus_all(found)
     return outcome
@@ -287,7 +287,7 @@ def _timeout(walk: Walkthrough, node: decorators.Timeout, scenes: Sequence[Scene
 def _precondition(walk: Walkthrough, node: decorators.Precondition, scenes: Sequence[Scene]) -> Outcome:
     true, false = _split(walk, node.script, node, scenes)
     found = walk.follow(node.child, true)
-    word = node.given.said.get("else", "FAILURE")
+    word = node.ports.texts.get("else", "FAILURE")
     if word not in decorators.STATUSES:
         walk.doubts += 1
         return found.plus(done=false, failed=false, skipped=false)

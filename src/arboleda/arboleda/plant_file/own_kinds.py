@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import fields
 from importlib.metadata import EntryPoint, entry_points
 from typing import Any
@@ -168,9 +168,9 @@ def _settings(
     """The settings of a device; None, with the problem kept, if the kind's own rules refuse them."""
     if kind.settings is None:
         return None
-    given = {each.name: getattr(shape, each.name) for each in fields(kind.settings)}
+    settings = {each.name: getattr(shape, each.name) for each in fields(kind.settings)}
     try:
-        return kind.settings(**given)
+        return kind.settings(**settings)
     except (ValueError, ArboledaError) as error:
         document.problem(place, plain(refused(error), LONGEST))
     except (Exception, SystemExit) as error:  # noqa: BLE001 - it is user code: whatever it raises is told
@@ -201,7 +201,7 @@ def _unusable(kind: DeviceKind) -> Iterator[str]:
 
 
 def _misnamed(kind: DeviceKind) -> Iterator[str]:
-    rows = [(name, "a fact", OF_FACTS) for name in kind.facts]
+    rows: list[tuple[str, str, Sequence[str]]] = [(name, "a fact", OF_FACTS) for name in kind.facts]
     rows += [(name, "a verb", OF_STEPS) for name in kind.verbs]
     rows += [(name, "a parameter", ("self",)) for verb in kind.verbs.values() for name, _ in verb.parameters]
     for name, what, taken in rows:

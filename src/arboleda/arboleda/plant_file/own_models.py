@@ -22,13 +22,13 @@ from .yaml_marks import clipped
 
 ENDINGS = (".urdf", ".yaml", ".yml")
 LONGEST = 500  # characters of a path as a sentence shows it
-MOST_JOINTS = 12  # what one MQTT message of 512 bytes has room for
+MOST_JOINTS = 12  # as many as one MQTT message of 512 bytes has room for
 FARTHEST = 99_999.0  # deg on the wire
 FASTEST = 1e6  # steps/s, one per microsecond of a board's clock
-FULL_SPEED_S = 0.5  # how long a joint takes to its full speed where nobody says it
-STEP_DEG, STEP_MM = 0.01, 0.1  # a motor step where nobody says it
+FULL_SPEED_S = 0.5  # time of a joint to its full speed, where none is declared
+STEP_DEG, STEP_MM = 0.01, 0.1  # a motor step, where none is declared
 LONGEST_RAMP = 250_000  # steps to full speed; a virtual board counts each of them
-LEAST_STEP = 0.001  # deg or mm: MQTT says four decimals
+LEAST_STEP = 0.001  # deg or mm: MQTT has four decimals
 
 
 def is_own(value: Any) -> bool:
@@ -131,17 +131,18 @@ def _joints(document: Document, place: Place, spot: Place, chain: Chain) -> tupl
         most = f"at most {MOST_JOINTS}; one MQTT message has room for no more"
         document.problem(spot, f"has {len(chain.axes)} joints that move, {most}")
         return None
-    given = [_given(document, place, number, axis) for number, axis in enumerate(chain.axes, start=1)]
+    joints = [_joint(document, place, number, axis) for number, axis in enumerate(chain.axes, start=1)]
     for key, unit in (("accelerations", "_s2"), ("steps", "")):
         known = [f"q{number}_{_unit(axis)}{unit}" for number, axis in enumerate(chain.axes, start=1)]
-        for name in document.read_plain(MAPPING, (*place, key)) or () if document.has((*place, key)) else ():
+        written = document.read_plain(MAPPING, (*place, key)) if document.has((*place, key)) else None
+        for name in written or {}:
             if name not in known:
                 document.unknown((*place, key, name), known)
-    good = [_is_drivable(document, spot, joint) for joint in given]
-    return tuple(given) if all(good) else None
+    good = [_is_drivable(document, spot, joint) for joint in joints]
+    return tuple(joints) if all(good) else None
 
 
-def _given(document: Document, place: Place, number: int, axis: Axis) -> Joint:
+def _joint(document: Document, place: Place, number: int, axis: Axis) -> Joint:
     """The joint as its file and the plant file have it, with defaults if both say nothing."""
     si = TO_SI[_unit(axis)]
     acceleration = document.read_plain(POSITIVE, (*place, "accelerations", f"q{number}_{_unit(axis)}_s2"))
@@ -187,8 +188,8 @@ def _assumed(document: Document, place: Place, chain: Chain) -> Sequence[str]:
     """The notes on accelerations and motor steps that are assumed for joints without their own."""
     open_: dict[str, list[str]] = {"accelerations": [], "steps": []}
     for number, axis in enumerate(chain.axes, start=1):
-        given = {"accelerations": axis.acceleration, "steps": axis.step}
-        for key, value in given.items():
+        own_values = {"accelerations": axis.acceleration, "steps": axis.step}
+        for key, value in own_values.items():
             own = f"q{number}_{_unit(axis)}" + ("_s2" if key == "accelerations" else "")
             if value is None and not document.has((*place, key, own)):
                 open_[key].append(f"q{number}")

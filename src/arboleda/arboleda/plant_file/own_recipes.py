@@ -205,7 +205,7 @@ def _beside(path: Path) -> list[Path]:
 def _run(path: Path, source: bytes, lost: LostSteps | None) -> ModuleType:
     """Run a file as a module of its own; Python keeps no compiled file of it beside the user's.
 
-    `lost`, where given, is told what statements make.
+    `lost`, where given, notes the steps that statements make.
     """
     tree = ast.parse(source, str(path))
     code = compile(tree if lost is None else noting(tree), str(path), "exec", dont_inherit=True)

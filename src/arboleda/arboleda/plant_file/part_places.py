@@ -21,7 +21,7 @@ def places(
     spaces: Sequence[Workspace],
     groups: Mapping[str, Sequence[str]],
 ) -> tuple[PartPlace, ...]:
-    """The places of a cell by target; what is said of a target itself counts before that of its group."""
+    """The places of a cell by target; a declaration of the target itself counts before that of its group."""
     here = (*cell, SECTION)
     if not document.has(here):
         return ()

@@ -8,21 +8,23 @@ from itertools import combinations
 from typing import Any
 
 from arboleda.dashboard.twin import bodies, kinematics
+from arboleda.kinds.arm import Arm
 from arboleda.kinds.declared import DeviceVerb, Effect
 from arboleda.model.errors import ArboledaError
-from arboleda.model.plant_model import Cell, Place, PlantModel, Robot, Workspace
+from arboleda.model.plant_model import Cell, Place, PlantModel, Pose, Robot
 
-from .urdf import robot_urdf
+from .urdf import drawn_arm, robot_urdf
 
 APART_M = 0.030  # beside each other, two tools at one place; a part is hardly smaller
 
 
 def warnings(plant: PlantModel) -> tuple[str, ...]:
     """The places that nothing guards, the devices that have none, and those that are two."""
-    unsaid = [each for cell in plant.cells for each in (*_unguarded(cell), *_without_place(cell))]
+    placed = frozenset(place.device for cell in plant.cells for place in cell.places)
+    unsaid = [each for cell in plant.cells for each in (*_unguarded(cell), *_without_place(cell, placed))]
     try:
         return (*unsaid, *(each for cell in plant.cells for each in _split(plant, cell)))
-    except ArboledaError:  # whoever looks where arms can meet says why
+    except ArboledaError:  # `meeting_points` names the reason
         return tuple(unsaid)
 
 
@@ -40,7 +42,7 @@ def _unguarded(cell: Cell) -> Iterator[str]:
 
 
 def _verbs(device: Any) -> dict[str, DeviceVerb]:
-    """The verbs of a device by their names; none of what has no kind with verbs."""
+    """The verbs of a device by their names; empty for a kind without verbs."""
     return dict(device.kind.verbs) if device.verb_names else {}
 
 
@@ -58,10 +60,11 @@ def _is_guarded(cell: Cell, place: Place) -> bool:
     return needed or all(pose.zones & zones for pose in poses)
 
 
-def _without_place(cell: Cell) -> Iterator[str]:
-    """The devices that have to do with parts, of which nobody knows whether one is there."""
-    known = {place.device for place in cell.places}
-    known |= {space.hand.name for space in cell.spaces}
+def _without_place(cell: Cell, placed: frozenset[str | None]) -> Iterator[str]:
+    """The devices that have to do with parts, of which nobody knows whether one is there; a shared device may
+    be `placed` in another cell.
+    """
+    known = placed | {space.hand.name for space in cell.spaces}
     for role, device in cell.members:
         if device.name in known:
             continue
@@ -75,20 +78,19 @@ def _without_place(cell: Cell) -> Iterator[str]:
 
 def _split(plant: PlantModel, cell: Cell) -> Iterator[str]:
     """The places that two arms go to, and that are far from each other."""
-    arms = [space for space in cell.spaces if space.robot.joints and space.robot.drawn()]
-    for one, other in combinations(arms, 2):
+    arms = [(arm, space.targets) for space in cell.spaces if (arm := drawn_arm(space.robot)) is not None]
+    for (one, its), (other, others) in combinations(arms, 2):
         for place in cell.places:
-            spaces = (one, other)
-            if all(place.target in space.targets for space in spaces):
-                apart = math.dist(*(_tool(plant, space, place.target) for space in spaces))
-                if apart > APART_M and one.robot.base != other.robot.base:
-                    names, mm = f"{one.robot.name} and {other.robot.name}", f"{apart * 1000:.0f} mm"
+            if place.target in its and place.target in others:
+                at = (_tool(plant, one, its[place.target]), _tool(plant, other, others[place.target]))
+                apart = math.dist(*at)
+                if apart > APART_M and one.base != other.base:
+                    names, mm = f"{one.name} and {other.name}", f"{apart * 1000:.0f} mm"
                     yield f"{cell.name}: {place.target} is one place, and {names} go {mm} apart"
 
 
-def _tool(plant: PlantModel, space: Workspace, target: str) -> Sequence[float]:
+def _tool(plant: PlantModel, arm: Arm, target: Pose) -> Sequence[float]:
     """The position of an arm's tool at a target, in plan."""
-    base = space.robot.base
-    frame = kinematics.floor((base.x, base.y, base.yaw))
-    body = bodies.read(robot_urdf(plant, space.robot.name))
-    return kinematics.at(kinematics.tool(body, space.targets[target].q, frame))[:2]
+    frame = kinematics.floor((arm.base.x, arm.base.y, arm.base.yaw))
+    body = bodies.read(robot_urdf(plant, arm.name))
+    return kinematics.at(kinematics.tool(body, target.joints, frame))[:2]

@@ -63,12 +63,13 @@ class PoseReader:
         if index is None:
             return None
         joint = self.joints[index]
-        up = pose.q[index] + joint.up * millimetres(approach_mm)
+        q = pose.joints
+        up = q[index] + joint.up * millimetres(approach_mm)
         if not joint.lower - ROUNDING <= up <= joint.upper + ROUNDING:
             reach = f"would lift q{index + 1} to {in_file_unit(joint, up)}; allowed: {span(joint)}"
             self.problem(place, reach)
             return None
-        above = (*pose.q[:index], min(max(up, joint.lower), joint.upper), *pose.q[index + 1 :])
+        above = (*q[:index], min(max(up, joint.lower), joint.upper), *q[index + 1 :])
         return replace(pose, above=above)
 
     def heights(self, place: Place, *, needed: bool) -> tuple[float, ...] | None:

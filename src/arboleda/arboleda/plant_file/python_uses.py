@@ -20,7 +20,7 @@ from .document import Document
 from .lost_steps import LostSteps
 from .robot_kind import RobotKind
 
-LONGEST = 500  # characters of a path, or of what an error says
+LONGEST = 500  # characters of a path, or of an error's text
 KindInPython = WrittenKind | RobotKind
 Written = Recipe | KindInPython | DriverSpec | WrittenNode
 Watch = Callable[["Spot", str], None]
@@ -54,7 +54,7 @@ class PythonUses:
     source: str = ""  # the hash of its files, by which a kept task finds its recipe changed; "": not known
     files: dict[str, str] = field(default_factory=dict)  # Python's name of a file: people's name
     watch: Watch = unwatched
-    lost: LostSteps | None = None  # what statements make, where recipes are only tried
+    lost: LostSteps | None = None  # steps that statements make, where recipes are only tried
     is_whole: bool = True  # False: something could not be imported, so a name may be missing
     may_import: bool = True  # False: it was tried elsewhere, and must not be run here
     installed: tuple[str, ...] = ()  # kinds that packages register
@@ -110,4 +110,7 @@ def _function(written: Written) -> Callable[..., object]:
         return written.build
     if isinstance(written, RobotKind):
         return written.read
-    return written.made_by.start if isinstance(written, DriverSpec) else written.function
+    if isinstance(written, DriverSpec):
+        begin: Callable[..., object] = getattr(written.made_by, "start", written.made_by)
+        return begin
+    return written.function

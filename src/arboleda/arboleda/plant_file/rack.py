@@ -78,7 +78,7 @@ def _by_rule(reader: PoseReader, place: Place, home: Pose | None) -> list[Pose |
     slides, spots = iter(heights), reader.places_of_mm(place)
     rest = tuple(
         next(slides, value) if joint.unit == "m" else value
-        for joint, value in list(zip(reader.joints, home.q, strict=True))[2:]
+        for joint, value in list(zip(reader.joints, home.joints, strict=True))[2:]
     )
     others = tuple(next(spots) if joint.unit == "m" else place for joint in reader.joints[2:])
     poses: list[Pose | None] = []

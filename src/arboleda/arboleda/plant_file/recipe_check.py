@@ -90,7 +90,7 @@ class Trial:
                 self.document.problem(place, f"{none}{why and f' ({why})'}", at=place)
 
     def _brings_all(self, offered: Collection[str]) -> bool:
-        """True if no misfit says so already: some recipe fits another cell, or the files bring none."""
+        """True if no misfit is reported yet: some recipe fits another cell, or the files bring none."""
         none = self.used.is_whole and not self.used.recipes and self.document.has(SECTION)
         return bool(offered) or none
 

@@ -7,7 +7,6 @@ import faulthandler
 import json
 import os
 import re
-import signal
 import subprocess
 import sys
 from collections.abc import Iterator, Sequence
@@ -17,6 +16,8 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
+from arboleda.host import abilities
+from arboleda.host.processor_alarm import ProcessorAlarm, ended_by_alarm
 from arboleda.model.plant_model import Cell
 from arboleda.model.recipe import Recipe
 
@@ -28,6 +29,7 @@ from .python_uses import PythonUses, Spot, unwatched
 
 LONGEST_S = 10.0  # of processor time for the import of a file, and for each build of a recipe
 WAITS = 4.0  # times as long it may take by the clock, on a busy machine or waiting for something
+HAS_PROCESSES = abilities.PROCESSES  # in a browser's tab the page can end its worker instead
 STUCK_S = 60.0  # by then the watch of the other process has hung as well
 SLOW = f"nothing came of it for {STUCK_S:g} s; try again when this machine has less to do"
 PATH = "import sys, json; sys.path[:] = json.loads(sys.argv[1]); "
@@ -70,8 +72,11 @@ class PlantPython:
         }
 
 
-def brought(document: Document, content: bytes) -> PlantPython:
-    """The Python that a plant file uses, tried before; nothing, with the problems kept, if it is wrong."""
+def brought(document: Document, content: bytes, *, apart: bool = True) -> PlantPython:
+    """The Python that a plant file uses, tried before; nothing, with the problems kept, if it is wrong.
+
+    `apart`: it is tried in another process, where there can be one.
+    """
     places = [(*CELLS, name) for name in document.keys(CELLS)]
     of_devices = [place for place in places if is_of_devices(document, place)]
     words = own_recipes.listed(document) if document.has(own_recipes.SECTION) else ()
@@ -81,7 +86,7 @@ def brought(document: Document, content: bytes) -> PlantPython:
             document.problem(place, f"offers no recipe; {how}", at=place)
     if not (words or own_kinds.needs_python(document) or any(drivers.named(document))):
         return PlantPython(document)
-    found = verdict(document.name, document.folder, content)
+    found = verdict(document.name, document.folder, content, apart=apart)
     document.keep_all(found.here, found.elsewhere)
     if any(document.kept):
         return PlantPython(document, PythonUses(is_whole=False, may_import=False))
@@ -104,12 +109,17 @@ def _marked(
     return tuple(replace(each, is_default=each.name == default or alone, source=source) for each in recipes)
 
 
-def verdict(name: str, beside: Path | None, content: bytes) -> Verdict:
-    """The verdict on the recipes that a plant file uses, tried in a process of its own."""
+def verdict(name: str, beside: Path | None, content: bytes, *, apart: bool = True) -> Verdict:
+    """The verdict on the recipes that a plant file uses, tried in another process, if there can be one."""
+    if not (apart and HAS_PROCESSES):
+        from . import loader  # which imports this module
+
+        return loader.trial(name, content, beside, unwatched)
     with TemporaryDirectory(prefix="arboleda-") as made:
         folder = Path(made)
         (folder / PLANT).write_bytes(content)
-        request = {"name": name, "folder": None if beside is None else str(beside), "longest_s": LONGEST_S}
+        limits = {"longest_s": LONGEST_S, "by_clock_s": WAITS * LONGEST_S}
+        request = {"name": name, "folder": None if beside is None else str(beside), **limits}
         (folder / REQUEST).write_text(json.dumps(request), "utf-8")
         status = _run(folder)
         if (folder / RESULT).exists():
@@ -125,7 +135,7 @@ def main(name: str) -> None:
     folder = Path(name)
     request = json.loads((folder / REQUEST).read_text("utf-8"))
     beside = None if request["folder"] is None else Path(request["folder"])
-    with watching(folder, request["longest_s"]) as watch:
+    with watching(folder, request["longest_s"], request["by_clock_s"]) as watch:
         found = loader.trial(request["name"], (folder / PLANT).read_bytes(), beside, watch)
     _write_whole(folder / RESULT, vars(found))
     os._exit(0)  # whatever threads the files have started
@@ -139,24 +149,23 @@ def _write_whole(path: Path, data: dict[str, Any]) -> None:
 
 
 @contextmanager
-def watching(folder: Path, longest_s: float) -> Iterator[Any]:
-    """A watch that ends this process, with the line that it was at, if something takes too much of the
-    processor's time, or WAITS times as long by the clock.
+def watching(folder: Path, longest_s: float, by_clock_s: float) -> Iterator[Any]:
+    """A watch that ends this process, with the line that it was at, if something takes more than
+    `longest_s` of the processor's time, or `by_clock_s` by the clock.
     """
     with open(folder / STACK, "w", encoding="utf-8") as stack:
-        faulthandler.register(signal.SIGPROF, file=stack, chain=True)  # whose own action ends the process
+        alarm = ProcessorAlarm(stack)
 
         def watch(spot: Spot, doing: str) -> None:
             _write_whole(folder / PHASE, {**vars(spot), "doing": doing})
-            signal.setitimer(signal.ITIMER_PROF, longest_s)
-            faulthandler.dump_traceback_later(WAITS * longest_s, exit=True, file=stack)
+            alarm.set(longest_s)
+            faulthandler.dump_traceback_later(by_clock_s, exit=True, file=stack)
 
         try:
             yield watch
         finally:
-            signal.setitimer(signal.ITIMER_PROF, 0.0)
             faulthandler.cancel_dump_traceback_later()
-            faulthandler.unregister(signal.SIGPROF)
+            alarm.close()
 
 
 def _run(folder: Path) -> int | None:
@@ -200,5 +209,5 @@ def broken_off(folder: Path, status: int | None) -> str:
             spot = Spot(file=str(Path(spot.file).parent / Path(file).name), line=int(line))
             break
     by_clock = f"{WAITS * LONGEST_S:g} s"
-    limit = f"{LONGEST_S:g} s of processor time" if status == -signal.SIGPROF else by_clock
+    limit = f"{LONGEST_S:g} s of processor time" if ended_by_alarm(status) else by_clock
     return spot.problem(f"{phase['doing']} takes more than {limit}; this is where it was then")

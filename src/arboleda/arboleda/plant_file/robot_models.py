@@ -197,9 +197,9 @@ def _limits(document: Document, place: Place, shape: JointFile, units: tuple[str
 def _quantity(document: Document, place: Place, key: str, units: tuple[str, ...]) -> tuple[float, ...]:
     """Numbers under the one given key, in SI; empty, with the problem kept, unless exactly one is."""
     keys = {key.format(unit): TO_SI[unit] for unit in units}
-    given = [name for name in keys if document.has((*place, name))]
-    if len(given) != 1:
+    present = [name for name in keys if document.has((*place, name))]
+    if len(present) != 1:
         document.problem(place, f"needs {choice(keys)}, one of them")
         return ()
-    value = document.value((*place, given[0]))
-    return tuple(keys[given[0]](each) for each in (value if isinstance(value, list) else [value]))
+    value = document.value((*place, present[0]))
+    return tuple(keys[present[0]](each) for each in (value if isinstance(value, list) else [value]))

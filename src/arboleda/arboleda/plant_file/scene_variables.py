@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 
+from py_trees.behaviour import Behaviour
+
 from arboleda.bt_xml import script, values
 from arboleda.bt_xml.running.memory import Scope, Value
 from arboleda.bt_xml.running.node import Node
@@ -20,7 +22,7 @@ def key_of(variable: tuple[Scope, str]) -> Key:
     return f"scope {id(scope)}", name
 
 
-def first_values(tree: Node) -> dict[Key, Value]:
+def first_values(tree: Behaviour) -> dict[Key, Value]:
     """The values that variables have when the tree begins: parameters, and constants of subtrees."""
     scopes = {id(node.scope): node.scope for node in tree.iterate() if isinstance(node, Node)}
     return {key_of((each, name)): value for each in scopes.values() for name, value in each.values.items()}
@@ -34,9 +36,9 @@ def known_of(scope: Scope, names: Iterable[str], scene: Scene) -> Scope | None:
     return Scope(values={name: value for name, value in found.items() if value is not None})
 
 
-def ports_in(scope: Scope, given: NodePorts, scene: Scene) -> Scope | None:
+def ports_in(scope: Scope, ports: NodePorts, scene: Scene) -> Scope | None:
     """The variables that a node's ports name, as they are known in a scene; None where one is not."""
-    read = [values.read(name, text) for name, text in given.said.items()]
+    read = [values.read(name, text) for name, text in ports.texts.items()]
     return known_of(scope, [each.name for each in read if isinstance(each, Variable)], scene)
 
 

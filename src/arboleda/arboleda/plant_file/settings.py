@@ -10,7 +10,7 @@ from operator import or_
 from types import UnionType
 from typing import Annotated, Any, Union, get_args, get_origin, get_type_hints
 
-from pydantic import Field as Given
+from pydantic import Field as PydanticField
 from pydantic import create_model
 
 from .document import Document, Place
@@ -104,7 +104,7 @@ def _key(hint: Any, row: Field[Any]) -> tuple[Any, Any]:
     """A key of the plant file with its default; a list serves for a tuple, a word for an Enum."""
     default = ... if row.default is MISSING else row.default
     if row.default_factory is not MISSING:
-        default = Given(default_factory=row.default_factory)
+        default = PydanticField(default_factory=row.default_factory)
     return _as_in_a_file(hint), default
 
 
@@ -113,4 +113,4 @@ def _as_in_a_file(hint: Any) -> Any:
     if get_origin(hint) in (Union, UnionType):
         return reduce(or_, map(_as_in_a_file, get_args(hint)))
     is_tuple = get_origin(hint) is tuple or (isinstance(hint, type) and issubclass(hint, Enum))
-    return Annotated[hint, Given(strict=False)] if is_tuple else hint
+    return Annotated[hint, PydanticField(strict=False)] if is_tuple else hint

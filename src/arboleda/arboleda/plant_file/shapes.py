@@ -10,8 +10,9 @@ from pydantic import AfterValidator, BeforeValidator, ConfigDict, Field, TypeAda
 from pydantic_core import PydanticCustomError
 
 from arboleda.kinds.declared import Effect
+from arboleda.model.assistants import AssistantLimits, hours
 from arboleda.model.commands import OnStop
-from arboleda.model.plant_model import Cell, Evidence, PlantModel, Retry, Teach, Timing
+from arboleda.model.plant_model import Cell, Evidence, OpcUaView, PlantModel, Retry, Teach, Timing
 from arboleda.recorder.preamble import Limits
 
 from .robot_models import Number, Pair, Positive, Shape, Triple
@@ -50,6 +51,13 @@ def _protocol(value: Any) -> Any:
     return "5" if type(value) is int and value == 5 else value
 
 
+def _hours(text: str) -> str:
+    try:
+        return hours(text).text
+    except ValueError:
+        raise PydanticCustomError("hours", 'must be hours of a day such as "07:30-18:00"') from None
+
+
 def _piece_check(value: Any) -> Any:
     if value != "auto" and not isinstance(value, bool):
         raise PydanticCustomError("piece_check", "must be auto, true or false")
@@ -82,7 +90,10 @@ class PlantShape(Shape):
     foreign_commands: Literal["refuse", "obey"] = "refuse"
     history_days: Annotated[float, Field(gt=0, le=36_500, allow_inf_nan=False)] = PlantModel.history_days
     groot2: Annotated[int, Field(ge=1, le=65_534)] = NO_PORT
+    opcua_view: Any = None
     store: str = ""
+    assistants: Literal["off", "read", "propose", "submit"] = "off"
+    assistant_limits: Any = None
     paths: Any = None
     stations: Any = None
     palletizing: Any = None
@@ -101,6 +112,21 @@ class RecordShape(Shape):
 
     megabytes: Annotated[float, Field(ge=2, le=1_000_000, allow_inf_nan=False)] = Limits.megabytes
     days: Annotated[float, Field(gt=0, le=36_500, allow_inf_nan=False)] = Limits.days
+
+
+class OpcUaViewShape(Shape):
+    """`opcua_view:`, the server of OPC UA that shows the plant."""
+
+    port: Annotated[int, Field(ge=1, le=65_535)] = OpcUaView.port
+    isa95: Annotated[list[Name], Field(max_length=4)] = Field(default_factory=list)
+
+
+class AssistantLimitsShape(Shape):
+    """`assistant_limits:`, the limits of the tasks that assistants give."""
+
+    cells: Annotated[list[str], Field(min_length=1, max_length=1000)]
+    at_once: Annotated[int, Field(ge=1, le=1000)] = AssistantLimits.at_once
+    hours: Annotated[str, AfterValidator(_hours)] | None = None
 
 
 class TimingShape(Shape):
@@ -161,7 +187,7 @@ class DeviceCellShape(Shape):
 
 
 class HandoverShape(Shape):
-    """`handover:`, two roles and the targets at which one robot takes what the other one brings."""
+    """`handover:`, two roles and the targets at which one robot takes parts from the other."""
 
     taker: str
     giver: str

@@ -147,7 +147,7 @@ def _check_tool(document: Document, place: Place, device: Robot, devices: Mappin
         return
     carrier, robots = document.value(here), [name for name, each in devices.items() if each.goes]
     if carrier in document.keys((SECTION,)) and carrier not in devices:
-        return  # what is wrong with it is told there
+        return  # its mistakes are reported there
     if carrier not in robots:
         there = f"must be {choice(robots)}" if robots else "no shared device is a robot"
         document.problem(here, f"{there}, is {shown(carrier)}{nearest(str(carrier), robots)}")

@@ -9,7 +9,7 @@ from hashlib import blake2b
 from pathlib import Path
 
 PYTHON, TREES = ".py", ".xml"
-LAYOUT = frozenset({"ctx", "kind", "type_comment"})  # what follows from the rest, or means nothing
+LAYOUT = frozenset({"ctx", "kind", "type_comment"})  # fields that follow from others, or mean nothing
 
 
 def source_of(files: Mapping[Path, bytes], folder: Path | None) -> str:

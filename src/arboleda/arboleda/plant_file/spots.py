@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from typing import cast
+
+from arboleda.kinds.joints import Jointed
 from arboleda.model.plant_model import Pose, Robot
 from arboleda.model.sentence import OWN
 
@@ -16,12 +19,11 @@ def spot(document: Document, place: Place, robot: Robot, name: str) -> Pose | No
     """The pose that the file has there for a target of this name; else None, with the problem kept."""
     if robot.floor_grid:
         shape = document.read(NodeShape, place)
-        if shape is not None and shape.node >= robot.grid.size:
-            document.problem((*place, "node"), f"must be 0 to {robot.grid.size - 1}, is {shape.node}")
+        if shape is not None and shape.node >= robot.floor_grid.size:
+            document.problem((*place, "node"), f"must be 0 to {robot.floor_grid.size - 1}, is {shape.node}")
             return None
         return None if shape is None else Pose(name=name, title=OWN(text=name), q=shape.node)
     assert robot.joints
-    reader = PoseReader(
-        document=document, cell=str(place[1]), model=robot.model or robot.kind_name, joints=robot.joints
-    )
+    model = cast(Jointed, robot).model or robot.kind_name
+    reader = PoseReader(document=document, cell=str(place[1]), model=model, joints=robot.joints)
     return reader.home(place) if name == START else reader.pose(place, OWN(text=name))

@@ -52,19 +52,19 @@ def _fact_check(walk: Walkthrough, node: FactCheck, scenes: Sequence[Scene]) -> 
     """The outcome of a check: what is known otherwise fails it."""
     facts = _facts(node)
     possible = [each for each in scenes if all(each.get(*key) in (None, facts[key]) for key in facts)]
-    return _told(walk, facts, possible, scenes)
+    return _fact_outcome(walk, facts, possible, scenes)
 
 
 def _fact_wait(walk: Walkthrough, node: FactWait, scenes: Sequence[Scene]) -> Outcome:
     """The outcome of waiting for facts: what is known may change by itself meanwhile."""
-    return _told(walk, _facts(node), scenes, scenes)
+    return _fact_outcome(walk, _facts(node), scenes, scenes)
 
 
 def _facts(node: FactCheck | FactWait) -> dict[Key, Value]:
     return {(node.device, fact): value for fact, value in node.facts.items()}
 
 
-def _told(
+def _fact_outcome(
     walk: Walkthrough, facts: Mapping[Key, Value], possible: Sequence[Scene], scenes: Sequence[Scene]
 ) -> Outcome:
     unlike = [scene for scene in scenes if any(scene.get(*key) != facts[key] for key in facts)]
@@ -187,7 +187,7 @@ def repeated(walk: Walkthrough, step: Behaviour, scenes: Sequence[Scene], times:
     return outcome
 
 
-RULES: Mapping[type[Behaviour], Rule] = {
+RULES: Mapping[type, Rule] = {
     Leaf: _leaf,
     Act: _act,
     Require: _require,

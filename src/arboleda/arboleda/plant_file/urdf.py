@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import cast
 from xml.etree.ElementTree import SubElement, fromstring, indent, tostring
 
 from arboleda.kinds.arm import Arm
+from arboleda.kinds.joints import Description, Jointed
 from arboleda.kinds.mobile import Mobile
 from arboleda.model.errors import ConfigError, StartError
-from arboleda.model.plant_model import PlantModel
+from arboleda.model.plant_model import PlantModel, Robot
 from arboleda_description.urdf import Limits, render
 
 from .document import nearest, shown
@@ -25,32 +27,44 @@ def robot_urdf(plant: PlantModel, name: str) -> str:
     ConfigError for a robot that the plant does not have; StartError without xacro or a usable drawing.
     """
     robot = _named(plant, name)
-    if robot.joints and robot.description is not None:
-        return _described(robot.description.urdf, prefix(robot), limits(robot))
+    description = own_description(robot)
+    if description is not None:
+        return _described(description.urdf, prefix(robot), limits(robot))
+    model = cast("Jointed | Mobile", robot).model
     try:
-        return render(robot.model, prefix=prefix(robot), limits=limits(robot))
+        return str(render(model, prefix=prefix(robot), limits=limits(robot)))
     except ModuleNotFoundError as error:
         raise StartError(NO_XACRO) from error
     except ValueError as error:
-        raise StartError(f"the model {robot.model} of {name} cannot be drawn: {error}") from error
+        raise StartError(f"the model {model} of {name} cannot be drawn: {error}") from error
 
 
-def prefix(robot: Arm | Mobile) -> str:
+def drawn_arm(robot: Robot) -> Arm | None:
+    """The robot as an arm on the floor; None for one that is no arm, or is not drawn."""
+    return cast(Arm, robot) if robot.joints and robot.drawn() else None
+
+
+def own_description(robot: Robot) -> Description | None:
+    """The URDF of a robot's model that is the plant's own; None where its model comes with Arboleda."""
+    return cast(Jointed, robot).description if robot.joints else None
+
+
+def prefix(robot: Robot) -> str:
     """The prefix of the names of its links and joints, as in its `joint_states`."""
-    return f"{robot.twin_name}_"
+    return f"{robot.joint_states.twin}_"
 
 
-def root_link(robot: Arm | Mobile) -> str:
+def root_link(robot: Robot) -> str:
     """The link whose place in `world` is the arm's base, or node 0 of the mobile's grid."""
     return prefix(robot) + ("base_link" if robot.joints else "grid_link")
 
 
-def limits(robot: Arm | Mobile) -> dict[str, Limits]:
+def limits(robot: Robot) -> dict[str, Limits]:
     """The limits by joint name without prefix, in SI units; a mobile's joints end with its grid."""
     if robot.joints:
         return {joint.name: Limits(joint.lower, joint.upper, joint.speed) for joint in robot.joints}
-    far = robot.grid.position(robot.grid.size - 1)
-    return {f"{axis}_joint": Limits(0.0, end, robot.speed) for axis, end in zip("xy", far, strict=True)}
+    far, speed = robot.floor_grid.position(robot.floor_grid.size - 1), cast(Mobile, robot).speed
+    return {f"{axis}_joint": Limits(0.0, end, speed) for axis, end in zip("xy", far, strict=True)}
 
 
 def _described(urdf: str, prefix: str, limits: Mapping[str, Limits]) -> str:
@@ -70,7 +84,7 @@ def _described(urdf: str, prefix: str, limits: Mapping[str, Limits]) -> str:
     return '<?xml version="1.0"?>\n' + tostring(robot, encoding="unicode") + "\n"
 
 
-def _named(plant: PlantModel, name: str) -> Arm | Mobile:
+def _named(plant: PlantModel, name: str) -> Robot:
     robot = plant.robots.get(name)
     if robot is None:
         known = f"there are {', '.join(plant.robots)}{nearest(name, plant.robots)}"

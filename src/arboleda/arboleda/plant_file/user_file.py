@@ -6,6 +6,7 @@ import os
 import stat
 from pathlib import Path
 
+from arboleda.host.files import AT_ONCE
 from arboleda.model.errors import ConfigError
 from arboleda.model.outside import quoted
 
@@ -13,8 +14,7 @@ from arboleda.model.outside import quoted
 def read_bytes(path: Path, largest: int) -> bytes:
     """All of a regular file of at most `largest` bytes; ConfigError, at once, for anything else."""
     try:
-        # Without O_NONBLOCK, opening a pipe waits until somebody writes into it.
-        with os.fdopen(os.open(path, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC), "rb") as file:
+        with os.fdopen(os.open(path, os.O_RDONLY | AT_ONCE), "rb") as file:
             if not stat.S_ISREG(os.fstat(file.fileno()).st_mode):
                 raise ConfigError((f"{path}: is not a regular file",))
             content = file.read(largest + 1)
@@ -42,9 +42,7 @@ def read_text(path: Path, largest: int) -> str:
 def check_writable(path: Path) -> None:
     """Raise ConfigError if a file cannot be written, before minutes of work; makes it if there is none."""
     try:
-        # Without O_NONBLOCK, opening a pipe waits until somebody reads from it.
-        flags = os.O_WRONLY | os.O_APPEND | os.O_CREAT | os.O_NONBLOCK | os.O_CLOEXEC
-        os.close(os.open(path, flags, 0o666))
+        os.close(os.open(path, os.O_WRONLY | os.O_APPEND | os.O_CREAT | AT_ONCE, 0o666))
     except ValueError:
         raise ConfigError((f"{quoted(str(path), 200)}: is not the name of a file",)) from None
     except OSError as error:

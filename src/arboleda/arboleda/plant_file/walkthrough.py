@@ -45,7 +45,7 @@ class Outcome:
         return self.plus(done=other.done, failed=other.failed, skipped=other.skipped)
 
     def joined(self) -> Outcome:
-        """The same with nothing left of what tells one way from another."""
+        """The same without the marks that tell one way from another."""
         passed = common(self.passed)
         return Outcome(
             done=passed if self.done else (),
@@ -94,7 +94,7 @@ class Walkthrough:
         return Outcome(done=found, failed=found, skipped=found)
 
     def check(self, act: Act, scenes: Sequence[Scene]) -> None:
-        """Note what is wrong with a command in these scenes."""
+        """Note the objections to a command in these scenes."""
         command = act.make(id="")
         for scene in scenes:
             for sentence in self.foresight.objections(command, scene):
@@ -121,7 +121,7 @@ class Walkthrough:
 
     @contextmanager
     def at(self, place: str | None) -> Iterator[None]:
-        """Have what is found meanwhile named with this place."""
+        """Context in which findings get this place."""
         before, self.place = self.place, place or self.place
         yield
         self.place = before

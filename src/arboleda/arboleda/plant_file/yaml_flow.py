@@ -25,7 +25,7 @@ def flow(value: Any) -> str:
 
 
 def block(head: str, value: Any, indent: str, newline: str) -> str:
-    """An entry of a mapping as a person writes it: on one line, or below each other what would be too long.
+    """An entry of a mapping as a person writes it: on one line, or on several where it is too long.
 
     `head` is its key with the colon, `indent` what stands before it on its line.
     """

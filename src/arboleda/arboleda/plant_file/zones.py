@@ -167,9 +167,7 @@ def _of_devices(
     for name in document.keys(place):
         if name in devices:
             found[name] = read(document, (*place, name), devices[name])
-        elif name in robots or name not in _named_devices(
-            document
-        ):  # else what is wrong with it is told there
+        elif name in robots or name not in _named_devices(document):  # else its mistakes are reported there
             there = f"must be {choice(devices)}" if devices else "there is no declared device"
             sentence = f"{there}, is {shown(name)}{nearest(name, devices)}"
             document.problem(place, sentence, at=(*place, name))

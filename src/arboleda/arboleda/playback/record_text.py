@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from contextlib import suppress
 from datetime import datetime
 from typing import Any
 
+from arboleda.model.sentence import Sentence
 from arboleda.recorder.plain_data import sentence_from
 
 
@@ -16,9 +18,9 @@ def moment(unix_ns: int, digits: str = "seconds") -> str:
     return "?"
 
 
-def sentence_of(data: Any) -> str:
-    """The sentence in English; "" if there is none, or none that can be read."""
+def sentence_of(data: Any, say: Callable[[Sentence | str], str] = str) -> str:
+    """The sentence as `say` says it, else in English; "" if there is none, or none that can be read."""
     try:
-        return str(sentence_from(data) or "")
+        return say(sentence_from(data) or "")
     except (AttributeError, IndexError, KeyError, TypeError, ValueError):
         return ""

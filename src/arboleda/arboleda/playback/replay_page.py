@@ -36,7 +36,7 @@ class RecordedPast:
         self._layout = view.layout(model)
         path = record.paths[-1]
         self._records = Records(lambda: path, self._layout)
-        self._records.past()  # what cannot be seen is said before the page is
+        self._records.past()  # errors are reported before the page opens
 
     def layout(self) -> dict[str, Any]:
         return self._layout

@@ -32,7 +32,7 @@ from arboleda.trees.leaves import Dwell, Require, Unless, titled
 
 from .decorators import Again, AtMost, Forgiven, Inverted, Rescue, Times
 from .errors import RecipeError, RoleError
-from .handles import Ask, Step, asked_in, chain, flat, handle, is_list, named, said, usable
+from .handles import Ask, Step, chain, flat, handle, is_list, named, question_of, said, usable
 from .holding import WORK, held
 from .parameters import parameter
 from .sharing import check_at_once, using
@@ -298,7 +298,7 @@ class Kit:
 
     def choose(self, asked: Step, ways: Mapping[Value, Step | Sequence[Step]]) -> Step:
         """A way for each answer to a step that asks a device or a person; another answer is a failure."""
-        question = asked_in(asked)
+        question = question_of(asked)
         if question is None:
             raise RecipeError(f"choose looks at the answer of a device's step; {named(asked)} has none")
         question.check(ways)

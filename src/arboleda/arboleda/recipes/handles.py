@@ -104,7 +104,7 @@ class AskInZones(composites.Sequence):
         self.asked = asked
 
 
-def asked_in(step: object) -> Ask | None:
+def question_of(step: object) -> Ask | None:
     """The question of a step that asks, also one in zones."""
     found = step.asked if isinstance(step, AskInZones) else step
     return found if isinstance(found, Ask) else None

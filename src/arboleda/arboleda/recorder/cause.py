@@ -17,6 +17,7 @@ SOON_S = 0.3  # a robot that ramps down reports its reason only at rest
 TOGETHER_S = 0.3  # connections that break within so long broke for one reason
 GONE = frozenset({"part.lost", "part.gone"})
 MOVES_OFF_S = 0.2  # time from the command to the first reports away from the part's place
+PROVOKED_S = 120.0  # a fault by hand lasts for so long, or shows so late
 AWAY_S = 2.0  # an absence of the plant may cause failures for so long
 
 
@@ -43,7 +44,8 @@ class Evidence:
 
     `reason` and `key` are the plant's; `robot` is the one whose failure it was. `sent` and `troubles` are
     commands and mishaps before it. `acts` are operators' words, each with its time; `absences` the spans in
-    which the plant was away; `foreign` the commands of others to the robot.
+    which the plant was away; `foreign` the commands of others to the robot; `provoked` the faults that people
+    had happen to virtual devices.
     """
 
     reason: Reason
@@ -58,7 +60,8 @@ class Evidence:
     acts: Sequence[tuple[float, str]] = ()
     absences: Sequence[tuple[float, float]] = ()
     foreign: Sequence[tuple[float, str]] = ()
-    said: Sentence | str = ""
+    provoked: Sequence[tuple[float, str, Sentence]] = ()
+    sentence: Sentence | str = ""
 
     @property
     def trouble(self) -> Trouble | None:
@@ -103,6 +106,7 @@ class Cause:
     sentence: Sentence = field(compare=False)
 
 
+PROVOKED = Phrase("cause.provoked", "{cause}. Shortly before: {what}")
 PHRASES = {
     "silence": Phrase(
         "cause.silence", "{robot} said nothing for {seconds:.1f} s: its board or its connection did nothing"
@@ -206,8 +210,18 @@ BEFALLEN = frozenset(
 def cause_of(evidence: Evidence) -> Cause:
     """The cause of a failure, by the first rule that finds one."""
     kind, more = next(found for rule in RULES if (found := rule(evidence)) is not None)
-    values = {"robot": evidence.robot or "", "word": evidence.word, "said": evidence.said, **more}
-    return Cause(kind=kind, robot=evidence.robot, sentence=PHRASES[kind](**values))
+    values = {"robot": evidence.robot or "", "word": evidence.word, "said": evidence.sentence, **more}
+    sentence = PHRASES[kind](**values)
+    if (what := _provoked(evidence)) is not None:
+        sentence = PROVOKED(cause=sentence, what=what)
+    return Cause(kind=kind, robot=evidence.robot, sentence=sentence)
+
+
+def _provoked(evidence: Evidence) -> Sentence | None:
+    """The last fault that a person had happen to the robot, if it was not long before the failure."""
+    since, until = evidence.failed_at - PROVOKED_S, evidence.failed_at
+    mine = [what for at, robot, what in evidence.provoked if robot == evidence.robot and since <= at <= until]
+    return mine[-1] if mine else None
 
 
 Found = tuple[str, dict[str, Value]]
@@ -234,7 +248,7 @@ def _away(evidence: Evidence) -> Found | None:
 
 
 def _befallen(evidence: Evidence) -> Found | None:
-    """Rule: a trouble of the robot, which tells more than the plant's own words."""
+    """Rule: a trouble of the robot, a closer cause than the reason that the plant reported."""
     trouble = evidence.trouble or evidence.boot
     if trouble is None or evidence.reason not in BEFALLEN:
         return None
@@ -265,8 +279,8 @@ def _silent(evidence: Evidence, trouble: Trouble) -> Found:
 def _foreign(evidence: Evidence) -> Found | None:
     sent = evidence.last
     since = sent.at if sent is not None else evidence.failed_at
-    heard = [at for at, robot in evidence.foreign if robot == evidence.robot and since <= at]
-    return ("foreign", {}) if any(at <= evidence.failed_at for at in heard) else None
+    times = [at for at, robot in evidence.foreign if robot == evidence.robot and since <= at]
+    return ("foreign", {}) if any(at <= evidence.failed_at for at in times) else None
 
 
 def _of_boot(evidence: Evidence) -> Found | None:
@@ -293,7 +307,7 @@ def _deadline(evidence: Evidence) -> Found | None:
     return ("switch", {}) if sent.switch else ("unended", {})
 
 
-def _said(evidence: Evidence) -> Found | None:
+def _of_failure(evidence: Evidence) -> Found | None:
     kind = BY_KEY.get(evidence.key) or BY_REASON.get(evidence.reason)
     return (kind, {"seconds": 0.0}) if kind is not None else None
 
@@ -310,6 +324,6 @@ RULES: tuple[Callable[[Evidence], Found | None], ...] = (
     _foreign,
     _left_behind,
     _deadline,
-    _said,
+    _of_failure,
     _other,
 )

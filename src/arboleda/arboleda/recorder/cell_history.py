@@ -10,7 +10,7 @@ from .rows import Row, Rows
 from .views import Views
 
 NEEDED = ("state", "task", "tree")  # of a cell's row
-AT_ONCE_NS = 60 * 10**9  # of so long all that was told is read
+AT_ONCE_NS = 60 * 10**9  # of a span no longer than this, every view is read
 
 At = tuple[int, Rows]
 
@@ -52,16 +52,16 @@ def _between(views: Views, cell: str, first: At, last: At) -> Iterator[CellMomen
 def _changes(views: Views, cell: str, first: At, until_ns: int) -> Iterator[CellMoment]:
     after_ns, known = first[0], dict(first[1])
     made = {key: value_from(row) for key, row in known.items()}
-    for told in views.told(after_ns, until_ns):
-        news = {key: {**known.get(key, {}), **row} for key, row in _of(told.rows, cell).items()}
+    for change in views.changes(after_ns, until_ns):
+        news = {key: {**known.get(key, {}), **row} for key, row in _of(change.rows, cell).items()}
         news = {key: row for key, row in news.items() if known.get(key) != row}
-        gone = [key for key in told.gone if key in known]
+        gone = [key for key in change.gone if key in known]
         for key in gone:
             del known[key], made[key]
         known.update(news)
         made.update({key: value_from(row) for key, row in news.items()})
         if news or gone:
-            yield _looked(told.unix_ns, made, cell)
+            yield _looked(change.unix_ns, made, cell)
 
 
 def _looked(unix_ns: int, made: Rows, cell: str) -> CellMoment:

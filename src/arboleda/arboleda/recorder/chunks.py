@@ -20,7 +20,7 @@ from mcap.writer import MCAP0_MAGIC as MAGIC
 
 from .reader import HEAD, LARGEST, TORN, unpacked_bytes
 
-Said = tuple[int, int, bytes]  # number of its channel, ns of Unix time, content
+LoggedMessage = tuple[int, int, bytes]  # number of its channel, ns of Unix time, content
 TIMES = struct.Struct("<QQ")
 MESSAGE = struct.Struct("<HIQQ")  # channel, sequence, time of the log, time of the publication
 FOOTER_BYTES = HEAD.size + 20
@@ -96,7 +96,7 @@ class ChunkFile:
             return file.read(length) if found == opcode and length <= LARGEST else b""
 
 
-def messages(content: bytes, channels: Iterable[int], begins: int = 0) -> Iterator[Said]:
+def messages(content: bytes, channels: Iterable[int], begins: int = 0) -> Iterator[LoggedMessage]:
     """The messages of these channels in a chunk, in order, from the byte `begins` on."""
     wanted = frozenset(channels)
     while begins < len(content):

@@ -12,6 +12,7 @@ from pathlib import Path
 from mcap.writer import CompressionType, Writer
 
 from arboleda import __version__
+from arboleda.host.files import sync_data, sync_folder
 
 from .channels import OURS, Channel, register
 from .preamble import DAY_S, FORMAT, MEGABYTE, Beginning, Limits
@@ -101,7 +102,7 @@ class PartFile:
             write_beginning(self._writer, beginning, (number,), unix_ns)
             self._channels = register(self._writer, channels)
             self._sync()
-            _sync_folder(path.parent)
+            sync_folder(path.parent)
         except BaseException:  # whatever it is, no file is left open
             self._file.close()
             raise
@@ -130,21 +131,12 @@ class PartFile:
 
     def _sync(self) -> None:
         self._file.flush()
-        os.fdatasync(self._file.fileno())
+        sync_data(self._file.fileno())
 
     def drop(self) -> None:
         """Close the file without an end."""
         with suppress(OSError):  # of a failed write, which was reported before
             self._file.close()
-
-
-def _sync_folder(folder: Path) -> None:
-    """Make a new file's entry in its folder survive a power cut."""
-    opened = os.open(folder, os.O_RDONLY | os.O_DIRECTORY)
-    try:
-        os.fsync(opened)
-    finally:
-        os.close(opened)
 
 
 def write_beginning(writer: Writer, beginning: Beginning, numbers: Iterable[int], unix_ns: int) -> None:

@@ -13,6 +13,7 @@ from arboleda.model.commands import Command, Stop, Switch
 from arboleda.model.messages import (
     Event,
     Failure,
+    FaultByHand,
     Interference,
     OperatorRequest,
     Report,
@@ -45,7 +46,7 @@ class Incident:
     task: str
     text: str = ""
     cell: str = ""
-    asked_at: float = 0.0
+    began_at: float = 0.0
     failed_at: float | None = None
     ended_at: float | None = None
     unix_ns: int = 0  # time of its end
@@ -59,6 +60,7 @@ class Incident:
     sent: dict[str, TaskCommand] = field(default_factory=dict)
     absences: list[tuple[float, float]] = field(default_factory=list)
     foreign: list[tuple[float, str]] = field(default_factory=list)
+    provoked: list[tuple[float, str, Sentence]] = field(default_factory=list)
 
     @property
     def evidence(self) -> Evidence:
@@ -82,7 +84,8 @@ class Incident:
             acts=self.acts,
             absences=self.absences,
             foreign=self.foreign,
-            said=self.failure.sentence,
+            provoked=self.provoked,
+            sentence=self.failure.sentence,
         )
 
     @property
@@ -100,7 +103,7 @@ class Reader:
         self.incident = Incident(task)
         self._drawn = drawn
         self._troubles = Troubles(supervised(model), model.timing.stale_after_s)
-        self._said: dict[str, deque[tuple[float, str]]] = {
+        self._last: dict[str, deque[tuple[float, str]]] = {
             name: deque(maxlen=MESSAGES) for name in model.robots
         }
         self._words: dict[str, object] = {}
@@ -139,6 +142,8 @@ class Reader:
                 found.foreign.append((event.at, event.robot))
         elif isinstance(event, OperatorRequest):
             found.acts.append((event.at, _in_words(event)))
+        elif isinstance(event, FaultByHand) and not event.is_over:
+            found.provoked.append((event.at, event.robot, event.sentence))
         elif isinstance(event, Interference):
             found.foreign.append((event.at, event.robot))
 
@@ -148,9 +153,9 @@ class Reader:
         if sent is not None:
             found.sent[sent.id] = _after(sent, report)
         words = news_of(report)
-        if report.robot in self._said and self._words.get(report.robot) != words:
+        if report.robot in self._last and self._words.get(report.robot) != words:
             self._words[report.robot] = words
-            self._said[report.robot].append((report.at, told(report)))
+            self._last[report.robot].append((report.at, report_text(report)))
         if report.foreign is not None and report.foreign_obeyed:
             found.foreign.append((report.at, report.robot))
 
@@ -167,17 +172,17 @@ class Reader:
         if isinstance(message, Command) and not isinstance(message, Stop):
             switch = isinstance(message, Switch)
             found.sent[message.id] = TaskCommand(id=message.id, robot=message.robot, at=now, switch=switch)
-            given = " ".join(
+            fields = " ".join(
                 f"{key}={_short(value)}" for key, value in message.given.items() if key != "robot"
             )
-            self._said[message.robot].append((now, f"> {type(message).__name__} {given} (id {message.id})"))
+            self._last[message.robot].append((now, f"> {type(message).__name__} {fields} (id {message.id})"))
         elif isinstance(message, TaskChanged) and message.task == found.task:
             self._change(message, unix_ns, now)
 
     def _change(self, change: TaskChanged, unix_ns: int, now: float) -> None:
         found = self.incident
         if found.state is None:
-            found.text, found.cell, found.asked_at = change.text, change.cell or "", now
+            found.text, found.cell, found.began_at = change.text, change.cell or "", now
         found.state = change.state
         if change.state in ENDED:
             found.ended_at, found.unix_ns = now, unix_ns
@@ -212,7 +217,7 @@ class Reader:
         if self._drawn and found.failed_at is not None and not found.frames:
             found.tree = self._tree
             found.frames = [*self._frames]
-            found.messages = {name: [*said] for name, said in self._said.items() if said}
+            found.messages = {name: [*messages] for name, messages in self._last.items() if messages}
 
 
 def _after(sent: TaskCommand, report: Report) -> TaskCommand:
@@ -240,14 +245,14 @@ def _in_words(request: OperatorRequest) -> str:
 
 
 NEWS = ("state", "accepted", "done", "rejected", "failed", "answered", "node", "homed", "effector", "piece")
-SAID = (*NEWS, "refusal", "failure", "answer", "q", "facts", "boot_id")
+FIELDS = (*NEWS, "refusal", "failure", "answer", "q", "facts", "boot_id")
 news_of = attrgetter(*NEWS, "facts", "boot_id")
 
 
-def told(report: Report) -> str:
+def report_text(report: Report) -> str:
     """The fields of a report as text."""
-    said = {name: getattr(report, name) for name in SAID}
-    return " ".join(f"{name}={_short(value)}" for name, value in said.items() if value is not None)
+    values = {name: getattr(report, name) for name in FIELDS}
+    return " ".join(f"{name}={_short(value)}" for name, value in values.items() if value is not None)
 
 
 def _short(value: Any) -> str:

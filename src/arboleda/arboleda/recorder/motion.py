@@ -29,7 +29,7 @@ class Motion:
         self._known: dict[str, Row] = {}
         self._restless: set[str] = set()  # robots whose rows may be others than at the last look at news
 
-    def seen(self, robot: Row) -> None:
+    def take(self, robot: Row) -> None:
         """Take over the twin's positions of a robot."""
         self._known[robot["name"]] = {key: robot[key] for key in ("q", "node", "heard_at", "position_at")}
         self._restless.add(robot["name"])
@@ -43,8 +43,8 @@ class Motion:
         if report.state is not MotionState.NO_LINK:
             known["heard_at"] = report.at
         for key in ("q", "node"):
-            if (said := getattr(report, key)) is not None:
-                known[key], known["position_at"] = said, report.at
+            if (value := getattr(report, key)) is not None:
+                known[key], known["position_at"] = value, report.at
 
     def rows(self, now: float) -> Iterator[tuple[str, Row]]:
         """The key and row of each robot in the twin."""

@@ -16,6 +16,7 @@ from arboleda.model.messages import (
     Event,
     Fact,
     Failure,
+    FaultByHand,
     Interference,
     Jog,
     Journal,
@@ -57,6 +58,7 @@ EVENTS: dict[str, type[Any]] = {
         Jog,
         Undelivered,
         LateDeparture,
+        FaultByHand,
         Interference,
         Shutdown,
         RestartRequest,
@@ -82,13 +84,13 @@ def event_from(data: Any) -> Event:
     try:
         made: Event = _made(EVENTS[data[TYPE]], data)
         if isinstance(made, OperatorRequest) and not made.arguments:
-            made = _told_apart(made)
+            made = _with_arguments(made)
     except (AttributeError, IndexError, KeyError, TypeError, ValueError) as error:
         raise NoRecord(f"it has an event that this version does not know ({_short(data)})") from error
     return made
 
 
-def _told_apart(request: OperatorRequest) -> OperatorRequest:
+def _with_arguments(request: OperatorRequest) -> OperatorRequest:
     """The request of a record whose plant took the arguments of a verb as words of its scope."""
     scope, arguments = from_text(request.verb, request.scope)
     return replace(request, scope=scope, arguments=arguments) if arguments else request
@@ -239,12 +241,12 @@ def sentence_from(data: Any) -> Sentence | None:
     if data is None:
         return None
     phrase = Phrase(data["key"], data["english"], **data.get("others", {}))
-    return Sentence(phrase, {slot: _said_value(each) for slot, each in data["values"].items()})
+    return Sentence(phrase, {slot: _slot_value(each) for slot, each in data["values"].items()})
 
 
-def _said_value(data: Any) -> Value:
+def _slot_value(data: Any) -> Value:
     if isinstance(data, list):
-        return tuple(_said_value(each) for each in data)
+        return tuple(_slot_value(each) for each in data)
     if isinstance(data, dict) and NUMBER not in data:
         inner = sentence_from(data)
         assert inner is not None
@@ -304,6 +306,7 @@ READERS: dict[type, dict[str, Reader]] = {
     Undelivered: {"sentence": sentence_from},
     LateDeparture: {},
     Interference: {"sentence": sentence_from},
+    FaultByHand: {"sentence": sentence_from},
     Shutdown: {},
     Revision: {"version": _version},
     RestartRequest: {},

@@ -100,10 +100,10 @@ class PartReader:
 
     def raw(self) -> Iterator[Raw]:
         """The steps not given yet, in order, with their times, up to the first damage."""
-        for _, unix_ns, data in self.told(TOPIC):
+        for _, unix_ns, data in self.messages_of(TOPIC):
             yield unix_ns, data
 
-    def told(self, *topics: str) -> Iterator[tuple[str, int, bytes]]:
+    def messages_of(self, *topics: str) -> Iterator[tuple[str, int, bytes]]:
         """The messages of these topics not given yet, each with its topic."""
         for piece in self.everything():
             if isinstance(piece, Message) and (topic := self.topic_of(piece)) in topics:
@@ -175,8 +175,8 @@ class PartReader:
             raise NoRecord(f"{self.path} cannot be read as a record: {error}.") from error
 
     def _refuse_newer(self, metadata: dict[str, str]) -> None:
-        said = metadata.get("format", "")
-        if said.isdecimal() and 0 < len(said) < 10 and int(said) <= FORMAT:
+        number = metadata.get("format", "")
+        if number.isdecimal() and 0 < len(number) < 10 and int(number) <= FORMAT:
             return
         by = quoted(metadata.get("version", "?"), 40)
         raise NoRecord(
@@ -292,7 +292,7 @@ class Record:
 
 
 def steps_there(paths: Iterable[Path]) -> int | None:
-    """The number of steps in files, also behind damaged places; None if that cannot be told.
+    """The number of steps in files, also behind damaged places; None if they cannot be counted.
 
     They are counted by the indexes that stand behind the chunks.
     """

@@ -16,10 +16,10 @@ from .state import state_of
 from .steps import Step
 from .version_files import VersionFiles
 from .view_log import ViewSnapshot
-from .writing import Writing
+from .writing import FLUSH_S, Writing
 
 LOG = logging.getLogger(__name__)
-PERIOD_S = 0.25  # interval of looks at the queue
+PERIOD_S = FLUSH_S  # interval of looks at the queue: what is written sooner reaches the disk no sooner
 SLICE_S, PAUSE_S = 0.0003, 0.001  # of work, and between two slices of it, in which others have Python's lock
 SHARE = 0.1  # greatest share of the time for snapshots
 MOST_WAITING = 20_000  # steps; some minutes of a large plant
@@ -39,7 +39,7 @@ class Recorder:
         self._unix_ns = unix_ns
         self._waiting: deque[Step | ViewSnapshot | VersionFiles] = deque()
         self._turn = 0
-        self._seen_in = self._seen_out = 0  # snapshots put in, and taken out
+        self._snapshots_in = self._snapshots_out = 0
         self._see_after = 0.0
         self._over = False
         self._ending = threading.Event()
@@ -67,14 +67,14 @@ class Recorder:
         self._wait(step)
 
     def knows(self, digest: str, files: PlantFiles) -> None:
-        """Take in the files of a version, before any step that is told of it; from any thread."""
+        """Take in the files of a version, before the first step that uses it; from any thread."""
         if not self._over:
             self._wait(VersionFiles(digest=digest, files=files, unix_ns=self._unix_ns()))
 
     def saw(self, snapshot: dict[str, Any], drawn: dict[str, Any]) -> None:
         """Take in a snapshot and the twin's positions in the plant's thread; never raises."""
         if not self._over:
-            self._seen_in += 1
+            self._snapshots_in += 1
             self._wait(ViewSnapshot(self._unix_ns(), snapshot, drawn))
 
     def _wait(self, item: Step | ViewSnapshot | VersionFiles) -> None:
@@ -116,9 +116,9 @@ class Recorder:
         if not isinstance(item, ViewSnapshot):
             yield from self._writing.put(item)
             return
-        self._seen_out += 1
+        self._snapshots_out += 1
         now, spent_s = time.monotonic(), time.thread_time()
-        if now >= self._see_after or self._seen_out == self._seen_in:
+        if now >= self._see_after or self._snapshots_out == self._snapshots_in:
             yield from self._writing.put(item)
             self._see_after = now + (time.thread_time() - spent_s) / SHARE
 

@@ -50,12 +50,12 @@ def replayed(plant: Plant, steps: Iterable[RecordedStep]) -> Iterator[ReplayedSt
     """Make each step again, up to and including the first that differs; later ones would prove nothing."""
     for number, step in enumerate(steps, start=1):
         try:
-            said = outcome(plant.step(step.now, step.events), state_of(plant, number))
+            result = outcome(plant.step(step.now, step.events), state_of(plant, number))
         except Exception as error:  # noqa: BLE001 - the plant that was recorded went on: it is a difference
             yield ReplayedStep(number, step, Difference("step", "made", f"{type(error).__name__}: {error}"))
             return
-        if hash_of(said) != step.hash:
-            yield ReplayedStep(number, step, first_difference(step.said, said))
+        if hash_of(result) != step.hash:
+            yield ReplayedStep(number, step, first_difference(step.result, result))
             return
         yield ReplayedStep(number, step)
 

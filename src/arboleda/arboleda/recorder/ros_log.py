@@ -14,7 +14,6 @@ from arboleda.model.plant_model import PlantModel, Robot
 from arboleda.model.sentence import in_json
 from arboleda.views import view
 from arboleda.views.diagnostics import Diagnostic, diagnostics
-from arboleda.wire.joints import joint_names, joint_states_topic, measured_joints
 
 from . import cdr, ros_types
 from .steps import Step
@@ -43,7 +42,7 @@ class RosLog:
         self._ns = step.unix_ns
         for event in step.events:
             if isinstance(event, Report) and event.robot in self._robots:
-                yield from self._robots[event.robot].heard(event, step.unix_ns)
+                yield from self._robots[event.robot].news_of(event, step.unix_ns)
         for message in step.messages:
             if isinstance(message, TaskChanged):
                 text = json.dumps(view.change(message), ensure_ascii=False, default=in_json)
@@ -53,9 +52,9 @@ class RosLog:
             self._diagnosed_ns = step.unix_ns
             yield from self._diagnosed(snapshot)
 
-    def saw(self, seen: ViewSnapshot) -> Iterator[Message | None]:
+    def saw(self, snapshot: ViewSnapshot) -> Iterator[Message | None]:
         """Keep a snapshot, from which diagnostics are made later."""
-        self._snapshot = seen.snapshot
+        self._snapshot = snapshot.snapshot
         yield None
 
     def whole(self) -> Iterator[Message | None]:
@@ -80,32 +79,32 @@ class _Topics:
 
     def __init__(self, robot: Robot) -> None:
         self._robot = robot
-        self._state, self._joints = f"/{robot.name}/motion_state", f"/{joint_states_topic(robot)}"
+        self._state, self._joints = f"/{robot.name}/motion_state", f"/{robot.joint_states.topic}"
         stands = robot.position_key is not None
-        self._message = cdr.JointStates(joint_names(robot)) if stands else None
+        self._message = cdr.JointStates(robot.joint_states.joints) if stands else None
         self._position: tuple[float, ...] | None = None
-        self._said: int | None = None
+        self._last_state: int | None = None
         self.channels = [ros_types.channel(self._state, ros_types.UINT8)]
         if stands:
             self.channels.append(ros_types.channel(self._joints, ros_types.JOINT_STATE))
 
-    def heard(self, report: Report, unix_ns: int) -> Iterator[Message]:
+    def news_of(self, report: Report, unix_ns: int) -> Iterator[Message]:
         """The messages for the news in a report; none for a report that the plant rejects, too."""
         if self._robot.objection(report) is not None:
             return
-        if report.state is not None and report.state != self._said:
-            self._said = int(report.state)
-            yield self._state, unix_ns, cdr.uint8(self._said)
+        if report.state is not None and report.state != self._last_state:
+            self._last_state = int(report.state)
+            yield self._state, unix_ns, cdr.uint8(self._last_state)
         if self._message is None:
             return
-        position = measured_joints(self._robot, report)
+        position = self._robot.joint_states.values(report)
         if position is not None and position != self._position:
             self._position = position
             yield self._joints, unix_ns, self._message.of(unix_ns, position)
 
     def again(self, unix_ns: int) -> Iterator[Message]:
         """The last messages once more, for the beginning of a file."""
-        if self._said is not None:
-            yield self._state, unix_ns, cdr.uint8(self._said)
+        if self._last_state is not None:
+            yield self._state, unix_ns, cdr.uint8(self._last_state)
         if self._message is not None and self._position is not None:
             yield self._joints, unix_ns, self._message.of(unix_ns, self._position)

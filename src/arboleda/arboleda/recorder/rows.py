@@ -21,7 +21,9 @@ TABLES = {
     "zones": "zone",
     "acts": "number",
     "interference": "number",
+    "faults": "number",
 }
+WHOLE = ("zones", "acts", "interference", "faults")  # whose rows are kept as they are
 SPANS = {"age_s": -1, "since_s": -1, "deadline_s": 1, "left_s": 1}
 DRAWN = ("homed", "reports", "going_since", "reached")  # of a robot in the twin, and in no snapshot
 ELSEWHERE = ("age_s", "q", "node")  # fields of a robot that are in the rows of `motion`
@@ -42,7 +44,7 @@ def rows_of(snapshot: Row, drawn: Row) -> Iterator[tuple[str, Row]]:
         yield f"robots/{robot['name']}", _robot(robot, at)
     for task in snapshot["tasks"]:
         yield f"tasks/{task['id']}", {key: value for key, value in task.items() if key != "elapsed_s"}
-    for table in ("zones", "acts", "interference"):
+    for table in WHOLE:
         for row in snapshot[table]:
             yield f"{table}/{row[TABLES[table]]}", row
     for robot in drawn["robots"]:
@@ -61,10 +63,7 @@ def snapshot_of(rows: Rows, at: float) -> Row:
         "cells": [_cell(rows, name, tasks, at) for name in order["cells"]],
         "robots": [_robot_at(rows, name, at) for name in order["robots"]],
         "tasks": list(tasks.values()),
-        **{
-            table: [_row(rows, f"{table}/{id}") for id in order[table]]
-            for table in ("zones", "acts", "interference")
-        },
+        **{table: [_row(rows, f"{table}/{id}") for id in order.get(table, ())] for table in WHOLE},
     }
 
 
@@ -125,8 +124,8 @@ def _robot_at(rows: Rows, name: str, at: float) -> Row:
 
 def _drawn(rows: Rows, name: str, at: float) -> Row:
     robot = _row(rows, f"robots/{name}")
-    said = {key: robot[key] for key in ("name", "online", "goal")}
-    return {**said, **_motion(rows, name, at), **_row(rows, f"drawn/{name}")}
+    fields = {key: robot[key] for key in ("name", "online", "goal")}
+    return {**fields, **_motion(rows, name, at), **_row(rows, f"drawn/{name}")}
 
 
 def _motion(rows: Rows, name: str, at: float) -> Row:

@@ -69,7 +69,7 @@ def _cell(plant: Plant, run: CellRun) -> State:
         "commands": tuple([_opened(entry) for entry in _entries(plant, run)]),
         "devices": {robot.name: _device(plant.dispatcher.beliefs[robot.name]) for robot in robots},
         "latched": tuple([robot.name for robot in robots if robot.name in plant.dispatcher.latched]),
-        **_taught(run.teaching),
+        **_taught(run.manual.teaching),
         "holds": tuple([(robot.name, zone) for robot in robots for zone in _zones(plant, robot.name)]),
     }
 
@@ -94,7 +94,7 @@ def _zones(plant: Plant, robot: str) -> list[str]:
 
 
 def named(state: Any) -> dict[str, Any]:
-    """The state as plain data, with a name for each value, by which a difference is told."""
+    """The state as plain data, with a name for each value, which reports of differences use."""
     rows = dict(state)
     rows["stands"] = dict(zip(STANDS, state["stands"], strict=True))
     rows["commands"] = [dict(zip(OPENED, each, strict=True)) for each in state["commands"]]

@@ -44,12 +44,12 @@ class Step:
 
 @dataclass(frozen=True)
 class RecordedStep:
-    """Step as it was read; `said` is its messages and state, in the form that is hashed."""
+    """Step as it was read; `result` is its messages and state, in the form that is hashed."""
 
     unix_ns: int
     now: float
     events: tuple[Event, ...]
-    said: dict[str, Any]
+    result: dict[str, Any]
     hash: str
 
 
@@ -58,16 +58,16 @@ def outcome(messages: Sequence[Any], state: State) -> dict[str, Any]:
     return {"messages": plain(messages), "state": plain(named(state))}
 
 
-def hash_of(said: dict[str, Any]) -> str:
+def hash_of(result: dict[str, Any]) -> str:
     """The hash of a step's result; equal only if every number is equal to the last bit."""
-    return _hash(_text(said))
+    return _hash(_text(result))
 
 
 def as_json(step: Step) -> bytes:
     """The record's message for a step."""
-    said = _text(outcome(step.messages, step.state))
+    result = _text(outcome(step.messages, step.state))
     head = _text({"now": step.now, "events": plain(step.events)})
-    return f'{head[:-1]},{said[1:-1]},"hash":"{_hash(said)}"}}'.encode()
+    return f'{head[:-1]},{result[1:-1]},"hash":"{_hash(result)}"}}'.encode()
 
 
 def _text(data: dict[str, Any]) -> str:
@@ -84,8 +84,8 @@ def from_json(unix_ns: int, data: bytes) -> RecordedStep:
         rows = json.loads(data)
         events = tuple(event_from(each) for each in rows["events"])
         messages = [message_from(each) for each in rows["messages"]]
-        said = {"messages": messages, "state": rows["state"]}
-        hash = str(rows["hash"]) if messages == rows["messages"] else hash_of(said)
-        return RecordedStep(unix_ns, float(rows["now"]), events, said, hash)
+        result = {"messages": messages, "state": rows["state"]}
+        hash = str(rows["hash"]) if messages == rows["messages"] else hash_of(result)
+        return RecordedStep(unix_ns, float(rows["now"]), events, result, hash)
     except (AttributeError, KeyError, TypeError, ValueError, RecursionError) as error:
         raise NoRecord("it has a step that is not as a plant writes it") from error

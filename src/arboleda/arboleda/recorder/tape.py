@@ -57,8 +57,8 @@ class TapedPlant(RecordingPlant):
     def steps(self) -> Iterator[RecordedStep]:
         """All steps, as if read from a file; their Unix time is the plant's own."""
         for step in self.tape:
-            said = outcome(step.messages, step.state)
-            yield RecordedStep(step.unix_ns, step.now, tuple(step.events), said, hash_of(said))
+            result = outcome(step.messages, step.state)
+            yield RecordedStep(step.unix_ns, step.now, tuple(step.events), result, hash_of(result))
 
 
 def _began(model: PlantModel, files: PlantFiles, **made_of: Any) -> Beginning:

@@ -52,7 +52,7 @@ class Troubles:
     supervised: frozenset[str]
     stale_after_s: float
     found: list[Trouble] = field(default_factory=list)
-    _heard: dict[str, _RobotState] = field(default_factory=dict)
+    _robots: dict[str, _RobotState] = field(default_factory=dict)
 
     def take(self, events: Iterable[object]) -> None:
         for event in events:
@@ -64,7 +64,7 @@ class Troubles:
         return sorted([*self.found, *self._open(now)], key=lambda each: each.at)
 
     def _hear(self, report: Report) -> None:
-        known = self._heard.get(report.robot)
+        known = self._robots.get(report.robot)
         if report.state is None:
             return
         if report.state is MotionState.NO_LINK:
@@ -72,7 +72,7 @@ class Troubles:
                 known.lost_at = report.at
             return
         if known is None:
-            self._heard[report.robot] = known = _RobotState(report.at, report)
+            self._robots[report.robot] = known = _RobotState(report.at, report)
         else:
             self.found += _between(known.report, report, self._silence(known, report.at))
         self._mind_alarm(known, report)
@@ -86,7 +86,7 @@ class Troubles:
             self.found.append(Trouble(kind=ALARM, robot=report.robot, at=began, seconds=report.at - began))
 
     def _open(self, now: float) -> Iterator[Trouble]:
-        for robot, known in self._heard.items():
+        for robot, known in self._robots.items():
             if known.alarm_at is not None:
                 yield Trouble(kind=ALARM, robot=robot, at=known.alarm_at, seconds=math.inf)
             if known.lost_at is not None or now - known.at > SILENT_S:

@@ -22,7 +22,7 @@ from .reader import HEAD, KNOWN, TORN
 
 @dataclass(frozen=True, kw_only=True)
 class VersionFiles:
-    """Files of a version, by its digest; to be written before the first step that is told of it."""
+    """Files of a version, by its digest; to be written before the first step that uses it."""
 
     digest: str
     files: PlantFiles

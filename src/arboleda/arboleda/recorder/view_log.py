@@ -46,7 +46,7 @@ class ViewLog:
     def __init__(self, past_acts: Iterable[Row] = (), links: Callable[[], Mapping[str, Any]] = dict) -> None:
         self._links = links
         self._chronicle = Chronicle(past_acts)
-        self._told = 0  # number of the last event written
+        self._last_event = 0  # number of the last event written
         self._motion = Motion()
         self._rows: Rows = {}
         self._at = self._looked_at = 0.0
@@ -62,15 +62,15 @@ class ViewLog:
             self._looked_at = step.now
             yield from self._news(step.unix_ns, step.now, self._motion.news(step.now))
 
-    def saw(self, seen: ViewSnapshot) -> Iterator[Message | None]:
+    def saw(self, snapshot: ViewSnapshot) -> Iterator[Message | None]:
         """The messages for the changes in a snapshot."""
-        for robot in seen.drawn["robots"]:
-            self._motion.seen(robot)
-        at = seen.snapshot["at"]
+        for robot in snapshot.drawn["robots"]:
+            self._motion.take(robot)
+        at = snapshot.snapshot["at"]
         links = (LINKS, dict(self._links()))
-        rows = chain(rows_of(seen.snapshot, seen.drawn), self._motion.rows(at), [links])
-        yield from self._news(seen.unix_ns, at, rows, everything=True)
-        self._chronicle.see(seen.snapshot, self._ns / 1e9)
+        rows = chain(rows_of(snapshot.snapshot, snapshot.drawn), self._motion.rows(at), [links])
+        yield from self._news(snapshot.unix_ns, at, rows, everything=True)
+        self._chronicle.see(snapshot.snapshot, self._ns / 1e9)
         yield from self._events()
 
     def whole(self) -> Iterator[Message | None]:
@@ -86,9 +86,9 @@ class ViewLog:
         """
         if not self._digest or not (ends or self._ns - self._digest_ns >= DIGEST_S * 1e9):
             return b""
-        self._digest_ns, told = self._ns, f"[{','.join(self._digest)}]"
+        self._digest_ns, text = self._ns, f"[{','.join(self._digest)}]"
         self._digest = []
-        return zstandard.compress(told.encode())
+        return zstandard.compress(text.encode())
 
     def _news(
         self, unix_ns: int, at: float, rows: Iterable[tuple[str, Row]], *, everything: bool = False
@@ -122,9 +122,9 @@ class ViewLog:
         yield topic, self._ns, f'{{{head},"rows":{{{",".join(texts)}}}}}'.encode()
 
     def _events(self) -> Iterator[Message | None]:
-        newest = takewhile(lambda event: event["number"] > self._told, reversed(self._chronicle.events))
+        newest = takewhile(lambda event: event["number"] > self._last_event, reversed(self._chronicle.events))
         for event in [*newest][::-1]:
-            self._told = event["number"]
+            self._last_event = event["number"]
             text = _text(event)
             self._digest.append(text)
             yield EVENTS, self._ns, text.encode()

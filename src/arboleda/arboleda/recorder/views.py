@@ -41,17 +41,17 @@ class ViewChange:
 class Window:
     """Views from one whole view to the next; `ended` if that next one is written already."""
 
-    told: list[ViewChange]
+    changes: list[ViewChange]
     ended: bool
     chunks: int  # of its file, when it was read
 
     @cached_property
     def times(self) -> list[int]:
-        return [each.unix_ns for each in self.told]
+        return [each.unix_ns for each in self.changes]
 
     def between(self, after_ns: int, until_ns: int) -> list[ViewChange]:
         """The views after one moment and up to another."""
-        return self.told[bisect_right(self.times, after_ns) : bisect_right(self.times, until_ns)]
+        return self.changes[bisect_right(self.times, after_ns) : bisect_right(self.times, until_ns)]
 
 
 class Views:
@@ -111,7 +111,7 @@ class Views:
         with _legible(self._files):
             return self._moment(unix_ns - EXACT_NS)[0]
 
-    def told(self, after_ns: int, until_ns: int) -> Iterator[ViewChange]:
+    def changes(self, after_ns: int, until_ns: int) -> Iterator[ViewChange]:
         """All views after a moment and up to another, in order."""
         with _legible(self._files):
             for window in self._windows_from(after_ns, until_ns):
@@ -159,12 +159,12 @@ class Views:
         window = self._window(unix_ns + EXACT_NS) or self._first()
         count = max(1, bisect_right(window.times, unix_ns + EXACT_NS))
         rows: Rows = {}
-        for told in window.told[:count]:
-            for key in told.gone:
+        for change in window.changes[:count]:
+            for key in change.gone:
                 rows.pop(key, None)
-            for key, fields in told.rows.items():
+            for key, fields in change.rows.items():
                 rows[key] = {**rows.get(key, {}), **fields}
-        last = window.told[count - 1]
+        last = window.changes[count - 1]
         since_ns = min(unix_ns, self.ended_ns) - last.unix_ns
         return rows, last.at + max(0, since_ns) / 1e9
 
@@ -174,7 +174,7 @@ class Views:
             for number in range(file.index().position(unix_ns), -1, -1):
                 index = file.index().chunks[number].indexes.get(self._channels.get(VIEW, NONE))
                 places = [place for at, place in file.times(index) if at <= unix_ns] if index else []
-                if places and (window := self._read(file, number, places[-1])).told:
+                if places and (window := self._read(file, number, places[-1])).changes:
                     return window
         return None
 
@@ -183,7 +183,7 @@ class Views:
             for number, chunk in enumerate(file.index().chunks):
                 index = chunk.indexes.get(self._channels.get(VIEW, NONE))
                 places = file.times(index) if index else []
-                if places and (window := self._read(file, number, places[0][1])).told:
+                if places and (window := self._read(file, number, places[0][1])).changes:
                     return window
         raise NoRecord(f"{self._files[0].path} ends before anything could be seen.")
 
@@ -191,16 +191,16 @@ class Views:
         key, chunks = (file.path, number, place), len(file.index().chunks)
         known = self._windows.get(key)
         if known is None or not (known.ended or known.chunks == chunks):
-            told = [*self._told(file, number, place)]
-            ended = None in told
-            known = Window(told=[each for each in told if each is not None], ended=ended, chunks=chunks)
+            changes = [*self._changes(file, number, place)]
+            ended = None in changes
+            known = Window(changes=[each for each in changes if each is not None], ended=ended, chunks=chunks)
             self._windows[key] = known
         self._windows.move_to_end(key)
         while len(self._windows) > WINDOWS:
             self._windows.popitem(last=False)
         return known
 
-    def _told(self, file: ChunkFile, number: int, place: int) -> Iterator[ViewChange | None]:
+    def _changes(self, file: ChunkFile, number: int, place: int) -> Iterator[ViewChange | None]:
         """The views from a place on; a None in the end if the next whole view follows."""
         view, changes = (self._channels.get(topic, NONE) for topic in (VIEW, CHANGES))
         first = True
@@ -211,7 +211,7 @@ class Views:
                     yield None
                     return
                 first = False
-                yield _told(unix_ns, data)
+                yield _change(unix_ns, data)
 
     def _times_of(self, file: ChunkFile) -> list[int]:
         index, changes = file.index(), self._channels.get(CHANGES, NONE)
@@ -254,6 +254,6 @@ def _digest(content: bytes) -> list[Row]:
     return rows
 
 
-def _told(unix_ns: int, data: bytes) -> ViewChange:
+def _change(unix_ns: int, data: bytes) -> ViewChange:
     rows: dict[str, Any] = json.loads(data)
     return ViewChange(unix_ns, float(rows["at"]), rows.get("gone", ()), rows["rows"])

@@ -27,6 +27,7 @@ from arboleda.model.plant_model import Link, MqttVersion, PlantModel
 from arboleda.model.sentence import OWN, Sentence, from_data
 from arboleda.plant_file.draft_process import CheckProcess
 from arboleda.recorder.preamble import Beginning, Recording
+from arboleda.store.oee_rows import OeeQuery
 from arboleda.store.plant_memory import JournalEntry, PlantMemory, Superseded
 from arboleda.web.access.names import other_address
 
@@ -34,6 +35,7 @@ from . import at_work
 from .alarm_options import AlarmOptions
 from .demo import Demo
 from .draft_desk import DraftDesk
+from .fault_desk import PHRASES, FaultDesk
 from .log_queue import Output
 from .make.bench import MakeBench
 from .parts.alarms import alarms_part
@@ -49,6 +51,7 @@ from .parts.hang_up import HangUpPart
 from .parts.linux_boards import LinuxBoards, on_linux
 from .parts.local_plant import LocalPlant
 from .parts.memory_pace import MemoryPace
+from .parts.opcua_view import OpcUaViewOptions, OpcUaViewPart
 from .parts.orchestrator import Orchestrator
 from .parts.part import Part
 from .parts.periodic import Periodic
@@ -56,6 +59,8 @@ from .parts.reports import NO_RECORD, NoReport, ReportsPart
 from .parts.router import PlantPort, Router
 from .parts.systemd import systemd_part
 from .plant_folder import PlantFolder
+from .proposals.desk import ProposalDesk
+from .proposals.tasks import AssistantTasks
 from .rate import at_rate
 from .standby.handover import CellResumption, hold_all
 from .standby.leader import way_to
@@ -131,6 +136,7 @@ class App:
         options.alarms.check(model, has_broker=model.has_boards or options.broker is not None)
         self._alarms = alarms_part(model, options.alarms, self._broker, self._seen_at)
         self._groot2 = _groot2(model, options) if "orchestrator" in parts else None
+        self._opcua_view = self._view(model, options) if "orchestrator" in parts else None
         self._bridge: BridgePart | None = None
         self._drivers: DriversPart | None = None
         self._devices: DevicesPart | None = None
@@ -144,6 +150,8 @@ class App:
         self._draft: DraftDesk | None = None
         self._versions: VersionDesk | None = None
         self._make: MakeBench | None = None
+        self._faults: FaultDesk | None = None
+        self._proposals: ProposalDesk | None = None
         self._folder = PlantFolder(options.plant_file, state)
         if options.recording is not None and "orchestrator" in parts:
             self._open_desks(state, options, virtual=options.recording.virtual)
@@ -178,6 +186,8 @@ class App:
             notes += self._web.notes
         if self._groot2 is not None:
             notes += self._groot2.notes
+        if self._opcua_view is not None:
+            notes += self._opcua_view.notes
         if self._alarms is not None and self.orchestrator is not None:
             notes += self._alarms.notes
         if self._demo is not None:
@@ -242,6 +252,17 @@ class App:
         """Call back with every change of a task, in the plant's thread; before `start`."""
         self.plant.listeners.extend(listeners)
 
+    def _view(self, model: PlantModel, options: Options) -> OpcUaViewPart | None:
+        """The part that shows the plant over OPC UA, if wanted; on the address of the HTTP API."""
+        view = model.opcua_view
+        if view is None:
+            return None
+        cells = [cell.name for cell in model.cells]
+        return OpcUaViewPart(
+            OpcUaViewOptions(host=options.web.address, port=view.port, plant=model.name, folders=view.isa95),
+            lambda: self._history.oee(OeeQuery(), cells),
+        )
+
     def watch(self, watcher: Callable[[dict[str, Any]], None]) -> None:
         """Call back with snapshots if more than a position changed; in the plant's thread, before `start`."""
         self.plant.watchers.append(watcher)
@@ -255,7 +276,9 @@ class App:
         waiting = [{"host": each.host, "url": way_to(each.host, each.url)} for each in self._store.standbys]
         demo = self._demo is not None and self._demo.is_on
         memory = None if self.orchestrator is None else asdict(self._pace.pace)
-        about = {"refused": refused, "standbys": waiting, "demo": demo, "memory": memory}
+        faults = () if self._faults is None else self._faults.begun()
+        begun = [asdict(each) for each in faults]
+        about = {"refused": refused, "standbys": waiting, "demo": demo, "memory": memory, "faults": begun}
         return {"broker": broker, "ros": ros, **about}
 
     def end_demo(self) -> None:
@@ -278,9 +301,19 @@ class App:
             check=process.check,
             restarts=options.restarts and self._store.renew_s is None,
         )
-        self._draft = DraftDesk(self._folder, state, process, work_by=versions.work_by)
+        self._draft = DraftDesk(
+            self._folder, state, process, work_by=versions.work_by, writing=versions.writing
+        )
         self._versions = versions
         self._make = MakeBench(self._folder, state, self._draft, self.model.driven)
+        self._proposals = ProposalDesk(
+            self._folder,
+            state,
+            versions,
+            CheckProcess(),
+            lambda: self.plant.plant.model,
+            lambda shelf: AssistantTasks(shelf, lambda: self.local, lambda: versions.at_work().digest),
+        )
 
     def _keep_files(self, recording: Recording | None) -> None:
         """Keep what this start is made of, for `arboleda apply`; without a record that is not known."""
@@ -302,6 +335,8 @@ class App:
             draft=self._draft,
             versions=self._versions,
             make=self._make,
+            faults=self._faults,
+            proposals=self._proposals,
         )
         paged = page.PagePlant(self.plant, self._history, sources) if options.page else None
         metrics = self._metrics = Metrics(self.plant.snapshot, self.links)
@@ -311,7 +346,7 @@ class App:
             self._state.path,
             self._announce,
             options.web,
-            paged and paged.mount,
+            None if paged is None else paged.mount,
             connections=self._shares.http,
             counts=metrics.text,
         )
@@ -319,7 +354,16 @@ class App:
     @cached_property
     def local(self) -> LocalPlant:
         """PlantApi of the plant of this process; ArboledaError where it has none."""
-        return LocalPlant(self.plant, self._history, self._draft, self._versions, self._make)
+        return LocalPlant(
+            self.plant,
+            self._history,
+            self._draft,
+            self._versions,
+            self._make,
+            self.report,
+            self._proposals,
+            self._faults,
+        )
 
     @property
     def plant(self) -> Orchestrator:
@@ -410,15 +454,22 @@ class App:
                 self._pace.listeners.append(self._alarms.paced)
                 self.orchestrator.observers.append(self._alarms.stepped)
             self._parts.append(self.orchestrator)
+            self._faults = FaultDesk(self.model, self._devices, self.orchestrator.hear)
+            if self._devices is not None:
+                self._devices.noted = self._faults.noted
         if "web" in parts:  # a process has one page, so it is made by who leads
             self._web = self._web_part(options)
             self.watch(self._web.plant.saw)
             self._count()
             self._parts.append(self._web)
-            self._parts += [each for each in (self._draft, self._make) if each]
+            self._parts += [each for each in (self._draft, self._make, self._proposals) if each]
         if self._groot2 is not None:
             self.watch(self._groot2.saw)
             self._parts.append(self._groot2)
+        if self._opcua_view is not None:
+            self.listen(self._opcua_view.changed)
+            self.watch(self._opcua_view.saw)
+            self._parts.append(self._opcua_view)
         if options.demo and self._devices is not None and self.orchestrator is not None:
             befall = self._devices.befall
             self._demo = DemoPart(Demo(self.model), self.plant.submit, befall, self._crash)
@@ -591,7 +642,7 @@ def _acts(store: PlantMemory) -> list[dict[str, Any]]:
 def _told(entry: JournalEntry) -> Sentence:
     """The sentence about an operator's act; plain text if an older start or another version wrote it."""
     try:
-        return from_data(json.loads(entry.said or ""), ACTS_TOLD)
+        return from_data(json.loads(entry.said or ""), ACTS_TOLD | PHRASES)
     except ValueError:
         return OWN(text=entry.sentence)
 

@@ -8,15 +8,15 @@ import threading
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from datetime import datetime, timezone
-from pathlib import Path, PurePosixPath
+from pathlib import Path
 from typing import Any, Protocol
 
 from arboleda.model.errors import ArboledaError, StartError
 from arboleda.model.outside import plain, quoted
 from arboleda.plant_file import versions
 from arboleda.plant_file.changes import changes
-from arboleda.plant_file.draft import Draft, check_name, draft_of
-from arboleda.plant_file.draft_check import Checked, root_of
+from arboleda.plant_file.draft import Draft, draft_of
+from arboleda.plant_file.draft_check import CheckResult, root_of
 from arboleda.plant_file.restart import needing_restart
 from arboleda.plant_file.tree_file import ENDING
 from arboleda.plant_file.versions import Version, Versions, version_of
@@ -34,20 +34,19 @@ UNKNOWN = "this plant does not keep what it was started with (record: off), so t
 NOBODY = "nobody edits this draft; begin to edit it first"
 OTHER = "{name} edits this draft since {since}; take it over to edit it"
 MOVED = "{files}: changed by hand since this draft was begun; discard the draft, or bring the file back"
-THERE = "{file} is there already, in the plant's folder, and the plant does not use it; choose another name"
 KNOWN = "{file} is there already; choose another name"
 NOTHING = "the draft changes nothing"
 NO_PLANT = "no plant runs in this process that could take it"
 NO_TREES = "{file} is no file of trees of this plant"
 OURS = "these files are your own already, and can be changed"
 MEANWHILE = "the draft was changed while it was checked; try again"
-WorkBy = Callable[[Version, Checked, str], State]
+WorkBy = Callable[[Version, CheckResult, str], State]
 
 
 class Checker(Protocol):
     """Process that checks files as if they were in a folder, until `stop`."""
 
-    def check(self, files: PlantFiles, plant_file: Path) -> Checked: ...
+    def check(self, files: PlantFiles, plant_file: Path) -> CheckResult: ...
     def stop(self) -> None: ...
 
 
@@ -61,17 +60,24 @@ class Editor:
 
 
 class DraftDesk(DraftApi):
-    """DraftDesk: one draft and one editor, for threads of a server; `process`
-    checks drafts. `work_by` puts a version to work whose files are in their place.
+    """DraftDesk: one draft and one editor, for threads of a server; `process` checks drafts.
+
+    `work_by` puts a version to work whose files are in their place; whoever writes these holds `writing`.
     """
 
     def __init__(
-        self, folder: PlantFolder, state: Path, process: Checker, work_by: WorkBy | None = None
+        self,
+        folder: PlantFolder,
+        state: Path,
+        process: Checker,
+        work_by: WorkBy | None = None,
+        writing: threading.Lock | None = None,
     ) -> None:
         self._folder = folder
         self._state = state
         self._process = process
         self._work_by = work_by
+        self._writing = writing or threading.Lock()
         self._turns = threading.Lock()
         self._editor: Editor | None = None
         self._draft: Draft | None = None
@@ -148,8 +154,7 @@ class DraftDesk(DraftApi):
 
     def set_trees(self, editor: str, file: str, text: str) -> State:
         def step(draft: Draft) -> Draft:
-            name = file if file in draft.files.contents else self._new_name(draft, file)
-            return draft.with_recipe(name, text.encode("utf-8", "replace"))
+            return draft.with_recipe(self._folder.tree_name(draft, file), text.encode("utf-8", "replace"))
 
         return self._step(editor, step)
 
@@ -157,7 +162,7 @@ class DraftDesk(DraftApi):
         """The same as `set_trees` for a file that the draft does not have; DraftRefused if it has it."""
 
         def step(draft: Draft) -> Draft:
-            name = self._new_name(draft, file)
+            name = self._folder.tree_name(draft, file)
             if name in draft.files.contents:
                 raise EditRefused(KNOWN.format(file=quoted(file)))
             return draft.with_recipe(name, text.encode())
@@ -184,7 +189,7 @@ class DraftDesk(DraftApi):
             self._close()
             return self._shown()
 
-    def _checked_and_kept(self, editor: str, note: str) -> tuple[Checked, Version | None]:
+    def _checked_and_kept(self, editor: str, note: str) -> tuple[CheckResult, Version | None]:
         """The verdict on the draft, and the version that it is now; None where there are problems."""
         with self._turns:
             self._must_edit(editor)
@@ -193,7 +198,7 @@ class DraftDesk(DraftApi):
         found = self._process.check(draft.files, self._folder.ours)
         if found.problems:
             return found, None
-        with self._turns:
+        with self._turns, self._writing:
             self._must_edit(editor)
             if self._draft is not draft:
                 raise DraftRefused(MEANWHILE)
@@ -212,15 +217,6 @@ class DraftDesk(DraftApi):
                 raise DraftRefused(error.sentence) from error
             self._save(MEANT, self._draft.files)
             return self._shown()
-
-    def _new_name(self, draft: Draft, file: str) -> str:
-        """The path of a new file beside the plant file; EditRefused where one lies there, of another use."""
-        check_name(file)  # before anybody learns whether there is such a file
-        name = str(PurePosixPath(draft.files.plant).parent / file)
-        known = draft.files.contents.keys() | draft.base.contents.keys()
-        if name not in known and (root_of(draft.files, self._folder.ours) / name).exists():
-            raise EditRefused(THERE.format(file=quoted(file)))
-        return name
 
     def _must_edit(self, editor: str, *, owns: bool = True) -> None:
         if self._editor is None:

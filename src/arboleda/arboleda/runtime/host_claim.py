@@ -6,13 +6,13 @@ import hashlib
 import os
 import socket
 import struct
-import sys
 from collections.abc import Callable
 from pathlib import Path
 
+from arboleda.host import abilities
 from arboleda.model.errors import StartError
 
-HAS_ABSTRACT = sys.platform == "linux"  # elsewhere claims always succeed
+HAS_ABSTRACT = abilities.ABSTRACT_SOCKETS  # elsewhere claims always succeed
 ASKERS = 64  # processes that may ask for the owner at once; the system answers them
 CREDENTIALS = struct.Struct("3i")  # process, user, group
 

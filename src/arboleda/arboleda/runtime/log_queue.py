@@ -21,7 +21,7 @@ WAITING = 10_000  # lines that an output may be behind
 LONGEST = 2_000  # letters of a line; the rest is cut off
 FLUSH_S = 1.0
 
-Output = Callable[[logging.LogRecord], None]  # it gets lines that are ready to be put out, in one thread
+Output = Callable[[logging.LogRecord], object]  # it gets lines that are ready to be put out, in one thread
 Place = tuple[str, int, str]  # file and line number of the call that logs, and the name of its logger
 
 _traceback = logging.Formatter()

@@ -14,6 +14,7 @@ from arboleda.model.messages import Fact, Failure, KeptTask, Reason, TaskState
 from arboleda.model.outside import quoted
 from arboleda.store.plant_memory import PlantMemory
 from arboleda.store.task_rows import (
+    ASSISTANT,
     TaskQuery,
     TaskRow,
     answers_of,
@@ -82,6 +83,7 @@ def kept_task(row: TaskRow, *, clock_s: float, unix_s: float) -> KeptTask:
         choice=choice_of(row),
         course=course_of(row),
         unchecked=unchecked_of(row),
+        is_bound=row.asked_by == ASSISTANT,
     )
 
 

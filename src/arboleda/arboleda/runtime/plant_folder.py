@@ -4,16 +4,22 @@ from __future__ import annotations
 
 import os
 import shutil
-from pathlib import Path
+from pathlib import Path, PurePosixPath
 
 from arboleda.model.errors import StartError
+from arboleda.model.outside import quoted
+from arboleda.plant_file.draft import Draft, check_name
 from arboleda.plant_file.draft_check import root_of
 from arboleda.plant_file.versions import Version, Versions
+from arboleda.plant_file.yaml_edit import EditRefused
 from arboleda.web.desks.draft import DraftRefused
 
 OWN = "files"  # in the state directory
 NOT_OURS = "these files cannot be changed where they are; make them your own first"
 THERE = "there is a plant of your own already: start the plant with --plant {file}"
+TREES_THERE = (
+    "{file} is there already, in the plant's folder, and the plant does not use it; choose another name"
+)
 YOURS = "this plant was made yours: `arboleda up --plant {file}` starts that one"
 
 
@@ -48,6 +54,21 @@ class PlantFolder:
         """The line for who starts a plant of which there is a copy of his own; "" where there is none."""
         copies = [] if self.is_ours or not self._own.is_dir() else sorted(self._own.glob("**/*.yaml"))
         return YOURS.format(file=copies[0]) if copies else ""
+
+    def tree_name(self, draft: Draft, file: str) -> str:
+        """The path of a file of trees in a draft, of one that it has or of a new one beside the plant file;
+        DraftRefused where a file of another use lies there."""
+        if file in draft.files.contents:
+            return file
+        try:
+            check_name(file)  # before anybody learns whether there is such a file
+        except EditRefused as error:
+            raise DraftRefused(error.sentence) from error
+        name = str(PurePosixPath(draft.files.plant).parent / file)
+        known = draft.files.contents.keys() | draft.base.contents.keys()
+        if name not in known and (root_of(draft.files, self.ours) / name).exists():
+            raise DraftRefused(TREES_THERE.format(file=quoted(file)))
+        return name
 
     def own(self, at_work: Version) -> Path:
         """Copy all of its files and go on there; DraftRefused or StartError, and nothing is copied, if that

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import errno
-import fcntl
 import json
 import os
 import re
@@ -14,6 +13,7 @@ from dataclasses import asdict, dataclass, replace
 from datetime import datetime, timezone
 from pathlib import Path
 
+from arboleda.host import files, locks
 from arboleda.model.errors import ArboledaError, ConfigError, StartError
 from arboleda.plant_file.user_file import read_bytes
 from arboleda.store.held_files import HeldFiles
@@ -98,7 +98,7 @@ class StateDir:
         """Take the directory; StartError names its owner, or the reason for which it cannot be used."""
         with self._explained():
             self.path.mkdir(mode=0o700, parents=True, exist_ok=True)
-            lock = os.open(self.path / LOCK, os.O_RDWR | os.O_CREAT, 0o600)
+            lock = os.open(self.path / LOCK, os.O_RDWR | os.O_CREAT | files.BINARY, 0o600)
         if not take(lock):
             os.close(lock)
             raise StartError(
@@ -110,8 +110,7 @@ class StateDir:
             self._claim.take()
             with self._explained():
                 (self.path / FACTS).unlink(missing_ok=True)
-                os.ftruncate(lock, 0)
-                os.pwrite(lock, json.dumps(asdict(self._running)).encode(), 0)
+                files.write_anew(lock, json.dumps(asdict(self._running)).encode())
         except StartError:
             self.close()
             raise
@@ -212,12 +211,11 @@ def find_running(path: Path) -> Running | None:
     except OSError:
         return None
     try:
-        fcntl.flock(lock, fcntl.LOCK_SH | fcntl.LOCK_NB)
-    except BlockingIOError:
-        return read_facts(path / FACTS) or read_facts(path / LOCK)
+        if locks.lock(lock, shared=True):
+            return None
     finally:
         os.close(lock)
-    return None
+    return read_facts(path / FACTS) or read_facts(path / LOCK)
 
 
 def last_run(path: Path) -> Running | None:
@@ -243,11 +241,8 @@ def holder(path: Path) -> str:
 def take(lock: int) -> bool:
     """Take the exclusive lock; True if it was free."""
     for attempt in range(LOCK_TRIES):
-        try:
-            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError:
-            if attempt + 1 < LOCK_TRIES:
-                time.sleep(LOCK_PAUSE_S)
-        else:
+        if locks.lock(lock):
             return True
+        if attempt + 1 < LOCK_TRIES:
+            time.sleep(LOCK_PAUSE_S)
     return False

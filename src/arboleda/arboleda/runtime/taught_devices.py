@@ -33,7 +33,7 @@ def state(plant: Plant, name: str) -> Row:
     """The person who teaches a cell, why nobody may begin now, and its devices."""
     cell = cell_of(plant, name)
     asked = OperatorRequest(at=plant.now, verb=Verb.TEACH, scope=name, arguments=(("teacher", "x"),))
-    refusal = plant.refusal(asked) if cell.teaching is None else None
+    refusal = plant.refusal(asked) if cell.manual.teaching is None else None
     devices = [_device(plant, role, robot) for role, robot in cell.cell.members if robot in cell.cell.reached]
     return {
         "cell": name,

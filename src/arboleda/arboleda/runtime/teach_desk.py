@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, Protocol, TypeVar
 
@@ -151,7 +151,7 @@ class TeachDesk(TeachApi):
             return self._bodies[robot]
 
 
-def _answer(plant: Plant, cell: str, robot: str) -> Mapping[str, Any]:
+def _answer(plant: Plant, cell: str, robot: str) -> dict[str, Any]:
     return {
         "teaching": view.teaching(plant, plant.cells[cell]),
         "robot": taught_devices.standing(plant, robot),

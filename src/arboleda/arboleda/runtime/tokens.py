@@ -14,6 +14,7 @@ from arboleda.web.access.auth import Role
 from .state import replace_file
 
 TOKENS = "tokens.json"
+FROM_THE_FIRST = (Role.VIEWER, Role.OPERATOR)  # files of before have no other ones
 BYTES, SHORTEST = 24, 20  # nobody guesses 192 bits; a hand-made word of 8 letters somebody does
 OWNER_ONLY = 0o077
 
@@ -21,7 +22,10 @@ OWNER_ONLY = 0o077
 def read(state: Path) -> dict[Role, str]:
     """The token of each role, made if there is none yet; StartError if the file cannot be used."""
     if not (state / TOKENS).exists():
-        renew(state, Role)
+        renew(state, tuple(Role))
+    missing = set(Role) - set(TokenFile(state)())
+    if missing:
+        renew(state, missing)
     return TokenFile(state)()
 
 
@@ -63,7 +67,7 @@ class TokenFile:
             )
         try:
             said = json.loads(self._file.read_bytes())
-            tokens = {role: said[role.value] for role in Role}
+            tokens = {role: said[role.value] for role in Role if role in FROM_THE_FIRST or role.value in said}
             good = all(isinstance(token, str) and len(token) >= SHORTEST for token in tokens.values())
         except (ValueError, KeyError, TypeError):
             good = False

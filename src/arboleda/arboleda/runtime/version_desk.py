@@ -12,13 +12,15 @@ from typing import Any
 
 from arboleda.core.cell import CellRun
 from arboleda.core.plant import Plant
-from arboleda.model.errors import ArboledaError, ConfigError
+from arboleda.model.errors import ArboledaError, ConfigError, StartError
 from arboleda.model.messages import RevisionAnswer
+from arboleda.model.outside import plain
 from arboleda.model.plant_model import PlantModel
 from arboleda.model.revision import RevisionName
 from arboleda.plant_file import loader
 from arboleda.plant_file.changes import Change, changes
-from arboleda.plant_file.draft_check import Checked
+from arboleda.plant_file.draft_check import CheckResult
+from arboleda.plant_file.proposal import Proposal
 from arboleda.plant_file.restart import needing_restart
 from arboleda.plant_file.versions import Version, Versions, version_of, whole
 from arboleda.recorder.preamble import PlantFiles
@@ -36,17 +38,22 @@ MEANWHILE = "its files were changed while it was put to work; `arboleda apply` s
 NO_RESTART = (
     "this plant is restarted by who started it; one that `arboleda up` runs alone can be restarted from here"
 )
+BY_HAND = (
+    "the plant's files are not as they are at work: somebody edited them; `arboleda apply` or the page first"
+)
+OUTDATED = "it was made for another version of the plant than the one at work; it has to be proposed anew"
 SAME = "the files are as they are at work"
 NOW, AFTER_TASK, AT_REST = "now", "when task {task} has ended", "when it rests"
 AFTER_TEACHING = "when nobody teaches it any more; `automatic {cell}` ends that"
-Check = Callable[[PlantFiles, Path], Checked]
+Check = Callable[[PlantFiles, Path], CheckResult]
 
 
 class VersionDesk(VersionsApi):
     """VersionDesk: one version at a time, for threads of a server and for a signal; they wait for each other.
 
     `as_it_runs` makes of a plant as its files have it the one that runs here, at its rate and on its boards.
-    `restarts`: whoever runs the plant starts it again where that is wanted.
+    Whoever writes the plant's files holds `writing`. `restarts`: whoever runs the plant starts it again where
+    that is wanted.
     """
 
     def __init__(
@@ -66,6 +73,7 @@ class VersionDesk(VersionsApi):
         self._check = check
         self._restarts = restarts
         self._turns = threading.Lock()
+        self.writing = threading.Lock()
 
     def listed(self) -> State:
         started = self.at_work()
@@ -104,7 +112,8 @@ class VersionDesk(VersionsApi):
                 return _refused(found)
             if kept.is_in_place(version):
                 return self._put(found, found.read, by, "")
-            kept.bring_back(version)
+            with self.writing:
+                kept.bring_back(version)
             return self._put(found, found.read, by, f"version {number} again")
 
     def put_files(self, by: str) -> State:
@@ -115,7 +124,7 @@ class VersionDesk(VersionsApi):
                 return _refused(found)
             return self._put(found, found.read, by, "")
 
-    def _put(self, found: Checked, read: PlantFiles, by: str, note: str) -> State:
+    def _put(self, found: CheckResult, read: PlantFiles, by: str, note: str) -> State:
         """Keep as a version what was checked and is in its place, and put it to work."""
         started = self.at_work()
         fresh = version_of(read, at=_now(), by=by, note=note)
@@ -131,12 +140,75 @@ class VersionDesk(VersionsApi):
         version = last if last is not None and is_kept else kept.keep(fresh)
         return self._work_by(version, found, told, by)
 
-    def work_by(self, version: Version, found: Checked, by: str) -> State:
+    def must_be_in_place(self, version: Version) -> None:
+        """Raise DraftRefused where the plant's files are not those of a version: somebody edited them."""
+        if not Versions(self._folder.ours).is_in_place(version):
+            raise DraftRefused(BY_HAND)
+        if others := Versions(self._folder.ours).others_now(version):
+            raise DraftRefused(f"{BY_HAND} ({', '.join(map(plain, others))})")
+
+    def put_approved(
+        self, proposal: Proposal, approved: Callable[[], None], *, person: str, journal: str, note: str
+    ) -> State:
+        """Put to work what a person approved, as `put`; `approved` keeps that before anything is written.
+
+        DraftRefused, and it is not kept, where the plant is another one than the proposal was made for.
+        """
+        with self._turns:
+            base = self._still(proposal)
+            found = self._check(proposal.files, self._folder.ours)
+            if found.problems or found.read is None:
+                return _refused(found)
+            if version_of(found.read, at="").digest != proposal.content:
+                raise DraftRefused(BY_HAND)
+            told = changes(whole(base), whole(version_of(found.read, at="")))
+            with self.writing:
+                self._still(proposal)
+                approved()
+                if not told:
+                    return {**_refused(found), "problems": ()}
+                version = self._written(base, proposal, told, person, note)
+            return self._work_by(version, found, told, journal)
+
+    def _still(self, proposal: Proposal) -> Version:
+        """The version at work; DraftRefused where it or the files are not what a proposal was made for."""
+        base = self.at_work()
+        if base.digest != proposal.base:
+            raise DraftRefused(OUTDATED)
+        self.must_be_in_place(base)
+        return base
+
+    def _written(
+        self, base: Version, proposal: Proposal, told: Sequence[Change], person: str, note: str
+    ) -> Version:
+        """The version that was approved, kept and in its place."""
+        kept = Versions(self._folder.ours)
+        if kept.last() is None:  # so that there is a way back to it
+            kept.keep(replace(base, note="as the plant was started"))
+        words = tuple(each.words for each in told)
+        fresh = Version(
+            number=0,
+            at=_now(),
+            by=person,
+            note=note,
+            changes=words,
+            files=proposal.files,
+            others=proposal.others,
+        )
+        version = kept.keep(fresh)
+        try:
+            kept.bring_back(version)
+        except StartError:
+            kept.forget(version)
+            raise
+        return version
+
+    def work_by(self, version: Version, found: CheckResult, by: str) -> State:
         """Put a version to work whose files are in their place; as `put`."""
         with self._turns:
             return self._work_by(version, found, changes(whole(self.at_work()), whole(version)), by)
 
-    def _work_by(self, version: Version, found: Checked, told: Sequence[Change], by: str) -> State:
+    def _work_by(self, version: Version, found: CheckResult, told: Sequence[Change], by: str) -> State:
         """Tell the plant of a version that is kept and whose files are in their place."""
         answer: State = {"version": version.number, "problems": (), "warnings": found.warnings, "cells": {}}
         restart = needing_restart(told)
@@ -173,7 +245,7 @@ class VersionDesk(VersionsApi):
             raise ArboledaError(f"{file} cannot be read: {error.strerror}") from error
 
 
-def _refused(found: Checked) -> State:
+def _refused(found: CheckResult) -> State:
     problems = found.problems or (MEANWHILE,)
     empty: dict[str, Any] = {"version": None, "cells": {}, "cancelled": (), "restart": ()}
     return empty | {"problems": problems, "warnings": found.warnings}
@@ -209,7 +281,7 @@ def _after(run: CellRun, task: str = "") -> str:
     task = task or (run.task.id if run.task else "")
     if task:
         return AFTER_TASK.format(task=task)
-    return AT_REST if run.teaching is None else AFTER_TEACHING.format(cell=run.cell.name)
+    return AT_REST if run.manual.teaching is None else AFTER_TEACHING.format(cell=run.cell.name)
 
 
 def _now() -> str:

@@ -64,14 +64,14 @@ def heed() -> None:
 @contextmanager
 def interruptible() -> Iterator[None]:
     """Raise Interrupted for SIGTERM as for Ctrl-C; a second signal does not break a clean end."""
-    told_before = sys.unraisablehook
+    hook_before = sys.unraisablehook
     before = raise_at_signals()
     try:
         yield
     finally:
         for number, handler in before.items():
             signal.signal(number, handler)
-        sys.unraisablehook = told_before
+        sys.unraisablehook = hook_before
         _Signals.unheeded = False
 
 

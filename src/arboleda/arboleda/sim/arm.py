@@ -133,12 +133,12 @@ class ArmBody(Robotic):
         drift[joint] += steps
         self._drift = tuple(drift)
 
-    def place(self, told: BodyReport, *, holds: bool) -> None:
-        if told.q is not None:
+    def place(self, report: BodyReport, *, holds: bool) -> None:
+        if report.q is not None:
             self.put_at_reference()
-            for axis, steps in zip(self._axes, self._steps(told.q), strict=True):
+            for axis, steps in zip(self._axes, self._steps(report.q), strict=True):
                 axis.shift(steps)
-        self.effector = self.effector if told.effector is None else told.effector
+        self.effector = self.effector if report.effector is None else report.effector
         self.holding = holds
 
     def put_at_reference(self) -> None:

@@ -65,7 +65,7 @@ class Board:
         self.faulted = False
         self._job: Goal | None = None  # the motion that will count as done when the body comes to rest
         self._receipts = Receipts(known=self._knows)
-        self._uplink.told = 0
+        self._uplink.sent = 0
         self._freshness = Freshness()
         self._beaten = False
         self._alive_us = self._now_us
@@ -121,9 +121,9 @@ class Board:
         self.body.put_at_reference()
         self.homed = self.homed or not self._numbered
 
-    def place(self, told: BodyReport, *, holds: bool, homed: bool | None, latched: bool) -> None:
-        """Put the resting robot into the state that another one reported, `told` in SI units."""
-        self.body.place(told, holds=holds)
+    def place(self, report: BodyReport, *, holds: bool, homed: bool | None, latched: bool) -> None:
+        """Put the resting robot into the state that another one reported, `report` in SI units."""
+        self.body.place(report, holds=holds)
         self.homed = self.homed if homed is None else homed
         self.latched = latched
 
@@ -317,19 +317,19 @@ class Board:
         else:
             self._uplink.tell(self._telemetry(told))
         if self._uplink.connected:
-            self._freshness.tell(self._now_us, self._uplink.told)
+            self._freshness.tell(self._now_us, self._uplink.sent)
 
-    def _telemetry(self, told: BodyReport) -> Telemetry:
+    def _telemetry(self, report: BodyReport) -> Telemetry:
         receipts = self._receipts
         if not self._numbered:
-            facts = told.facts if self._tells_facts else None
-            return Telemetry(state=self.state, q=told.q, node=told.node, facts=facts)
+            facts = report.facts if self._tells_facts else None
+            return Telemetry(state=self.state, q=report.q, node=report.node, facts=facts)
         return Telemetry(
             state=self.state,
-            q=told.q,
-            node=told.node,
-            effector=told.effector,
-            piece=told.piece,
+            q=report.q,
+            node=report.node,
+            effector=report.effector,
+            piece=report.piece,
             seq=0,
             ack_epoch=receipts.epoch,
             least_epoch=receipts.least if receipts.least != receipts.epoch else None,
@@ -341,10 +341,10 @@ class Board:
             refused_seq=receipts.refused,
             boot_id=self.boot_id,
             homed=self.homed if self.body.homes else None,
-            facts=told.facts,
+            facts=report.facts,
             answer=receipts.answer[1] if receipts.answer else None,
             answered_seq=receipts.answer[0] if receipts.answer else None,
-            failures=receipts.failures or None if told.facts is not None else None,
+            failures=receipts.failures or None if report.facts is not None else None,
         )
 
 

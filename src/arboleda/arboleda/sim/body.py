@@ -114,7 +114,7 @@ class Body(Protocol):
 
     def switch_effector(self, on: bool) -> None: ...
 
-    def place(self, told: BodyReport, *, holds: bool) -> None:
+    def place(self, report: BodyReport, *, holds: bool) -> None:
         """Take, at rest, the state that another body reported; unreported parts stay as they are."""
 
     def set_by_hand(self, facts: Facts) -> None:

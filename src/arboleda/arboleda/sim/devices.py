@@ -77,6 +77,7 @@ class Devices:
             if robot.link is Link.MQTT and robot.name not in elsewhere
         }
         self._due_us: dict[str, float] = {}  # time of the next step of each board
+        self._paused: set[str] = set()
         for name in self.boards:
             self._plan(name)
 
@@ -86,8 +87,30 @@ class Devices:
 
     @property
     def next_deadline(self) -> float | None:
-        due_us = min(self._due_us.values(), default=math.inf)
+        due = self._due_us if not self._paused else self._awake
+        due_us = min(due.values(), default=math.inf)
         return due_us / 1e6 if due_us < math.inf else None
+
+    @property
+    def _awake(self) -> dict[str, float]:
+        return {name: due_us for name, due_us in self._due_us.items() if name not in self._paused}
+
+    def next_boot_id(self) -> int:
+        """The id of a boot that somebody else brings about."""
+        return self._boot_ids()
+
+    def pause(self, board: str) -> None:
+        """Have no time pass for a board until it goes on; it must get no events meanwhile."""
+        self._paused.add(board)
+
+    def go_on(self, board: str) -> None:
+        """Have time pass for a board, from the next step on, which is due."""
+        self._paused.discard(board)
+        self.wake(board)
+
+    def wake(self, board: str) -> None:
+        """Have a board step at once, as something was done to it."""
+        self._due_us[board] = -math.inf
 
     def step(self, now: float, events: Sequence[ToBoard | Reboot | Alarm]) -> list[FromBoard]:
         """Feed the events in order, let the time pass, and collect what the boards publish."""
@@ -95,7 +118,8 @@ class Devices:
         for event in events:
             self._feed(event)
             self._due_us[event.board] = now_us
-        for name in [name for name, due_us in self._due_us.items() if due_us <= now_us]:
+        awake = self._due_us if not self._paused else self._awake
+        for name in [name for name, due_us in awake.items() if due_us <= now_us]:
             board = self.boards[name]
             board.advance(now_us)
             out += [FromBoard(board=name, publication=publication) for publication in board.take()]

@@ -25,6 +25,11 @@ class Freshness:
         if not self._marks or now_us - self._marks[-1][0] >= MARK_US:
             self._marks.append((now_us, number))
 
+    @property
+    def marks(self) -> tuple[tuple[int, int], ...]:
+        """The marks, oldest first."""
+        return tuple(self._marks)
+
     def covers(self, now_us: int, number: int) -> bool:
         """True if telemetry of this number left within FRESH_US."""
         first = next((told for at_us, told in self._marks if now_us - at_us <= FRESH_US), None)

@@ -27,7 +27,7 @@ class RunningOrder:
     command: VerbCall
     ends_us: int
     is_late: bool = False  # it takes longer than it should
-    is_said_again: bool = False  # a question that was answered, and is answered once more
+    is_repeat: bool = False  # a question that was answered, and is answered once more
 
     @property
     def verb(self) -> DeviceVerb:
@@ -201,7 +201,7 @@ class MachineBody:
     def _supersede(self, command: VerbCall) -> None:
         """Forget the query asked before, and give up the switches of facts that this one sets, too."""
         effect, sets = command.told.effect, {name for name, _ in command.sets}
-        for deed in [deed for deed in self._deeds if not deed.is_said_again]:
+        for deed in [deed for deed in self._deeds if not deed.is_repeat]:
             is_switch = deed.verb.effect is Effect.SWITCH
             if is_switch and sets & {name for name, _ in deed.command.sets}:
                 self._deeds.remove(deed)
@@ -210,7 +210,7 @@ class MachineBody:
                 self._deeds.remove(deed)
 
     def _end(self, deed: RunningOrder, now_us: int) -> None:
-        word = None if deed.is_said_again else self.fails(deed.goal)
+        word = None if deed.is_repeat else self.fails(deed.goal)
         if word is not None:
             self.ends.append(End(deed.goal, failure=word))
             return
@@ -230,11 +230,9 @@ class MachineBody:
             self.facts.update(dict(besides) | sets)
 
     def _say_again(self, deed: RunningOrder, now_us: int) -> None:
-        after_s = None if deed.is_said_again else self.repeats(deed.goal)
+        after_s = None if deed.is_repeat else self.repeats(deed.goal)
         if after_s is not None:
-            self._deeds.append(
-                replace(deed, ends_us=now_us + max(1, round(after_s * 1e6)), is_said_again=True)
-            )
+            self._deeds.append(replace(deed, ends_us=now_us + max(1, round(after_s * 1e6)), is_repeat=True))
 
     def _plan(self) -> None:
         self.next_change_us = min((deed.ends_us for deed in self._deeds), default=None)

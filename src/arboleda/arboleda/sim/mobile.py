@@ -62,9 +62,9 @@ class MobileBody(Robotic):
             self.node = self.true_node
         self._drive(now_us, self._grid.route(self._next_node, self._start_node)[1:])
 
-    def place(self, told: BodyReport, *, holds: bool) -> None:
-        if told.node is not None:
-            self.node = self.true_node = told.node
+    def place(self, report: BodyReport, *, holds: bool) -> None:
+        if report.node is not None:
+            self.node = self.true_node = report.node
 
     def put_at_reference(self) -> None:
         self.node = self.true_node = self._start_node

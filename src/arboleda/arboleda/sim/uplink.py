@@ -14,11 +14,11 @@ STATE = b',"estado":'  # the first key after the joints
 
 
 class Uplink:
-    """Collects what the board publishes while it is connected; `told` counts telemetry since boot."""
+    """Collects what the board publishes while it is connected; `sent` counts telemetry since boot."""
 
     def __init__(self, name: str) -> None:
         self.connected = False
-        self.told = 0
+        self.sent = 0
         self._presence = topic(name, Channel.PRESENCE)
         self._telemetry = topic(name, Channel.TELEMETRY)
         self.due_us: float = math.inf  # time of the next periodic telemetry; inf while not connected
@@ -37,11 +37,11 @@ class Uplink:
             presence = encode(Presence(online=True))
             self._outbox.append(Publication(topic=self._presence, payload=presence, retain=True))
 
-    def tell(self, said: Telemetry) -> None:
+    def tell(self, telemetry: Telemetry) -> None:
         """Publish telemetry; a `seq` of 0 is replaced by the next number."""
         if self.connected:
-            raw = encode(said)
-            self._frame = (raw, b"", b"") if said.seq is None else raw.partition(UNNUMBERED)
+            raw = encode(telemetry)
+            self._frame = (raw, b"", b"") if telemetry.seq is None else raw.partition(UNNUMBERED)
             self.tell_again()
 
     def tell_angles(self, q: tuple[float, ...]) -> None:
@@ -55,9 +55,9 @@ class Uplink:
         """Send the last telemetry again, under the next number."""
         if not self.connected:
             return
-        self.told += 1
+        self.sent += 1
         before, number, after = self._frame
-        payload = b'%b"seq":%d,%b' % (before, self.told, after) if number else before
+        payload = b'%b"seq":%d,%b' % (before, self.sent, after) if number else before
         self._outbox.append(Publication(topic=self._telemetry, payload=payload, qos=0))
 
     def next_period(self, now_us: int) -> None:

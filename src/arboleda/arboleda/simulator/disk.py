@@ -64,27 +64,31 @@ class Content:
         else:
             rows[said.name] = said.value
 
-    def _task(self, said: TaskChanged, now: float) -> None:
-        row = self.tasks.get(said.task)
-        if said.state is TaskState.QUEUED:
+    def _task(self, change: TaskChanged, now: float) -> None:
+        row = self.tasks.get(change.task)
+        if change.state is TaskState.QUEUED:
             if row is None:
-                self.tasks[said.task] = KeptTask(
-                    id=said.task, text=said.text, cell=said.cell or "", state=said.state, choice=said.choice
+                self.tasks[change.task] = KeptTask(
+                    id=change.task,
+                    text=change.text,
+                    cell=change.cell or "",
+                    state=change.state,
+                    choice=change.choice,
                 )
         elif row is None:
             return
-        elif said.state is TaskState.RUNNING:
+        elif change.state is TaskState.RUNNING:
             if row.started_at is None:
-                self.tasks[said.task] = replace(row, state=said.state, started_at=now, attempts=1)
+                self.tasks[change.task] = replace(row, state=change.state, started_at=now, attempts=1)
         elif row.ended_at is None:
-            failure = Failure(reason=said.reason, sentence=said.sentence) if said.reason else None
-            self.tasks[said.task] = replace(
+            failure = Failure(reason=change.reason, sentence=change.sentence) if change.reason else None
+            self.tasks[change.task] = replace(
                 row,
-                state=said.state,
+                state=change.state,
                 failure=failure,
                 ended_at=now,
-                course=said.course,
-                unchecked=said.unchecked,
+                course=change.course,
+                unchecked=change.unchecked,
             )
 
 

@@ -92,15 +92,15 @@ class Findings:
         self._seen += fresh
         return list(dispatcher.not_given)[-fresh:] if fresh else []
 
-    def _began(self, said: TaskChanged) -> None:
-        self._recipes[said.cell or ""] = self._world.plant.intake.tasks[said.task].order.recipe
-        self._tasks[said.cell or ""] = said.text
+    def _began(self, change: TaskChanged) -> None:
+        self._recipes[change.cell or ""] = self._world.plant.intake.tasks[change.task].order.recipe
+        self._tasks[change.cell or ""] = change.text
 
-    def _follow(self, said: TaskChanged) -> None:
-        if said.state is TaskState.RUNNING:
-            self._began(said)
-        elif said.state in (TaskState.DONE, TaskState.FAILED, TaskState.CANCELLED):
-            self._ended(said)
+    def _follow(self, change: TaskChanged) -> None:
+        if change.state is TaskState.RUNNING:
+            self._began(change)
+        elif change.state in (TaskState.DONE, TaskState.FAILED, TaskState.CANCELLED):
+            self._ended(change)
 
     def _refuse(self, entry: Entry) -> None:
         failure, recipe = entry.failure, self._recipes.get(entry.cell)
@@ -118,30 +118,30 @@ class Findings:
             )
         )
 
-    def _ended(self, said: TaskChanged) -> None:
-        recipe = self._recipes.pop(said.cell or "", None)
-        refused = self._refused.pop(said.cell or "", [])
+    def _ended(self, change: TaskChanged) -> None:
+        recipe = self._recipes.pop(change.cell or "", None)
+        refused = self._refused.pop(change.cell or "", [])
         if recipe is None or recipe in NAMES:
             return
-        failed = said.state is TaskState.FAILED and said.reason not in BY_PEOPLE
+        failed = change.state is TaskState.FAILED and change.reason not in BY_PEOPLE
         if failed:
-            self._failed(recipe, said)
-        told = str(said.sentence)
+            self._failed(recipe, change)
+        told = str(change.sentence)
         self.found.update(each for each in refused if not (failed and each.sentence == told))
 
-    def _failed(self, recipe: str, said: TaskChanged) -> None:
-        task = self._world.plant.intake.tasks[said.task]
+    def _failed(self, recipe: str, change: TaskChanged) -> None:
+        task = self._world.plant.intake.tasks[change.task]
         step = task.failed_step
-        by_itself = (step is not None and step.key in AS_WRITTEN) or said.sentence.key == TREE_FAILED.key
-        is_whole = said.sentence.key != RESCUE_FAILED.key
+        by_itself = (step is not None and step.key in AS_WRITTEN) or change.sentence.key == TREE_FAILED.key
+        is_whole = change.sentence.key != RESCUE_FAILED.key
         counted = self.as_written if by_itself and is_whole and task.answers else self.found
         counted[
             Finding(
                 kind=FindingKind.TASK,
                 recipe=recipe,
                 step="" if step is None else str(step),
-                reason="" if said.reason is None else said.reason.value,
-                sentence=str(said.sentence),
-                task=said.text,
+                reason="" if change.reason is None else change.reason.value,
+                sentence=str(change.sentence),
+                task=change.text,
             )
         ] += 1

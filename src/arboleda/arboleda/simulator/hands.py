@@ -7,6 +7,7 @@ from collections.abc import Callable
 from arboleda.core.advice import Advice, Hand
 from arboleda.model.messages import Verb
 
+from .manual_work import ManualWork
 from .world import World
 
 
@@ -15,7 +16,7 @@ def do(world: World, advice: Advice) -> None:
     if isinstance(advice.do, Hand):
         HANDS[advice.do](world, advice.scope)
     elif advice.by_hand:
-        BY_HAND[advice.do](world, advice.scope)
+        BY_HAND[advice.do](world.manual, advice.scope)
     else:
         world.request_verb(advice.do, advice.scope)
 
@@ -29,14 +30,14 @@ def _repair(world: World, robot: str) -> None:
 
 
 def _reference(world: World, robot: str) -> None:
-    world.put_at_reference(robot)
+    world.manual.put_at_reference(robot)
 
 
 def _check(world: World, zone: str) -> None:
     """Move out of the zone whoever may be in it, to its reference, which lies outside all zones."""
     holder = world.plant.zones.holder(zone)
     if holder in world.model.robots:  # a shared device has no reference, and is held by a cell
-        world.put_at_reference(holder)
+        world.manual.put_at_reference(holder)
 
 
 def _free(world: World, device: str) -> None:
@@ -48,7 +49,7 @@ def _free(world: World, device: str) -> None:
     facts = world.boards[board].body.true_facts
     for lock in world.model.cell_of[device].interlocks_of(device):
         if any(facts.get(name) != value for name, value in lock.free_while):
-            world.set_by_hand(board, lock.free_while)
+            world.manual.set_facts(board, lock.free_while)
             return
 
 
@@ -66,14 +67,14 @@ def _tell(world: World, verb: Verb, place: str) -> None:
     world.request_verb(verb, cell, arguments=(("place", target),))
 
 
-BY_HAND: dict[Verb, Callable[[World, str], None]] = {
-    Verb.HOME: World.home_by_hand,
-    Verb.RELEASE: World.release_by_hand,
+BY_HAND: dict[Verb, Callable[[ManualWork, str], None]] = {
+    Verb.HOME: ManualWork.home,
+    Verb.RELEASE: ManualWork.release,
 }
 """What a person does at the machine, who then declares it."""
-BEFOREHAND: dict[Verb, Callable[[World, str], object]] = {
-    Verb.HOME: World.put_at_reference,
-    Verb.RELEASE: World.take_out,
+BEFOREHAND: dict[Verb, Callable[[ManualWork, str], None]] = {
+    Verb.HOME: ManualWork.put_at_reference,
+    Verb.RELEASE: ManualWork.take_out,
 }
 """The same without what is declared."""
 HANDS: dict[Hand, Callable[[World, str], None]] = {

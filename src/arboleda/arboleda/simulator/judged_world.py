@@ -17,13 +17,15 @@ from .hosts.hosts import Hosts
 from .invariants import Invariant
 from .invariants.invariant import Judges, Look
 from .judged import judged_by
+from .network import Line
 from .record import Record
 from .recorded.leaders import Leaders
 from .trace import Trace
 from .truth.truth import Truth
 from .world import FIRST_EPOCH, START_S, World
 
-REST_S = 600.0  # after the last fault, or the end of a task since, everything must have come to rest by then
+REST_S = 600.0  # after the last fault, or end of a task or of a wait for a zone since, all must be at rest
+WAITS = 10  # that one task may have one after another, each as long as the plant file allows for a zone
 STAYS_S = 10.0  # and stay there
 
 
@@ -118,19 +120,27 @@ class JudgedWorld:
         self._rests += 1
         self.end_faults()
         tasks = self._look.record.tasks.open
-        open_tasks, end = len(tasks), self.seconds + REST_S
+        longest_s = WAITS * max((cell.zone_wait_s for cell in self.world.model.cells), default=0.0)
+        open_tasks, since, end = len(tasks), self.seconds, self.seconds + REST_S
         while self.seconds < end and not (self._is_delivered() and self._judges.is_at_rest(self._look)):
             self.world.advance(1.0)
-            if len(tasks) < open_tasks:
-                open_tasks, end = len(tasks), self.seconds + REST_S
+            ended = len(tasks) < open_tasks
+            if ended:
+                open_tasks, since = len(tasks), self.seconds
+            if ended or (self.world.plant.zones.waiting and self.seconds < since + longest_s):
+                end = self.seconds + REST_S
         self._raise(self._judges.at_the_end(self._look))
         self.world.advance(STAYS_S, until)
         self._raise(self._judges.at_the_end(self._look))
 
+    def look_around(self) -> None:
+        """Judge the whole now by the invariants that look at it every so often."""
+        self._raise(self._judges.look_around(self._look))
+
     def _is_delivered(self) -> bool:
         """True if no message is under way: one that a fault has held may be a stranger's stop."""
         world = self.world
-        lines = [world.to_bridge, world.to_plant]
+        lines: list[Line] = [world.to_bridge, world.to_plant]
         lines += [line for client in world.broker.clients.values() for line in (client.up, client.down)]
         return all(line.busy_until <= world.now for line in lines)
 

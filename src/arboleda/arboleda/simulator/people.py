@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections import deque
+from collections.abc import Callable, Iterable, Mapping
 from functools import partial
 from itertools import count
 
@@ -26,6 +27,7 @@ REMEMBERED = 24  # of their tasks
 BY_THEMSELVES = (Hand.BRING_BACK, Hand.REPAIR)
 THINKS_S = 1.5  # somebody who is asked
 ROUND_S = (2.0, 6.0)  # how long the attendant takes to come by again
+STANDS_BY_S = (1.5, 1.5)  # the same of one who does nothing else
 
 
 class Customers:
@@ -47,7 +49,7 @@ class Customers:
         self._started: set[str] = set()
         self._gone = False
         self._tokens = count(1)
-        self._starts = world.starts
+        self._starts = world.plant_process.starts
         self._back = Dice(seed, "customers come back")
         self._theirs: dict[str, str] = {}  # by id, the texts of their last tasks
         self._texts: dict[str, str] = {}  # by token, of those requests
@@ -72,9 +74,9 @@ class Customers:
                     self._answered(message, self._asked.pop(message.request))
                 elif message.request in self._texts:
                     self._texts.pop(message.request)
-                    self._heard_again(message)
-        if self._world.starts != self._starts:
-            self._starts = self._world.starts
+                    self._take_repeat(message)
+        if self._world.plant_process.starts != self._starts:
+            self._starts = self._world.plant_process.starts
             self._come_back()
 
     def _answered(self, answer: TaskChanged, cell: Cell) -> None:
@@ -102,7 +104,7 @@ class Customers:
             self._texts[token] = text
             self._world.request_task(text, token)
 
-    def _heard_again(self, answer: TaskChanged) -> None:
+    def _take_repeat(self, answer: TaskChanged) -> None:
         """Take a task's state by its repeated request; one that is only accepted now waits as any other."""
         if answer.state is TaskState.QUEUED and answer.task not in self._waiting:
             self._waiting.add(answer.task)
@@ -131,7 +133,7 @@ class Customers:
         if not self._gone:
             number = next(self._tokens)
             token, text = f"customer {number}", self._text(cell)
-            if self._world.starts > 1:
+            if self._world.plant_process.starts > 1:
                 id = f"c-{number}"
                 text = self._theirs[id] = f"{text} #{id}"
                 for old in [*self._theirs][:-REMEMBERED]:
@@ -215,6 +217,17 @@ class FixedAnswers:
         self._come_by()
 
 
+def answer_in_turn(body: MachineBody, verb: str, answers: Iterable[Value]) -> None:
+    """Have a device answer the next questions of this verb so, one after the other; then as before."""
+    body.answer = partial(_next, deque(answers), verb, body.answer)
+
+
+def _next(
+    prepared: deque[Value], verb: str, otherwise: Callable[[OrderGoal], Value], goal: OrderGoal
+) -> Value:
+    return prepared.popleft() if prepared and goal.verb == verb else otherwise(goal)
+
+
 def _word_or_first(body: MachineBody, word: Value, goal: OrderGoal) -> Value:
     return word if word in body.kind.verbs[goal.verb].answers else body.first_answer(goal)
 
@@ -223,11 +236,12 @@ class Attendant:
     """Attendant: comes by every few seconds and does the first thing that is advised, cell by cell.
 
     It neither brings back what is lost nor repairs what is broken: that ends with its fault. `acts` counts
-    what it has done.
+    what it has done; between two rounds there are `round_s`.
     """
 
-    def __init__(self, world: World, seed: int) -> None:
+    def __init__(self, world: World, seed: int, *, round_s: tuple[float, float] = ROUND_S) -> None:
         self.acts = 0
+        self._round_s = round_s
         self._world = world
         self._dice = Dice(seed, "attendant")
         robots = world.model.robots.values()
@@ -235,7 +249,7 @@ class Attendant:
         self._next_round()
 
     def _next_round(self) -> None:
-        self._world.at(self._world.now + self._dice.between(*ROUND_S), self._round)
+        self._world.at(self._world.now + self._dice.between(*self._round_s), self._round)
 
     def _round(self, _: None) -> None:
         self._answer()

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator
+from typing import Any
 
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
@@ -124,13 +125,13 @@ def _gave_up(board: Board) -> bool:
     return board.body.moving and board._job is None and board._alive_us + SILENCE_US <= board._now_us
 
 
-class Rows(dict):  # type: ignore[type-arg]
+class Rows(dict[tuple[str, str], str]):
     """A state table that counts the rows that are looked up in it."""
 
     def __init__(self, table: dict[tuple[str, str], str]) -> None:
         super().__init__(table)
         self.fired: Counter[tuple[str, str]] = Counter()
 
-    def get(self, row: tuple[str, str], default: str | None = None) -> str | None:
+    def get(self, row: tuple[str, str], default: Any = None, /) -> Any:
         self.fired[row] += 1
         return super().get(row, default)

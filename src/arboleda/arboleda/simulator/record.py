@@ -187,7 +187,7 @@ class Record:
         """The state of an effector as the plant's memory has it."""
         return self._kept.get(Fact.EFFECTOR, {}).get(arm, "off")
 
-    def told_since(self, at: float) -> float:
+    def reports_from_s(self, at: float) -> float:
         """The time since when a position that reached the plant at `at` may have been reported."""
         return 0.0 if at < self.slow_until else at - self.world.model.timing.stale_after_s
 
@@ -231,10 +231,10 @@ class Record:
 
     def _begin(self, plant: Plant) -> None:
         """Begin with a plant that starts: it knows nothing but what it had to keep."""
-        self._plant, self._start = plant, self.world.starts
+        self._plant, self._start = plant, self.world.plant_process.starts
         self.stepped_at, self._version = plant.now, -1
         self.unattended.clear()
-        self.tasks.restart(self.world.found.tasks.values() if self.born else (), plant.now)
+        self.tasks.restart(self.world.plant_process.found.tasks.values() if self.born else (), plant.now)
         self.commands.forget()
         self.proofs.forget()
         cuts, self._cuts = self._cuts, self.world.disk.cuts
@@ -242,7 +242,7 @@ class Record:
         self.starts.restart(undone=cuts != self._cuts)
         self.time_line.begin()
         self.teachers.restart()
-        found = self.world.found.facts
+        found = self.world.plant_process.found.facts
         displaced, boots = found.get(Fact.DISPLACED, {}), found.get(Fact.BOOT, {})
         for name, robot in self.robots.items():
             robot.forget()
@@ -278,7 +278,7 @@ class Record:
 
     def _look_at_plant(self, plant: Plant) -> None:
         moment = self.world.moment
-        self.stepped = self.world.has_stepped
+        self.stepped = self.world.plant_process.has_stepped
         self.born = plant is not self._plant
         if self.born:
             self._take_last_words()
@@ -314,7 +314,7 @@ class Record:
             self.teachers.look(moment.asked, moment.sent)
         self.kept = self._kept
         for message in moment.sent:
-            take = taker(type(message))
+            take = taker(message.__class__)
             if take is not None:
                 take(self, message)
         self._compare(plant)
@@ -330,7 +330,7 @@ class Record:
         self._unanswered = deque(event for event in words if isinstance(event, OperatorRequest))
         self.undisturbed &= not self._unanswered
         for message in words:
-            take = taker(type(message))
+            take = taker(message.__class__)
             if take is not None:
                 take(self, message)
         for request in words:  # its effects may be kept, though nobody was told
@@ -346,7 +346,7 @@ class Record:
             cell.look(sent)
             self._follow_steps(cell, sent)
         self._clear_news()
-        self._kept = {fact: dict(rows) for fact, rows in self.world.found.facts.items()}
+        self._kept = {fact: dict(rows) for fact, rows in self.world.plant_process.found.facts.items()}
         kept = self._kept.get(Fact.LATCH, {})
         stopped = [name for name, known in self.robots.items() if known.stop is StopProgress.LATCHED]
         undone = any(each.verb in (Verb.CLEAR, Verb.RESET) for each in self._unanswered)
@@ -613,12 +613,14 @@ class Record:
             rows[said.name] = said.value
         self._kept = kept
 
-    def _on_task(self, said: TaskChanged) -> None:
+    def _on_task(self, change: TaskChanged) -> None:
         requests = (each for each in self.world.moment.asked if isinstance(each, TaskRequest))
-        again = said.request is not None or any(each.request is None for each in requests)
-        self.tasks.take(said, self._plant.now, asked_again=again)
-        if said.state is TaskState.QUEUED and not self.unattended.get(said.cell or "", True):
-            del self.unattended[said.cell or ""]  # it had nothing to do, and now somebody asks for something
+        again = change.request is not None or any(each.request is None for each in requests)
+        self.tasks.take(change, self._plant.now, is_repeated=again)
+        if change.state is TaskState.QUEUED and not self.unattended.get(change.cell or "", True):
+            del self.unattended[
+                change.cell or ""
+            ]  # it had nothing to do, and now somebody asks for something
 
     def _on_answer(self, answer: OperatorAnswer) -> None:
         self.answers.append(answer)

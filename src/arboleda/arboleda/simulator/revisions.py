@@ -38,7 +38,7 @@ class Revisions:
     def _change(self, _: None) -> None:
         if not self._goes:
             change = self._dice.pick(CHANGES)
-            self._world.put_to_work(change(self._dice, self._world.offers, self._first))
+            self._world.plant_process.take_version(change(self._dice, self._world.offers, self._first))
             self._plan()
 
 

@@ -15,7 +15,8 @@ from arboleda.model.verbs import Arguments, as_text, from_text
 
 from .checks import BadFaults, is_number, only, within
 from .hands import BEFOREHAND
-from .world import BY_HAND_S, World
+from .manual_work import BY_HAND_S
+from .world import World
 
 KEYS = ("at", "task", "do")
 HAND = "--by-hand"
@@ -140,7 +141,7 @@ class ScriptedPeople:
         world.watchers.append(self._look)
         for act in script.acts:
             if act.by_hand and act.verb in BEFOREHAND:
-                by_hand = partial(BEFOREHAND[act.verb], world)
+                by_hand = partial(BEFOREHAND[act.verb], world.manual)
                 world.at(world.now + max(0.0, act.at - BY_HAND_S), by_hand, act.scope)
             world.at(world.now + act.at, self._do, act)
         world.at(world.now + script.ends, lambda _: self.go())

@@ -11,8 +11,11 @@ from collections import deque
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from functools import partial
+from typing import cast
 
 from arboleda.dispatch.belief import APART_S
+from arboleda.kinds.declared import Device, Effect
+from arboleda.kinds.mobile import Mobile
 from arboleda.model.messages import Report
 from arboleda.model.plant_model import Evidence, Robot
 from arboleda.wire.topics import Channel, topic
@@ -37,10 +40,17 @@ def _ways(robot: Robot) -> tuple[Callable[[World, Robot, Dice], None] | None, ..
     """The ways to report of this robot; not two instants if a short state or node would never be reported."""
     if robot.evidence is Evidence.IDS:
         return (None,)
-    too_fast = robot.floor_grid and robot.grid.pitch / robot.speed < APART_S
-    if robot.evidence is Evidence.STATE or too_fast:
+    if robot.evidence is Evidence.STATE or _is_too_fast(robot):
         return (None, _two_topics)
     return (None, _two_topics, _two_instants)
+
+
+def _is_too_fast(robot: Robot) -> bool:
+    """True if a robot may leave a node, or end a process, before its state of then is told."""
+    if robot.floor_grid:
+        return bool(robot.floor_grid.pitch / cast(Mobile, robot).speed < APART_S)
+    verbs = cast(Device, robot).kind.verbs.values() if robot.verb_names else ()
+    return any(verb.effect is Effect.PROCESS and verb.takes_s < APART_S for verb in verbs)
 
 
 def _two_topics(world: World, robot: Robot, dice: Dice) -> None:

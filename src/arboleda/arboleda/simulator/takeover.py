@@ -45,7 +45,7 @@ def _played(
     """Boards that were given these commands at their times; the plant of this world only sends heartbeats."""
     given = sorted(_given(plant, entries), key=lambda each: each[0])
     world = World(model, now=min([plant.now, *(at for at, _ in given)]), epoch=plant.epoch)
-    world.stop_plant()
+    world.plant_process.stop()
     for robot in model.robots.values():
         if robot.mqtt in world.boards:
             _place(world, plant, robot, began.get(robot.name))
@@ -132,7 +132,7 @@ def _finish(world: World, plant: Plant) -> None:
             world.boards[belief.robot.mqtt].fail(round(world.now * 1e6))
             world.wake(belief.robot.mqtt)
     world.plant = plant
-    world.start_plant()
+    world.plant_process.start()
 
 
 class Dress:

@@ -51,8 +51,8 @@ class Trace:
         for client, said in moment.published:
             words += (_head(client, said.topic, said.retain), said.payload)
         if moment.last_words or moment.unkept:
-            said = (*moment.last_words, *moment.unkept)
-            words += [_hashed(message) for message in said if not is_step(message)]
+            unheard = (*moment.last_words, *moment.unkept)
+            words += [_hashed(message) for message in unheard if not is_step(message)]
         if moment.sent or moment.asked:
             words += [_hashed(message) for message in (*moment.sent, *moment.asked) if not is_step(message)]
         self._hash.update(b"".join(words))

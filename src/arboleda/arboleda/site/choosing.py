@@ -30,7 +30,7 @@ EXAMPLE = "north/sis_a,south/sis_a 0B 7"
 
 
 class TaskRefused(ArboledaError):
-    """A task is given to no plant; the sentence says why."""
+    """A task is given to no plant; the sentence is the reason."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -57,11 +57,11 @@ async def chosen(text: str, plants: Mapping[str, Reach]) -> Choice:
     silent = {
         name: answer for name, answer in zip(texts, answers, strict=True) if isinstance(answer, Sentence)
     }
-    said = tuple(OF_SILENT(plant=name, why=why) for name, why in silent.items())
+    reasons = tuple(OF_SILENT(plant=name, why=why) for name, why in silent.items())
     if len(silent) == len(texts):
-        raise TaskRefused(NONE_ANSWERS(silent=said))
+        raise TaskRefused(NONE_ANSWERS(silent=reasons))
     if id and silent:
-        raise TaskRefused(MAY_HAVE_IT(silent=said, id=id))
+        raise TaskRefused(MAY_HAVE_IT(silent=reasons, id=id))
     if id and (known := await _known(id, texts, plants)) is not None:
         return Choice(plant=known, text=texts[known], why=None)
     prospects = [each for answer in answers if not isinstance(answer, Sentence) for each in answer]

@@ -7,11 +7,11 @@ from typing import Any
 
 import httpx
 
+from arboleda.client.protocol import COMMAND_LINE
 from arboleda.model.errors import ArboledaError
 from arboleda.model.outside import plain, said_by
 from arboleda.model.sentence import Phrase
 from arboleda.runtime.endpoints import Place
-from arboleda.web.plant_api import COMMAND_LINE
 
 ANSWER_S = 2.5  # a browser gives a stop up after 3 s
 LONGEST = 300  # characters of what a plant says that are shown
@@ -24,11 +24,11 @@ REFUSED = Phrase("site.refused", "it answers {status}: {said}")
 
 
 class PlantSilent(ArboledaError):
-    """A plant gave no answer of use; the sentence says why."""
+    """A plant gave no usable answer; the sentence is the reason."""
 
 
 class PlantRefusal(ArboledaError):
-    """A plant refused what was asked, in its own words."""
+    """A plant refused a request, in its own words."""
 
 
 class Reach:
@@ -49,22 +49,22 @@ class Reach:
 
     async def get(self, path: str) -> Any:
         """The answer of the plant to a GET of that path."""
-        return await self._asked("GET", path, None)
+        return await self._request("GET", path, None)
 
     async def post(self, path: str, body: dict[str, Any] | None = None) -> Any:
-        return await self._asked("POST", path, body)
+        return await self._request("POST", path, body)
 
     async def close(self) -> None:
         await self._http.aclose()
 
-    async def _asked(self, method: str, path: str, body: dict[str, Any] | None) -> Any:
+    async def _request(self, method: str, path: str, body: dict[str, Any] | None) -> Any:
         url = self.place.url
         if not url:
             raise PlantSilent(NOBODY_LEADS())
         try:
-            asked = self._http.request(method, f"{url}{path}", json=body)
-            answer = await asyncio.wait_for(asked, ANSWER_S)
-            said = answer.json()
+            request = self._http.request(method, f"{url}{path}", json=body)
+            answer = await asyncio.wait_for(request, ANSWER_S)
+            content = answer.json()
         except (asyncio.TimeoutError, httpx.TimeoutException) as error:
             raise PlantSilent(NO_ANSWER(seconds=ANSWER_S)) from error
         except httpx.HTTPError as error:
@@ -72,8 +72,8 @@ class Reach:
         except ValueError as error:
             raise PlantSilent(NO_PLANT(url=url)) from error
         if answer.is_success:
-            return said
-        sentence = plain(str(said.get("sentence", "") if isinstance(said, dict) else ""))[:LONGEST]
+            return content
+        sentence = plain(str(content.get("sentence", "") if isinstance(content, dict) else ""))[:LONGEST]
         if sentence and answer.status_code in (404, 409, 422):
             raise PlantRefusal(sentence)
         raise PlantSilent(REFUSED(status=answer.status_code, said=sentence))

@@ -22,7 +22,7 @@ OEE_S = 60.0
 FIND_S = 5.0  # between two looks where plants are
 LOG = logging.getLogger(__name__)
 
-NOT_SEEN = Phrase("site.not_seen", "not asked yet")
+NOT_YET = Phrase("site.not_seen", "not asked yet")
 STANDS_BY = Phrase("site.stands_by", "only a standby answers, and it does nothing itself")
 TAKEN = Phrase("site.taken", "{plant} has taken {text} (#{id})")
 NOT_TAKEN = Phrase("site.not_taken", "{plant}: {why}")
@@ -43,7 +43,7 @@ class WatchedPlant:
 
     def __init__(self, place: Place) -> None:
         self.reach = Reach(place)
-        self.silent: Sentence | None = NOT_SEEN()
+        self.silent: Sentence | None = NOT_YET()
         self.snapshot: dict[str, Any] | None = None
         self.oee: list[dict[str, Any]] = []
         self.stands_by = False
@@ -80,13 +80,13 @@ class WatchedPlant:
         except (PlantSilent, PlantRefusal) as error:
             self.silent = error.sentence
 
-    def _take_in(self, said: Any) -> None:
-        name = said.get("plant") if isinstance(said, dict) else None
-        if not isinstance(name, str) or not ("cells" in said or said.get("standby") is True):
+    def _take_in(self, snapshot: Any) -> None:
+        name = snapshot.get("plant") if isinstance(snapshot, dict) else None
+        if not isinstance(name, str) or not ("cells" in snapshot or snapshot.get("standby") is True):
             raise PlantSilent(NO_PLANT(url=self.url))
-        self._name, self.stands_by = name, said.get("standby") is True
+        self._name, self.stands_by = name, snapshot.get("standby") is True
         self.silent = STANDS_BY() if self.stands_by else None
-        self.snapshot = None if self.stands_by else said
+        self.snapshot = None if self.stands_by else snapshot
 
 
 class Site:
@@ -109,7 +109,7 @@ class Site:
 
     def plants(self) -> list[LastSeenPlant]:
         """A row for each plant, whatever number of processes it has."""
-        return [_seen(name, those) for name, those in self._rows()]
+        return [_row(name, those) for name, those in self._rows()]
 
     async def submit(self, plant: str, text: str) -> RequestOutcome:
         """Have that plant take a task; a text that names plants goes to the best of those."""
@@ -193,11 +193,11 @@ class Site:
 
 async def _stop_plant(those: list[WatchedPlant]) -> Sentence | None:
     """Send the stop to all addresses of a plant; the reason if none heard it, None if one did."""
-    answers = await asyncio.gather(*map(_told_to_stop, those))
+    answers = await asyncio.gather(*map(_stop_process, those))
     return None if None in answers else answers[0]
 
 
-async def _told_to_stop(watched: WatchedPlant) -> Sentence | None:
+async def _stop_process(watched: WatchedPlant) -> Sentence | None:
     """Send a stop there; the reason if it fails. An idle connection may be closed: then it tries another."""
     for is_last in (False, True):
         try:
@@ -210,7 +210,7 @@ async def _told_to_stop(watched: WatchedPlant) -> Sentence | None:
     return None
 
 
-def _seen(name: str, those: list[WatchedPlant]) -> LastSeenPlant:
+def _row(name: str, those: list[WatchedPlant]) -> LastSeenPlant:
     led = those[0]
     return LastSeenPlant(
         name=name,

@@ -14,7 +14,7 @@ def is_address(text: str) -> bool:
 
 
 def has_password(address: str) -> bool:
-    """True if an address holds a password in the clear, or if that cannot be told."""
+    """True if an address holds a password in the clear, or cannot be parsed."""
     try:
         parts = urlsplit(address)
         return bool(parts.password) or any(key in SECRETS for key, _ in parse_qsl(parts.query))

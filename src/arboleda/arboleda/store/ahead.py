@@ -8,6 +8,7 @@ from ast import literal_eval
 from collections.abc import Sequence
 from pathlib import Path
 
+from arboleda.host.files import BINARY, pwrite
 from arboleda.model.messages import Fact, Remember
 
 LENGTH, SUM = 4, 4  # bytes before the text
@@ -36,13 +37,13 @@ class Ahead:
         words = len(text).to_bytes(LENGTH, "big") + zlib.crc32(text).to_bytes(SUM, "big") + text
         try:
             if self._file is None:
-                self._file = os.open(self.path, os.O_WRONLY | os.O_CREAT, 0o644)
-            return os.pwrite(self._file, words, 0) == len(words)
+                self._file = os.open(self.path, os.O_WRONLY | os.O_CREAT | BINARY, 0o644)
+            return pwrite(self._file, words, 0) == len(words)
         except OSError:
             return False
 
     def read(self) -> list[Remember]:
-        """The facts that were not committed; none if what is there was not written as a whole."""
+        """The facts that were not committed; none if the file was not written as a whole."""
         try:
             words = self.path.read_bytes()
         except FileNotFoundError:
@@ -58,7 +59,7 @@ class Ahead:
     def clear(self) -> None:
         """Forget the facts: they are committed. Before the first are written the file itself goes."""
         if self._file is not None:
-            os.pwrite(self._file, NOTHING, 0)
+            pwrite(self._file, NOTHING, 0)
         else:
             self.path.unlink(missing_ok=True)
 
@@ -68,7 +69,8 @@ class Ahead:
             return
         mine, self._file = self._file, None
         try:
-            if not self.read() and os.path.samestat(os.fstat(mine), os.stat(self.path)):
-                self.path.unlink()
+            is_over = not self.read() and os.path.samestat(os.fstat(mine), os.stat(self.path))
         finally:
             os.close(mine)
+        if is_over:  # Windows removes no open file
+            self.path.unlink()

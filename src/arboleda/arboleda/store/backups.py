@@ -147,7 +147,7 @@ def _fold(memory: Path) -> str | None:
 
 
 def _set_aside(memory: Path) -> None:
-    """Keep what is there under another name, too; then only its one file is left in its place."""
+    """Keep the present memory under another name, too; then only its one file is left in its place."""
     before = f"{memory.name}.before-restore"
     _forget(memory.with_name(before))
     for end in ("", *BESIDE):

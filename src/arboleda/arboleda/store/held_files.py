@@ -36,7 +36,7 @@ class HeldFiles:
     def loss(self) -> Loss | None:
         """The first file that is not in its place; None if all are there."""
         for path, opened in self._held.items():
-            try:  # here and not in a function: it is asked before each command
+            try:  # here and not in a function: it is read before each command
                 found = os.stat(path)
             except ABSENT:
                 return Loss(path=Path(path), fate=GONE)

@@ -38,7 +38,7 @@ UNMADE = ("unable to open", "I/O error", "readonly")  # SQLite's errors if it ca
 
 @contextmanager
 def explained(path: Path, kind: type[ArboledaError], cannot: str = "cannot be used") -> Iterator[None]:
-    """Turn what SQLite or the system raises into one sentence on the plant's memory."""
+    """Context that turns errors of SQLite and the system into one sentence on the plant's memory."""
     try:
         yield
     except SPOILT as error:

@@ -134,7 +134,7 @@ class PlantMemory(ABC):
         """
         return ""
 
-    def announce(self, url: str) -> None:  # noqa: B027 - who asks a file is on this machine
+    def announce(self, url: str) -> None:  # noqa: B027 - a file is read on this machine only
         """Store the address of the plant's page; callable from any thread, raises ArboledaError."""
 
     def hand_over(self, going: Sequence[str]) -> None:  # noqa: B027
@@ -164,7 +164,7 @@ class PlantMemory(ABC):
         """
         self.keep(*facts)
 
-    def settle(self) -> None:  # noqa: B027 - who has noted nothing has nothing to commit
+    def settle(self) -> None:  # noqa: B027 - a memory that notes nothing has nothing to commit
         """Commit what was noted."""
 
     def begin(self, *facts: Remember) -> None:
@@ -224,8 +224,7 @@ class PlantMemory(ABC):
             )
             how, unchecked = course_written(change.course), unchecked_written(change.unchecked)
             outcome = (state.value, reason, str(change.sentence), sentence_json, unix_s)
-            values = (*outcome, answers_json, how, unchecked, change.task)
-            self._write((end, values), durable=durable)
+            self._write((end, (*outcome, answers_json, how, unchecked, change.task)), durable=durable)
 
     def attempted(self, task: str, attempts: int) -> None:
         """Commit the number of times that a task was begun."""

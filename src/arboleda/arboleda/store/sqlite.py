@@ -15,13 +15,14 @@ from contextlib import AbstractContextManager, suppress
 from pathlib import Path
 from typing import Any
 
+from arboleda.host.boot import this_boot
+from arboleda.host.files import sync_data
 from arboleda.model.errors import ArboledaError, StartError
 from arboleda.model.messages import Remember
 
 from . import row_sums
 from .ahead import Ahead
 from .held_files import HeldFiles
-from .host_boot import this_boot
 from .memory_file import (
     BOOT,
     BUSY_S,
@@ -92,7 +93,6 @@ SINCE = {
 IN_MEMORY = Path(":memory:")
 FOLDED = 250  # commits after which the log is folded into the file: about 1,000 pages
 LONGEST_LOG = 10_000  # pages at which a commit does that itself
-SYNC = getattr(os, "fdatasync", os.fsync)  # not every system has the first
 PUT_BACK = f"put it, or a backup, in its place and start again; {LOST_WITH_IT}"
 IN_PLACE = "start again; as the plant ends now, all that it kept goes into the memory itself, if it is there"
 
@@ -219,7 +219,7 @@ class Store(PlantMemory):
 
     def _wait_for_disk(self) -> None:
         if self._log_file is not None:
-            SYNC(self._log_file)
+            sync_data(self._log_file)
 
     @property
     def _log(self) -> Path:

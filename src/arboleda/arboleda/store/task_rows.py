@@ -25,6 +25,7 @@ from .memory_file import VERSION, explained, read_only, refuse_damage, refuse_ot
 from .oee_rows import Database, OeeQuery, kept
 
 COMMAND, PAGE, HTTP, ROS, DEMO = "command", "page", "http", "ros2", "demo"  # the ways by which a task comes
+ASSISTANT = "assistant"  # one more, whose tasks are bound to what was approved
 STATES, REASONS = {state.value for state in TaskState}, {None, *(reason.value for reason in Reason)}
 
 
@@ -92,7 +93,7 @@ KINDS: dict[str, tuple[type, ...]] = {
     "float | None": (float, type(None)),
 }
 KINDS_OF = {each.name: KINDS[str(each.type)] for each in fields(TaskRow)}
-ASKED = {
+CONDITIONS = {
     "id": "id = ?",
     "cell": "cell = ?",
     "state": "state = ?",
@@ -105,9 +106,9 @@ ASKED = {
 
 def selection(query: TaskQuery) -> tuple[str, tuple[object, ...]]:
     """The SQL of a query and its values, the last accepted task first."""
-    filters = {column: getattr(query, column) for column in ASKED}
+    filters = {column: getattr(query, column) for column in CONDITIONS}
     wanted = {column: value for column, value in filters.items() if value not in ("", None)}
-    where, values = [ASKED[column] for column in wanted], list(wanted.values())
+    where, values = [CONDITIONS[column] for column in wanted], list(wanted.values())
     if query.is_open is not None:
         where.append("ended_s IS NULL" if query.is_open else "ended_s IS NOT NULL")
     if query.words:  # LIKE is three times as fast as instr(lower())
@@ -153,7 +154,9 @@ def choice_of(row: TaskRow) -> Sentence | None:
 
 def choice_written(choice: Sentence | None) -> str | None:
     """The text under which a choice is stored; `choice_of` reads it."""
-    return choice and json.dumps({"english": str(choice), **choice.data()}, ensure_ascii=False)
+    if choice is None:
+        return None
+    return json.dumps({"english": str(choice), **choice.data()}, ensure_ascii=False)
 
 
 def course_of(row: TaskRow) -> Course | None:
@@ -168,7 +171,7 @@ def course_of(row: TaskRow) -> Course | None:
 
 def course_written(course: Course | None) -> str | None:
     """The text under which a course is stored; `course_of` reads it."""
-    return course and json.dumps(vars(course), separators=(",", ":"))
+    return None if course is None else json.dumps(vars(course), separators=(",", ":"))
 
 
 def unchecked_of(row: TaskRow) -> tuple[Check, ...]:

@@ -2,15 +2,11 @@
 
 from __future__ import annotations
 
-from collections import deque
-from collections.abc import Callable
-from functools import partial
-
 from arboleda.kinds.declared import DeviceVerb, Effect
 from arboleda.model.facts import Value, shown
 from arboleda.sim.machine import MachineBody
+from arboleda.simulator.people import answer_in_turn
 from arboleda.simulator.world import World
-from arboleda.wire.payloads import OrderGoal
 
 from .words import Misuse, known
 
@@ -29,14 +25,8 @@ def prepare(world: World, device: str, verb: str, answers: tuple[Value, ...]) ->
         if answer not in allowed:
             words = ", ".join(map(shown, allowed))
             raise Misuse(f"{device} {verb} never answers {answer!r}; its answers are {words}")
-    body.answer = partial(_next, deque(answers), verb, body.answer)
+    answer_in_turn(body, verb, answers)
 
 
 def _verbs(body: object) -> list[DeviceVerb]:
     return list(body.kind.verbs.values()) if isinstance(body, MachineBody) else []
-
-
-def _next(
-    prepared: deque[Value], verb: str, otherwise: Callable[[OrderGoal], Value], goal: OrderGoal
-) -> Value:
-    return prepared.popleft() if prepared and goal.verb == verb else otherwise(goal)

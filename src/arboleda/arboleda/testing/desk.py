@@ -5,7 +5,8 @@ from __future__ import annotations
 from arboleda.model.messages import OperatorAnswer, TaskChanged, TaskRequest, TaskState, Verb
 from arboleda.model.verbs import Arguments
 from arboleda.simulator.hands import BEFOREHAND
-from arboleda.simulator.world import BY_HAND_S, World
+from arboleda.simulator.manual_work import BY_HAND_S
+from arboleda.simulator.world import World
 
 NO_ANSWER = "the plant did not answer"
 ASKED = "asked"  # a task that the plant has said nothing of yet
@@ -75,7 +76,7 @@ class Desk:
     def operate(self, verb: Verb, scope: str, *, by_hand: bool, arguments: Arguments) -> str | None:
         """Act as an operator; return the plant's reason for a refusal, or None if it did as asked."""
         if by_hand:
-            BEFOREHAND[verb](self._world, scope)
+            BEFOREHAND[verb](self._world.manual, scope)
             self._world.advance(BY_HAND_S)
         self._answers.clear()
         self._world.request_verb(verb, scope, by_hand=by_hand, arguments=arguments)

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-import fcntl
 import os
 import tempfile
 from itertools import count
 from pathlib import Path
 
+from arboleda.host.locks import lock
+from arboleda.host.users import own_mark
 from arboleda.model.errors import StartError
 
 LAST = 101  # the DDS ports of higher ROS domains lie among the ports that Linux hands out
@@ -18,7 +19,7 @@ class Domain:
     """A ROS domain id that nobody else on this machine gets until `close`; each begins at another id."""
 
     def __init__(self) -> None:
-        folder = Path(tempfile.gettempdir(), f"arboleda-ros-domains-{os.getuid()}")
+        folder = Path(tempfile.gettempdir(), f"arboleda-ros-domains-{own_mark()}")
         folder.mkdir(exist_ok=True)
         begin = next(_begin)
         for id in (((begin + n) % LAST) + 1 for n in range(LAST)):
@@ -32,9 +33,7 @@ class Domain:
 
     def _reserved(self, file: Path) -> bool:
         self._lock = os.open(file, os.O_RDWR | os.O_CREAT)
-        try:
-            fcntl.flock(self._lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError:
+        if not lock(self._lock):
             self.close()
             return False
         return True

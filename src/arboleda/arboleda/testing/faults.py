@@ -55,8 +55,8 @@ def altered(topic: str, change: Change) -> Carry:
 def says(board: str, **fields: Any) -> Carry:
     """Set these fields in telemetry, whatever is true; None leaves one out."""
 
-    def change(said: dict[str, Any]) -> dict[str, Any]:
-        return {key: value for key, value in {**said, **fields}.items() if value is not None}
+    def change(row: dict[str, Any]) -> dict[str, Any]:
+        return {key: value for key, value in {**row, **fields}.items() if value is not None}
 
     return altered(f"{board}/sensores", change)
 
@@ -117,14 +117,14 @@ def hand(rig: Rig, board: str, *, tells_all: bool, slow_s: float = 0.15) -> Carr
     body = cast(ArmBody, rig.devices.boards[board].body)
     effector, looked_at = [(rig.now, body.effector)], [rig.now]
 
-    def change(said: dict[str, Any]) -> dict[str, Any]:
+    def change(row: dict[str, Any]) -> dict[str, Any]:
         if effector[-1][1] is not body.effector:
             effector.append((rig.now, body.effector))
         settled = [on for at, on in effector if at <= rig.now - slow_s] or [effector[0][1]]
         told = {"efector": int(settled[-1])} if tells_all else {}
         if rig.now < looked_at[-1] + slow_s:
-            return {key: value for key, value in {**said, **told}.items() if key != "pieza"}
+            return {key: value for key, value in {**row, **told}.items() if key != "pieza"}
         looked_at[:] = [rig.now]
-        return {**said, **told, "pieza": int(bool(body.tell().piece))}
+        return {**row, **told, "pieza": int(bool(body.tell().piece))}
 
     return altered(f"{board}/sensores", change)

@@ -5,9 +5,10 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import partial
 
-from arboleda.kinds.arm import Arm
 from arboleda.model.facts import Value
+from arboleda.model.plant_model import Robot
 from arboleda.sim.arm import ArmBody
 from arboleda.sim.mobile import MobileBody
 from arboleda.simulator.world import World
@@ -73,30 +74,29 @@ def cell(world: World, name: str) -> CellLook:
 def robot(world: World, name: str) -> RobotLook:
     """The look at the robot with this name: its board's body beside the plant's belief."""
     model, belief = world.model.robots[name], world.plant.dispatcher.beliefs[name]
-    heard = {"name": name, "online": belief.online, "homed": belief.homed}
+    look = partial(RobotLook, name=name, online=belief.online, homed=belief.homed)
     body = world.boards[model.mqtt].body
     if model.joints and isinstance(body, ArmBody):
         true = tuple(
             joint.step * steps for joint, steps in zip(model.joints, body.true_position, strict=True)
         )
-        return RobotLook(
-            **heard,
+        return look(
             joints=_shown(model, true),
             believed_joints=None if belief.q is None else _shown(model, belief.q),
             effector=body.effector,
             holds=body.holding,
         )
     if isinstance(body, MobileBody):
-        return RobotLook(**heard, node=body.true_node, believed_node=belief.node)
+        return look(node=body.true_node, believed_node=belief.node)
     believed = {fact: belief.fact(fact) for fact in body.true_facts}
-    return RobotLook(**heard, facts=dict(body.true_facts), believed_facts=believed)
+    return look(facts=dict(body.true_facts), believed_facts=believed)
 
 
 def _text(said: object) -> str | None:
     return None if said is None else str(said)
 
 
-def _shown(arm: Arm, q: Joints) -> Joints:
+def _shown(arm: Robot, q: Joints) -> Joints:
     """Joints in the units of a plant file."""
     rows = zip(arm.joints, q, strict=True)
     return tuple(math.degrees(value) if joint.unit == "rad" else value * MM_PER_M for joint, value in rows)

@@ -18,7 +18,7 @@ from arboleda.simulator.invariants import Invariant
 from arboleda.simulator.judged import judged_by
 from arboleda.simulator.judged_world import BrokenInvariant, JudgedWorld
 from arboleda.simulator.levels import LEVELS
-from arboleda.simulator.people import Attendant, FixedAnswers
+from arboleda.simulator.people import STANDS_BY_S, Attendant, FixedAnswers
 from arboleda.simulator.run import NO_EXCEPTION
 from arboleda.simulator.world import World
 from arboleda.views import view
@@ -39,6 +39,8 @@ class Sim:
     A broken invariant of the simulator raises AssertionError, wherever it shows; a word that means nothing
     raises Misuse. Plant files are looked for in `folder` first.
     """
+
+    _failure: type[AssertionError] = AssertionError
 
     def __init__(self, folder: Path | None = None) -> None:
         self._folder = folder
@@ -149,16 +151,18 @@ class Sim:
             raise Misuse("run(seconds) lets time pass, run(until=...) waits: one of them is needed")
         if seconds is not None and not 0 <= seconds < math.inf:
             raise Misuse(f"time only passes: seconds is 0 or more, is {seconds:g}")
-        if until is None:
+        if seconds is not None:
             self._do(lambda: self.world.advance(seconds))
-        elif not self._do(lambda: self.world.advance(at_most, lambda: self._ask(until))):
+            return
+        assert until is not None
+        if not self._do(lambda: self.world.advance(at_most, lambda: self._ask(until))):
             self._told = True
-            raise AssertionError(wording.never(at_most, self._desk.tasks, self._watched))
+            raise self._failure(wording.never(at_most, self._desk.tasks, self._watched))
 
     def rest(self) -> None:
         """End all faults, let an attendant get the cells going again, and judge that all comes to rest."""
         if self._attendant is None:
-            self._attendant = Attendant(self.world, seed=0)
+            self._attendant = Attendant(self.world, seed=0, round_s=STANDS_BY_S)
         self._do(self._watched.come_to_rest)
 
     def seeds(
@@ -179,7 +183,7 @@ class Sim:
         )
         for seed in range(first, first + count):
             if (result := drawn.run(seed)).broken:
-                raise AssertionError(wording.seed(drawn.shrunk(result), drawn, len(result.faults)))
+                raise self._failure(wording.seed(drawn.shrunk(result), drawn, len(result.faults)))
 
     def prove(self, recipe: str, *faults: str, at_most: int | None = single_faults.RUNS) -> float:
         """Try every single fault at every moment of a recipe, one run each, in plants of their own.
@@ -236,7 +240,12 @@ class Sim:
 
     @cached_property
     def _watched(self) -> JudgedWorld:
-        return JudgedWorld(self._chosen, invariants=self._invariants, keep=True, recipes=self._recipes)
+        return self._made()
+
+    def _made(self, tell: Callable[[str], None] | None = None) -> JudgedWorld:
+        return JudgedWorld(
+            self._chosen, invariants=self._invariants, keep=True, tell=tell, recipes=self._recipes
+        )
 
     @property
     def _chosen(self) -> PlantModel:
@@ -268,4 +277,4 @@ class Sim:
                 raise
             breach, cause = BrokenInvariant(NO_EXCEPTION, f"{type(error).__name__}: {error}"), error
         self._told = True
-        raise AssertionError(wording.breach(breach, self._watched)) from cause
+        raise self._failure(wording.breach(breach, self._watched)) from cause

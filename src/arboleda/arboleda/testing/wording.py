@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable
 
-from arboleda.campaigns.words import told
+from arboleda.campaigns.words import fault_words
 from arboleda.model.counting import counted
 from arboleda.simulator.invariants import Invariant
 from arboleda.simulator.judged_world import BrokenInvariant, JudgedWorld
@@ -32,7 +32,7 @@ def seed(result: Result, seeds: Seeds, injected: int) -> str:
     again = f"sim.seeds(1, first={result.seed}, cycles={seeds.cycles}, faults={seeds.level!r})"
     few = len(result.faults)
     enough = [f"{few} of {counted(injected, 'fault')} {'is' if few == 1 else 'are'} enough:"] if few else []
-    listed = [f"{fault.at:10.3f}  {told(fault)}" for fault in result.faults]
+    listed = [f"{fault.at:10.3f}  {fault_words(fault)}" for fault in result.faults]
     return "\n".join(
         [
             f"seed {result.seed}: {_broken(result.broken, result.seconds, seeds.invariants)}",

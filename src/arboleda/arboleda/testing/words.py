@@ -10,7 +10,14 @@ from arboleda.model.errors import ArboledaError
 __tracebackhide__ = True
 
 
-class Misuse(ArboledaError):
+class Plain(Exception):
+    """Error that a notebook shows as its sentence: Jupyter asks an exception for its lines."""
+
+    def _render_traceback_(self) -> list[str]:
+        return [str(self)]
+
+
+class Misuse(Plain, ArboledaError):
     """Raised when a test asks for something that does not exist; the sentence says what exists."""
 
 

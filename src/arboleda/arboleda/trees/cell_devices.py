@@ -43,6 +43,10 @@ class CellDevices:
         holder = self.holder(robot)
         return holder == self._cell.name or (holder is None and self._is_first_of(robot))
 
+    def is_lent(self, device: str) -> bool:
+        """True for a device that another cell has."""
+        return self.holder(device) not in (None, self._cell.name)
+
     def holder(self, device: str) -> str | None:
         """The cell that holds a shared device; None also where that is not in the plant file any more."""
         holder = self._zones.holder(device)

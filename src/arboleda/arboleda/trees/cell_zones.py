@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
+from itertools import filterfalse
 
 from arboleda.dispatch.dispatcher import Dispatcher
 from arboleda.dispatch.zones import Zones
@@ -154,7 +155,7 @@ class CellZones:
         A shared robot that no other cell holds has to be at home, whether it shares zones or not.
         """
         for robot in self._cell.shared_movers:
-            if self._devices.holder(robot) in (None, self._cell.name) and not self._devices.is_home(robot):
+            if not (self._devices.is_lent(robot) or self._devices.is_home(robot)):
                 homed = self._dispatcher.beliefs[robot].robot.says_homed
                 astray = ASTRAY_SHARED if homed else ASTRAY_SHARED_BY_HAND
                 return robot, Failure(reason=Reason.ZONE_UNAVAILABLE, sentence=astray(arm=robot))
@@ -214,7 +215,7 @@ class CellZones:
         occupied, before = self.interlocks.occupied_by(device), self._occupied.get(device, frozenset())
         self._occupied[device] = occupied
         if self._dispatcher.beliefs[device].online:
-            self._zones.is_heard(device)
+            self._zones.lift_quarantine(device)
         free = frozenset(zone for zone in occupied if self._zones.holder(zone) is None)
         if free:
             self._claim(device, free)
@@ -229,7 +230,7 @@ class CellZones:
     def forsake(self) -> None:
         """Give back what machines hold for a task, where neither they nor their commands are in the way."""
         self.interlocks.reserved = {}
-        for machine in self._cell.interlocked:
+        for machine in filterfalse(self._devices.is_lent, self._cell.interlocked):
             self.leave(machine)
 
     def _needed(self, command: Command) -> frozenset[str]:

@@ -36,7 +36,7 @@ OF_NODES = frozenset(
         "name",
         "title",
         "doing",
-        "told",
+        "feedback",
         "status",
         "iterator",
         "children",

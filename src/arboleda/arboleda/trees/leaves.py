@@ -56,14 +56,14 @@ def title_of(node: Behaviour) -> Sentence:
 
 
 class Leaf(Keeps, Behaviour):
-    """A leaf of ours: `title` is its name as a sentence, `told` its feedback message, `last_failure` that of
-    its last failure, kept when py_trees has forgotten the status. `began` is when one that takes its time
-    began last in this start of the plant, in s of the cell's time. `uses`: its robot, where cells share that.
-    `proven`: what it waits for is known to have come true.
+    """A leaf of ours: `title` is its name as a sentence, `feedback` what it does or waits for, `last_failure`
+    that of its last failure, kept when py_trees has forgotten the status. `began` is when one that takes its
+    time began last in this start of the plant, in s of the cell's time. `uses`: its robot, where cells share
+    that. `proven`: what it waits for is known to have come true.
     """
 
     title: Sentence
-    told: Sentence = NOTHING
+    feedback: Sentence = NOTHING
     last_failure: Sentence | None = None
     uses: str | None = None
     began = -math.inf
@@ -75,11 +75,11 @@ class Leaf(Keeps, Behaviour):
 
     @property
     def feedback_message(self) -> str:
-        return str(self.told)
+        return str(self.feedback)
 
     @feedback_message.setter
     def feedback_message(self, text: str) -> None:
-        self.told = as_sentence(text) if text else NOTHING
+        self.feedback = as_sentence(text) if text else NOTHING
 
     def tick(self) -> Iterator[Behaviour]:
         """As py_trees ticks a leaf, but without words for a log and without a list of all statuses."""
@@ -105,7 +105,7 @@ class Leaf(Keeps, Behaviour):
 
     def failed(self, failure: Failure) -> Status:
         """FAILURE, with its sentence for people."""
-        self.told = self.last_failure = failure.sentence
+        self.feedback = self.last_failure = failure.sentence
         return Status.FAILURE
 
 
@@ -115,10 +115,12 @@ class Act(Leaf):
     A failure that a retry can help is tried again as the cell's `retry` says, after its back-off. A robot
     that is still moving is waited for, at most `stop_timeout_s`: what it says may be older than the end of
     its last move, or it was told to halt, as by a timeout around the step before.
-    `anew`, where given, makes the command once it has left before. `guard`, where given, is asked at every
+    `anew`, where given, makes the command once it has left before. `guard`, where given, is called at every
     tick; what it returns fails the command at once. So does an effector that opened unbidden while it held
     a part. `then`, where given, is called once the command is done.
-    `last` is what an earlier start of the plant has kept of the command; `proven`: it is known to be done.
+    `last` is the record of the command that left before, given by an earlier start of the plant or by the
+    try before: where the next one does not leave, its device may still prove it. `proven`: it is known to
+    be done.
     `number_in_tree` is that of its node, `given_times` how often the command was given in this task.
     """
 
@@ -163,7 +165,7 @@ class Act(Leaf):
         if earlier is None or not earlier["done"]:
             self.send()
         else:
-            self.entry, self.last, self.proven, self.told = None, earlier, True, self.doing
+            self.entry, self.last, self.proven, self.feedback = None, earlier, True, self.doing
 
     def take_up(self, earlier: Mapping[str, Any], attempt: int) -> None:
         """Begin, once it is its turn, with the command that an earlier start has given, as its board says."""
@@ -173,7 +175,7 @@ class Act(Leaf):
     def kept(self) -> Mapping[str, Any] | None:
         if self.status is not Status.RUNNING:
             return None
-        last = self.last if self.entry is None else command_kept(self.entry)
+        last = command_kept(self.entry) or self.last
         return {"tries": self.tries, "left": self.left_before, "last": last, "given": self.given_times}
 
     @property
@@ -184,14 +186,14 @@ class Act(Leaf):
     def restore(self, state: Mapping[str, Any]) -> None:
         self.tries, self.left, self.last = state["tries"], state["left"], state["last"]
         self.given_times = state.get("given", 0)
-        self.told = self.doing
+        self.feedback = self.doing
 
     def begin_anew(self) -> None:
         self.send()
 
     def send(self) -> None:
         """Give the command, or give it anew."""
-        self.told, self.last = self.doing, None
+        self.feedback, self.last = self.doing, None
         self.again_at = None
         self.patient_until = self.time.now + self.context.timing.stop_timeout_s
         self._give()
@@ -223,7 +225,7 @@ class Act(Leaf):
         if failure.reason in RETRYABLE and self.tries < retry.times:
             self.tries += 1
             self.last_failure = failure.sentence
-            self.told = AGAIN(why=failure.sentence, number=self.tries, most=retry.times)
+            self.feedback = AGAIN(why=failure.sentence, number=self.tries, most=retry.times)
             self.again_at = self.time.now + retry.backoff_s
             self.time.wake_at(self.again_at)
             return Status.RUNNING
@@ -254,7 +256,9 @@ class Act(Leaf):
 
     def _wait(self) -> Status:
         if self.again_at is not None and self.time.now >= self.again_at:
+            before = command_kept(self.entry) or self.last
             self.send()
+            self.last = before
             return self.update()
         return Status.RUNNING
 
@@ -509,7 +513,7 @@ class TakeDevices(Await):
         status = super().update()
         if status is Status.RUNNING and (awaited := self.shared.awaited(self.devices)):
             device, holder, holds = awaited
-            self.told = (WAITS_FOR_DEVICE if holds else WAITS_FOR_TURN)(device=device, cell=holder)
+            self.feedback = (WAITS_FOR_DEVICE if holds else WAITS_FOR_TURN)(device=device, cell=holder)
         return status
 
     def _taken(self) -> bool:

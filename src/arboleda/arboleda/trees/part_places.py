@@ -83,6 +83,7 @@ class Places:
         self._rack = frozenset(place.target for place in cell.rack)
         self._noted = {None, *self._rack}  # what a hand took there is kept, where there is but a rack
         self._hands = {space.hand.name: space for space in cell.spaces if space.hand.held_fact}
+        self._carts = _carts(cell)
         self._of_device: dict[str, list[str]] = {}
         for place in cell.places:
             if place.device is not None:
@@ -119,6 +120,7 @@ class Places:
         """Go by another version of the cell from now on, which has the same places."""
         self._cell = cell
         self._hands = {space.hand.name: space for space in cell.spaces if space.hand.held_fact}
+        self._carts = _carts(cell)
 
     def parts(self, target: str) -> int:
         """The number of parts at a place."""
@@ -203,14 +205,14 @@ class Places:
         return self._without_part(command.robot) if command.works_on_part else None
 
     def _without_part(self, device: str) -> Sentence | None:
-        """Why a device cannot take hold of a part, or work on one; a part in a hand there counts."""
+        """Why a device cannot take hold of a part, or work on one; what a hand or a cart has there counts."""
         targets = self._of_device.get(device)
         if not targets or any(map(self.parts, targets)):
             return None
-        holding = (
+        holding = [
             each for hand, each in self._hands.items() if self._dispatcher.effectors.grips.holding(hand)
-        )
-        if any(self._target(space) in targets for space in holding):
+        ]
+        if any(self._target(space) in targets for space in (*holding, *self._carts)):
             return None
         return NO_PART(robot=device, places=tuple(targets))
 
@@ -260,7 +262,7 @@ class Places:
 
     def _is_ours(self, hand: str) -> bool:
         """False while another cell has a hand that it shares with this one."""
-        return hand not in self._cell.shared or self._devices.holder(hand) in (None, self._cell.name)
+        return not self._devices.is_lent(hand)
 
     def _keep(self) -> None:
         """Have the books kept: `nest=1` for a place, `jaw:nest+` for a hand and where it took its part.
@@ -272,6 +274,12 @@ class Places:
         words += [f"{hand}{OF_HAND}{part.written}" for hand, part in held]
         self._dispatcher.memory.remember(Fact.STORED, self._cell.name, None)
         self._dispatcher.memory.remember(Fact.PARTS, self._cell.name, " ".join(words) or None)
+
+
+def _carts(cell: Cell) -> list[Workspace]:
+    """Mobile robots without a hand: nobody counts what they carry, and they go to a place to bring it."""
+    driven = (space for space in cell.spaces if space.robot.position_key == "node")
+    return [space for space in driven if not space.hand.held_fact]
 
 
 def _stands(space: Workspace, here: Position, at: Position | None) -> bool:

@@ -241,7 +241,8 @@ def _plain(said: Failure | Sentence | TaskAnswer) -> Any:
     return [str(said), said.data()]
 
 
-ENCODE = json.JSONEncoder(separators=(",", ":"), default=_plain).encode
+# Nothing that is kept contains itself, so nobody need look for that.
+ENCODE = json.JSONEncoder(check_circular=False, separators=(",", ":"), default=_plain).encode
 
 
 def _known(

@@ -99,7 +99,7 @@ class WalkBack:
         self._nodes = nodes
         self.due: float | None = None
         self._displaced: dict[str, int | None] = {}  # the boots after which devices have to be put right
-        self._heard_since: float | None = None  # since when all of its devices are heard and stand still
+        self._reporting_since: float | None = None  # since when all of its devices are heard and stand still
 
     def judge(self, context: Context) -> Finding:
         """By what the devices of the task say now."""
@@ -114,7 +114,7 @@ class WalkBack:
             obstacle = context.robots.obstacle(name)
             if obstacle is not None or belief.moves:
                 waits = obstacle.sentence if obstacle else STILL_MOVING(robot=name)
-                self._heard_since = None
+                self._reporting_since = None
                 return Finding(waits=waits, fates={})
             if (echo := self._echo(belief, context.commands.task)) is not None:
                 echoes[name] = echo
@@ -122,9 +122,9 @@ class WalkBack:
                 troubles[name] = trouble
         if len(echoes) > 1:  # of two nobody knows which came first
             troubles |= {name: _more(name) for name in echoes}
-        if self._heard_since is None:
-            self._heard_since = context.time.plant_now
-        settled_at = self._heard_since + context.timing.effector_timeout_s
+        if self._reporting_since is None:
+            self._reporting_since = context.time.plant_now
+        settled_at = self._reporting_since + context.timing.effector_timeout_s
         early = context.time.plant_now < settled_at
         echo = next(iter(echoes.values()), None)
         fates: dict[Keeps, Fate] = {}
@@ -217,12 +217,12 @@ class WalkBack:
         if grip == Grip.ON and holds is False:
             return Trouble(Reason.PART_LOST, LOST(robot=name), NO_PART(arm=name))
         if echo is None and name not in self.trail.used:
-            return self._moved(belief) or self._told_more(belief)
+            return self._moved(belief) or self._more_commands(belief)
         if not self._is_numbered(belief):
             return Trouble(Reason.INTERRUPTED, NO_NUMBERS(robot=name))
-        if echo is None and (more := self._told_more(belief)) is not None:
+        if echo is None and (more := self._more_commands(belief)) is not None:
             return more
-        if grip is not None and holds is None:
+        if grip in (Grip.ON, Grip.SWITCHING) and holds is None:  # one that is off was told nothing since
             return Trouble(Reason.INTERRUPTED, UNPROVEN(robot=name))
         if grip == Grip.OFF and holds:
             return Trouble(Reason.INTERRUPTED, HOLDS(robot=name))
@@ -232,7 +232,7 @@ class WalkBack:
         """True for a device that numbered its commands when this was kept, and does so now."""
         return belief.numbers_commands and self.trail.known[belief.robot.name].boot is not None
 
-    def _told_more(self, belief: Belief) -> Trouble | None:
+    def _more_commands(self, belief: Belief) -> Trouble | None:
         """Why one may have been told something of which this plant knows nothing, by its numbers.
 
         Of one that was not used, too: after a power cut the steps that used it may not have been kept.

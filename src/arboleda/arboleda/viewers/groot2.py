@@ -46,11 +46,11 @@ class WatchedTree:
         """The reply to a client, whatever it sent."""
         try:
             request = messages.request_of(parts)
-            return messages.reply(request, self._tree.name, *self._told(request, now_us))
+            return messages.reply(request, self._tree.name, *self._content(request, now_us))
         except NoAnswer as error:
             return messages.refusal(error)
 
-    def _told(self, request: Request, now_us: int) -> list[bytes]:
+    def _content(self, request: Request, now_us: int) -> list[bytes]:
         if request.type is Type.TREE:
             return [self._tree.xml]
         if request.type is Type.STATUS:

@@ -22,7 +22,7 @@ Alarm = dict[str, Any]
 TASK_FAILED, CELL_HELD, CELL_CLEARED = "task_failed", "cell_held", "cell_cleared"
 CELL_BLOCKED, PERSON_ASKED, PLANT_AWAY = "cell_blocked", "person_asked", "plant_away"
 MEMORY_SLOW, MEMORY_FAST = "memory_slow", "memory_fast"
-BLOCKED_S = 10.0  # a cell is blocked for so long before anybody is told: a board that boots is back by then
+BLOCKED_S = 10.0  # a cell is blocked for so long before its alarm: a board that boots is back by then
 NEEDS_SOMEBODY = frozenset({CellState.HELD, CellState.ABORTED, CellState.STOPPED})
 AT_WORK_AGAIN = frozenset({CellState.IDLE, CellState.EXECUTE})
 ASKED = Phrase("alarm.asked", "{person} is asked in {cell}: {question}")
@@ -76,8 +76,8 @@ def of_absence(plant: Plant, away_s: float) -> Alarm:
     """The alarm for an absence of the plant: its length, and the cells that it holds or that went on."""
     why = AWAY(seconds=away_s)
     held = {name: run for name, run in plant.cells.items() if run.trouble and run.trouble.sentence == why}
-    stay = ", ".join(name for name, run in held.items() if not run.goes_on)
-    go_on = ", ".join(name for name, run in held.items() if run.goes_on)
+    stay = ", ".join(name for name, run in held.items() if not run.absence.hold)
+    go_on = ", ".join(name for name, run in held.items() if run.absence.hold)
     sentence = why if held else AWAY_AT_REST(why=why)
     if go_on:
         sentence = AWAY_GOES_ON(why=sentence, cells=go_on)
@@ -103,12 +103,12 @@ def of_cell(plant: Plant, cell: str) -> Alarm:
 
 
 def _why(run: CellRun) -> Sentence:
-    asked = [
+    questions = [
         ASKED(person=each.robot, cell=run.cell.name, question=OWN(text=each.text)) for each in _questions(run)
     ]
-    if not asked:
+    if not questions:
         return reasons.of_waiting(run) or NOTHING
-    return reduce(lambda first, second: BOTH(first=first, second=second), asked)
+    return reduce(lambda first, second: BOTH(first=first, second=second), questions)
 
 
 def _questions(run: CellRun) -> list[Question]:
@@ -138,5 +138,5 @@ def _task(id: str, text: str) -> Alarm:
     return {"id": _short(id), "text": _short(text)}
 
 
-def _short(said: object) -> str:
-    return plain(str(said), LONGEST)
+def _short(value: object) -> str:
+    return plain(str(value), LONGEST)

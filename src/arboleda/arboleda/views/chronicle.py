@@ -17,20 +17,20 @@ EVENTS = 1000  # kept; older ones are forgotten
 
 Event = dict[str, Any]
 Row = dict[str, Any]
-Told = tuple["str | None", str, str, str, Sentence]
+PlantNews = tuple["str | None", str, str, str, Sentence]
 
 
 class Chronicle:
     """Events {number, at (unix s), cell, kind, subject, what, sentence}, the newest last.
 
-    `kind` is task, cell, robot, zone, operator or foreign; `what` the word of the new state.
+    `kind` is task, cell, robot, zone, operator, foreign or fault; `what` the word of the new state.
     """
 
     def __init__(self, past_acts: Iterable[Row] = ()) -> None:
         self.events: deque[Event] = deque(maxlen=EVENTS)
         self._count = 0
         self._known: dict[tuple[str, str], str] = {}
-        self._last_act = self._last_interference = 0
+        self._last_act = self._last_interference = self._last_fault = 0
         self._awaited: set[int] = set()  # the acts whose end is still to come
         for act in past_acts:
             self._did(act["at"], act)
@@ -46,8 +46,9 @@ class Chronicle:
                 self._awaited.discard(act["number"])
                 if act["ended"] is not None:
                     self._ended(unix_s - (snapshot["at"] - act["ended_at"]), act)
-        told = (*self._interference(snapshot), *_states(snapshot, self._known))
-        for cell, kind, subject, what, sentence in told:
+        self._provoked(snapshot, unix_s)
+        news = (*self._interference(snapshot), *_states(snapshot, self._known))
+        for cell, kind, subject, what, sentence in news:
             if kind == "foreign" or self._known.get((kind, subject)) != what:
                 first = (kind, subject) not in self._known
                 self._known[(kind, subject)] = what
@@ -65,7 +66,16 @@ class Chronicle:
         subject = act["scope"] or "plant"
         self._add(at, act["cell"], "operator", subject, act["outcome"], as_sentence(act["ended"]))
 
-    def _interference(self, snapshot: Row) -> Iterator[Told]:
+    def _provoked(self, snapshot: Row, unix_s: float) -> None:
+        """Add the faults that people had happen to virtual devices."""
+        cell_of = _cells(snapshot)
+        for each in snapshot.get("faults", ()):  # a plant of an earlier version tells of none
+            if each["number"] > self._last_fault:
+                self._last_fault, robot = each["number"], each["robot"]
+                at = unix_s - (snapshot["at"] - each["at"])
+                self._add(at, cell_of.get(robot), "fault", robot, "provoked", each["sentence"])
+
+    def _interference(self, snapshot: Row) -> Iterator[PlantNews]:
         cell_of = _cells(snapshot)
         for each in snapshot["interference"]:
             if each["number"] > self._last_interference:
@@ -97,7 +107,7 @@ def _cells(snapshot: Row) -> dict[str, str]:
     return {each["name"]: cell["name"] for cell in snapshot["cells"] for each in cell["devices"]}
 
 
-def _states(snapshot: Row, known: Container[tuple[str, str]]) -> Iterator[Told]:
+def _states(snapshot: Row, known: Container[tuple[str, str]]) -> Iterator[PlantNews]:
     """The state of every cell, task, robot and zone: cell, kind, subject, state, sentence.
 
     Of a task that is not `known` yet also why it is done in its cell.

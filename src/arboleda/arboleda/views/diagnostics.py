@@ -12,7 +12,7 @@ from arboleda.wire.status import ERROR, OK, STALE, WARN
 
 Diagnostic = tuple[str, str, int, str, dict[str, str]]
 TIMES = frozenset({"age_s", "telemetry_hz"})  # a diagnosis changes with the robot, not with time
-UNKNOWN = "?"  # a fact that nobody has said yet
+UNKNOWN = "?"  # a fact that was not reported yet
 
 
 def diagnostics(snapshot: dict[str, Any]) -> Iterator[Diagnostic]:
@@ -27,7 +27,7 @@ def record(trouble: str) -> Diagnostic:
 
 
 def memory(trouble: Sentence | None) -> Diagnostic:
-    """The status of the plant's memory; `trouble` tells that it is slow."""
+    """The status of the plant's memory; `trouble` is a sentence if it is slow."""
     return ("arboleda: memory", "", WARN if trouble else OK, str(trouble or "commits are fast"), {})
 
 

@@ -109,8 +109,8 @@ def oee(cell: str, kept: KeptFigures, since_s: float, until_s: float) -> Oee:
     ran, broke = _runs(kept.runs, until_s)
     works = [work for work in kept.works if work.cell == cell]
     down = [(each.since_s, _end(each.until_s, until_s)) for each in kept.downs if each.cell == cell]
-    asked = joined((work.accepted_s, _end(work.ended_s, until_s)) for work in works)
-    planned = common(common(asked, joined([*ran, *broke])), window)
+    work_spans = joined((work.accepted_s, _end(work.ended_s, until_s)) for work in works)
+    planned = common(common(work_spans, joined([*ran, *broke])), window)
     working = without(ran, joined(down))
     at_work = joined(_at_work(work, until_s) for work in works if work.started_s is not None)
     worked_s = length(common(common(at_work, working), planned))

@@ -62,8 +62,8 @@ def _steps(frame: Behaviour, *, done: bool) -> list[bool]:
 def _add(node: Behaviour, path: str, now: float, found: list[dict[str, Any]]) -> None:
     status: Status = node.status
     since_s, deadline_s = _times(node, now) if status is Status.RUNNING else UNKNOWN
-    sign, told = _KIND_OF.get(type(node)) or kind(node), getattr(node, "told", None)
-    feedback = node.feedback_message if told is None else told or ""
+    sign, text = _KIND_OF.get(type(node)) or kind(node), getattr(node, "feedback", None)
+    feedback = node.feedback_message if text is None else text or ""
     failure = feedback if feedback and status is Status.FAILURE else getattr(node, "last_failure", None)
     found.append(
         {
@@ -75,7 +75,7 @@ def _add(node: Behaviour, path: str, now: float, found: list[dict[str, Any]]) ->
             "status": WORDS[status],
             "feedback": feedback,
             "description": _description(node) if sign == OWN else "",
-            "parameters": TOLD.get(sign, _own_parameters)(node),
+            "parameters": PARAMETERS.get(sign, _own_parameters)(node),
             "since_s": since_s,
             "deadline_s": deadline_s,
             "failure": failure,
@@ -138,7 +138,7 @@ def _of_await(node: Any) -> dict[str, Any]:
     return {"seconds": node.seconds, **zones, **devices}
 
 
-TOLD: dict[str, Callable[[Any], dict[str, Any]]] = {
+PARAMETERS: dict[str, Callable[[Any], dict[str, Any]]] = {
     "command": _of_command,
     "await": _of_await,
     "dwell": lambda node: {"seconds": node.seconds},

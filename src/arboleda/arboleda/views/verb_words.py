@@ -159,8 +159,8 @@ ABOUT: dict[Verb, VerbWords] = {
         label="Parts taken out",
         page="Parts were taken out of places or the rack: the plant forgets them. Moves nothing.",
         arguments={
-            "place": "The one place that is meant.",
-            "station": "The number of the one station that is meant.",
+            "place": "Only this place.",
+            "station": "Only the station with this number.",
         },
         brief="Say that parts were taken out of all places and the rack, or of one place or station; moves "
         "nothing.",

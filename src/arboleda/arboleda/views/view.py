@@ -97,6 +97,7 @@ def in_parts(plant: Plant, part_of: PartOf = cell_part) -> Generator[None, None,
         "zones": plant.zones.snapshot(),
         "acts": [_act(act) for act in plant.acts],
         "interference": [vars(each) for each in plant.dispatcher.interference.noticed],
+        "faults": [vars(each) for each in plant.provoked.last],
         "ignored": dict(plant.dispatcher.ledger.ignored),
     }
 
@@ -164,11 +165,11 @@ def _device(role: str, robot: Robot) -> dict[str, Any]:
 
 def devices_once(cells: Iterable[dict[str, Any]]) -> Iterator[tuple[str, dict[str, Any]]]:
     """Each device of these cells, with its cell; a shared one with the first of them."""
-    seen: set[str] = set()
+    names: set[str] = set()
     for cell in cells:
         for device in cell["devices"]:
-            if device["name"] not in seen:
-                seen.add(device["name"])
+            if device["name"] not in names:
+                names.add(device["name"])
                 yield cell["name"], device
 
 
@@ -248,22 +249,22 @@ def _cell(plant: Plant, cell: CellRun) -> dict[str, Any]:
         "refused": _refused(plant, cell.cell.name, OF_CELLS),
         "tree": tree_view.rows(cell.tree, now) if cell.tree else [],
         "places": _places(cell) if cell.cell.counted else [],
-        "teaching": None if cell.teaching is None else teaching(plant, cell),
+        "teaching": None if cell.manual.teaching is None else teaching(plant, cell),
     }
 
 
 def teaching(plant: Plant, cell: CellRun) -> dict[str, Any] | None:
     """The manual mode of a cell: who teaches it, what moves, and why the last press came to nothing."""
-    if cell.teaching is None:
+    if cell.manual.teaching is None:
         return None
-    held = cell.teaching.held
+    held = cell.manual.teaching.held
     return {
-        "session": cell.teaching.session,
-        "teacher": cell.teaching.teacher,
-        "seconds": plant.now - cell.teaching.since,
+        "session": cell.manual.teaching.session,
+        "teacher": cell.manual.teaching.teacher,
+        "seconds": plant.now - cell.manual.teaching.since,
         "robot": None if held is None else held.robot,
         "number": None if held is None else held.number,
-        "trouble": cell.teaching.trouble,
+        "trouble": cell.manual.teaching.trouble,
     }
 
 
@@ -284,7 +285,7 @@ def _places(run: CellRun) -> list[dict[str, Any]]:
 
 
 def _not_ready(cell: CellRun, ways: tuple[Advice, ...]) -> Sentence | None:
-    """The reason why an idle cell would start no task, and the remedy; a paused queue tells that itself."""
+    """The reason why an idle cell would start no task, and the remedy; a paused queue has its own words."""
     why = cell.not_ready
     if why is None or why == cell.queue.why_paused or not ways:
         return why
@@ -344,7 +345,7 @@ def standing(cell: dict[str, Any]) -> str:
     return "paused" if only_paused else "blocked"
 
 
-def standing_said(cell: dict[str, Any]) -> str:
+def standing_text(cell: dict[str, Any]) -> str:
     """The word for a cell's state, and for an idle cell that cannot work: `idle, blocked`."""
     state, stands = str(cell["state"]), standing(cell)
     return state if stands == state else f"{state}, {stands}"
@@ -352,10 +353,10 @@ def standing_said(cell: dict[str, Any]) -> str:
 
 def waited_for(snapshot: dict[str, Any]) -> dict[str, list[str]]:
     """The cells of a snapshot that wait for people: whom they wait for, by name."""
-    asked = {robot["name"]: robot["holder"] for robot in snapshot["robots"] if robot["question"] is not None}
+    asking = {robot["name"]: robot["holder"] for robot in snapshot["robots"] if robot["question"] is not None}
     cells = {cell["name"]: [device["name"] for device in cell["devices"]] for cell in snapshot["cells"]}
     waits = {
-        cell: [name for name in names if name in asked and asked[name] in (None, cell)]
+        cell: [name for name in names if name in asking and asking[name] in (None, cell)]
         for cell, names in cells.items()
     }
     return {cell: names for cell, names in waits.items() if names}
@@ -423,11 +424,11 @@ def _question(entry: Entry | None, now: float) -> dict[str, Any] | None:
     """The open question to a person, its answers, and the seconds left; None if there is none."""
     if entry is None or not isinstance(entry.command, Question):
         return None
-    asked = entry.command
+    question = entry.command
     return {
-        "id": asked.id,
-        "text": asked.text,
-        "answers": list(asked.answers),
+        "id": question.id,
+        "text": question.text,
+        "answers": list(question.answers),
         "left_s": max(entry.deadline - now, 0.0),
     }
 

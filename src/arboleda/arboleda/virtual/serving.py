@@ -18,7 +18,8 @@ FaultNames = Annotated[
 FaultPort = Annotated[
     int,
     typer.Option(
-        metavar="PORT", help="Where faults are switched over HTTP, PUT and DELETE /faults/NAME; 0: any free."
+        metavar="PORT",
+        help="Port where faults are switched over HTTP, PUT and DELETE /faults/NAME; 0: any free one.",
     ),
 ]
 
@@ -53,7 +54,8 @@ def serve(
     over = threading.Event()
     signal.signal(signal.SIGTERM, lambda *_: over.set())
     signal.signal(signal.SIGINT, lambda *_: over.set())
-    controller, switchboard = make(faults), Switchboard(faults, port)
+    switchboard = Switchboard(faults, port)  # first: if its port is taken nothing else has begun
+    controller = make(faults)
     controller.start()
     switchboard.start()
     print(controller.says, flush=True)

@@ -22,6 +22,7 @@ from starlette.types import Receive, Scope, Send
 
 from arboleda import __version__
 from arboleda.bt_xml.editing.errors import EditError
+from arboleda.client.protocol import COMMAND_LINE
 from arboleda.core.leaving import StopLeft
 from arboleda.model.errors import ArboledaError, PayloadError, QueueFull, TextError
 from arboleda.model.messages import Outcome, Verb
@@ -33,13 +34,15 @@ from . import limits, stream
 from .access import login
 from .access.auth import SUBMIT, Forbidden, require
 from .desks.draft import DraftRefused
+from .desks.faults import FaultRefused
 from .limits import LATER_S
-from .plant_api import COMMAND_LINE, PlantApi
+from .plant_api import PlantApi
 from .request import METRICS, is_api
 from .routes import routers as looks
 from .schema import openapi
 from .schema.bodies import (
     Act,
+    AnyVerbArguments,
     Done,
     KeptTask,
     Sentence,
@@ -93,7 +96,14 @@ Where the plant is open to a network every request carries a token (Authorizatio
 that stands by for the plant answers 307 with the address of the one that leads it, to which a client shows
 its token itself, or 503 with Retry-After. Who names a plant in a header Arboleda-Plant is refused with 421
 where another one answers. The stop is a stop in software and no safety function."""
-STATUS = {TextError: 422, PayloadError: 422, EditError: 422, Forbidden: 403, DraftRefused: 409}
+STATUS = {
+    TextError: 422,
+    PayloadError: 422,
+    EditError: 422,
+    Forbidden: 403,
+    DraftRefused: 409,
+    FaultRefused: 409,
+}
 OTHERS: Answers = {
     "default": {"model": Sentence, "description": "401 without a token, 413 too long, 429 too often, ..."}
 }
@@ -292,7 +302,7 @@ def named(verb: Verb, scope: str, arguments: Arguments) -> tuple[str, Arguments]
     return (scope, arguments) if arguments else from_text(verb, scope)
 
 
-def verb_arguments(body: bytes) -> VerbArguments:
+def verb_arguments(body: bytes) -> AnyVerbArguments:
     """The arguments in a body, none where it is empty; raises PayloadError for anything else."""
     try:
         return VerbArguments.model_validate_json(body or b"{}")
@@ -334,8 +344,9 @@ async def refuse(_request: Request, error: Exception) -> JSONResponse:
     if isinstance(error, HTTPException):
         return JSONResponse({"sentence": error.detail}, status_code=error.status_code, headers=error.headers)
     headers = {"retry-after": LATER_S} if isinstance(error, QueueFull) else None
+    status = STATUS.get(type(error), 503) if isinstance(error, ArboledaError) else 503
     body = {"sentence": error.sentence if isinstance(error, ArboledaError) else str(error)}
-    return PlainJson(explained(body), status_code=STATUS.get(type(error), 503), headers=headers)
+    return PlainJson(explained(body), status_code=status, headers=headers)
 
 
 async def own_up(request: Request, error: Exception) -> JSONResponse:
@@ -352,8 +363,12 @@ def _body(*models: type[BaseModel], required: bool = True) -> dict[str, Any]:
 
 
 def _kept(row: TaskRow) -> dict[str, Any]:
-    answers = [vars(each) for each in answers_of(row)]
-    data = asdict(row) | {"sentence": row.sentence or "", "answers": answers, "choice": choice_of(row)}
+    answers, choice = [vars(each) for each in answers_of(row)], choice_of(row)
+    data = asdict(row) | {
+        "sentence": row.sentence or "",
+        "answers": answers,
+        "choice": None if choice is None else str(choice),
+    }
     data["unchecked"] = unchecked_of(row)
     sentence = json.loads(data.pop("said") or "{}")
     del data["course"]  # the plant estimates the duration of the next one from it

@@ -6,6 +6,8 @@ import time
 from collections import OrderedDict
 from collections.abc import Callable
 
+from arboleda.client.protocol import BEAT_S as BEAT_S
+
 API_BODY_BYTES = 4096
 PAGE_BODY_BYTES = 65536
 TREE_BODY_BYTES = 512 * 1024  # a file of trees, of a recipe with its 2,000 nodes, as JSON
@@ -25,7 +27,6 @@ MESSAGE = (50.0, 200)
 CONNECTIONS = 300  # of one server; a plant says how many its limit of open files allows
 SOCKETS = 64
 STREAMS = 64
-BEAT_S = 15.0  # after so long without a change a stream says that it is still there
 
 
 def lasting(most: int, connections: int) -> int:

@@ -21,13 +21,13 @@ from arboleda.views import forms, view
 from arboleda.views.oee import Oee
 
 from .desks.draft import DraftApi
+from .desks.faults import FaultsApi
 from .desks.make import MakeApi
+from .desks.proposals import ProposalsApi
 from .desks.teach import TeachApi
 from .desks.versions import VersionsApi
 from .languages import spoken, texts
 
-PLANT = "arboleda-plant"  # header by which a client names the plant it means
-COMMAND_LINE = "arboleda"  # the User-Agent of our own command, before its version
 Snapshot = dict[str, Any]
 Found = TypeVar("Found")
 
@@ -79,8 +79,18 @@ class PlantApi(Protocol):
         return None
 
     @property
+    def faults(self) -> FaultsApi | None:
+        """The faults that can be provoked at its virtual devices; None where that is not done from here."""
+        return None
+
+    @property
     def versions(self) -> VersionsApi | None:
         """The versions of its files; None where it has no plant file that could be changed."""
+        return None
+
+    @property
+    def proposals(self) -> ProposalsApi | None:
+        """The proposals of assistants; None where it has no plant file that could be changed."""
         return None
 
     @abstractmethod
@@ -90,6 +100,11 @@ class PlantApi(Protocol):
     @abstractmethod
     def history(self, query: TaskQuery) -> list[TaskRow]:
         """Tasks of this and earlier starts; waits for the disk."""
+
+    @abstractmethod
+    def report(self, task: str) -> str | None:
+        """The report on a failed task, as one HTML file; None: it is being written now, ask again. It waits
+        for the disk; an ArboledaError says why there is none."""
 
     @abstractmethod
     def oee(self, query: OeeQuery) -> list[Oee]:

@@ -13,7 +13,7 @@ from .access.names import is_loopback
 
 API, LOGIN, LOGOUT, METRICS = "/api/", "/login", "/logout", "/metrics"
 DRAFT_TREES = "/api/draft/set_trees"
-TREES = ("/api/trees/", "/api/make/drawn/", "/api/make/device", "/api/make/runs/reach")
+TREES = ("/api/trees/", "/api/make/drawn/", "/api/make/device", "/api/make/runs/reach", "/api/proposals")
 STOP = re.compile(r"/api/(plant|cells/[^/]+|plants(/[^/]+)?)/stop")
 JOG = re.compile(r"/api/teach/[^/]+/jog")
 READS = {"GET", "HEAD"}
@@ -34,7 +34,7 @@ class RequestHead:
         self._headers = [
             (name.decode("latin-1"), value.decode("latin-1", "replace")) for name, value in scope["headers"]
         ]
-        self._first = dict(reversed(self._headers))
+        self._first: dict[str, str] = dict(reversed(self._headers))
 
     def header(self, name: str) -> str:
         return self._first.get(name, "")
@@ -85,7 +85,7 @@ class RequestHead:
 
     @property
     def has_tree(self) -> bool:
-        """True if the body is a file of trees."""
+        """True if the body has files of trees."""
         return not self.socket and (self.path.startswith(TREES) or self.path == DRAFT_TREES)
 
     @property

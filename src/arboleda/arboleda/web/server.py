@@ -54,6 +54,9 @@ class Guest(Protocol):
         """True if the client showed a login with its last request."""
 
 
+G = TypeVar("G", bound=Guest)
+
+
 class Admission:
     """Counts the connections of one server: at most `most`, and of one address `per_peer`.
 
@@ -71,7 +74,7 @@ class Admission:
         """The number of the next connection."""
         return next(self._numbers)
 
-    def surplus(self, guests: Collection[Guest], others: int, newcomer: Guest) -> Guest | None:
+    def surplus(self, guests: Collection[G], others: int, newcomer: G) -> G | None:
         """The guest to disconnect for the newcomer, which is among `guests`; None if there is room.
 
         `others` is the number of connections that count but cannot be cut.
@@ -82,7 +85,7 @@ class Admission:
         return _oldest(guests, newcomer) if len(guests) + others > self.most else None
 
 
-def _oldest(crowd: Collection[Guest], newcomer: Guest) -> Guest:
+def _oldest(crowd: Collection[G], newcomer: G) -> G:
     waiting = [guest for guest in crowd if guest.waits and guest is not newcomer]
     strangers = [guest for guest in waiting if not guest.known]
     # Who has just come has had no time to show a login. Where it is the known ones that crowd, strangers
@@ -398,7 +401,7 @@ class Server:
             self._thread = None
 
 
-def _protocol(admission: Admission, tls: ServerTls | None) -> Callable[..., asyncio.Protocol]:
+def _protocol(admission: Admission, tls: ServerTls | None) -> Callable[..., asyncio.BaseProtocol]:
     """The factory that makes the protocol object of each connection."""
     if tls is None:
         return partial(Connection, admission=admission)

@@ -64,7 +64,7 @@ class Board:
         self.copies = Copies()
         self.counters = Counters()
         self._foreign = ForeignCommandCount()
-        self._foreign_told_at = 0.0
+        self._foreign_reported_at = 0.0
         self._plant: int | None = None
         self._last: Report | None = None
         self._words: Words | None = None  # of the last telemetry, until a command changes what it means
@@ -133,14 +133,14 @@ class Board:
         self._words = None
         return [rejection, self._word(at)] if command.id else [rejection]
 
-    def told_of(self, at: float, sentence: Sentence, *, refused: bool) -> list[Message]:
+    def report_foreign(self, at: float, sentence: Sentence, *, refused: bool) -> list[Message]:
         """Report a command of somebody else to the plant that commands the robot."""
         self._count_foreign(sentence, refused=refused)
-        told = [] if refused else [ForeignCommand(at=at, robot=self.robot.name, sentence=sentence)]
-        if at < self._foreign_told_at + AGAIN_S:
-            return [*told]
-        self._foreign_told_at = at
-        return [*told, self._word(at)]
+        reports = [] if refused else [ForeignCommand(at=at, robot=self.robot.name, sentence=sentence)]
+        if at < self._foreign_reported_at + AGAIN_S:
+            return [*reports]
+        self._foreign_reported_at = at
+        return [*reports, self._word(at)]
 
     def _count_foreign(self, sentence: Sentence, *, refused: bool) -> None:
         known, self._words = self._foreign, None
@@ -187,14 +187,14 @@ class Board:
         if channel is Channel.TELEMETRY and not ending and (again := self._again(delivery)):
             return [again]
         try:
-            said = decode(channel, delivery.payload, axes=self._form.axes)
-            self._check(said, delivery)
+            message = decode(channel, delivery.payload, axes=self._form.axes)
+            self._check(message, delivery)
         except PayloadError as error:
             self._count(UNREADABLE(topic=delivery.topic, why=error.sentence))
             return []
-        if isinstance(said, Presence):
-            return self._presence(delivery.at, said.online)
-        return self._telemetry(delivery, said) if isinstance(said, Telemetry) else []
+        if isinstance(message, Presence):
+            return self._presence(delivery.at, message.online)
+        return self._telemetry(delivery, message) if isinstance(message, Telemetry) else []
 
     def _again(self, delivery: Delivery) -> Report | None:
         """The last report once more, if the message has the same meaning; else None."""
@@ -225,15 +225,15 @@ class Board:
         self._words, self._last = words, last.again(delivery.at, **news)
         return self._last
 
-    def _check(self, said: Payload, delivery: Delivery) -> None:
-        if not isinstance(said, (Presence, Telemetry)):
+    def _check(self, message: Payload, delivery: Delivery) -> None:
+        if not isinstance(message, (Presence, Telemetry)):
             raise PayloadError("a command is not for the bridge")
-        if delivery.retain and isinstance(said, Telemetry):
+        if delivery.retain and isinstance(message, Telemetry):
             raise PayloadError("telemetry is retained: nobody knows how old it is")
-        if isinstance(said, Telemetry) and said.node is not None and said.node >= self._form.nodes:
-            raise PayloadError(f"nodo is {said.node}; allowed: 0 to {self._form.nodes - 1}")
-        if isinstance(said, Telemetry) and said.facts is not None:
-            self._form.told(said.facts)
+        if isinstance(message, Telemetry) and message.node is not None and message.node >= self._form.nodes:
+            raise PayloadError(f"nodo is {message.node}; allowed: 0 to {self._form.nodes - 1}")
+        if isinstance(message, Telemetry) and message.facts is not None:
+            self._form.facts_in(message.facts)
 
     def _presence(self, at: float, online: bool) -> list[Message]:
         self.link.presence(online)
@@ -241,24 +241,25 @@ class Board:
             return self.lose(at)
         return self._stop_again(at) if self.link.up else []
 
-    def _telemetry(self, delivery: Delivery, said: Telemetry) -> list[Message]:
+    def _telemetry(self, delivery: Delivery, message: Telemetry) -> list[Message]:
         at = delivery.at
-        heard = self.link.hear(at, said)
-        if heard is LinkUpdate.OLD:
+        update = self.link.hear(at, message)
+        if update is LinkUpdate.OLD:
             self.counters = replace(self.counters, old=self.counters.old + 1)
-        if heard is LinkUpdate.ABSENT:
+        if update is LinkUpdate.ABSENT:
             self._count(ABSENT())
-        if heard in (LinkUpdate.LATE, LinkUpdate.ABSENT, LinkUpdate.OLD):
+        if update in (LinkUpdate.LATE, LinkUpdate.ABSENT, LinkUpdate.OLD):
             return []
-        if heard is LinkUpdate.REBOOT:
+        if update is LinkUpdate.REBOOT:
             self.labels.reboot()
             self._motion = None
-        q, facts, ended = self._joints(said), self._form.told(said.facts), self.labels.hear(said)
-        if self._motion and self._motion.ended(at, said, q, ended, facts):
+        q, facts, ended = self._joints(message), self._form.facts_in(message.facts), self.labels.hear(message)
+        if self._motion and self._motion.ended(at, message, q, ended, facts):
             self._motion = None
-        out = [*self._objections(at), *self._given_up_before(at)]
-        self._last, self._words = self._told(at, said, q, facts), Words.of(delivery.payload, said)
-        return [*out, self._last, *([] if heard is LinkUpdate.NEWS else self._stop_again(at))]
+        out = [*self._objections(at), *self._earlier_failures(at)]
+        self._last = self._telemetry_report(at, message, q, facts)
+        self._words = Words.of(delivery.payload, message)
+        return [*out, self._last, *([] if update is LinkUpdate.NEWS else self._stop_again(at))]
 
     def _objections(self, at: float) -> list[Message]:
         """The messages for what telemetry newly shows: refused commands, and commands from others."""
@@ -282,7 +283,7 @@ class Board:
             return None
         return rejections.beaten(self.robot, self.labels.beaten_by, yielded=news is News.YIELDED)
 
-    def _given_up_before(self, at: float) -> list[Message]:
+    def _earlier_failures(self, at: float) -> list[Message]:
         """A report of each newly abandoned command but the last, which is part of the usual report."""
         return [
             replace(self._word(at), failed=command_id, failure=word)
@@ -343,37 +344,39 @@ class Board:
             return []
         return self._send(at, Stop(id="", robot=self.robot.name, mode=StopMode.LATCH))
 
-    def _joints(self, said: Telemetry) -> tuple[float, ...] | None:
-        return None if said.q is None else self._in_si(said.q)
+    def _joints(self, message: Telemetry) -> tuple[float, ...] | None:
+        return None if message.q is None else self._in_si(message.q)
 
     def _in_si(self, angles: tuple[float, ...]) -> tuple[float, ...]:
         rows = zip(self._axes, angles, strict=True)
         return tuple([from_wire(joint, value) for joint, value in rows])
 
-    def _told(self, at: float, said: Telemetry, q: tuple[float, ...] | None, facts: Facts | None) -> Report:
+    def _telemetry_report(
+        self, at: float, message: Telemetry, q: tuple[float, ...] | None, facts: Facts | None
+    ) -> Report:
         answered, answer = self.labels.answered or (None, None)
         failed, failure = self.labels.failed or (None, None)
         return self._report(
             at,
-            state=said.state,
+            state=message.state,
             accepted=self.labels.accepted,
             done=self.labels.done,
             q=q,
-            node=said.node,
-            homed=said.homed,
-            effector=said.effector,
-            piece=said.piece,
+            node=message.node,
+            homed=message.homed,
+            effector=message.effector,
+            piece=message.piece,
             facts=facts,
             answered=answered,
             answer=answer,
             failed=failed,
             failure=failure,
-            receipt=_receipt(said),
-            tokens=_tokens(said),
-            number=said.seq,
+            receipt=_receipt(message),
+            tokens=_tokens(message),
+            number=message.seq,
         )
 
-    def _report(self, at: float, **said: object) -> Report:
+    def _report(self, at: float, **fields: object) -> Report:
         rejected, word = self.labels.rejected or (None, None)
         foreign = self._foreign
         return Report(
@@ -387,7 +390,7 @@ class Board:
             foreign_refused=foreign.refused or None,
             foreign_obeyed=foreign.obeyed or None,
             foreign=foreign.last or None,
-            **said,  # type: ignore[arg-type]
+            **fields,  # type: ignore[arg-type]
         )
 
     @property
@@ -402,16 +405,16 @@ class Board:
         self.counters = replace(self.counters, refused=self.counters.refused + 1, last=sentence)
 
 
-def _receipt(said: Telemetry) -> Receipt | None:
-    if said.ack_epoch is None or said.ack is None:
+def _receipt(message: Telemetry) -> Receipt | None:
+    if message.ack_epoch is None or message.ack is None:
         return None
-    return Receipt(said.ack_epoch, said.ack, said.done)
+    return Receipt(message.ack_epoch, message.ack, message.done)
 
 
-def _tokens(said: Telemetry) -> Tokens | None:
-    if said.ack_token is None and said.done_token is None:
+def _tokens(message: Telemetry) -> Tokens | None:
+    if message.ack_token is None and message.done_token is None:
         return None
-    return Tokens(said.ack_token, said.done_token)
+    return Tokens(message.ack_token, message.done_token)
 
 
 @lru_cache(maxsize=256)

@@ -42,14 +42,14 @@ class Leaving:
 class UnconfirmedCopy:
     """Command without an id, reported as foreign at `due` unless it has proved to be a copy by then.
 
-    `told`: it was reported at once, or need not be.
+    `known`: it was reported at once, or need not be.
     """
 
     due: float
     board: Board
     event: FromPlant
     refused: bool
-    told: bool
+    known: bool
 
 
 Event = FromPlant | Delivery | Connection | Leaving
@@ -74,15 +74,15 @@ class Bridge:
             for name, board in self._boards.items()
             for channel in Channel
         }
-        heard = (Channel.TELEMETRY, Channel.PRESENCE)
-        self.subscriptions = tuple(topic for topic, (*_, channel) in self._routes.items() if channel in heard)
+        inbound = (Channel.TELEMETRY, Channel.PRESENCE)
+        self.subscriptions = tuple(topic for topic, (*_, kind) in self._routes.items() if kind in inbound)
         self._epoch = epoch
         self.now = now
         self._stale_after_s = stale_after_s
-        self._started_at = now  # never again once that was told
+        self._started_at = now  # never again once that was reported
         self._plant_epoch = 0
         self._plant_beats = False
-        self._plant_heard_at = -math.inf
+        self._plant_beat_at = -math.inf
         self._refuses_others = model.foreign_commands is ForeignCommands.REFUSE
         self._unsure: list[UnconfirmedCopy] = []
         self._beat_at = math.inf
@@ -99,7 +99,7 @@ class Bridge:
         """The time (s) at which `step` is due even without events; None if it never is."""
         due = min(self._started_at, self._beat_at, *self._stale_at.values())
         if self._unsure:
-            due = min(due, *(each.due for each in self._unsure if not each.told), math.inf)
+            due = min(due, *(each.due for each in self._unsure if not each.known), math.inf)
         return due if due < math.inf else None
 
     def step(self, now: float, events: Sequence[Event]) -> list[Message]:
@@ -188,33 +188,33 @@ class Bridge:
         commanded = self._is_commanded(at)
         refused = commanded and self._refuses_others and not is_stop(command)
         out = [] if refused else board.command(at, command, sender)
-        told = not commanded or any(isinstance(each, Rejection) for each in out)
-        unsure = UnconfirmedCopy(due=at + UNSURE_S, board=board, event=event, refused=refused, told=told)
-        if not told and not board.copies.flow:
-            out += self._told_of(unsure)
-            unsure = replace(unsure, told=True)
+        known = not commanded or any(isinstance(each, Rejection) for each in out)
+        unsure = UnconfirmedCopy(due=at + UNSURE_S, board=board, event=event, refused=refused, known=known)
+        if not known and not board.copies.flow:
+            out += self._report(unsure)
+            unsure = replace(unsure, known=True)
         self._unsure.append(unsure)
         return out
 
     def _is_commanded(self, at: float) -> bool:
         """True while a plant is heard: then nobody else commands its robots."""
-        return at < self._plant_heard_at + PLANT_GONE_S
+        return at < self._plant_beat_at + PLANT_GONE_S
 
     def _no_copies(self, now: float) -> list[Message]:
         due = [each for each in self._unsure if each.due <= now]
         self._unsure = [each for each in self._unsure if each.due > now]
-        return [message for each in due for message in self._told_of(each)]
+        return [message for each in due for message in self._report(each)]
 
-    def _told_of(self, unsure: UnconfirmedCopy) -> list[Message]:
-        if unsure.told:
+    def _report(self, unsure: UnconfirmedCopy) -> list[Message]:
+        if unsure.known:
             return []
         board, event = unsure.board, unsure.event
         assert not isinstance(event.message, Heartbeat)
         if unsure.refused:
             out = board.refuse(event.at, event.message, FOREIGN, event.sender)
-            return [*out, *board.told_of(event.at, board.counters.last, refused=True)]
+            return [*out, *board.report_foreign(event.at, board.counters.last, refused=True)]
         sentence = rejections.obeyed(board.robot, event.message, event.sender)
-        return board.told_of(event.at, sentence, refused=False)
+        return board.report_foreign(event.at, sentence, refused=False)
 
     def _nobody(self, at: float, command: Command) -> list[Message]:
         self._stray(f"{quoted(command.robot)} is no robot that this bridge reaches")
@@ -247,7 +247,7 @@ class Bridge:
             return []
         self._plant_epoch = heartbeat.epoch
         self._plant_beats = True
-        self._plant_heard_at = at
+        self._plant_beat_at = at
         news = [report for board in self._boards.values() for report in board.hear_plant(at, heartbeat.epoch)]
         return [*news, *self._beat_all(), *self._fence_all()]
 

@@ -43,7 +43,7 @@ class CommandForm:
     body: Callable[[Any, Any], dict[str, object]]
     refusal: Callable[[Any, Any], str | None] = lambda robot, command: None
     # Reasons why a board without refusals ignores a command, by its robot's place at rest.
-    passed_over: Callable[[Any, Any, Report], Sentence | None] = lambda robot, command, said: None
+    passed_over: Callable[[Any, Any, Report], Sentence | None] = lambda robot, command, report: None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -81,7 +81,7 @@ class Form:
         assert way is not None
         return way.channel, way.goal(**way.body(robot, command), **stamp)  # type: ignore[arg-type]
 
-    def told(self, facts: Facts | None) -> Facts | None:
+    def facts_in(self, facts: Facts | None) -> Facts | None:
         """The facts of telemetry in the types of the kind; raises PayloadError for an invalid one."""
         return None if facts is None else tuple(self._fact(name, value) for name, value in facts)
 
@@ -90,10 +90,10 @@ class Form:
         if type is None:
             known = ", ".join(self.facts) or "none"
             raise PayloadError(f"datos has {quoted(name)}; this device has {known}")
-        said = type.read(value)
-        if said is None:
+        read = type.read(value)
+        if read is None:
             raise PayloadError(f"datos.{name} is {quoted(value)}; allowed: {type.allowed()}")
-        return name, said
+        return name, read
 
 
 def form_of(robot: Robot) -> Form:
@@ -117,13 +117,13 @@ def _check_path(mobile: Mobile, command: FollowPath) -> str | None:
     return None if inside else "limite"
 
 
-def _begins_elsewhere(mobile: Mobile, command: FollowPath, said: Report) -> Sentence | None:
-    if said.node is None:
+def _begins_elsewhere(mobile: Mobile, command: FollowPath, report: Report) -> Sentence | None:
+    if report.node is None:
         return None
-    expected = sorted((said.node, *mobile.grid.neighbours(said.node)))
+    expected = sorted((report.node, *mobile.grid.neighbours(report.node)))
     if command.nodes[0] in expected:
         return None
-    return ELSEWHERE(node=said.node, expected=", ".join(map(str, expected)))
+    return ELSEWHERE(node=report.node, expected=", ".join(map(str, expected)))
 
 
 def _check_order(device: Device, command: VerbCall) -> str | None:

@@ -59,7 +59,8 @@ def plain_topic(command: Command) -> str:
 
 def kind_of(command: Command) -> type[Command]:
     """The class that has a plain topic: the command's own, or its nearest base."""
-    return next(base for base in type(command).__mro__ if base in PLAIN)
+    kind = type(command)
+    return kind if kind in PLAIN else next(base for base in kind.__mro__ if base in PLAIN)
 
 
 def is_stop(command: Command | Heartbeat) -> bool:

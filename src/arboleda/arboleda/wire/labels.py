@@ -49,15 +49,15 @@ class Labels:
         self.failed_before: list[tuple[str, str]] = []
         self.objection: tuple[IssuedCommand, str] | None = None
         self.foreign: tuple[int, int] | None = None
-        self._accepted: tuple[int | None, int | None] = (None, None)  # as the board said it last
-        self._least = -1  # the oldest epoch whose commands count for the board, as it said last
+        self._accepted: tuple[int | None, int | None] = (None, None)  # by the board's last telemetry
+        self._least = -1  # the oldest epoch whose commands the board takes, by its last telemetry
         self._seq = 0
         self._issued: OrderedDict[int, IssuedCommand] = OrderedDict()
         self._known: OrderedDict[str, None] = OrderedDict()
         self._spoken = False  # True once the board may have heard of this bridge
         self._led = False  # True if the board says this bridge is the newest it hears
-        self._heard_refusal: tuple[int | None, int | None, str | None] | None = None
-        self._heard_failures: tuple[tuple[int, str], ...] = ()
+        self._last_refusal: tuple[int | None, int | None, str | None] | None = None
+        self._last_failures: tuple[tuple[int, str], ...] = ()
 
     @property
     def fenced(self) -> bool:
@@ -107,92 +107,93 @@ class Labels:
     def reboot(self) -> None:
         """Forget the board's last words: after a boot all are new."""
         self.accepted = self.done = self.rejected = self.answered = self.failed = None
-        self._heard_refusal = None
-        self._heard_failures = ()
+        self._last_refusal = None
+        self._last_failures = ()
         self._least = -1
 
-    def hear(self, said: Telemetry) -> frozenset[int]:
+    def hear(self, message: Telemetry) -> frozenset[int]:
         """Take over the state of our commands from telemetry; returns the seqs that it reports as ended."""
-        acknowledged = -1 if said.ack_epoch is None else said.ack_epoch
-        self._least = max(acknowledged, -1 if said.least_epoch is None else said.least_epoch)
+        acknowledged = -1 if message.ack_epoch is None else message.ack_epoch
+        self._least = max(acknowledged, -1 if message.least_epoch is None else message.least_epoch)
         begins = not self._spoken and not self._led  # later it is another one that has come after this bridge
         if begins and (acknowledged >= self.epoch or self._least > self.epoch):
             self.rise()
             self.start = self.epoch
         self._led = self._led or self._least == self.epoch
-        strange = self._strange(said)
+        strange = self._strange(message)
         self.foreign = None if begins else strange
-        refused = self._refused(said)
-        self.accepted = self._name(said, said.ack)
-        self.done = self._name(said, said.done)
-        done = said.done if self._is_ours(said, said.done) else None
-        self._answered(said)
-        failed = self._given_up(said)
+        refused = self._refused(message)
+        self.accepted = self._name(message, message.ack)
+        self.done = self._name(message, message.done)
+        done = message.done if self._ours(message, message.done) else None
+        self._answered(message)
+        failed = self._failed(message)
         return frozenset([seq for seq in (done, refused, *failed) if seq is not None])
 
-    def _answered(self, said: Telemetry) -> None:
-        query = self._name(said, said.answered_seq)
-        self.answered = None if query is None or said.answer is None else (query, said.answer)
+    def _answered(self, message: Telemetry) -> None:
+        query = self._name(message, message.answered_seq)
+        self.answered = None if query is None or message.answer is None else (query, message.answer)
 
-    def _given_up(self, said: Telemetry) -> list[int]:
+    def _failed(self, message: Telemetry) -> list[int]:
         """The seqs of the commands that the board abandoned; it repeats the last few in every message."""
-        failures = tuple(each for each in said.failures or () if self._is_ours(said, each[0]))
-        names = [(self._name(said, seq), word) for seq, word in failures]
+        failures = tuple(each for each in message.failures or () if self._ours(message, each[0]))
+        names = [(self._name(message, seq), word) for seq, word in failures]
         known = [(name, word) for name, word in names if name is not None]
         self.failed = known[-1] if known else None
-        before = set(self._heard_failures)
-        news = [(self._name(said, seq), word) for seq, word in failures[:-1] if (seq, word) not in before]
+        before = set(self._last_failures)
+        news = [(self._name(message, seq), word) for seq, word in failures[:-1] if (seq, word) not in before]
         self.failed_before = [(name, word) for name, word in news if name is not None]
-        self._heard_failures = failures
+        self._last_failures = failures
         return [seq for seq, _ in failures]
 
-    def _strange(self, said: Telemetry) -> tuple[int, int] | None:
+    def _strange(self, message: Telemetry) -> tuple[int, int] | None:
         """A newly accepted number above ours, which another MQTT client must have sent; None if there is
         none.
 
         Before the board has heard of us, it may be one of the bridge before us, whose clock was ahead.
         """
-        accepted = (said.ack_epoch, said.ack)
+        accepted = (message.ack_epoch, message.ack)
         before, self._accepted = self._accepted, accepted
-        if said.ack_epoch is None or said.ack is None or accepted == before:
+        if message.ack_epoch is None or message.ack is None or accepted == before:
             return None
-        above = (said.ack_epoch, said.ack) > (self.epoch, self._seq)
-        return (said.ack_epoch, said.ack) if above else None
+        above = (message.ack_epoch, message.ack) > (self.epoch, self._seq)
+        return (message.ack_epoch, message.ack) if above else None
 
-    def _refused(self, said: Telemetry) -> int | None:
+    def _refused(self, message: Telemetry) -> int | None:
         """The seq of ours that is newly rejected; a board repeats its last refusal in every message."""
         self.objection = None
-        heard = (said.ack_epoch, said.refused_seq, said.refusal)
-        if heard == self._heard_refusal:
+        seq, word = message.refused_seq, message.refusal
+        refusal = (message.ack_epoch, seq, word)
+        if refusal == self._last_refusal:
             return None
-        self._heard_refusal = heard
-        if said.refusal is None or said.refused_seq is None or not self._concerns_us(said, said.refused_seq):
+        self._last_refusal = refusal
+        if word is None or seq is None or not self._concerns_us(message, seq):
             return None
-        issued = self._issued[said.refused_seq]
-        self.refuse(issued.command.id, said.refusal)
-        self.objection = (issued, said.refusal)
-        return said.refused_seq
+        issued = self._issued[seq]
+        self.refuse(issued.command.id, word)
+        self.objection = (issued, word)
+        return seq
 
-    def _concerns_us(self, said: Telemetry, refused_seq: int) -> bool:
+    def _concerns_us(self, message: Telemetry, refused_seq: int) -> bool:
         issued = self._issued.get(refused_seq)
         if issued is None:
             return False
-        if said.refusal != "viejo":
-            return said.ack_epoch == issued.epoch
+        if message.refusal != "viejo":
+            return message.ack_epoch == issued.epoch
         if self._least > issued.epoch:
             return True
-        if said.ack_epoch != issued.epoch:
-            return said.ack_epoch is not None and said.ack_epoch > issued.epoch
+        if message.ack_epoch != issued.epoch:
+            return message.ack_epoch is not None and message.ack_epoch > issued.epoch
         # equal: it came twice (QoS 1), and the first one counts; above: a stranger's, ours is on its way
-        return said.ack is not None and refused_seq < said.ack
+        return message.ack is not None and refused_seq < message.ack
 
-    def _is_ours(self, said: Telemetry, seq: int | None) -> bool:
+    def _ours(self, message: Telemetry, seq: int | None) -> bool:
         """True if a number from the board was given to it by this bridge."""
         issued = self._issued.get(seq) if seq is not None else None
-        return issued is not None and issued.epoch == said.ack_epoch
+        return issued is not None and issued.epoch == message.ack_epoch
 
-    def _name(self, said: Telemetry, seq: int | None) -> str | None:
-        return self._issued[seq].command.id or None if seq is not None and self._is_ours(said, seq) else None
+    def _name(self, message: Telemetry, seq: int | None) -> str | None:
+        return self._issued[seq].command.id or None if seq is not None and self._ours(message, seq) else None
 
 
 def _remember(table: OrderedDict[K, V], key: K, value: V) -> None:

@@ -51,19 +51,19 @@ class BoardLink:
         was_up, self.up, self.stale_at, self._below = self.up, False, math.inf, None
         return was_up
 
-    def hear(self, at: float, said: Telemetry) -> LinkUpdate:
+    def hear(self, at: float, telemetry: Telemetry) -> LinkUpdate:
         """Take a telemetry message, and return its meaning for the link."""
         if not self._connected:
             return LinkUpdate.LATE
         if self._absent:
             return LinkUpdate.ABSENT
-        if self._overtaken(said) and not self._counts_anew(at, said.seq):
+        if self._overtaken(telemetry) and not self._counts_anew(at, telemetry.seq):
             return LinkUpdate.OLD
-        rebooted = said.boot_id != self.boot_id and None not in (said.boot_id, self.boot_id)
+        rebooted = telemetry.boot_id != self.boot_id and None not in (telemetry.boot_id, self.boot_id)
         arrived, self.up = not self.up, True
         self.stale_at = at + self._stale_after_s
-        self.number = said.seq
-        self.boot_id = self.boot_id if said.boot_id is None else said.boot_id
+        self.number = telemetry.seq
+        self.boot_id = self.boot_id if telemetry.boot_id is None else telemetry.boot_id
         if rebooted:
             return LinkUpdate.REBOOT
         return LinkUpdate.ARRIVAL if arrived else LinkUpdate.NEWS
@@ -79,10 +79,10 @@ class BoardLink:
         self.stale_at = at + self._stale_after_s
         return True
 
-    def _overtaken(self, said: Telemetry) -> bool:
-        if said.boot_id is None or said.boot_id != self.boot_id:
+    def _overtaken(self, telemetry: Telemetry) -> bool:
+        if telemetry.boot_id is None or telemetry.boot_id != self.boot_id:
             return False
-        return said.seq is not None and self.number is not None and said.seq <= self.number
+        return telemetry.seq is not None and self.number is not None and telemetry.seq <= self.number
 
     def _counts_anew(self, at: float, seq: int | None) -> bool:
         """True if a lost board's lower numbers have risen for `stale_after_s`: then the higher one was wrong.

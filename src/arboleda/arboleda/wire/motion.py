@@ -1,6 +1,6 @@
 """Open motion or process, and the decision whether a board's telemetry ends it.
 
-The judge of the core decides what was achieved; this only decides how long the board needs beats.
+The judge of the core decides on the outcome; this only decides how long the board needs beats.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ class OpenMotion:
     def ended(
         self,
         at: float,
-        said: Telemetry,
+        telemetry: Telemetry,
         q: tuple[float, ...] | None,
         seqs: frozenset[int],
         facts: Facts | None = None,
@@ -51,12 +51,12 @@ class OpenMotion:
         """
         if self.seq in seqs:
             return True
-        if said.state is MotionState.MOVING:
+        if telemetry.state is MotionState.MOVING:
             self.moved, self._still_since = True, None
             return False
         if self.robot.evidence is Evidence.IDS:
             return self.stopping
-        if not (self.stopping or self.moved or self._reached(said.node if q is None else q, facts)):
+        if not (self.stopping or self.moved or self._reached(telemetry.node if q is None else q, facts)):
             return False
         self._still_since = at if self._still_since is None else self._still_since
         return at >= self._still_since + LINGER_S

@@ -20,17 +20,17 @@ from .status import command_id
 
 def write(command: Command, *, copied: bool = False) -> str:
     """The text of a command; `copied`: a copy without its id comes on its plain topic."""
-    said: dict[str, object] = {"id": command.id} if command.id else {}
+    fields: dict[str, object] = {"id": command.id} if command.id else {}
     if isinstance(command, VerbCall):
-        said |= {"verb": command.verb, "values": dict(command.values)}
-        said |= {} if command.heard is None else {"heard": command.heard}
-        said |= {} if command.token is None else {"token": command.token}
+        fields |= {"verb": command.verb, "values": dict(command.values)}
+        fields |= {} if command.heard is None else {"heard": command.heard}
+        fields |= {} if command.token is None else {"token": command.token}
     elif isinstance(command, Stop):
-        said |= {"stop": int(command.mode)}
+        fields |= {"stop": int(command.mode)}
     else:
         raise TypeError(f"{type(command).__name__} is no command of a device")
-    text = said | ({"copied": 1} if copied else {})
-    # Never longer than what the board is told; half a pair of surrogates is no letter, and stays an escape.
+    text = fields | ({"copied": 1} if copied else {})
+    # Never longer than the message to the board; half a pair of surrogates is no letter, and stays an escape.
     return strict.to_json(text).encode(errors="backslashreplace").decode()
 
 

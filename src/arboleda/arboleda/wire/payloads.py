@@ -89,19 +89,19 @@ def encode(payload: Payload) -> bytes:
     if isinstance(payload, Presence):
         return b"1" if payload.online else b"0"
     body = _WRITERS[type(payload)](payload)
-    said = {key: value for key, value in body.items() if value is not None}
+    fields = {key: value for key, value in body.items() if value is not None}
     try:
-        return strict.write(said)
+        return strict.write(fields)
     except PayloadError:
-        if TOKENS.isdisjoint(said):
+        if TOKENS.isdisjoint(fields):
             raise
-        return strict.write({key: value for key, value in said.items() if key not in TOKENS})
+        return strict.write({key: value for key, value in fields.items() if key not in TOKENS})
 
 
 def angles(q: tuple[float, ...]) -> bytes:
     """The beginning of an arm's telemetry, up to its last joint."""
     if not all(map(MAX_ANGLE_DEG.__ge__, map(abs, q))):
-        _angles(q)  # says which one it is
+        _angles(q)  # names the one
     rows = zip(_joint_keys(len(q), "_mov"), q, strict=True)
     return ("{" + ",".join([f'"{key}":{round(value, _DECIMALS) + 0.0}' for key, value in rows])).encode()
 
@@ -261,32 +261,32 @@ def _stamped(body: dict[str, object], goal: Goal) -> dict[str, object]:
     return body if isinstance(goal, StopGoal) else {**body, "visto": goal.heard, "ficha": goal.token}
 
 
-def _telemetry_body(said: Telemetry) -> dict[str, object]:
-    if (said.refusal is None) != (said.refused_seq is None):
+def _telemetry_body(telemetry: Telemetry) -> dict[str, object]:
+    if (telemetry.refusal is None) != (telemetry.refused_seq is None):
         raise PayloadError("rechazo and rechazo_seq go together")
-    if (said.answer is None) != (said.answered_seq is None):
+    if (telemetry.answer is None) != (telemetry.answered_seq is None):
         raise PayloadError("respuesta and respuesta_seq go together")
     return {
-        **_angles(said.q or (), "_mov"),
-        "nodo": said.node,
-        "estado": strict.integer("estado", said.state.value, _LAST_STATE),
-        "seq": said.seq,
-        "epoca_ack": said.ack_epoch,
-        "epoca_min": said.least_epoch,
-        "ack": said.ack,
-        "hecho": said.done,
-        "ficha_ack": said.ack_token,
-        "ficha_hecho": said.done_token,
-        "rechazo": said.refusal,
-        "rechazo_seq": said.refused_seq,
-        "arranque": said.boot_id,
-        "ref": _bit(said.homed),
-        "efector": _bit(said.effector),
-        "pieza": _bit(said.piece),
-        "respuesta": None if said.answer is None else strict.fact("respuesta", said.answer),
-        "respuesta_seq": said.answered_seq,
-        "fallos": [[seq, _word(word)] for seq, word in said.failures or ()] or None,
-        "datos": None if said.facts is None else _named("datos", said.facts),
+        **_angles(telemetry.q or (), "_mov"),
+        "nodo": telemetry.node,
+        "estado": strict.integer("estado", telemetry.state.value, _LAST_STATE),
+        "seq": telemetry.seq,
+        "epoca_ack": telemetry.ack_epoch,
+        "epoca_min": telemetry.least_epoch,
+        "ack": telemetry.ack,
+        "hecho": telemetry.done,
+        "ficha_ack": telemetry.ack_token,
+        "ficha_hecho": telemetry.done_token,
+        "rechazo": telemetry.refusal,
+        "rechazo_seq": telemetry.refused_seq,
+        "arranque": telemetry.boot_id,
+        "ref": _bit(telemetry.homed),
+        "efector": _bit(telemetry.effector),
+        "pieza": _bit(telemetry.piece),
+        "respuesta": None if telemetry.answer is None else strict.fact("respuesta", telemetry.answer),
+        "respuesta_seq": telemetry.answered_seq,
+        "fallos": [[seq, _word(word)] for seq, word in telemetry.failures or ()] or None,
+        "datos": None if telemetry.facts is None else _named("datos", telemetry.facts),
     }
 
 

@@ -125,7 +125,7 @@ def _why(robot: Robot, command: Command, word: str, *, by_board: bool) -> Senten
     return more or (WHY[word]() if word in WHY else word)
 
 
-SAID_OF_OTHERS = {
+FOREIGN_PHRASES = {
     phrase.key: phrase
     for phrase in (
         *(

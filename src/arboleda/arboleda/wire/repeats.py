@@ -29,16 +29,14 @@ class Words:
     joints: int = 0
 
     @classmethod
-    def of(cls, raw: bytes, said: Telemetry) -> Words | None:
+    def of(cls, raw: bytes, message: Telemetry) -> Words | None:
         """The split of a message; None if its bytes alone do not show which number is the message's own."""
-        joints = _joints(raw, said)
-        if said.seq is None:
+        seq, joints = message.seq, _joints(raw, message)
+        if seq is None:
             return cls(raw, None, joints)
         before, _, rest = raw.partition(KEY)
         after = rest.lstrip(DIGITS)
-        sure = (
-            raw.count(NAME) == 1 and b"\\" not in raw and rest[: len(rest) - len(after)] == b"%d" % said.seq
-        )
+        sure = raw.count(NAME) == 1 and b"\\" not in raw and rest[: len(rest) - len(after)] == b"%d" % seq
         return cls(before + KEY, after, joints) if sure else None
 
     def turned(self, raw: bytes, joints: int) -> Words:
@@ -61,9 +59,9 @@ class Words:
         return number if number <= UINT32 and b"%d" % number == digits else None  # else it is not JSON
 
 
-def _joints(raw: bytes, said: Telemetry) -> int:
+def _joints(raw: bytes, message: Telemetry) -> int:
     """The number of bytes that hold joints; 0 unless the arm moves, as joints at rest may end a motion."""
-    if said.q is None or said.state is not MotionState.MOVING:
+    if message.q is None or message.state is not MotionState.MOVING:
         return 0
-    read = read_angles(raw, len(said.q))
+    read = read_angles(raw, len(message.q))
     return 0 if read is None else read[1]

@@ -1,6 +1,6 @@
 """Check of the nodes that speak for a robot on ROS 2: while several publish its reports, none is believed.
 
-rclpy tells neither whose a message is nor proves it, only who publishes on a topic.
+rclpy does not name the sender of a message, only the publishers of a topic.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ class Contest:
 
     def __init__(self, since: float) -> None:
         self.since = since
-        self.told: frozenset[str | None] = frozenset()
+        self.reported: frozenset[str | None] = frozenset()
 
 
 class Speaker:
@@ -49,9 +49,9 @@ class Speaker:
         if len(names) <= 1 and nodes.count(None) <= 1:
             return self._settled(at, topic, alone=len(nodes) <= 1)
         contest = self._contests.setdefault(topic, Contest(at))
-        if names == contest.told or (None in names and at < contest.since + NAMELESS_S):
+        if names == contest.reported or (None in names and at < contest.since + NAMELESS_S):
             return None
-        contest.told = names
+        contest.reported = names
         return self._sentence(topic, names)
 
     def came_and_went(self, at: float, topic: str) -> Sentence | None:
@@ -64,13 +64,13 @@ class Speaker:
         if contest is None:
             return None
         self._until = at + HOLD_S
-        return self._contested(topic, GONE()) if alone and not contest.told else None
+        return self._contested(topic, GONE()) if alone and not contest.reported else None
 
     def _sentence(self, topic: str, names: frozenset[str | None]) -> Sentence:
         known = sorted(name for name in names if name is not None)
-        said: str | Sentence = ", ".join(known if None in names else known[:-1])
+        first: str | Sentence = ", ".join(known if None in names else known[:-1])
         last = NAMELESS() if None in names else known[-1]
-        return self._contested(topic, AND(first=said, second=last) if said else last)
+        return self._contested(topic, AND(first=first, second=last) if first else last)
 
     def _contested(self, topic: str, nodes: str | Sentence) -> Sentence:
         return CONTESTED(robot=self._robot, topic=topic, nodes=nodes)

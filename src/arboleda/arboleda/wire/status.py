@@ -21,7 +21,7 @@ from arboleda.model.plant_model import MotionState, Robot
 from arboleda.model.sentence import OWN, Sentence, from_data
 
 from . import strict
-from .rejections import SAID_OF_OTHERS
+from .rejections import FOREIGN_PHRASES
 from .strict import UINT32
 
 OK, WARN, ERROR, STALE = range(4)  # levels of diagnostic_msgs/DiagnosticStatus
@@ -35,9 +35,9 @@ _ID = re.compile(r"[A-Za-z0-9_.-]{1,64}", re.ASCII)
 _COUNT = re.compile(r"\d{1,10}", re.ASCII)
 _LONGEST = 300  # characters of a sentence
 _MOST_DATA = 2000  # characters of what a sentence is made of
-FOREIGN, FOREIGN_SAID = "foreign", "foreign_said"
+FOREIGN, FOREIGN_PARTS = "foreign", "foreign_said"
 _FLAGS = {"true": True, "false": False}
-_SAID = {
+_LEVELS = {
     MotionState.STOPPED: (OK, "stopped"),
     MotionState.MOVING: (OK, "moving"),
     MotionState.FAULT: (ERROR, "fault"),
@@ -59,8 +59,8 @@ class Status:
 
 
 def to_status(robot: Robot, report: Report) -> Status:
-    """The status to publish for a report; one without a state tells of refused or foreign commands."""
-    level, message = (WARN, "command refused") if report.state is None else _SAID[report.state]
+    """The status to publish for a report; one without a state reports refused or foreign commands."""
+    level, message = (WARN, "command refused") if report.state is None else _LEVELS[report.state]
     rows = [(key, getattr(report, name), write) for key, (name, _, write) in _ROWS.items()]
     values = {key: write(value) for key, value, write in rows if value is not None}
     if report.foreign is not None:
@@ -72,10 +72,10 @@ def from_status(at: float, robot: Robot, status: Status) -> Report:
     """The report in a status received `at`; raises PayloadError, which names the wrong key."""
     if status.name != _name(robot):
         raise PayloadError(f"status name is {quoted(status.name)}; allowed: {quoted(_name(robot), 80)}")
-    said = {
+    row = {
         name: read(key, status.values[key]) for key, (name, read, _) in _ROWS.items() if key in status.values
     }
-    report = Report(at=at, robot=robot.name, foreign=_foreign(status.values), **said)  # type: ignore[arg-type]
+    report = Report(at=at, robot=robot.name, foreign=_foreign(status.values), **row)  # type: ignore[arg-type]
     _fits(robot, report)
     return report
 
@@ -99,8 +99,8 @@ def to_heard_label(number: int) -> str:
 
 def from_heard_labels(labels: Iterable[str]) -> int | None:
     """The number in the `heard` label among further ones; None without, PayloadError for an invalid one."""
-    said = next((label for label in labels if label.startswith(_HEARD)), None)
-    return None if said is None else _count("heard", said[len(_HEARD) :])
+    found = next((label for label in labels if label.startswith(_HEARD)), None)
+    return None if found is None else _count("heard", found[len(_HEARD) :])
 
 
 def to_token_label(token: str) -> str:
@@ -110,8 +110,8 @@ def to_token_label(token: str) -> str:
 
 def from_token_labels(labels: Iterable[str]) -> str | None:
     """The token in the `token` label among further ones; None without, PayloadError for an invalid one."""
-    said = next((label for label in labels if label.startswith(_TOKEN)), None)
-    return None if said is None else _token(said[len(_TOKEN) :])
+    found = next((label for label in labels if label.startswith(_TOKEN)), None)
+    return None if found is None else _token(found[len(_TOKEN) :])
 
 
 def _name(robot: Robot) -> str:
@@ -144,16 +144,16 @@ def _sentence(key: str, text: str) -> str:
 
 def _written(sentence: Sentence) -> dict[str, str]:
     """The values for a sentence: its text for people, and its parts."""
-    return {FOREIGN: str(sentence), FOREIGN_SAID: json.dumps(sentence.data())}
+    return {FOREIGN: str(sentence), FOREIGN_PARTS: json.dumps(sentence.data())}
 
 
 def _foreign(values: Mapping[str, str]) -> Sentence | None:
     """The sentence on commands of others; only its text if its parts give another one."""
     if FOREIGN not in values:
         return None
-    text, said = _sentence(FOREIGN, values[FOREIGN]), values.get(FOREIGN_SAID, "")
+    text, parts = _sentence(FOREIGN, values[FOREIGN]), values.get(FOREIGN_PARTS, "")
     try:
-        made = from_data(json.loads(said), SAID_OF_OTHERS) if len(said) <= _MOST_DATA else None
+        made = from_data(json.loads(parts), FOREIGN_PHRASES) if len(parts) <= _MOST_DATA else None
         if str(made) == text and made is not None:
             return made
     except (ValueError, LookupError, RecursionError):  # as an older bridge, or somebody else, writes it

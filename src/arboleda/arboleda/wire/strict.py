@@ -27,7 +27,7 @@ _TEXT = re.compile(r"[ !#-\[\]-~\u00a1-\ud7ff\ue000-\U0010ffff]*")  # each is as
 
 
 def read(raw: bytes) -> Fields:
-    """The object in `raw`; raises PayloadError, which tells what is wrong with the bytes."""
+    """The object in `raw`; raises PayloadError, which names the mistake in the bytes."""
     value = parse(raw)
     if not isinstance(value, dict):
         raise PayloadError('the message is not a JSON object, e.g. {"estado": 0}')

@@ -97,9 +97,9 @@ class ExecuteTaskAction:
         return CancelResponse.ACCEPT if refusal is None else CancelResponse.REJECT
 
     def _follow(self, change: TaskChanged) -> None:
-        asked = self._goals.get(change.request or "")
-        if asked is not None:
-            asked.task = change.task
+        goal = self._goals.get(change.request or "")
+        if goal is not None:
+            goal.task = change.task
         for token, goal in list(self._goals.items()):
             if goal.task == change.task:
                 self._advance(token, goal, change)
@@ -116,7 +116,7 @@ class ExecuteTaskAction:
 
     def _feed_back(self, doing: Mapping[str, tuple[str | None, float | None]]) -> None:
         for goal in self._goals.values():
-            if goal.task in doing:
+            if goal.task is not None and goal.task in doing:
                 goal.feed_back(*doing[goal.task])
 
     def _end(self, token: str, change: TaskChanged) -> None:

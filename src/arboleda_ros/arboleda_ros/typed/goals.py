@@ -31,9 +31,9 @@ class Goal:
 
     def feed_back(self, step: str | None, progress: float | None) -> None:
         """Send news to the client; without a progress the last one stays."""
-        told = (str(step or ""), self.progress if progress is None else progress)
-        if told != (self.step, self.progress):
-            self.step, self.progress = told
+        feedback = (str(step or ""), self.progress if progress is None else progress)
+        if feedback != (self.step, self.progress):
+            self.step, self.progress = feedback
             self.handle.publish_feedback(ExecuteTask.Feedback(step=self.step, progress=self.progress))
 
 
@@ -48,7 +48,7 @@ class GoalServer(ActionServer):
     def notify_execute(self, goal_handle: ServerGoalHandle, execute_callback: Any) -> None:
         """Run the callback, where there is one: it ends the goal and returns the result."""
         if execute_callback is not None:
-            super().notify_execute(goal_handle, execute_callback)
+            super().notify_execute(goal_handle, execute_callback)  # type: ignore[no-untyped-call]
 
 
 def _ended(change: TaskChanged, handle: ServerGoalHandle) -> ExecuteTask.Result:

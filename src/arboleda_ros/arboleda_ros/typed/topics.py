@@ -22,7 +22,7 @@ class Topics:
         self._node = node
         self._tasks = speak(TaskList, "plant/tasks", qos.VIEW)
         self._cells = {cell: speak(CellState, f"{cell}/state", qos.VIEW) for cell in cells}
-        self._told: dict[Publisher, Any] = {}
+        self._last: dict[Publisher, Any] = {}
 
     def show(self, view: Mapping[str, Any]) -> None:
         """Publish the parts that have changed."""
@@ -32,9 +32,9 @@ class Topics:
             self._publish(self._cells[cell["name"]], _cell(cell), lambda plain: CellState(**plain))
 
     def _publish(self, publisher: Publisher, plain: Any, message_of: Callable[[Any], Any]) -> None:
-        if self._told.get(publisher) == plain:
+        if self._last.get(publisher) == plain:
             return
-        self._told[publisher] = plain
+        self._last[publisher] = plain
         message = message_of(plain)
         message.stamp = self._node.get_clock().now().to_msg()
         publisher.publish(message)

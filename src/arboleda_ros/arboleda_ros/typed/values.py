@@ -10,7 +10,7 @@ from arboleda_interfaces.msg import Task
 from .fields import compose
 
 _TASK = ("id", "text", "cell", "state", "reason", "sentence")
-_ASKED = ("text", "cell", "recipe", "path", "station", "id")
+_FIELDS = ("text", "cell", "recipe", "path", "station", "id")
 
 
 def task_message(plain: Mapping[str, Any]) -> Task:
@@ -18,6 +18,6 @@ def task_message(plain: Mapping[str, Any]) -> Task:
     return Task(**{key: str(plain[key] or "") for key in _TASK})
 
 
-def text_of(asked: Any) -> str:
+def text_of(request: Any) -> str:
     """The task text in a goal or a request."""
-    return compose(**{key: getattr(asked, key) for key in _ASKED})
+    return compose(**{key: getattr(request, key) for key in _FIELDS})

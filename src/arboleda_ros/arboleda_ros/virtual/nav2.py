@@ -75,12 +75,12 @@ def _sensors(node: Any, odometry: str, localisation: str, frame: str) -> Callabl
     counted = node.create_publisher(Odometry, odometry, 10)
     localised = node.create_publisher(PoseWithCovarianceStamped, localisation, VIEW)
 
-    def publish(seen: Any) -> None:
-        counts = isinstance(seen, OdometryPose)
+    def publish(measurement: Any) -> None:
+        counts = isinstance(measurement, OdometryPose)
         message = Odometry(child_frame_id="base_link") if counts else PoseWithCovarianceStamped()
         message.header.frame_id = "odom" if counts else frame
-        message.header.stamp.sec, message.header.stamp.nanosec = seen.stamp
-        fill(message.pose.pose, seen.pose)
+        message.header.stamp.sec, message.header.stamp.nanosec = measurement.stamp
+        fill(message.pose.pose, measurement.pose)
         (counted if counts else localised).publish(message)
 
     return publish

@@ -183,7 +183,7 @@ class Life:
         return CancelResponse.ACCEPT if accepted else CancelResponse.REJECT
 
     def _id_of(self, handle: Any) -> str:
-        return self._handles[bytes(handle.goal_id.uuid).hex()]
+        return str(self._handles[bytes(handle.goal_id.uuid).hex()])
 
 
 def joint_sensors(topic: str) -> Callable[[Any], Callable[[Measurement], None]]:
@@ -196,9 +196,9 @@ def _joint_sensors(topic: str, node: Any) -> Callable[[Measurement], None]:
 
     publisher = node.create_publisher(JointState, topic, 10)
 
-    def publish(seen: Any) -> None:
-        message = JointState(name=list(seen.names), position=list(seen.positions))
-        message.header.stamp.sec, message.header.stamp.nanosec = seen.stamp
+    def publish(measurement: Any) -> None:
+        message = JointState(name=list(measurement.names), position=list(measurement.positions))
+        message.header.stamp.sec, message.header.stamp.nanosec = measurement.stamp
         publisher.publish(message)
 
     return publish

@@ -58,13 +58,13 @@ class Access:
         `shown` is the name in the client's certificate; where `certified` is set, it must be the name of the
         user.
         """
-        given = password or b""
-        if user == self.plant[0] and hmac.compare_digest(self.plant[1].encode(), given):
+        secret = password or b""
+        if user == self.plant[0] and hmac.compare_digest(self.plant[1].encode(), secret):
             return ClientIdentity(role=Role.PLANT, user=user)
         if self.guests:
             return ClientIdentity(role=Role.GUEST)
         expected = self.passwords.get(user) if user is not None else None
-        if user is None or expected is None or not hmac.compare_digest(expected.encode(), given):
+        if user is None or expected is None or not hmac.compare_digest(expected.encode(), secret):
             return None
         if self.certified and shown != user:
             return None

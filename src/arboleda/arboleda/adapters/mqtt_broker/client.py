@@ -145,17 +145,18 @@ class Client(asyncio.BufferedProtocol):
 
     def _connect(self, packet: Packet) -> None:
         try:
-            said = packets.read_connect(packet.body)
-            if len(said.client_id.encode()) > limits.CLIENT_ID_BYTES or not (said.client_id or said.clean):
+            connect = packets.read_connect(packet.body)
+            id = connect.client_id
+            if len(id.encode()) > limits.CLIENT_ID_BYTES or not (id or connect.clean):
                 raise packets.ConnectRefused(Answer.CLIENT_ID)
-            who = self._sessions.log_in(self, said, self._shown)
+            who = self._sessions.log_in(self, connect, self._shown)
         except packets.ConnectRefused as refused:
             self._refuse(refused.answer)
             return
-        self.who, self._client_id, self._will = who, said.client_id, said.will
+        self.who, self._client_id, self._will = who, connect.client_id, connect.will
         self._allowed = ALLOWED.get(who.role)
         self._bucket = self._sessions.bucket(who)
-        self._silence_s = 1.5 * said.keep_alive_s
+        self._silence_s = 1.5 * connect.keep_alive_s
         self._write(packets.connack(Answer.ACCEPTED))
         self._watch_silence()
 

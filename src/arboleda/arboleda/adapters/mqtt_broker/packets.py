@@ -1,4 +1,4 @@
-"""The packets of MQTT 3.1.1, as bytes and as what they say. Chapters are those of the OASIS standard."""
+"""The packets of MQTT 3.1.1, as bytes and as values. Chapters are those of the OASIS standard."""
 
 from __future__ import annotations
 
@@ -89,7 +89,7 @@ class Connect:
 
 
 class Stream:
-    """Cuts what a client sends into packets; it keeps no more than was fed since the last whole one."""
+    """Cuts the bytes of a client into packets; keeps no more than was fed since the last whole one."""
 
     def __init__(self) -> None:
         self._bytes = bytearray()
@@ -222,9 +222,10 @@ def read_publish(packet: Packet) -> tuple[Message, int]:
 
 
 def read_subscribe(body: bytes) -> tuple[int, list[tuple[str, int]]]:
-    """Parses SUBSCRIBE (3.8): the packet id, and filters with the QoS that is asked for."""
+    """Parses SUBSCRIBE (3.8): the packet id, and filters with the QoS requested."""
     fields = Fields(body)
-    number, wanted = _id(fields), []
+    number = _id(fields)
+    wanted: list[tuple[str, int]] = []
     while fields.left or not wanted:
         wanted.append((fields.text(), _checked_qos(fields.byte())))
     return number, wanted
@@ -233,7 +234,8 @@ def read_subscribe(body: bytes) -> tuple[int, list[tuple[str, int]]]:
 def read_unsubscribe(body: bytes) -> tuple[int, list[str]]:
     """Parses UNSUBSCRIBE (3.10): the packet id and the filters."""
     fields = Fields(body)
-    number, filters = _id(fields), []
+    number = _id(fields)
+    filters: list[str] = []
     while fields.left or not filters:
         filters.append(fields.text())
     return number, filters

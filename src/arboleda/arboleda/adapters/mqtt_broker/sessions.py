@@ -47,14 +47,14 @@ class Sessions:
         elif len(self._waiting) > self._may_wait:
             next(iter(self._waiting)).cut("others want to log in")
 
-    def log_in(self, client: Connection, said: Connect, shown: str = "") -> ClientIdentity:
+    def log_in(self, client: Connection, connect: Connect, shown: str = "") -> ClientIdentity:
         """Let it in, by what it says and the name that its certificate has (`shown`), in the place of an
         earlier connection of its user with its client id; ConnectRefused."""
-        who = self.access.login(said.user, said.password, shown)
-        if who is None or (said.will is not None and not self.access.may_write(who, said.will.topic)):
+        who = self.access.login(connect.user, connect.password, shown)
+        if who is None or (connect.will is not None and not self.access.may_write(who, connect.will.topic)):
             raise ConnectRefused(Answer.NOT_AUTHORIZED)
         # No client can send an id equal to this one for clients without an id.
-        key = who.user, said.client_id or f"\0{next(self._nameless)}"
+        key = who.user, connect.client_id or f"\0{next(self._nameless)}"
         if key in self._clients:
             self._clients[key].cut("a later connection has its client id")
         self._make_room(who)

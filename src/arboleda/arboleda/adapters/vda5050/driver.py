@@ -21,7 +21,7 @@ from .messages import Headers, SchemaMismatch, from_bytes, to_bytes
 
 LOG = logging.getLogger("arboleda.drivers.vda5050")
 LONGEST_TOPIC = 300
-HEARD = {"state": Vehicle.state, "connection": Vehicle.connection, "factsheet": Vehicle.factsheet}
+HANDLERS = {"state": Vehicle.state, "connection": Vehicle.connection, "factsheet": Vehicle.factsheet}
 
 
 @driver("vda5050", settings=Settings)
@@ -51,7 +51,7 @@ class Vda5050:
         self._client = MqttClient(
             f"arboleda-{mark}",
             address(settings.broker),
-            on_event=self._heard,
+            on_event=self._handle,
             subscriptions=topics,
             clock=clock,
             credentials=login(),
@@ -86,7 +86,7 @@ class Vda5050:
                 wait_s = self._vehicle.next_deadline - now
             self._ending.wait(max(0.01, wait_s))
 
-    def _heard(self, event: Delivery | Connection) -> None:
+    def _handle(self, event: Delivery | Connection) -> None:
         with self._lock:
             if isinstance(event, Connection):
                 self._try(self._vehicle.connected(self._clock(), up=event.up))
@@ -104,17 +104,17 @@ class Vda5050:
         if topic == "state" and delivery.retain:
             return  # a retained message is of unknown age
         try:
-            said = from_bytes(settings.version, topic, delivery.payload)
-            if (said["manufacturer"], said["serialNumber"]) != (settings.manufacturer, settings.serial):
+            body = from_bytes(settings.version, topic, delivery.payload)
+            if (body["manufacturer"], body["serialNumber"]) != (settings.manufacturer, settings.serial):
                 raise SchemaMismatch(
-                    f"it says to be of {quoted(said['manufacturer'])} {quoted(said['serialNumber'])}"
+                    f"it says to be of {quoted(body['manufacturer'])} {quoted(body['serialNumber'])}"
                 )
         except SchemaMismatch as error:
             self._warn(f"a message on {delivery.topic} is refused: {error}")
             if topic == "state":
                 self._vehicle.refused(str(error))
             return
-        self._try(HEARD[topic](self._vehicle, self._clock(), said))
+        self._try(HANDLERS[topic](self._vehicle, self._clock(), body))
 
     def _lose(self, why: str) -> None:
         self._warn(f"{self._settings.vehicle}: {why}")
@@ -125,7 +125,7 @@ class Vda5050:
             LOG.warning("%s", plain(what, 300))
 
     def _try(self, messages: Iterable[Message]) -> None:
-        """Send messages that no command asked for; if one cannot leave, its effect is missed soon enough."""
+        """Send messages that belong to no command; a loss is noticed soon by its missing effect."""
         try:
             self._do(messages)
         except (NotConnected, SchemaMismatch) as error:

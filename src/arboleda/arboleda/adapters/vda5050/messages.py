@@ -39,7 +39,7 @@ def from_bytes(version: str, topic: str, payload: bytes) -> dict[str, Any]:
     if len(payload) > LARGEST:
         raise SchemaMismatch(f"it has {len(payload)} bytes")
     try:
-        said = json.loads(
+        body = json.loads(
             payload,
             parse_constant=_refuse,
             parse_float=_finite,
@@ -48,9 +48,9 @@ def from_bytes(version: str, topic: str, payload: bytes) -> dict[str, Any]:
         )
     except (ValueError, RecursionError) as error:
         raise SchemaMismatch(plain(f"it is no JSON: {error}")) from error
-    _check(version, topic, said)
-    assert isinstance(said, dict)
-    return said
+    _check(version, topic, body)
+    assert isinstance(body, dict)
+    return body
 
 
 class Headers:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from arboleda.kinds.arm import Arm
@@ -16,7 +17,7 @@ from .bench import Bench, BoardTelemetry, Send
 
 @dataclass(frozen=True, kw_only=True)
 class ArmTelemetry(BoardTelemetry):
-    """One telemetry message, angles in degrees; None for what it does not say."""
+    """One telemetry message, angles in degrees; None for missing fields."""
 
     q: tuple[float, ...] | None
     homed: bool | None
@@ -43,11 +44,19 @@ class ArmBench(Bench[ArmTelemetry]):
     def place(self) -> tuple[int, ...]:
         return self.steps
 
-    def goal(self, steps: tuple[int, ...], **numbers: int | str) -> Send:
+    def goal(
+        self, steps: Sequence[float], *, seq: int | None = None, epoch: int | None = None, **body: int | str
+    ) -> Send:
         """A target in motor steps."""
-        degrees = zip(steps, self.step_deg, strict=True)
-        q = {f"q{at + 1}": round(count * step, 4) for at, (count, step) in enumerate(degrees)}
-        return self.send(Channel.JOINTS, **q, **numbers)
+        degrees = [count * step for count, step in zip(steps, self.step_deg, strict=True)]
+        return self.goal_deg(degrees, seq=seq, epoch=epoch, **body)
+
+    def goal_deg(
+        self, degrees: Iterable[float], *, seq: int | None = None, epoch: int | None = None, **body: int | str
+    ) -> Send:
+        """A target as the wire has it, in degrees."""
+        q = {f"q{at + 1}": round(angle, 4) for at, angle in enumerate(degrees)}
+        return self.send(Channel.JOINTS, seq=seq, epoch=epoch, **q, **body)
 
     @property
     def steps(self) -> tuple[int, ...]:

@@ -33,9 +33,9 @@ def far_future(bench: Bench[Any]) -> Steps:
     yield from accepted(bench, stop(bench, 2))
     yield _beat(UINT32)
     yield Wait(seconds=1.0, until=lambda: bench.last.refusal == "formato")
-    said = bench.last
+    report = bench.last
     yield from accepted(bench, stop(bench, 2))
-    demand(said.refusal == "formato", f"it does not refuse a beat of {UINT32} with formato")
+    demand(report.refusal == "formato", f"it does not refuse a beat of {UINT32} with formato")
 
 
 def _beat(epoch: int) -> Send:

@@ -51,7 +51,7 @@ class CheckSkipped(Exception):
 
 @dataclass(frozen=True, kw_only=True)
 class BoardTelemetry:
-    """One telemetry message; None for what it does not say."""
+    """One telemetry message; None for missing fields."""
 
     at: float
     state: int
@@ -72,10 +72,10 @@ class BoardTelemetry:
         raise NotImplementedError
 
 
-SaidT = TypeVar("SaidT", bound=BoardTelemetry)
+ReportT = TypeVar("ReportT", bound=BoardTelemetry)
 
 
-class Bench(ABC, Generic[SaidT]):
+class Bench(ABC, Generic[ReportT]):
     """A board on trial, `name` on MQTT; `seq` is the last number used in `epoch`."""
 
     patience_s = 30.0  # for it to come to rest
@@ -86,18 +86,22 @@ class Bench(ABC, Generic[SaidT]):
         self.seq = 0
         self.now = 0.0
         self.beating = False
-        self.said: list[SaidT] = []
+        self.reports: list[ReportT] = []
         self.damaged: list[str] = []
-        self.arrivals = 0  # how often it said that it is there
+        self.arrivals = 0  # how often its presence came
 
     @property
-    def last(self) -> SaidT:
-        return self.said[-1]
+    def last(self) -> ReportT:
+        return self.reports[-1]
+
+    def moves_since(self, count: int) -> bool:
+        """True if a report after the first `count` says that the board moves."""
+        return any(each.state == MOVING for each in self.reports[count:])
 
     @property
     def spoken(self) -> Evidence:
         """The level that its reports belong to."""
-        if not self.said or not self.says_where:
+        if not self.reports or not self.says_where:
             return Evidence.STATE
         return Evidence.JOINTS if self.last.boot_id is None else Evidence.IDS
 
@@ -119,10 +123,10 @@ class Bench(ABC, Generic[SaidT]):
             self.arrivals += delivery.payload == b"1" and not delivery.retain
             return
         try:
-            self.said.append(self._read(delivery))
-            heard = max(self.last.epoch or 0, self.last.least_epoch or 0)
-            if not self.seq and heard >= self.epoch:
-                self.epoch = heard + 1
+            self.reports.append(self._read(delivery))
+            epoch = max(self.last.epoch or 0, self.last.least_epoch or 0)
+            if not self.seq and epoch >= self.epoch:
+                self.epoch = epoch + 1
         except PayloadError as error:
             self.damaged.append(f"{error}: {delivery.payload[:80]!r}")
 
@@ -136,5 +140,5 @@ class Bench(ABC, Generic[SaidT]):
         return Send(channel=channel, payload=json.dumps({**body, **numbers}).encode())
 
     @abstractmethod
-    def _read(self, delivery: Delivery) -> SaidT:
+    def _read(self, delivery: Delivery) -> ReportT:
         """The report in a payload; PayloadError if it cannot be read."""

@@ -25,19 +25,19 @@ TAKE_PLACE_S = 3.0
 
 
 class Trial:
-    """Trial: runs a judge to its end; `told` is called with it after every step, in the loop's thread."""
+    """Trial: runs a judge to its end; `on_step` is called with it after every step, in the loop's thread."""
 
     def __init__(
         self,
         robot: Robot,
         broker: Address,
         credentials: Credentials | None,
-        told: Callable[[Judge], None],
+        on_step: Callable[[Judge], None],
     ) -> None:
         self._name = robot.mqtt
         self._broker = broker
         self._credentials = credentials
-        self._told = told
+        self._on_step = on_step
         self._over = threading.Event()
         self._there = threading.Event()
         self._crashed: BaseException | None = None
@@ -116,7 +116,7 @@ class Trial:
             return
 
     def _stepped(self) -> None:
-        self._told(self.judge)
+        self._on_step(self.judge)
         if self.judge.over:
             self._over.set()
 

@@ -37,7 +37,7 @@ class DeviceTelemetry(BoardTelemetry):
 
 
 class DeviceBench(Bench[DeviceTelemetry]):
-    """A declared device's board on trial; `facts` are the last that it said of each."""
+    """A declared device's board on trial; `facts` has the last value of each."""
 
     def __init__(self, device: Device, epoch: int) -> None:
         super().__init__(device.mqtt, epoch)
@@ -51,12 +51,14 @@ class DeviceBench(Bench[DeviceTelemetry]):
 
     @property
     def place(self) -> tuple[tuple[str, Value], ...]:
-        return self.last.firm if self.said else ()
+        return self.last.firm if self.reports else ()
 
-    def order(self, told: VerbCall, **numbers: int | str) -> Send:
+    def order(
+        self, command: VerbCall, *, seq: int | None = None, epoch: int | None = None, **body: int | str
+    ) -> Send:
         """The order of a verb with its values."""
-        values = {"valores": dict(told.values)} if told.values else {}
-        return self.send(Channel.ORDER, verbo=told.verb, **values, **numbers)
+        values = {"valores": dict(command.values)} if command.values else {}
+        return self.send(Channel.ORDER, seq=seq, epoch=epoch, verbo=command.verb, **values, **body)
 
     def holds(self, facts: Facts) -> bool:
         """True if its last report has all of these facts."""
@@ -65,53 +67,53 @@ class DeviceBench(Bench[DeviceTelemetry]):
     def way(self, wanted: Callable[[VerbCall], bool]) -> list[VerbCall] | None:
         """The shortest row of orders that ends in one that is wanted, as the kind declares what each sets
         and needs; one that changes a fact rather than one that changes none. None: there is no way."""
-        changing = self._search(lambda told, facts: wanted(told) and not _so(facts, told.sets))
-        return changing or self._search(lambda told, facts: wanted(told))
+        changing = self._search(lambda command, facts: wanted(command) and not _so(facts, command.sets))
+        return changing or self._search(lambda command, facts: wanted(command))
 
     def _search(self, wanted: Callable[[VerbCall, dict[str, Value]], bool]) -> list[VerbCall] | None:
         first = self.facts or {name: type.first for name, type in self.kind.facts.items()}
-        seen, ahead = {_frozen(first)}, deque([(first, list[VerbCall]())])
-        while ahead and len(seen) < MOST_STATES:
+        visited, ahead = {_frozen(first)}, deque([(first, list[VerbCall]())])
+        while ahead and len(visited) < MOST_STATES:
             facts, row = ahead.popleft()
-            for told in self._possible(facts):
-                if wanted(told, facts):
-                    return [*row, told]
-                after = facts | dict(told.sets)
-                if _frozen(after) not in seen:
-                    seen.add(_frozen(after))
-                    ahead.append((after, [*row, told]))
+            for command in self._possible(facts):
+                if wanted(command, facts):
+                    return [*row, command]
+                after = facts | dict(command.sets)
+                if _frozen(after) not in visited:
+                    visited.add(_frozen(after))
+                    ahead.append((after, [*row, command]))
         return None
 
     def _possible(self, facts: dict[str, Value]) -> Iterator[VerbCall]:
         return (
-            told
+            command
             for verb in self.kind.verbs.values()
-            for told in commands(self.kind, verb)
-            if _so(facts, told.needs)
+            for command in commands(self.kind, verb)
+            if _so(facts, command.needs)
         )
 
     def _read(self, delivery: Delivery) -> DeviceTelemetry:
-        said = decode(Channel.TELEMETRY, delivery.payload, axes=DEVICE)
-        assert isinstance(said, Telemetry)
-        self.facts |= dict(said.facts or ())
+        telemetry = decode(Channel.TELEMETRY, delivery.payload, axes=DEVICE)
+        assert isinstance(telemetry, Telemetry)
+        self.facts |= dict(telemetry.facts or ())
         return DeviceTelemetry(
             at=delivery.at,
-            state=MotionState(said.state).value,
-            number=said.seq,
-            epoch=said.ack_epoch,
-            least_epoch=said.least_epoch,
-            ack=said.ack,
-            done=said.done,
-            refusal=said.refusal,
-            refused=said.refused_seq,
-            boot_id=said.boot_id,
-            ack_token=said.ack_token,
-            done_token=said.done_token,
-            facts=said.facts,
+            state=MotionState(telemetry.state).value,
+            number=telemetry.seq,
+            epoch=telemetry.ack_epoch,
+            least_epoch=telemetry.least_epoch,
+            ack=telemetry.ack,
+            done=telemetry.done,
+            refusal=telemetry.refusal,
+            refused=telemetry.refused_seq,
+            boot_id=telemetry.boot_id,
+            ack_token=telemetry.ack_token,
+            done_token=telemetry.done_token,
+            facts=telemetry.facts,
             firm=tuple((name, value) for name, value in self.facts.items() if self._is_firm(name)),
-            answer=said.answer,
-            answered=said.answered_seq,
-            failures=said.failures or (),
+            answer=telemetry.answer,
+            answered=telemetry.answered_seq,
+            failures=telemetry.failures or (),
         )
 
     def _is_firm(self, name: str) -> bool:
@@ -123,14 +125,14 @@ def commands(kind: DeviceKind, verb: DeviceVerb) -> Iterator[VerbCall]:
     """A verb with samples of its values."""
     names = [name for name, _ in verb.parameters]
     for values in islice(product(*(type.samples for _, type in verb.parameters)), MOST_VALUES):
-        told = kind.command(id="", robot="", verb=verb.name, values=dict(zip(names, values, strict=True)))
-        assert isinstance(told, VerbCall)
-        yield told
+        command = kind.command(id="", robot="", verb=verb.name, values=dict(zip(names, values, strict=True)))
+        assert isinstance(command, VerbCall)
+        yield command
 
 
-def is_work(told: VerbCall) -> bool:
+def is_work(command: VerbCall) -> bool:
     """True if an order is a motion or a process."""
-    return told.told.effect in WORK
+    return command.told.effect in WORK
 
 
 def _so(facts: dict[str, Value], wanted: Facts) -> bool:

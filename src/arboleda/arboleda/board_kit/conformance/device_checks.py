@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from arboleda.kinds.declared import Effect, UseError
+from collections.abc import Callable
+
+from arboleda.kinds.declared import Effect, UseError, VerbCall
 from arboleda.wire.topics import Channel
 
 from .bench import MOVING, CheckSkipped, Send, Steps, Wait
@@ -28,14 +30,13 @@ MALFORMED = (
 
 def works(bench: DeviceBench) -> Steps:
     """A motion or a process makes it report moving, and then standing still."""
-    told = yield from lead_to(bench, is_work, "motion and no process")
-    before = len(bench.said)
+    command = yield from lead_to(bench, is_work, "motion and no process")
+    before = len(bench.reports)
     bench.beating = True
-    yield bench.order(told)
+    yield bench.order(command)
     yield Wait(seconds=ANSWER_S, until=lambda: bench.last.state == MOVING)
     yield from rest(bench)
-    moved = any(said.state == MOVING for said in bench.said[before:])
-    demand(moved, f"{told.verb} did not make it report moving (1)")
+    demand(bench.moves_since(before), f"{command.verb} did not make it report moving (1)")
 
 
 def facts(bench: DeviceBench) -> Steps:
@@ -55,19 +56,20 @@ def verbs(bench: DeviceBench) -> Steps:
     for verb in bench.kind.verbs.values():
         if verb.effect is Effect.QUERY:
             continue
-        told = yield from lead_to(
-            bench, lambda told, name=verb.name: told.verb == name, f"way to {verb.name}"
-        )  # type: ignore[misc]
-        yield from carry_out(bench, told)
+        yield from carry_out(bench, (yield from lead_to(bench, _calls(verb.name), f"way to {verb.name}")))
+
+
+def _calls(verb: str) -> Callable[[VerbCall], bool]:
+    return lambda command: command.verb == verb
 
 
 def halts(bench: DeviceBench) -> Steps:
     """`paro` 2 ends what a stop ends, and for good."""
-    told = yield from lasting(bench)
+    command = yield from lasting(bench)
     yield stop(bench, 2)
     yield from at_rest(bench, HALT_S, "paro 2")
-    if told.sets and bench.holds(told.sets) and bench.last.boot_id is None:
-        raise CheckSkipped(f"{told.verb} was over when paro 2 came")
+    if command.sets and bench.holds(command.sets) and bench.last.boot_id is None:
+        raise CheckSkipped(f"{command.verb} was over when paro 2 came")
     yield from unmoved(bench, bench.place, "a halt had ended its work")
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from arboleda.kinds.declared import Effect, VerbCall
 from arboleda.wire.topics import Channel
 
-from .bench import LATCHED, MOVING, CheckSkipped, Send, Steps, Wait
+from .bench import LATCHED, MOVING, CheckFailed, CheckSkipped, Send, Steps, Wait
 from .device_bench import DeviceBench, commands, is_work
 from .device_procedures import LEAST_S, at_rest, carry_out, lasting, lead_to, named
 from .number_checks import SILENCE_S
@@ -28,13 +28,13 @@ HALT_S = 1.5
 
 def numbers(bench: DeviceBench) -> Steps:
     """Work is acknowledged by its number, and done by the same number once it has ended."""
-    told = yield from lead_to(bench, is_work, "motion and no process")
+    command = yield from lead_to(bench, is_work, "motion and no process")
     bench.beating = True
-    yield from accepted(bench, bench.order(told))
+    yield from accepted(bench, bench.order(command))
     number = bench.seq
-    done = yield Wait(seconds=told.at_most_s + ANSWER_S, until=lambda: bench.last.done == number)
-    demand(done, f"{named(told)} has no hecho within {told.at_most_s:g} s")
-    demand(bench.holds(told.sets), f"it says hecho for {named(told)}, and what that sets is not so")
+    done = yield Wait(seconds=command.at_most_s + ANSWER_S, until=lambda: bench.last.done == number)
+    demand(done, f"{named(command)} has no hecho within {command.at_most_s:g} s")
+    demand(bench.holds(command.sets), f"it says hecho for {named(command)}, and what that sets is not so")
     demand(bench.last.ack == number, "ack has changed without a command")
 
 
@@ -45,9 +45,9 @@ def telling(bench: DeviceBench) -> Steps:
 
 def duplicate(bench: DeviceBench) -> Steps:
     """One of the last eight orders once more (QoS 1 may deliver twice) is neither refused nor done again."""
-    told = yield from lead_to(bench, is_work, "motion and no process")
-    yield from carry_out(bench, told)
-    copy, number = bench.order(told, seq=bench.seq), bench.seq
+    command = yield from lead_to(bench, is_work, "motion and no process")
+    yield from carry_out(bench, command)
+    copy, number = bench.order(command, seq=bench.seq), bench.seq
     for _ in range(3):
         yield from accepted(bench, stop(bench, 2))
     before = bench.place
@@ -62,23 +62,23 @@ def old(bench: DeviceBench) -> Steps:
     bench.seq += 1
     missed = bench.seq
     yield from accepted(bench, stop(bench, 2))
-    told = yield from lead_to(bench, _any, "verb")
+    command = yield from lead_to(bench, _any, "verb")
     bench.seq = max(bench.seq, missed)
-    yield from refused(bench, bench.order(told, seq=missed), "viejo", missed)
+    yield from refused(bench, bench.order(command, seq=missed), "viejo", missed)
 
 
 def old_epoch(bench: DeviceBench) -> Steps:
     """A lower epoca is refused with viejo, whatever its seq."""
     yield from accepted(bench, stop(bench, 2))
-    told = yield from lead_to(bench, _any, "verb")
+    command = yield from lead_to(bench, _any, "verb")
     number = bench.seq + 100
-    yield from refused(bench, bench.order(told, seq=number, epoch=bench.epoch - 1), "viejo", number)
+    yield from refused(bench, bench.order(command, seq=number, epoch=bench.epoch - 1), "viejo", number)
 
 
 def new_epoch(bench: DeviceBench) -> Steps:
     """A higher epoca begins numbers of its own, and the old ones disappear."""
-    told = yield from lead_to(bench, is_work, "motion and no process")
-    yield from carry_out(bench, told)
+    command = yield from lead_to(bench, is_work, "motion and no process")
+    yield from carry_out(bench, command)
     bench.epoch, bench.seq = bench.epoch + 1, 0
     yield from accepted(bench, stop(bench, 2))
     demand(bench.last.done is None, f"hecho {bench.last.done} of the older epoca is still there")
@@ -86,59 +86,60 @@ def new_epoch(bench: DeviceBench) -> Steps:
 
 def stamped(bench: DeviceBench) -> Steps:
     """An order without seq and epoca is refused with formato."""
-    before, told = bench.place, (yield from lead_to(bench, _any, "verb"))
+    before, command = bench.place, (yield from lead_to(bench, _any, "verb"))
     yield from accepted(bench, stop(bench, 2))
     before = bench.place
-    order = bench.order(told, seq=0)
+    order = bench.order(command, seq=0)
     bare = order.payload.partition(b', "seq"')[0] + b"}"
     yield Send(channel=order.channel, payload=bare)
-    said = yield Wait(seconds=1.0, until=lambda: bench.last.refusal == "formato")
-    demand(said, f"{bare.decode()} without numbers is not refused with formato")
+    answered = yield Wait(seconds=1.0, until=lambda: bench.last.refusal == "formato")
+    demand(answered, f"{bare.decode()} without numbers is not refused with formato")
     yield from unmoved(bench, before, "an order without numbers")
 
 
 def late(bench: DeviceBench) -> Steps:
     """An order that names in visto what it told over 2 s ago is refused with tarde; paro never is."""
-    told = yield from lead_to(bench, _any, "verb")
-    yield from only_in_time(bench, lambda heard: bench.order(told, visto=heard))
+    command = yield from lead_to(bench, _any, "verb")
+    yield from only_in_time(bench, lambda visto: bench.order(command, visto=visto))
 
 
 def token(bench: DeviceBench) -> Steps:
     """The ficha of an order is echoed with ack and with hecho, and by no number of another command."""
-    told = yield from lead_to(bench, _any, "verb")
-    yield from echoes_tokens(bench, lambda ficha: bench.order(told, ficha=ficha))
+    command = yield from lead_to(bench, _any, "verb")
+    yield from echoes_tokens(bench, lambda ficha: bench.order(command, ficha=ficha))
 
 
 def words(bench: DeviceBench) -> Steps:
     """Damaged commands, unknown verbs and unknown values are refused with formato."""
     yield Send(channel=Channel.STOP, payload=b'{"paro":3}')
-    said = yield Wait(seconds=1.0, until=lambda: bench.last.refusal == "formato")
-    demand(said, 'it does not refuse {"paro":3} with formato')
+    answered = yield Wait(seconds=1.0, until=lambda: bench.last.refusal == "formato")
+    demand(answered, 'it does not refuse {"paro":3} with formato')
     yield from refused(bench, bench.send(Channel.ORDER, verbo="no-such-verb"), "formato")
     for verb in bench.kind.verbs.values():
-        told = next(commands(bench.kind, verb))
-        values = {**dict(told.values), "no-such-value": 1}
+        command = next(commands(bench.kind, verb))
+        values = {**dict(command.values), "no-such-value": 1}
         yield from refused(bench, bench.send(Channel.ORDER, verbo=verb.name, valores=values), "formato")
 
 
 def needs(bench: DeviceBench) -> Steps:
     """An order whose condition is not so is refused with condicion."""
-    told = next((told for told in _every(bench) if told.needs and not bench.holds(told.needs)), None)
-    if told is None:
-        row = bench.way(lambda told: any(_breaks(told, other) for other in _every(bench)))
+    command = next((each for each in _every(bench) if each.needs and not bench.holds(each.needs)), None)
+    if command is None:
+        row = bench.way(lambda command: any(_breaks(command, other) for other in _every(bench)))
         if row is None:
             raise CheckSkipped("nothing that its verbs need can be made not so")
         for step in row:
             yield from carry_out(bench, step)
-        told = next((told for told in _every(bench) if told.needs and not bench.holds(told.needs)), None)
-        demand(told is not None, "it does not say what its verb has set")
-    yield from refused(bench, bench.order(told), "condicion")
+        command = next((each for each in _every(bench) if each.needs and not bench.holds(each.needs)), None)
+        if command is None:
+            raise CheckFailed("it does not say what its verb has set")
+    yield from refused(bench, bench.order(command), "condicion")
 
 
 def busy(bench: DeviceBench) -> Steps:
     """A second motion or process is refused with ocupado while one goes on."""
     yield from lasting(bench)
-    other = next((told for told in _every(bench) if is_work(told) and bench.holds(told.needs)), None)
+    other = next((each for each in _every(bench) if is_work(each) and bench.holds(each.needs)), None)
     if other is None:
         raise CheckSkipped("no other work is possible meanwhile")
     yield from answer(bench, bench.order(other))
@@ -151,54 +152,54 @@ def busy(bench: DeviceBench) -> Steps:
 
 def queries(bench: DeviceBench) -> Steps:
     """Each query is answered by its number, with one of the declared answers."""
-    asked = [told for told in _every(bench) if told.told.effect is Effect.QUERY]
-    if not asked:
+    verbs = [each for each in _every(bench) if each.told.effect is Effect.QUERY]
+    if not verbs:
         raise CheckSkipped("its kind has no query")
-    for told in asked:
-        yield from lead_to(bench, lambda each, wanted=told: each == wanted, f"way to {told.verb}")  # type: ignore[misc]
-        yield from carry_out(bench, told)
-        said = bench.last.answer
-        known = not told.told.answers or said in told.told.answers
-        demand(known, f"it answers {named(told)} with {said!r}; its kind has {told.told.answers}")
+    for command in verbs:
+        yield from lead_to(bench, lambda each, wanted=command: each == wanted, f"way to {command.verb}")  # type: ignore[misc]
+        yield from carry_out(bench, command)
+        answer = bench.last.answer
+        known = not command.told.answers or answer in command.told.answers
+        demand(known, f"it answers {named(command)} with {answer!r}; its kind has {command.told.answers}")
 
 
 def retained(bench: DeviceBench) -> Steps:
     """An order that a broker has kept for the board is refused with retenido when it comes back."""
-    told = yield from lead_to(bench, _any, "verb")
+    command = yield from lead_to(bench, _any, "verb")
     yield from accepted(bench, stop(bench, 2))
     # the number of the stop: heard while it is connected, the order is a copy and does nothing
-    order, before = bench.order(told, seq=bench.seq), bench.place
+    order, before = bench.order(command, seq=bench.seq), bench.place
     yield from refused_as_retained(bench, order, "order")
     yield from unmoved(bench, before, "a retained order")
 
 
 def halted(bench: DeviceBench) -> Steps:
     """Halted work never appears as done."""
-    told = yield from lasting(bench)
+    command = yield from lasting(bench)
     number = bench.seq
     yield from accepted(bench, stop(bench, 2))
     yield from at_rest(bench, HALT_S, "paro 2")
-    yield Wait(seconds=told.takes_s)
-    demand(bench.last.done != number, f"it says hecho for {named(told)}, which paro 2 has ended")
+    yield Wait(seconds=command.takes_s)
+    demand(bench.last.done != number, f"it says hecho for {named(command)}, which paro 2 has ended")
 
 
 def stop_from_anybody(bench: DeviceBench) -> Steps:
     """`paro` 2 is obeyed whatever its numbers are."""
-    told = yield from lasting(bench)
+    command = yield from lasting(bench)
     number = bench.seq
     yield stop(bench, 2, seq=1, epoch=1)
     yield from at_rest(bench, HALT_S, "a paro 2 with old numbers")
-    yield Wait(seconds=told.takes_s)
+    yield Wait(seconds=command.takes_s)
     demand(bench.last.done != number, "it went on to its end: a halt with old numbers has to be obeyed too")
 
 
 def latch(bench: DeviceBench) -> Steps:
     """`paro` 1 stops and latches: until `paro` 0 no work begins; clearing moves nothing."""
-    told = yield from lasting(bench)
+    command = yield from lasting(bench)
     yield from accepted(bench, stop(bench, 1))
     yield from at_rest(bench, HALT_S, "paro 1")
     demand(bench.last.state == LATCHED, f"after paro 1 its estado is {bench.last.state}, not {LATCHED}")
-    yield from refused(bench, bench.order(told), "paro")
+    yield from refused(bench, bench.order(command), "paro")
     before = bench.place
     yield from accepted(bench, stop(bench, 0))
     yield from unmoved(bench, before, "paro 0")
@@ -215,14 +216,14 @@ def silence(bench: DeviceBench) -> Steps:
     demand((number, "silencio") in bench.last.failures, f"fallos is {bench.last.failures}, without silencio")
 
 
-def _any(told: VerbCall) -> bool:
-    return told.told.effect is not Effect.QUERY
+def _any(command: VerbCall) -> bool:
+    return command.told.effect is not Effect.QUERY
 
 
 def _every(bench: DeviceBench) -> list[VerbCall]:
-    return [told for verb in bench.kind.verbs.values() for told in commands(bench.kind, verb)]
+    return [command for verb in bench.kind.verbs.values() for command in commands(bench.kind, verb)]
 
 
-def _breaks(told: VerbCall, other: VerbCall) -> bool:
-    sets = dict(told.sets)
+def _breaks(command: VerbCall, other: VerbCall) -> bool:
+    sets = dict(command.sets)
     return any(sets.get(name, value) != value for name, value in other.needs)

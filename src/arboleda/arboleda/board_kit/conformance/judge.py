@@ -186,11 +186,11 @@ class Judge:
         """Run the check on to its next wait, and collect what it sends on the way."""
         out: list[Send | Jostle] = []
         try:
-            asked = self._course.send(met if self.current else None)  # type: ignore[arg-type]
-            while not isinstance(asked, Wait):
-                out += [*self._beat(now), asked]
-                asked = next(self._course)
-            self._wait, self._deadline = asked, now + asked.seconds
+            step = self._course.send(met if self.current else None)
+            while not isinstance(step, Wait):
+                out += [*self._beat(now), step]
+                step = next(self._course)
+            self._wait, self._deadline = step, now + step.seconds
         except StopIteration:
             self.over = True
         return out
@@ -201,7 +201,7 @@ class Judge:
             if LEVELS.index(check.level) > LEVELS.index(self.spoken):
                 return
             yield from self._try(check)
-            if not self.bench.said:
+            if not self.bench.reports:
                 return
 
     def _try(self, check: Check) -> Generator[Send | Jostle | Wait, Any, None]:
@@ -213,7 +213,7 @@ class Judge:
             wrong = str(found)
         except CheckSkipped as reason:
             untried = str(reason)
-        if self.bench.said:
+        if self.bench.reports:
             wrong = (yield from self._settled(check)) or wrong
         self.findings.append(Finding(check=check, wrong=wrong, untried=untried))
 

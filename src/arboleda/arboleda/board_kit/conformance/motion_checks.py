@@ -36,26 +36,24 @@ MALFORMED = (
 def telemetry(bench: Bench[Any]) -> Steps:
     """Every report is one JSON object with the state, of at most 512 bytes."""
     yield Wait(seconds=LISTEN_S)
-    demand(bool(bench.said), f"nothing on {bench.name}/sensores that can be read in {LISTEN_S:g} s")
+    demand(bool(bench.reports), f"nothing on {bench.name}/sensores that can be read in {LISTEN_S:g} s")
     demand(not bench.damaged, "it says " + "; ".join(bench.damaged[:1]))
 
 
 def moves(bench: ArmBench) -> Steps:
     """A goal makes it report moving, and then standing still."""
-    before = len(bench.said)
+    before = len(bench.reports)
     yield from drive(bench, bench.away(0.1))
-    demand(
-        any(said.state == MOVING for said in bench.said[before:]), "a goal did not make it report moving (1)"
-    )
+    demand(bench.moves_since(before), "a goal did not make it report moving (1)")
 
 
 def rhythm(bench: Bench[Any]) -> Steps:
     """It reports at 10 Hz, also while nothing happens."""
-    before = len(bench.said)
+    before = len(bench.reports)
     yield Wait(seconds=LISTEN_S)
-    times = [said.at for said in bench.said[before:]]
-    heard = f"{counted(len(times), 'report')} in {LISTEN_S:g} s"
-    demand(len(times) >= LEAST_REPORTS, f"{heard}; 10 a second are needed")
+    times = [report.at for report in bench.reports[before:]]
+    rate = f"{counted(len(times), 'report')} in {LISTEN_S:g} s"
+    demand(len(times) >= LEAST_REPORTS, f"{rate}; 10 a second are needed")
     gap = max(after - at for at, after in pairwise(times))
     demand(gap <= LONGEST_GAP_S, f"{gap:.2f} s between two reports; 0.1 s are needed")
 
@@ -71,11 +69,8 @@ def reaches(bench: ArmBench) -> Steps:
 def rounds(bench: ArmBench) -> Steps:
     """A goal between two motor steps is rounded, not cut off."""
     goal = bench.away(0.05)
-    less = tuple(
-        (count - copysign(0.4, count)) * step for count, step in zip(goal, bench.step_deg, strict=True)
-    )
     bench.beating = True
-    yield bench.send(Channel.JOINTS, **{f"q{at + 1}": round(angle, 4) for at, angle in enumerate(less)})
+    yield bench.goal([count - copysign(0.4, count) for count in goal])
     yield Wait(seconds=1.0, until=lambda: bench.last.state == MOVING)
     yield from rest(bench)
     demand(bench.at(goal), f"for 0.4 steps less than {goal} it stands at {bench.steps}: it does not round")
@@ -103,6 +98,6 @@ def limits(bench: ArmBench) -> Steps:
     """A goal beyond a limit changes nothing, whatever the other joints' goals are."""
     before = bench.steps
     beyond = round(to_wire(bench.arm.joints[-1], bench.arm.joints[-1].upper) + 5.0, 4)
-    goal = {f"q{at + 1}": round(count * bench.step_deg[at], 4) for at, count in enumerate(bench.away(0.05))}
-    yield bench.send(Channel.JOINTS, **{**goal, f"q{len(goal)}": beyond})
+    goal = [count * step for count, step in zip(bench.away(0.05), bench.step_deg, strict=True)]
+    yield bench.goal_deg([*goal[:-1], beyond])
     yield from unmoved(bench, before, f"a goal with q{len(goal)} at {beyond}, beyond its limit")

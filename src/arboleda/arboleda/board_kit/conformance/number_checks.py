@@ -100,7 +100,7 @@ def retained(bench: ArmBench) -> Steps:
 
 def late(bench: ArmBench) -> Steps:
     """A goal that names in visto what it told over 2 s ago is refused with tarde; paro never is."""
-    yield from only_in_time(bench, lambda heard: bench.goal(bench.away(0.05), visto=heard))
+    yield from only_in_time(bench, lambda visto: bench.goal(bench.away(0.05), visto=visto))
 
 
 def token(bench: ArmBench) -> Steps:
@@ -111,10 +111,9 @@ def token(bench: ArmBench) -> Steps:
 def words(bench: ArmBench) -> Steps:
     """Damaged commands are refused with formato, goals beyond a limit with limite."""
     yield Send(channel=Channel.STOP, payload=b'{"paro":3}')
-    said = yield Wait(seconds=1.0, until=lambda: bench.last.refusal == "formato")
-    demand(said, 'it does not refuse {"paro":3} with formato')
-    q = {f"q{at + 1}": 0.0 for at in range(len(bench.step_deg))}
-    yield from refused(bench, bench.send(Channel.JOINTS, **{**q, "q1": 5000.0}), "limite")
+    answered = yield Wait(seconds=1.0, until=lambda: bench.last.refusal == "formato")
+    demand(answered, 'it does not refuse {"paro":3} with formato')
+    yield from refused(bench, bench.goal_deg([5000.0, *(0.0 for _ in bench.step_deg[1:])]), "limite")
 
 
 def halted(bench: ArmBench) -> Steps:
@@ -159,7 +158,7 @@ def retarget(bench: ArmBench) -> Steps:
     yield from accepted(bench, bench.goal(here))
     yield from rest(bench)
     demand(bench.at(here), f"it stands at {bench.steps}, not at its second goal {here}")
-    demand(all(said.done != replaced for said in bench.said[-50:]), "it says hecho for the first goal")
+    demand(all(report.done != replaced for report in bench.reports[-50:]), "it says hecho for the first goal")
     demand(bench.last.done == bench.seq, "it does not say hecho for the second goal")
 
 

@@ -13,9 +13,9 @@ from .bench import MOVING, Bench, CheckFailed, CheckSkipped, Jostle, Send, Steps
 ANSWER_S = 2.0
 BACK_S = 10.0  # so long it may take to connect again
 NOTHING_S = 0.4  # so long a board that does nothing is watched
-LATE_S = 2.5  # after so long what it told is no news, by far
+LATE_S = 2.5  # a report of this age counts as old, by far
 TOKEN = "0a3f97001a01"
-NOT_YET_TOLD = 100_000  # so many reports on
+AHEAD = 100_000  # so many reports on
 WAITED = (
     ". That visto names what it told more than 2 s ago: the command waited in a broker, or in a connection "
     "that was cut. It has to remember which seq it told when; without that, what has waited moves it"
@@ -30,11 +30,11 @@ def demand(truth: bool, sentence: str) -> None:
 
 def rest(bench: Bench[Any]) -> Steps:
     """Wait until two new reports say that it stands still at one place."""
-    count = len(bench.said)
+    count = len(bench.reports)
 
     def resting() -> bool:
-        last = bench.said[max(count, len(bench.said) - 2) :]
-        return len(last) == 2 and all(said.state != MOVING and said.place == last[0].place for said in last)
+        last = bench.reports[max(count, len(bench.reports) - 2) :]
+        return len(last) == 2 and all(each.state != MOVING and each.place == last[0].place for each in last)
 
     rested = yield Wait(seconds=bench.patience_s, until=resting)
     demand(rested, f"it was not seen standing still within {bench.patience_s:g} s")
@@ -42,23 +42,23 @@ def rest(bench: Bench[Any]) -> Steps:
 
 def numbered_reports(bench: Bench[Any]) -> Steps:
     """Hear the reports of a second, which are of one boot and numbered upwards."""
-    before = len(bench.said)
+    before = len(bench.reports)
     yield Wait(seconds=1.0)
-    fresh = bench.said[before:]
-    rising = [said.number for said in fresh if said.number is not None]
+    fresh = bench.reports[before:]
+    rising = [report.number for report in fresh if report.number is not None]
     demand(rising == sorted(set(rising)) and len(rising) == len(fresh), "seq of its reports does not rise")
-    demand(len({said.boot_id for said in fresh}) == 1, "arranque changes without a reboot")
+    demand(len({report.boot_id for report in fresh}) == 1, "arranque changes without a reboot")
 
 
 def answer(bench: Bench[Any], send: Send, seq: int | None = None) -> Steps:
     """Send it, and wait until the board accepts or refuses its number."""
     yield send
     number, epoch = bench.seq if seq is None else seq, bench.epoch
-    count = len(bench.said)
+    count = len(bench.reports)
 
     def answered() -> bool:
-        fresh = bench.said[count:]
-        return any(said.epoch == epoch and number in (said.ack, said.refused) for said in fresh)
+        fresh = bench.reports[count:]
+        return any(report.epoch == epoch and number in (report.ack, report.refused) for report in fresh)
 
     yield Wait(seconds=ANSWER_S, until=answered)
 
@@ -77,9 +77,9 @@ def refused(bench: Bench[Any], send: Send, word: str, seq: int | None = None, *,
     before = bench.place
     yield from answer(bench, send, seq)
     number = bench.seq if seq is None else seq
-    said = bench.last
+    report = bench.last
     demand(
-        (said.refusal, said.refused) == (word, number),
+        (report.refusal, report.refused) == (word, number),
         f"it should refuse {send.payload.decode()} with {word}; it says {_answer(bench)}{why}",
     )
     yield from unmoved(bench, before, send.payload.decode())
@@ -106,26 +106,26 @@ def settle(bench: Bench[Any]) -> Steps:
 
 
 def _answer(bench: Bench[Any]) -> str:
-    said: dict[str, Any] = {
+    rows: dict[str, Any] = {
         "epoca_ack": bench.last.epoch,
         "ack": bench.last.ack,
         "rechazo": bench.last.refusal,
         "rechazo_seq": bench.last.refused,
     }
     return (
-        ", ".join(f"{key} {value}" for key, value in said.items() if value is not None) or "nothing about it"
+        ", ".join(f"{key} {value}" for key, value in rows.items() if value is not None) or "nothing about it"
     )
 
 
 def only_in_time(bench: Bench[Any], command: Callable[[int], Send]) -> Steps:
     """A command that names a report of long ago, or none, is refused, one that names the last is taken; a
     stop always is."""
-    heard = bench.last.number
-    demand(heard is not None, "its reports have no seq, so no command can name one")
+    number = bench.last.number
+    demand(number is not None, "its reports have no seq, so no command can name one")
     yield Wait(seconds=LATE_S)
-    yield from refused(bench, command(heard), "tarde", why=WAITED)
-    yield from refused(bench, command(bench.last.number + NOT_YET_TOLD), "tarde")
-    yield from accepted(bench, stop(bench, 2, visto=heard))
+    yield from refused(bench, command(number), "tarde", why=WAITED)
+    yield from refused(bench, command(bench.last.number + AHEAD), "tarde")
+    yield from accepted(bench, stop(bench, 2, visto=number))
     yield from accepted(bench, command(bench.last.number))
 
 

@@ -42,28 +42,28 @@ class Driving:
             self._problem(place, "a query moves nothing")
         for name, value in wanted.items():
             if name in outputs:
-                given = self._driven((*place, name), verb, value, None)
-                yield Action(drive="kOutput", index=outputs.index(name), value=given)
+                driven = self._driven((*place, name), verb, value, None)
+                yield Action(drive="kOutput", index=outputs.index(name), value=driven)
             elif name in servos:
                 if verb.effect is Effect.SWITCH or place[-1] == "end":
                     self._problem(
                         (*place, name), "a servo takes its time: only a motion or a process starts it"
                     )
-                given = self._driven((*place, name), verb, value, self._wiring.servos[name].degrees)
-                yield Action(drive="kServo", index=servos.index(name), value=given)
+                driven = self._driven((*place, name), verb, value, self._wiring.servos[name].degrees)
+                yield Action(drive="kServo", index=servos.index(name), value=driven)
             else:
                 unknown(self._document, (*place, name), name, [*outputs, *servos], "output or servo")
 
     def _passed_on(self, place: Place, verb: DeviceVerb, parameter: str, type: FactType) -> TableValue:
         """The value of a parameter, passed on as the value of a fact."""
         names = [name for name, _ in verb.parameters]
-        at, given = names.index(parameter), dict(verb.parameters)[parameter]
-        if given.words:
-            return TableValue(parameter=at, map=tuple(encoded(type, _as(type, word)) for word in given.words))
-        if given.type not in (bool, int):
+        at, slot = names.index(parameter), dict(verb.parameters)[parameter]
+        if slot.words:
+            return TableValue(parameter=at, map=tuple(encoded(type, _as(type, word)) for word in slot.words))
+        if slot.type not in (bool, int):
             self._problem(
                 place,
-                f"this board cannot prove any {given.allowed()}: list the values of {parameter} in the kind",
+                f"this board cannot prove any {slot.allowed()}: list the values of {parameter} in the kind",
             )
         return TableValue(parameter=at)
 

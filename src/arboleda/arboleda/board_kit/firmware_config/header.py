@@ -95,33 +95,33 @@ class Header:
         when = self._list("Condition", [f"{{{input}, {_bool(on)}}}" for input, on in row.when])
         return f"{{{row.value!r}, {when}}}"
 
-    def _given(self, given: TableValue) -> str:
-        name = self._array("double", [repr(value) for value in given.map]) or "nullptr"
-        return f"{{{given.constant!r}, {given.parameter}, {name}}}"
+    def _table_value(self, table: TableValue) -> str:
+        name = self._array("double", [repr(value) for value in table.map]) or "nullptr"
+        return f"{{{table.constant!r}, {table.parameter}, {name}}}"
 
     def _actions(self, actions: tuple[Action, ...]) -> str:
-        rows = [f"{{Drive::{each.drive}, {each.index}, {self._given(each.value)}}}" for each in actions]
+        rows = [f"{{Drive::{each.drive}, {each.index}, {self._table_value(each.value)}}}" for each in actions]
         return self._list("Action", rows)
 
     def _verb(self, verb: Verb) -> str:
-        told = verb.told
-        parameters = [f"{{{_text(name)}, {self._value(type)}}}" for name, type in told.parameters]
-        answer_type = TYPES[type(told.answers[0])] if told.answers else "kText"
+        declared = verb.declared
+        parameters = [f"{{{_text(name)}, {self._value(type)}}}" for name, type in declared.parameters]
+        answer_type = TYPES[type(declared.answers[0])] if declared.answers else "kText"
         fields = (
-            _text(told.name),
-            f"Effect::{EFFECTS[told.effect]}",
+            _text(declared.name),
+            f"Effect::{EFFECTS[declared.effect]}",
             self._list("Parameter", parameters),
-            self._list("Setting", [f"{{{fact}, {self._given(given)}}}" for fact, given in verb.sets]),
+            self._list("Setting", [f"{{{fact}, {self._table_value(table)}}}" for fact, table in verb.sets]),
             self._list("Need", [f"{{{fact}, {value!r}}}" for fact, value in verb.needs]),
             self._actions(verb.start),
             self._actions(verb.end),
-            self._choices(told.answers),
+            self._choices(declared.answers),
             f"ValueType::{answer_type}",
             self._reading(verb.answer),
             _us(verb.at_least_s),
-            _us(told.at_most_s),
-            _us(told.takes_s),
-            _bool(told.on_stop is OnStop.FINISH),
+            _us(declared.at_most_s),
+            _us(declared.takes_s),
+            _bool(declared.on_stop is OnStop.FINISH),
             str(verb.held_fact),
         )
         return "{" + ", ".join(fields) + "}"

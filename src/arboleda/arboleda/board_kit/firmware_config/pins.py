@@ -16,15 +16,15 @@ MISSING = (20, 24, 28, 29, 30, 31, 37, 38)
 
 def check(document: Document, wiring: Wiring) -> None:
     """Keep a problem for each pin that cannot be what it is used for, and for each that is used twice."""
-    seen: dict[int, str] = {}
+    names: dict[int, str] = {}
     for section in ("inputs", "outputs", "servos", "analogs"):
         for name, each in getattr(wiring, section).items():
             place = (section, name, "pin")
             if each.pin is None:
                 continue
-            if each.pin in seen:
-                document.problem(place, f"pin {each.pin} is {seen[each.pin]} already")
-            seen[each.pin] = name
+            if each.pin in names:
+                document.problem(place, f"pin {each.pin} is {names[each.pin]} already")
+            names[each.pin] = name
             _check_one(document, place, each.pin, section)
 
 

@@ -44,9 +44,9 @@ class Resolver:
         self._same_names(("facts",), self._wiring.facts, self._kind.facts, "fact")
         self._same_names(("verbs",), self._wiring.verbs, self._kind.verbs, "verb")
         facts = tuple(self._readings.fact(name, type) for name, type in self._kind.facts.items())
-        told = {fact.name for fact in facts if fact.source == "kTold"}
-        verbs = tuple(self._verb(verb, told) for verb in self._kind.verbs.values())
-        unseen = {name for verb in self._kind.verbs.values() for name, _ in verb.sets} & told
+        commanded = {fact.name for fact in facts if fact.source == "kTold"}
+        verbs = tuple(self._verb(verb, commanded) for verb in self._kind.verbs.values())
+        unseen = {name for verb in self._kind.verbs.values() for name, _ in verb.sets} & commanded
         return Tables(
             name=self._device.mqtt,
             wiring=self._wiring,
@@ -55,7 +55,7 @@ class Resolver:
             unseen=tuple(name for name in self._kind.facts if name in unseen),
         )
 
-    def _verb(self, verb: DeviceVerb, told: set[str]) -> Verb:
+    def _verb(self, verb: DeviceVerb, commanded: set[str]) -> Verb:
         place: Place = ("verbs", verb.name)
         shape = self._wiring.verbs.get(verb.name)
         if verb.sets_by is not None or verb.takes_s_by is not None:
@@ -64,15 +64,15 @@ class Resolver:
             )
         if len(verb.parameters) > MOST_VALUES:
             self._document.problem(place, f"a board has room for {MOST_VALUES} values of a verb")
-        timed = verb.effect is Effect.QUERY or all(name in told for name, _ in verb.sets)
-        asked_s = shape.at_least_s if shape else None
-        at_least_s = asked_s if asked_s is not None else verb.takes_s if timed else 0.0
+        timed = verb.effect is Effect.QUERY or all(name in commanded for name, _ in verb.sets)
+        least_s = shape.at_least_s if shape else None
+        at_least_s = least_s if least_s is not None else verb.takes_s if timed else 0.0
         if at_least_s > verb.at_most_s:
             self._document.problem(
                 place, f"at_least_s is {at_least_s:g}, and its kind gives it up after {verb.at_most_s:g} s"
             )
         return Verb(
-            told=verb,
+            declared=verb,
             sets=tuple(self._driving.sets(place, verb)),
             needs=tuple(
                 (self._facts[name], encoded(self._kind.facts[name], value)) for name, value in verb.needs

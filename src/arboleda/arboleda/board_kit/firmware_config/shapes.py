@@ -17,7 +17,7 @@ FULL = 4095  # counts of the converter
 Counts = Annotated[int, Field(ge=0, le=FULL)]
 Range = Annotated[list[Counts], Field(min_length=2, max_length=2)]
 Pulse = Annotated[int, Field(ge=400, le=2600)]
-Given = OnOff | Number | str | dict[str, dict[str, OnOff | Number]]
+DriveValue = OnOff | Number | str | dict[str, dict[str, OnOff | Number]]
 
 
 class InputShape(Shape):
@@ -52,8 +52,8 @@ class AnalogShape(Shape):
 
 
 class VerbShape(Shape):
-    start: dict[str, Given] = Field(default_factory=dict)
-    end: dict[str, Given] = Field(default_factory=dict)
+    start: dict[str, DriveValue] = Field(default_factory=dict)
+    end: dict[str, DriveValue] = Field(default_factory=dict)
     answers: dict[str, str | dict[str, OnOff]] = Field(default_factory=dict)
     at_least_s: Annotated[float, Field(ge=0, le=3600)] | None = None
 

@@ -52,7 +52,7 @@ class Action:
 
 @dataclass(frozen=True, kw_only=True)
 class Verb:
-    told: DeviceVerb
+    declared: DeviceVerb
     sets: tuple[tuple[int, TableValue], ...]
     needs: tuple[tuple[int, float], ...]
     start: tuple[Action, ...]

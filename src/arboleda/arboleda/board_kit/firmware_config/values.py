@@ -5,7 +5,7 @@ from __future__ import annotations
 from arboleda.kinds.declared import FactType
 from arboleda.model.facts import Value, shown
 
-DECIMALS = 4  # of a number that a board says
+DECIMALS = 4  # of a number in telemetry
 
 
 def encoded(type: FactType, value: Value) -> float:

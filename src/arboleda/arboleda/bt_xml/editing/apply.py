@@ -49,5 +49,5 @@ def apply(text: str, operation: Operation) -> str:
     """
     content = EDITS[type(operation)](TreeText(text), operation)
     changed = (BOM if text.startswith(BOM) else "") + content.decode()
-    TreeText(changed)  # what nobody could read again is refused
+    TreeText(changed)  # a text that cannot be read again is refused
     return changed

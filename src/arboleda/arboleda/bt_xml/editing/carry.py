@@ -73,7 +73,7 @@ def _tool(role: str, tool: Robot) -> tuple[str, str] | None:
 
 
 def _gripping(verb: DeviceVerb) -> Mapping[str, Value]:
-    """Values with which a verb holds a part: the middle of what has limits, to be adjusted by a person."""
+    """Values with which a verb holds a part: the middle between limits, to be adjusted by a person."""
     held = verb.held[1]
     slot = held.name if isinstance(held, Slot) else None
     return {name: True if name == slot else _middle(type) for name, type in verb.parameters}

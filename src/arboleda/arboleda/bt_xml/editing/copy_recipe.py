@@ -52,7 +52,7 @@ Task = tuple[Mapping[str, str], Drawn]  # the texts of its values, and what is d
 def tree(model: PlantModel, context: Context, recipe: str, name: str) -> str:
     """The file of a tree `name` that does what a recipe does in a cell of which this is an unused context.
 
-    EditError for what no tree in XML can say.
+    EditError for a recipe that no tree in XML can express.
     """
     cell = context.cell
     found = next((each for each in cell.recipes if each.name == recipe), None)
@@ -83,9 +83,9 @@ def _tasks(context: Context, recipe: WrittenRecipe) -> Iterator[Task]:
         except EditError:
             raise
         except Exception as error:  # it is user code: whatever it raises is told
-            given = "".join(f" {key} {shown(value)}" for key, value in values.items())
+            arguments = "".join(f" {key} {shown(value)}" for key, value in values.items())
             why = error if isinstance(error, ArboledaError) else f"{type(error).__name__}: {error}"
-            raise EditError(f"{recipe.name}{given}: {why}") from error
+            raise EditError(f"{recipe.name}{arguments}: {why}") from error
         yield {key: shown(value) for key, value in values.items()}, _whole(step, names)
 
 
@@ -104,18 +104,18 @@ def _values(cell: Cell, parameter: Parameter) -> Iterator[Value]:
 def _whole(step: Step, taken: Collection[str]) -> Drawn:
     """All that a recipe returns, as nodes; `taken`: the names of variables that there are already."""
     chosen_by = [node.chosen_by for node in step.iterate() if isinstance(node, DrawnStep)]
-    asked = dict.fromkeys(id(each) for each in chosen_by if each is not None)
+    questions = dict.fromkeys(id(each) for each in chosen_by if each is not None)
     free = (name for number in count(1) if (name := f"answer_{number}") not in taken)
-    return _drawn(step, {each: f"{{{name}}}" for each, name in zip(asked, free, strict=False)})
+    return _drawn(step, {each: f"{{{name}}}" for each, name in zip(questions, free, strict=False)})
 
 
 def _drawn(step: Behaviour, answers: Mapping[int, str]) -> Drawn:
     """A step as a node; `answers`: the variable of each question that something is chosen by."""
     below = tuple(_drawn(each, answers) for each in step.children)
     if isinstance(step, DrawnStep):
-        asked = {"answer": answers[id(step)]} if id(step) in answers else {}
+        answer = {"answer": answers[id(step)]} if id(step) in answers else {}
         by = {} if step.chosen_by is None else {"variable": answers[id(step.chosen_by)]}
-        return Drawn(step.name, step.kind, {**by, **step.attributes, **asked}, below)
+        return Drawn(step.name, step.kind, {**by, **step.attributes, **answer}, below)
     if isinstance(step, Chain):
         if len(below) == 1:
             return below[0]
@@ -160,9 +160,7 @@ def _same(tasks: Sequence[Task]) -> dict[str, str] | None:
         if all(node.attributes[key] == text for _, node in tasks):
             found[key] = text
             continue
-        parameter = next(
-            (p for p in values if all(n.attributes[key] == given[p] for given, n in tasks)), None
-        )
+        parameter = next((p for p in values if all(n.attributes[key] == row[p] for row, n in tasks)), None)
         if parameter is None:
             return None
         found[key] = f"{{{parameter}}}"
@@ -181,14 +179,14 @@ def _by_choice(tasks: Sequence[Task], listed: Sequence[str]) -> Drawn:
             continue
         cases = {f"case_{n}": word for n, word in enumerate(words, 1)}
         others = Drawn("otherwise", "AlwaysFailure", {}, ())
-        given = {"variable": f"{{{parameter}}}", **cases}
-        return Drawn(f"choose by {parameter}", f"Switch{len(ways)}", given, (*ways, others))
+        attributes = {"variable": f"{{{parameter}}}", **cases}
+        return Drawn(f"choose by {parameter}", f"Switch{len(ways)}", attributes, (*ways, others))
     raise refusal(
-        tasks[0][1].name, f"it differs with {_told(tasks)} in more than a value that is given as it is"
+        tasks[0][1].name, f"it differs with {_differences(tasks)} in more than a value that is given as it is"
     )
 
 
-def _told(tasks: Sequence[Task]) -> str:
+def _differences(tasks: Sequence[Task]) -> str:
     """The parameters that the tasks differ in."""
     (first, _), *others = tasks
     return " and ".join(name for name in first if any(values[name] != first[name] for values, _ in others))
@@ -246,9 +244,9 @@ def _check_values(cell: Cell, recipe: WrittenRecipe, text: str) -> None:
         wanted, found = before.limits(cell), after.limits(cell)
         words = [shown(each) for each in _values(cell, before)]
         if wanted != found or (wanted is None and list(after.words(cell)) != words):
-            told = _range(wanted) if wanted else ", ".join(words)
+            expected = _range(wanted) if wanted else ", ".join(words)
             taken = _range(found) if found else ", ".join(after.words(cell)) or "nothing"
-            raise refusal(before.name, f"it is {told} in {recipe.name}, and would be {taken} in the tree")
+            raise refusal(before.name, f"it is {expected} in {recipe.name}, and would be {taken} in the tree")
 
 
 def _parameters(forest: Forest, name: str, text: str) -> tuple[Parameter, ...]:

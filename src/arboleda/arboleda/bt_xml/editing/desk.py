@@ -51,7 +51,7 @@ def drawn(model: PlantModel, cell: str, text: str, operation: Operation | None =
 
 
 def copied(model: PlantModel, cell: str, recipe: str, name: str) -> str:
-    """A recipe in Python as the file of a tree `name`; raises EditError for what no tree can say."""
+    """A recipe in Python as the file of a tree `name`; raises EditError for one that no tree can express."""
     where = _cell(model, cell)
     return copy_recipe.tree(model, Plant(model, epoch=0, now=0.0).cells[where.name].context, recipe, name)
 

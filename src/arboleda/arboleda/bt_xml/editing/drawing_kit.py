@@ -14,7 +14,7 @@ from arboleda.model.facts import Value, shown
 from arboleda.model.messages import Reason
 from arboleda.model.outside import quoted
 from arboleda.recipes.authoring import Kit, Making, work
-from arboleda.recipes.handles import Step, asked_in, flat
+from arboleda.recipes.handles import Step, flat, question_of
 from arboleda.trees.context import Context
 
 from .errors import EditError
@@ -60,7 +60,7 @@ def text_of(step: str, name: str, value: Value) -> str:
 
 
 class DrawingKit(Kit):
-    """Kit whose devices and steps are drawn; what it is given wrongly is told as a Kit tells it."""
+    """Kit whose devices and steps are drawn; it raises the same errors for wrong arguments as a Kit."""
 
     def __init__(self, context: Context, making: Making | None = None) -> None:
         super().__init__(context, making)
@@ -79,7 +79,7 @@ class DrawingKit(Kit):
 
     def choose(self, asked: Step, ways: Mapping[Value, Step | Sequence[Step]]) -> Step:
         real = asked.real if isinstance(asked, DrawnStep) else None
-        super().choose(real or asked, dict.fromkeys(ways, ()))  # which refuses what is no choice
+        super().choose(real or asked, dict.fromkeys(ways, ()))  # which refuses wrong choices
         name = f"choose of {asked.name}"
         if len(ways) > MOST_WAYS:
             raise refusal(name, f"it has {len(ways)} ways, and a Switch at most {MOST_WAYS}")
@@ -140,24 +140,24 @@ class _DrawingHandle:
         self._kinds = kinds
 
     def __getattr__(self, verb: str) -> Callable[..., Step]:
-        told = getattr(self._real, verb)
+        method = getattr(self._real, verb)
         name = f"{self._role}.{verb}"
         kind = self._kinds.get(f"{self._role}_{verb}")
         if kind is None:
             raise refusal(name, NO_NODE)
         ports = [port.name for port in (kind.ports or {}).values() if port.way is not PortDirection.OUT]
 
-        def step(*in_order: Any, **given: Any) -> Step:
+        def step(*in_order: Any, **by_name: Any) -> Step:
             around = verb == "visit"  # the first value is the target, all others are steps there
-            told_in_order, inner = (in_order[:1], in_order[1:]) if around else (in_order, ())
-            real = told(*told_in_order, **given)
-            found = dict(zip(ports, told_in_order, strict=False)) | given
+            outer, inner = (in_order[:1], in_order[1:]) if around else (in_order, ())
+            real = method(*outer, **by_name)
+            found = dict(zip(ports, outer, strict=False)) | by_name
             attributes = {key: self._text(name, key, value) for key, value in found.items()}
             below = flat(inner, "visit")
             if around and not below:
                 return DrawnStep(f"{self._role}_go", attributes, name=name)
             body = [_one(below)] if below else []
-            return DrawnStep(kind.name, attributes, body, name=name, real=real if asked_in(real) else None)
+            return DrawnStep(kind.name, attributes, body, name=name, real=real if question_of(real) else None)
 
         return step
 

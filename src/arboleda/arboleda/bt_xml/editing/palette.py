@@ -52,13 +52,13 @@ def _group(sort: str, name: str, kinds: Iterable[Kind], words: Mapping[str, str]
 
 
 def _kind(kind: Kind, role: str, words: Mapping[str, str]) -> Row:
-    said = words.get(f"device.{kind.name.removeprefix(f'{role}_')}" if role else f"kind.{kind.name}", "")
+    about = words.get(f"device.{kind.name.removeprefix(f'{role}_')}" if role else f"kind.{kind.name}", "")
     return {
         "name": kind.name,
         "category": kind.category.value,
         "fewest": kind.fewest,
         "most": kind.most,
-        "about": kind.about or said,
+        "about": kind.about or about,
         "ports": [_port(each, words) for each in (kind.ports or {}).values() if each.name not in OLD],
     }
 

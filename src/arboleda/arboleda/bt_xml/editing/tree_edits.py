@@ -86,8 +86,8 @@ def set_parameter(text: TreeText, edit: SetParameter) -> bytes:
     there = _parameter(model, edit.name)
     if there is not None:
         return spliced(text.content, _change(text, there, "type", edit.type or None))
-    given = {"name": edit.name, **({"type": edit.type} if edit.type else {})}
-    tag = attributes.tag(PARAMETER, given)
+    fields = {"name": edit.name, **({"type": edit.type} if edit.type else {})}
+    tag = attributes.tag(PARAMETER, fields)
     if edit.about:
         about = escape(edit.about, quote=False)
         tag = tag.removesuffix(b"/>") + f">{about}</{PARAMETER}>".encode()

@@ -55,8 +55,8 @@ class Builder:
         below = [self._node(child, scope) for child in node.children]
         make = self.controls.get(node.kind) or MAKERS.get(node.kind)
         if make is not None:
-            said = {name: attribute.value for name, attribute in node.ports.items()}
-            return make(node.name or node.kind, below, NodePorts(node.kind, said))
+            texts = {name: attribute.value for name, attribute in node.ports.items()}
+            return make(node.name or node.kind, below, NodePorts(node.kind, texts))
         found = self.leaf(node, below, scope)
         if found is None:
             raise TreeError(f"Arboleda does not run {node.kind}", node.place)
@@ -64,18 +64,18 @@ class Builder:
 
     def _subtree(self, node: Written, scope: Scope) -> Node:
         name = node.own["ID"].value
-        given: dict[str, Value | Variable] = {}
+        passed: dict[str, Value | Variable] = {}
         model = None if node.shares_names else self.forest.models.get(name)
         for port in (model.ports or {}).values() if model is not None else ():
             if port.default is not None:
-                given[port.name] = values.read(port.name, port.default)
+                passed[port.name] = values.read(port.name, port.default)
         for port_name, attribute in node.ports.items():
-            given[port_name] = values.read(port_name, attribute.value)
+            passed[port_name] = values.read(port_name, attribute.value)
         inner = Scope(
             around=scope,
-            names={key: value.name for key, value in given.items() if isinstance(value, Variable)},
+            names={key: value.name for key, value in passed.items() if isinstance(value, Variable)},
             shares=node.shares_names,
-            values={key: _typed(value) for key, value in given.items() if not isinstance(value, Variable)},
+            values={key: _typed(value) for key, value in passed.items() if not isinstance(value, Variable)},
         )
         return decorators.SubTree(node.name or name, [self.tree(name, inner)])
 
@@ -91,8 +91,8 @@ class Builder:
             if port.type == "script":
                 scripts.append(text)
             elif port.way is not PortDirection.IN or node.kind == "UnsetBlackboard":
-                said = values.read(port.name, text)
-                found.add(said.name if isinstance(said, Variable) else said)
+                value = values.read(port.name, text)
+                found.add(value.name if isinstance(value, Variable) else value)
         return found.union(*(script.writes(script.parse(text)) for text in scripts))
 
 
@@ -105,31 +105,31 @@ def _typed(value: Value) -> Value:
 
 
 def control(kind: Callable[[str, list[Node]], Node]) -> Make:
-    return lambda name, below, given: kind(name, below)
+    return lambda name, below, ports: kind(name, below)
 
 
-def _given(kind: Callable[[str, list[Node], NodePorts], Node]) -> Make:
-    return lambda name, below, given: kind(name, below, given)
+def _with_ports(kind: Callable[[str, list[Node], NodePorts], Node]) -> Make:
+    return lambda name, below, ports: kind(name, below, ports)
 
 
 def _around(kind: Callable[[str, Node, NodePorts], Node]) -> Make:
-    return lambda name, below, given: kind(name, below[0], given)
+    return lambda name, below, ports: kind(name, below[0], ports)
 
 
-def _for_each(name: str, below: list[Node], given: NodePorts) -> Node:
-    return decorators.ForEach(name, below[0], given, source="vector_in", out="out")
+def _for_each(name: str, below: list[Node], ports: NodePorts) -> Node:
+    return decorators.ForEach(name, below[0], ports, source="vector_in", out="out")
 
 
-def _loop(name: str, below: list[Node], given: NodePorts) -> Node:
-    return decorators.ForEach(name, below[0], given, source="queue", out="value")
+def _loop(name: str, below: list[Node], ports: NodePorts) -> Node:
+    return decorators.ForEach(name, below[0], ports, source="queue", out="value")
 
 
-def _check(name: str, below: list[Node], given: NodePorts, *, same: Callable[[Value, Value], bool]) -> Node:
-    return watching.BlackboardCheck(name, below[0], given, same)
+def _check(name: str, below: list[Node], ports: NodePorts, *, same: Callable[[Value, Value], bool]) -> Node:
+    return watching.BlackboardCheck(name, below[0], ports, same)
 
 
 def _alone(kind: Callable[[str, NodePorts], Node]) -> Make:
-    return lambda name, below, given: kind(name, given)
+    return lambda name, below, ports: kind(name, ports)
 
 
 MAKERS: Mapping[str, Make] = {
@@ -141,43 +141,43 @@ MAKERS: Mapping[str, Make] = {
     "AsyncFallback": control(controls.AsyncFallback),
     "ReactiveFallback": control(controls.ReactiveFallback),
     "TryCatch": control(controls.TryCatch),
-    "Parallel": _given(controls.Parallel),
-    "ParallelAll": _given(controls.ParallelAll),
+    "Parallel": _with_ports(controls.Parallel),
+    "ParallelAll": _with_ports(controls.ParallelAll),
     "IfThenElse": control(controls.IfThenElse),
     "WhileDoElse": control(controls.WhileDoElse),
-    **{f"Switch{number}": _given(controls.Switch) for number in range(2, 7)},
-    "RecoveryNode": _given(nav2.RecoveryNode),
+    **{f"Switch{number}": _with_ports(controls.Switch) for number in range(2, 7)},
+    "RecoveryNode": _with_ports(nav2.RecoveryNode),
     "PipelineSequence": control(nav2.PipelineSequence),
-    "RoundRobin": _given(nav2.RoundRobin),
+    "RoundRobin": _with_ports(nav2.RoundRobin),
     "NonblockingSequence": control(nav2.NonblockingSequence),
-    "PersistentSequence": _given(nav2.PersistentSequence),
+    "PersistentSequence": _with_ports(nav2.PersistentSequence),
     "SingleTrigger": _around(watching.SingleTrigger),
     "GoalUpdatedController": _around(watching.GoalUpdatedController),
     "RateController": _around(decorators.RateController),
-    "Inverter": lambda name, below, given: ResultDecorator(name, below[0], INVERTED),
-    "ForceSuccess": lambda name, below, given: ResultDecorator(name, below[0], ALL_DONE),
-    "ForceFailure": lambda name, below, given: ResultDecorator(name, below[0], ALL_FAILED),
+    "Inverter": lambda name, below, ports: ResultDecorator(name, below[0], INVERTED),
+    "ForceSuccess": lambda name, below, ports: ResultDecorator(name, below[0], ALL_DONE),
+    "ForceFailure": lambda name, below, ports: ResultDecorator(name, below[0], ALL_FAILED),
     "KeepRunningUntilFailure": control(decorators.KeepRunningUntilFailure),
-    "Repeat": lambda name, below, given: decorators.Loop(
-        name, below[0], given, port="num_cycles", goes_on=SUCCESS
+    "Repeat": lambda name, below, ports: decorators.Loop(
+        name, below[0], ports, port="num_cycles", goes_on=SUCCESS
     ),
-    "RetryUntilSuccessful": lambda name, below, given: decorators.Loop(
-        name, below[0], given, port="num_attempts", goes_on=FAILURE
+    "RetryUntilSuccessful": lambda name, below, ports: decorators.Loop(
+        name, below[0], ports, port="num_attempts", goes_on=FAILURE
     ),
-    "Timeout": lambda name, below, given: decorators.Timeout(name, below[0], given, "msec"),
-    "Delay": lambda name, below, given: decorators.Delay(name, below[0], given, "delay_msec"),
+    "Timeout": lambda name, below, ports: decorators.Timeout(name, below[0], ports, "msec"),
+    "Delay": lambda name, below, ports: decorators.Delay(name, below[0], ports, "delay_msec"),
     "RunOnce": _around(decorators.RunOnce),
     "Precondition": _around(decorators.Precondition),
     "ForEach": _for_each,
     **dict.fromkeys(("LoopInt", "LoopBool", "LoopDouble", "LoopString"), _loop),
-    "SkipUnlessUpdated": lambda name, below, given: watching.WhenUpdated(name, below[0], given, SKIPPED),
-    "WaitValueUpdate": lambda name, below, given: watching.WhenUpdated(name, below[0], given, RUNNING),
+    "SkipUnlessUpdated": lambda name, below, ports: watching.WhenUpdated(name, below[0], ports, SKIPPED),
+    "WaitValueUpdate": lambda name, below, ports: watching.WhenUpdated(name, below[0], ports, RUNNING),
     **{kind: partial(_check, same=same) for kind, same in watching.SAME.items()},
     "WasEntryUpdated": _alone(watching.WasEntryUpdated),
-    "AlwaysSuccess": lambda name, below, given: leaves.ConstantLeaf(name, SUCCESS),
-    "AlwaysFailure": lambda name, below, given: leaves.AlwaysFailure(name),
-    "Script": lambda name, below, given: leaves.RunScript(name, given.said["code"]),
-    "ScriptCondition": lambda name, below, given: leaves.ScriptCondition(name, given.said["code"]),
+    "AlwaysSuccess": lambda name, below, ports: leaves.ConstantLeaf(name, SUCCESS),
+    "AlwaysFailure": lambda name, below, ports: leaves.AlwaysFailure(name),
+    "Script": lambda name, below, ports: leaves.RunScript(name, ports.texts["code"]),
+    "ScriptCondition": lambda name, below, ports: leaves.ScriptCondition(name, ports.texts["code"]),
     "SetBlackboard": _alone(leaves.SetBlackboard),
     "UnsetBlackboard": _alone(leaves.UnsetBlackboard),
     "Sleep": _alone(leaves.Sleep),

@@ -181,13 +181,13 @@ class ReactiveFallback(Reactive):
     stops, ends = SUCCESS, FAILURE
 
 
-def _threshold(given: NodePorts, port: str, number: float, many: int) -> int:
+def _threshold(ports: NodePorts, port: str, number: float, many: int) -> int:
     """The number of children that a threshold means; a negative one counts down from all of them.
 
     BehaviorTree.CPP refuses one that cannot be reached, though the node might end all the same.
     """
     if number > many:
-        raise ScriptError(THRESHOLD(port=port, node=given.node, number=int(number), many=many))
+        raise ScriptError(THRESHOLD(port=port, node=ports.node, number=int(number), many=many))
     return max(many + int(number) + 1, 0) if number < 0 else int(number)
 
 
@@ -197,9 +197,9 @@ class Parallel(Node):
     sign = "parallel"
     counts = ("ended", "done", "failed")
 
-    def __init__(self, name: str, children: Sequence[Node], given: NodePorts) -> None:
+    def __init__(self, name: str, children: Sequence[Node], ports: NodePorts) -> None:
         super().__init__(name, children)
-        self.given = given
+        self.ports = ports
         self.ended: list[int] = []
         self.done = self.failed = 0
 
@@ -210,17 +210,17 @@ class Parallel(Node):
     def needs_all(self, scope: Scope) -> bool:
         """True if it succeeds only where all children do."""
         many = len(self.below)
-        return _threshold(self.given, "success_count", self._success(scope), many) == many
+        return _threshold(self.ports, "success_count", self._success(scope), many) == many
 
     def _success(self, scope: Scope) -> float:
-        return self.given.number("success_count", scope, self._old("success_threshold", "-1"))
+        return self.ports.number("success_count", scope, self._old("success_threshold", "-1"))
 
     def work(self) -> Result:
         success = self._success(self.scope)
-        failure = self.given.number("failure_count", self.scope, self._old("failure_threshold", "1"))
+        failure = self.ports.number("failure_count", self.scope, self._old("failure_threshold", "1"))
         many = len(self.below)
-        enough = _threshold(self.given, "success_count", success, many)
-        too_many = _threshold(self.given, "failure_count", failure, many)
+        enough = _threshold(self.ports, "success_count", success, many)
+        too_many = _threshold(self.ports, "failure_count", failure, many)
         self.begin()
         skipped = 0
         for number, child in enumerate(self.below):
@@ -239,13 +239,13 @@ class Parallel(Node):
             return SKIPPED
         if any(child.status is Status.RUNNING for child in self.below):
             return RUNNING
-        self.time.wake_at(self.time.now + PAUSE_S)  # those that were skipped are asked again
+        self.time.wake_at(self.time.now + PAUSE_S)  # skipped children are ticked again
         return RUNNING
 
     def _old(self, name: str, default: str) -> str:
         """The value of the port by its name in version 3, or the default."""
-        return self.given.said.get(
-            name, self.given.said.get("threshold", default) if "succ" in name else default
+        return self.ports.texts.get(
+            name, self.ports.texts.get("threshold", default) if "succ" in name else default
         )
 
     def _over(self, result: Result) -> Result:
@@ -260,9 +260,9 @@ class ParallelAll(Node):
     sign = "parallel"
     counts = ("ended", "failed")
 
-    def __init__(self, name: str, children: Sequence[Node], given: NodePorts) -> None:
+    def __init__(self, name: str, children: Sequence[Node], ports: NodePorts) -> None:
         super().__init__(name, children)
-        self.given = given
+        self.ports = ports
         self.ended: list[int] = []
         self.failed = 0
 
@@ -272,13 +272,13 @@ class ParallelAll(Node):
 
     def needs_all(self, scope: Scope) -> bool:
         """True if it succeeds only where all children do."""
-        most = self.given.number("max_failures", scope, "1")
-        return _threshold(self.given, "max_failures", most, len(self.below)) <= 1
+        most = self.ports.number("max_failures", scope, "1")
+        return _threshold(self.ports, "max_failures", most, len(self.below)) <= 1
 
     def work(self) -> Result:
         many = len(self.below)
-        most = self.given.number("max_failures", self.scope, "1")
-        too_many = _threshold(self.given, "max_failures", most, many)
+        most = self.ports.number("max_failures", self.scope, "1")
+        too_many = _threshold(self.ports, "max_failures", most, many)
         self.begin()
         skipped = 0
         for number, child in enumerate(self.below):
@@ -358,9 +358,9 @@ class Switch(Node):
 
     counts = ("ran",)
 
-    def __init__(self, name: str, children: Sequence[Node], given: NodePorts) -> None:
+    def __init__(self, name: str, children: Sequence[Node], ports: NodePorts) -> None:
         super().__init__(name, children)
-        self.given = given
+        self.ports = ports
         self.ran: int | None = None
 
     def reset_counts(self) -> None:
@@ -382,9 +382,9 @@ class Switch(Node):
 
     def chosen(self, scope: Scope) -> int:
         """The number of the child that the present value of the variable means."""
-        variable = self.given.found("variable", scope)
+        variable = self.ports.found("variable", scope)
         for number in range(len(self.below) - 1):
-            case = self.given.text(f"case_{number + 1}", scope)
+            case = self.ports.text(f"case_{number + 1}", scope)
             if str(case) == str(variable) or same_number(case, variable):
                 return number
         return len(self.below) - 1

@@ -59,9 +59,9 @@ class Loop(Decorator):
 
     counts = ("rounds",)
 
-    def __init__(self, name: str, child: Node, given: NodePorts, *, port: str, goes_on: Result) -> None:
+    def __init__(self, name: str, child: Node, ports: NodePorts, *, port: str, goes_on: Result) -> None:
         super().__init__(name, [child])
-        self.given = given
+        self.ports = ports
         self.port = port
         self.goes_on = goes_on
         self.rounds = 0
@@ -71,10 +71,10 @@ class Loop(Decorator):
 
     def most(self, scope: Scope) -> int:
         """The number of rounds that the variables of a scope mean."""
-        return int(self.given.number(self.port, scope))
+        return int(self.ports.number(self.port, scope))
 
     def work(self) -> Result:
-        most = self.given.number(self.port, self.scope)
+        most = self.ports.number(self.port, self.scope)
         self.begin()
         while self.rounds < most or most == -1:
             was_idle = self.child.status is Status.INVALID
@@ -89,21 +89,21 @@ class Loop(Decorator):
                 return result
             self.rounds += 1
             if self.goes_on is FAILURE:
-                most = self.given.number(self.port, self.scope)
+                most = self.ports.number(self.port, self.scope)
             if was_idle and (self.rounds < most or most == -1):
                 return self.again(after_s=PAUSE_S if most == -1 else TICK_S)
         self.rounds = 0
         return self.goes_on
 
 
-class Timed(Decorator):
+class TimedDecorator(Decorator):
     """Decorator with a time, which begins anew after a restart of the plant."""
 
     counts = ("started",)
 
-    def __init__(self, name: str, child: Node, given: NodePorts, port: str) -> None:
+    def __init__(self, name: str, child: Node, ports: NodePorts, port: str) -> None:
         super().__init__(name, [child])
-        self.given = given
+        self.ports = ports
         self.port = port
         self.started = False
         self.until = 0.0
@@ -119,17 +119,17 @@ class Timed(Decorator):
         """Begin to count the time."""
         self.started = True
         self.begin()
-        self.until = self.time.now + self.given.number(self.port, self.scope) / 1000
+        self.until = self.time.now + self.ports.number(self.port, self.scope) / 1000
         self.time.wake_at(self.until)
 
 
-class Timeout(Timed):
+class Timeout(TimedDecorator):
     """Decorator that halts its child and fails after so many milliseconds; 0 means never."""
 
     def work(self) -> Result:
         if not self.started:
             self.start()
-        endless = self.given.number(self.port, self.scope) <= 0
+        endless = self.ports.number(self.port, self.scope) <= 0
         if not endless and self.child.status is Status.RUNNING and self.time.now >= self.until:
             self.child.reset()
             self.started = False
@@ -141,7 +141,7 @@ class Timeout(Timed):
         return result
 
 
-class Delay(Timed):
+class Delay(TimedDecorator):
     """Decorator that begins its child after so many milliseconds."""
 
     def work(self) -> Result:
@@ -161,14 +161,14 @@ class RunOnce(Decorator):
 
     counts = ("ended_as",)
 
-    def __init__(self, name: str, child: Node, given: NodePorts) -> None:
+    def __init__(self, name: str, child: Node, ports: NodePorts) -> None:
         super().__init__(name, [child])
-        self.given = given
+        self.ports = ports
         self.ended_as = ""
 
     def work(self) -> Result:
         if self.ended_as:
-            skips = self.given.is_set("then_skip", self.scope, "true")
+            skips = self.ports.is_set("then_skip", self.scope, "true")
             return SKIPPED if skips else STATUSES[self.ended_as]
         self.begin()
         result = self.child.execute()
@@ -183,17 +183,17 @@ class Precondition(Decorator):
 
     counts = ("is_under_way",)
 
-    def __init__(self, name: str, child: Node, given: NodePorts) -> None:
+    def __init__(self, name: str, child: Node, ports: NodePorts) -> None:
         super().__init__(name, [child])
-        self.given = given
-        self.script = Script.of(given.said["if"])
+        self.ports = ports
+        self.script = Script.of(ports.texts["if"])
         self.is_under_way = False
 
     def work(self) -> Result:
         if not self.is_under_way:
             self.is_under_way = self.script.holds(self.scope)
         if not self.is_under_way:
-            return status(self.given.text("else", self.scope, "FAILURE"))
+            return status(self.ports.text("else", self.scope, "FAILURE"))
         result = self.child.execute()
         if result in ENDED:
             self.child.reset()
@@ -214,10 +214,10 @@ class ForEach(Decorator):
     counts = ("left", "number", "is_under_way")
 
     def __init__(
-        self, name: str, child: Node, given: NodePorts, *, source: str, out: str, if_empty: str = "SUCCESS"
+        self, name: str, child: Node, ports: NodePorts, *, source: str, out: str, if_empty: str = "SUCCESS"
     ) -> None:
         super().__init__(name, [child])
-        self.given = given
+        self.ports = ports
         self.source = source
         self.out = out
         self.if_empty = if_empty
@@ -231,10 +231,10 @@ class ForEach(Decorator):
     def work(self) -> Result:
         if self.status is Status.INVALID:
             self.reset_counts()
-            self.left = _items(self.given.text(self.source, self.scope))
+            self.left = _items(self.ports.text(self.source, self.scope))
         if not self.is_under_way:
             if not self.left:
-                return status(self.given.text("if_empty", self.scope, self.if_empty))
+                return status(self.ports.text("if_empty", self.scope, self.if_empty))
             self._hand_out()
         self.begin()
         result = self.child.execute()
@@ -247,10 +247,10 @@ class ForEach(Decorator):
 
     def _hand_out(self) -> None:
         value, *self.left = self.left
-        if self.out in self.given.said:
-            self.scope.set(self.given.variable(self.out), value)
-        if "index" in self.given.said:
-            self.scope.set(self.given.variable("index"), self.number)
+        if self.out in self.ports.texts:
+            self.scope.set(self.ports.variable(self.out), value)
+        if "index" in self.ports.texts:
+            self.scope.set(self.ports.variable("index"), self.number)
         self.number += 1
 
 
@@ -264,9 +264,9 @@ class RateController(Decorator):
 
     counts = ("has_begun",)
 
-    def __init__(self, name: str, child: Node, given: NodePorts) -> None:
+    def __init__(self, name: str, child: Node, ports: NodePorts) -> None:
         super().__init__(name, [child])
-        self.given = given
+        self.ports = ports
         self.has_begun = False
         self.until = 0.0
 
@@ -287,7 +287,7 @@ class RateController(Decorator):
         return result
 
     def _wait(self) -> None:
-        hz = self.given.number("hz", self.scope, "10.0")
+        hz = self.ports.number("hz", self.scope, "10.0")
         if hz <= 0:
             raise ScriptError(NO_RATE(node=self.name))
         self.until = self.time.now + 1 / hz

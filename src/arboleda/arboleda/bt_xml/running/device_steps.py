@@ -44,14 +44,14 @@ MADE_OF: Mapping[type[Behaviour], tuple[str, ...]] = {
 
 def value_of(kind: str, port: Port, text: str) -> Value:
     """The value that a text means for a port of a device; raises ScriptError if it is none."""
-    said = quoted(text)
+    quote = quoted(text)
     if values.objection(port.type, text) is not None:
-        raise ScriptError(WANTED(port=port.name, node=kind, wanted=TYPES[port.type](), value=said))
+        raise ScriptError(WANTED(port=port.name, node=kind, wanted=TYPES[port.type](), value=quote))
     if port.words and text not in port.words:
-        raise ScriptError(LISTED(port=port.name, node=kind, value=said, known=port.words))
+        raise ScriptError(LISTED(port=port.name, node=kind, value=quote, known=port.words))
     if port.limits and not port.limits[0] <= values.number(text) <= port.limits[1]:
         wanted = BETWEEN(lower=port.limits[0], upper=port.limits[1])
-        raise ScriptError(WANTED(port=port.name, node=kind, wanted=wanted, value=said))
+        raise ScriptError(WANTED(port=port.name, node=kind, wanted=wanted, value=quote))
     return READ.get(port.type, str)(text)
 
 
@@ -168,11 +168,11 @@ class QuestionStep(DeviceStep):
         causes: list[Failure],
         order: Order,
         built: Mapping[str, Value],
-        asked: Ask,
+        question: Ask,
         out: str,
     ) -> None:
         super().__init__(name, step, failures, causes, order, built)
-        self.ask = asked
+        self.ask = question
         self.out = out
 
     def work(self) -> Result:
@@ -191,16 +191,16 @@ class FactStep(Forgiving):
         step: Behaviour,
         failures: Failures,
         causes: list[Failure],
-        told: Callable[[str, str], Value | None],
+        read: Callable[[str, str], Value | None],
         facts: Mapping[str, tuple[str, str]],
     ) -> None:
         super().__init__(name, step, failures, causes)
-        self.told = told
+        self.read = read
         self.facts = facts  # by variable: the device and its fact
 
     def work(self) -> Result:
         result = super().work()
         for variable, fact in self.facts.items() if result is SUCCESS else ():
-            if (found := self.told(*fact)) is not None:
+            if (found := self.read(*fact)) is not None:
                 self.scope.set(variable, as_variable(found))
         return result

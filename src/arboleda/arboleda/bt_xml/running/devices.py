@@ -18,7 +18,7 @@ from arboleda.model.outside import quoted
 from arboleda.model.plant_model import Robot
 from arboleda.model.sentence import Phrase
 from arboleda.recipes.errors import RecipeError
-from arboleda.recipes.handles import Handle, PersonHandle, RobotHandle, Step, asked_in, handle
+from arboleda.recipes.handles import Handle, PersonHandle, RobotHandle, Step, handle, question_of
 from arboleda.recipes.nodes import WrittenNode
 from arboleda.trees.context import Context
 from arboleda.trees.leaves import Act, Require, titled
@@ -86,10 +86,10 @@ class Devices:
             self._fix(order, node, scope)
             order = replace(order, variables={})
         failures = self.context.failures
-        asked = asked_in(step)
-        if asked is not None and ANSWER in node.ports:
+        question = question_of(step)
+        if question is not None and ANSWER in node.ports:
             out = _variable(node, ANSWER)
-            return QuestionStep(name, step, failures, self.causes, order, built, asked, out)
+            return QuestionStep(name, step, failures, self.causes, order, built, question, out)
         return DeviceStep(name, step, failures, self.causes, order, built)
 
     def _written(
@@ -111,13 +111,13 @@ class Devices:
         self, node: forest.Node, kind: Kind, scope: Scope, make: Callable[[dict[str, Value]], Step]
     ) -> Order:
         ports = {name: port for name, port in (kind.ports or {}).items() if port.way is not PortDirection.OUT}
-        said = {name: values.read(name, node.ports[name].value) for name in ports if name in node.ports}
+        attributes = {name: values.read(name, node.ports[name].value) for name in ports if name in node.ports}
         written = {
             name: value_of(node.kind, ports[name], each)
-            for name, each in said.items()
+            for name, each in attributes.items()
             if not isinstance(each, Variable)
         }
-        variables = {name: each.name for name, each in said.items() if isinstance(each, Variable)}
+        variables = {name: each.name for name, each in attributes.items() if isinstance(each, Variable)}
         return Order(kind=node.kind, make=make, written=written, variables=variables, ports=ports)
 
     def _now(self, order: Order, scope: Scope) -> dict[str, Value]:
@@ -144,10 +144,10 @@ class Devices:
             self.fixed.append((place, key, node))
 
     def _telling(self, name: str, node: forest.Node, robot: str) -> Node:
-        said = {fact: partial(self.context.robots.fact, robot, fact) for fact in node.ports}
+        readers = {fact: partial(self.context.robots.fact, robot, fact) for fact in node.ports}
 
         def unsaid() -> Failure | None:
-            missing = next((fact for fact, told in said.items() if told() is None), None)
+            missing = next((fact for fact, read in readers.items() if read() is None), None)
             if missing is None:
                 return None
             return Failure(reason=Reason.PRECONDITION, sentence=UNSAID(robot=robot, fact=missing))
@@ -171,26 +171,26 @@ def _placed(node: forest.Node) -> Iterator[None]:
 
 
 def _variable(node: forest.Node, port: str) -> str:
-    said = values.read(port, node.ports[port].value)
-    return said.name if isinstance(said, Variable) else said
+    value = values.read(port, node.ports[port].value)
+    return value.name if isinstance(value, Variable) else value
 
 
-def _step(device: Any, verb: str, given: dict[str, Value], *, below: list[Node]) -> Step:
+def _step(device: Any, verb: str, arguments: dict[str, Value], *, below: list[Node]) -> Step:
     special = SPECIAL.get((type(device), verb))
     if special is not None:
-        return special(device, given, below)
-    step: Step = getattr(device, verb)(**given)
+        return special(device, arguments, below)
+    step: Step = getattr(device, verb)(**arguments)
     return step
 
 
-def _visit(device: Any, given: dict[str, Value], below: list[Node]) -> Step:
-    step: Step = framed(device.visit(given["target"], *below))
+def _visit(device: Any, arguments: dict[str, Value], below: list[Node]) -> Step:
+    step: Step = framed(device.visit(arguments["target"], *below))
     return step
 
 
-def _ask(device: Any, given: dict[str, Value], below: list[Node]) -> Step:
-    answers = [each.strip() for each in str(given.pop("answers", "done")).split(";")]
-    step: Step = device.ask(given.pop("question"), answers, **given)
+def _ask(device: Any, arguments: dict[str, Value], below: list[Node]) -> Step:
+    answers = [each.strip() for each in str(arguments.pop("answers", "done")).split(";")]
+    step: Step = device.ask(arguments.pop("question"), answers, **arguments)
     return step
 
 

@@ -70,37 +70,37 @@ class ScriptCondition(RunScript):
 class SetBlackboard(Leaf):
     """Leaf that sets a variable."""
 
-    def __init__(self, name: str, given: NodePorts) -> None:
+    def __init__(self, name: str, ports: NodePorts) -> None:
         super().__init__(name)
-        self.given = given
+        self.ports = ports
 
     def work(self) -> Result:
-        self.scope.set(self.given.variable("output_key"), self.given.text("value", self.scope))
+        self.scope.set(self.ports.variable("output_key"), self.ports.text("value", self.scope))
         return SUCCESS
 
 
 class UnsetBlackboard(Leaf):
     """Leaf that removes a variable."""
 
-    def __init__(self, name: str, given: NodePorts) -> None:
+    def __init__(self, name: str, ports: NodePorts) -> None:
         super().__init__(name)
-        self.given = given
+        self.ports = ports
 
     def work(self) -> Result:
-        self.scope.unset(self.given.variable("key"))
+        self.scope.unset(self.ports.variable("key"))
         return SUCCESS
 
 
 class Sleep(Leaf):
     """Leaf that waits so many milliseconds, of a time that stands still while the cell is held."""
 
-    def __init__(self, name: str, given: NodePorts) -> None:
+    def __init__(self, name: str, ports: NodePorts) -> None:
         super().__init__(name)
-        self.given = given
+        self.ports = ports
         self.until = 0.0
 
     def begin_anew(self) -> None:
-        self.until = self.time.now + self.given.number("msec", self.scope) / 1000
+        self.until = self.time.now + self.ports.number("msec", self.scope) / 1000
         self.time.wake_at(self.until)
 
     def work(self) -> Result:

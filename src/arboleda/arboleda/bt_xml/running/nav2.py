@@ -15,9 +15,9 @@ class RecoveryNode(Node):
 
     counts = ("recovers", "retries")
 
-    def __init__(self, name: str, children: Sequence[Node], given: NodePorts) -> None:
+    def __init__(self, name: str, children: Sequence[Node], ports: NodePorts) -> None:
         super().__init__(name, children)
-        self.given = given
+        self.ports = ports
         self.recovers = False
         self.retries = 0
 
@@ -25,7 +25,7 @@ class RecoveryNode(Node):
         self.recovers, self.retries = False, 0
 
     def work(self) -> Result:
-        most = self.given.number("number_of_retries", self.scope, "1")
+        most = self.ports.number("number_of_retries", self.scope, "1")
         self.begin()
         while self.retries <= most:
             result = self.below[self.recovers].execute()
@@ -108,13 +108,13 @@ class PersistentSequence(Node):
 
     sign = "sequence"
 
-    def __init__(self, name: str, children: Sequence[Node], given: NodePorts) -> None:
+    def __init__(self, name: str, children: Sequence[Node], ports: NodePorts) -> None:
         super().__init__(name, children)
-        self.given = given
+        self.ports = ports
 
     def work(self) -> Result:
-        at = max(int(self.given.number(AT, self.scope)), 0)
-        variable = self.given.variable(AT)
+        at = max(int(self.ports.number(AT, self.scope)), 0)
+        variable = self.ports.variable(AT)
         self.begin()
         for child in self.below[at:]:
             result = child.execute()
@@ -135,16 +135,16 @@ class RoundRobin(Node):
 
     counts = ("at", "failed")
 
-    def __init__(self, name: str, children: Sequence[Node], given: NodePorts) -> None:
+    def __init__(self, name: str, children: Sequence[Node], ports: NodePorts) -> None:
         super().__init__(name, children)
-        self.given = given
+        self.ports = ports
         self.at = self.failed = 0
 
     def reset_counts(self) -> None:
         self.at = self.failed = 0
 
     def work(self) -> Result:
-        wraps = self.given.is_set("wrap_around", self.scope, "false")
+        wraps = self.ports.is_set("wrap_around", self.scope, "false")
         self.begin()
         many, skipped = len(self.below), 0
         while self.failed + skipped < many and self.at < many:

@@ -35,25 +35,25 @@ class NodePorts:
     """Ports of one node, by name."""
 
     node: str
-    said: Mapping[str, str]
+    texts: Mapping[str, str]
 
     def text(self, name: str, scope: Scope, default: str | None = None) -> Value:
         """The value of a port; raises ScriptError if there is none."""
-        written = self.said.get(name, default)
+        written = self.texts.get(name, default)
         if written is None:
             raise ScriptError(NEEDED(node=self.node, port=name))
-        said = values.read(name, written)
-        if not isinstance(said, Variable):
-            return said
-        found = scope.get(said.name)
+        value = values.read(name, written)
+        if not isinstance(value, Variable):
+            return value
+        found = scope.get(value.name)
         if found is None:
-            raise ScriptError(UNSET_AT(port=name, node=self.node, variable=said.name))
+            raise ScriptError(UNSET_AT(port=name, node=self.node, variable=value.name))
         return found
 
     def found(self, name: str, scope: Scope) -> Value | None:
         """The value of a port; None if its variable has none."""
-        said = values.read(name, self.said.get(name, ""))
-        return scope.get(said.name) if isinstance(said, Variable) else said
+        value = values.read(name, self.texts.get(name, ""))
+        return scope.get(value.name) if isinstance(value, Variable) else value
 
     def number(self, name: str, scope: Scope, default: str | None = None) -> float:
         """The value of a port as a number; raises ScriptError if it is none."""
@@ -71,5 +71,5 @@ class NodePorts:
 
     def variable(self, name: str) -> str:
         """The variable that a port names, in braces or without."""
-        said = values.read(name, self.said[name])
-        return said.name if isinstance(said, Variable) else said
+        value = values.read(name, self.texts[name])
+        return value.name if isinstance(value, Variable) else value

@@ -77,7 +77,7 @@ class Rescue(TryCatch):
         self.ends_tree = False  # with its cause
 
     def caught(self) -> None:
-        """Put the cause aside, unless nothing of the task may go on."""
+        """Put the cause aside, unless the task may not go on at all."""
         first = self.failures.first
         if first is not None and first.reason in NO_RESCUE:
             return
@@ -95,7 +95,7 @@ class Rescue(TryCatch):
         self._bring_back(with_second(self.cause, second))
 
     def halt(self) -> None:
-        """Bring the cause back of what is left: it came first."""
+        """Bring back the cause of the node that is left: it came first."""
         super().halt()
         if self.cause is not None:
             self._bring_back(self.cause)

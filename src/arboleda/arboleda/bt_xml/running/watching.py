@@ -20,9 +20,9 @@ class WasEntryUpdated(Leaf):
 
     counts = ("seen",)
 
-    def __init__(self, name: str, given: NodePorts) -> None:
+    def __init__(self, name: str, ports: NodePorts) -> None:
         super().__init__(name)
-        self.variable = given.variable("entry")
+        self.variable = ports.variable("entry")
         self.seen = 0
 
     def work(self) -> Result:
@@ -35,9 +35,9 @@ class WhenUpdated(Decorator):
 
     counts = ("seen", "is_under_way")
 
-    def __init__(self, name: str, child: Node, given: NodePorts, otherwise: Result) -> None:
+    def __init__(self, name: str, child: Node, ports: NodePorts, otherwise: Result) -> None:
         super().__init__(name, [child])
-        self.variable = given.variable("entry")
+        self.variable = ports.variable("entry")
         self.otherwise = otherwise
         self.seen = 0
         self.is_under_way = False
@@ -59,19 +59,19 @@ class BlackboardCheck(Decorator):
     """Decorator that runs its child while two values are equal, as version 3 has it."""
 
     def __init__(
-        self, name: str, child: Node, given: NodePorts, same: Callable[[Value, Value], bool]
+        self, name: str, child: Node, ports: NodePorts, same: Callable[[Value, Value], bool]
     ) -> None:
         super().__init__(name, [child])
-        self.given = given
+        self.ports = ports
         self.same = same
 
     def work(self) -> Result:
         self.begin()
-        one, other = (self.given.found(port, self.scope) for port in ("value_A", "value_B"))
+        one, other = (self.ports.found(port, self.scope) for port in ("value_A", "value_B"))
         if one is not None and other is not None and self.same(one, other):
             return self.child.execute()
         self.child.reset()
-        return status(self.given.text("return_on_mismatch", self.scope, "FAILURE"))
+        return status(self.ports.text("return_on_mismatch", self.scope, "FAILURE"))
 
 
 SAME: Mapping[str, Callable[[Value, Value], bool]] = {
@@ -87,7 +87,7 @@ class SingleTrigger(Decorator):
 
     counts = ("has_ended",)
 
-    def __init__(self, name: str, child: Node, given: NodePorts) -> None:
+    def __init__(self, name: str, child: Node, ports: NodePorts) -> None:
         super().__init__(name, [child])
         self.has_ended = False
 
@@ -109,14 +109,14 @@ class GoalUpdatedController(Decorator):
 
     counts = ("goals", "is_new")
 
-    def __init__(self, name: str, child: Node, given: NodePorts) -> None:
+    def __init__(self, name: str, child: Node, ports: NodePorts) -> None:
         super().__init__(name, [child])
-        self.given = given
+        self.ports = ports
         self.goals: list[Value | None] = []
         self.is_new = False
 
     def work(self) -> Result:
-        goals = [self.given.found(port, self.scope) for port in ("goal", "goals")]
+        goals = [self.ports.found(port, self.scope) for port in ("goal", "goals")]
         if self.begin() or goals != self.goals:
             self.goals, self.is_new = goals, True
         if self.child.status is Status.RUNNING or self.is_new:

@@ -21,15 +21,14 @@ from arboleda.model.facts import Value, shown
 from arboleda.model.plant_model import PlantModel
 from arboleda.simulator.faults import Fault
 
-from ..proof.calm import Calm, calm_run
-from ..proof.outcome import IS_DONE, Outcome, plain
+from ..proof.calm import calm_run
+from ..proof.changed_recipe import WITHIN_S, noticed_with, outcome_with
+from ..proof.outcome import plain
 from ..proof.scenario import Scenario
-from ..proof.stage import Stage
 from .process import errand, say, write
 from .tryout import RESULT
 
 MOST_TRIED = 120  # checks
-WITHIN_S = "2"  # at_most_s of a check
 NOT_DRAWN = "{recipe} is written in Python; only drawn trees are changed here"
 NOT_UNNOTICED = "this fault is noticed by now: the task ends {end}"
 
@@ -79,18 +78,6 @@ def noticed(model: PlantModel, wanted: Mapping[str, Any]) -> Row:
     return {"tried": tried, "file": "", "text": None}
 
 
-def outcome_with(model: PlantModel, scenario: Scenario, calm: Calm, faults: list[Fault]) -> Outcome:
-    """Outcome of a task with these faults."""
-    stage = Stage(model, scenario)
-    return stage.play(
-        faults[0].at,
-        lambda: stage.befall(faults),
-        expected=calm.state,
-        commands=calm.commands,
-        lasts_s=calm.lasts_s,
-    ).outcome
-
-
 def checks(model: PlantModel, recipe: TreeRecipe, cell: str) -> Iterator[Check]:
     """All checks of facts that have a few values, after each step of the main tree; the last steps first."""
     where = model.cell(cell)
@@ -114,14 +101,10 @@ def _tried(
     """The text with a check that notices these faults, and disturbs nothing without them; None for others."""
     try:
         content = _text(model, scenario.cell, recipe, check)
-        changed = _with_recipe(model, _recipe(recipe, content))
-        calm = calm_run(changed, scenario)
-        if not calm.is_sound or calm.run.outcome.end not in IS_DONE:
-            return None
-        found = outcome_with(changed, scenario, calm, faults)
+        found = noticed_with(model, scenario, _recipe(recipe, content), faults)
     except ArboledaError:  # no such check in this cell
         return None
-    if found.goes_unnoticed or found.broken:
+    if found is None:
         return None
     value = shown(check.value)
     return {
@@ -145,7 +128,7 @@ def _operations(model: PlantModel, cell: str, content: str, check: Check) -> Ite
     parent = above or "root"
     around = next(each for each in tree["nodes"] if each["path"] == parent)
     node = NewNode(
-        kind=f"{check.role}_becomes", attributes={check.fact: shown(check.value), "at_most_s": WITHIN_S}
+        kind=f"{check.role}_becomes", attributes={check.fact: shown(check.value), "at_most_s": str(WITHIN_S)}
     )
     if "Sequence" in around["kind"]:
         yield Insert(tree=check.tree, parent=parent, index=int(last) + 1, node=node)
@@ -159,12 +142,3 @@ def _recipe(before: TreeRecipe, content: str) -> TreeRecipe:
     forest = reading.read(before.file, content.encode(), findings)
     fresh = tree_recipe(before.name, before.file, content.encode(), forest, before.own)
     return replace(before, build=fresh.build, content=fresh.content)  # a cell knows more of the one before
-
-
-def _with_recipe(model: PlantModel, recipe: TreeRecipe) -> PlantModel:
-    """The plant with another recipe in the place of the one of its name."""
-    cells = tuple(
-        replace(cell, recipes=tuple(recipe if each.name == recipe.name else each for each in cell.recipes))
-        for cell in model.cells
-    )
-    return replace(model, cells=cells)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
 import signal
 import sys
 from collections.abc import Iterator
@@ -12,6 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from arboleda.host.limits import give_way
 from arboleda.model.errors import ArboledaError, ConfigError
 from arboleda.model.plant_model import PlantModel
 from arboleda.model.sentence import in_json
@@ -46,7 +46,7 @@ def say(**what: Any) -> None:
 @contextmanager
 def errand() -> Iterator[Errand]:
     """The errand on the input; where it cannot be done, the reason is said."""
-    os.nice(KINDNESS)
+    give_way(KINDNESS)
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C ends the plant, and that ends this
     request = json.load(sys.stdin)
     sys.stdout = sys.stderr  # what a plant's Python prints is no answer

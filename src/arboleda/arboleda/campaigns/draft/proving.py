@@ -6,18 +6,17 @@ import json
 from collections.abc import Callable
 from io import StringIO
 from pathlib import Path
-from typing import Any
 
 from rich.console import Console
 
-from ..proof.outcome import End
-from ..proof.proof_campaign import ProofCampaign, ProofRequest
+from ..proof.proof_campaign import ProofCampaign
 from ..proof.proof_lines import ProofLines
+from ..proof.proof_request import ProofRequest
+from .extract import shown
 from .process import Errand, errand, say, write
 
 JSON, HTML, TEXT = "proof.json", "proof.html", "proof.txt"
 RESULT = "result.json"
-MOST = 40  # rows of what the page shows
 SCREEN = 110  # columns of the text
 
 
@@ -39,6 +38,7 @@ def prove(given: Errand) -> None:
         folder=Path(wanted["kept"]),
         json=folder / JSON,
         html=folder / HTML,
+        mend=True,
     )
     screen = StringIO()
     console = Console(file=screen, width=SCREEN, highlight=False)
@@ -47,24 +47,6 @@ def prove(given: Errand) -> None:
     for name in (JSON, HTML, TEXT):
         _rename(folder / name, given.shade.renamed)
     write(folder / RESULT, shown(json.loads((folder / JSON).read_text("utf-8"))))
-
-
-def shown(proof: dict[str, Any]) -> dict[str, Any]:
-    """The part of an answer that the page shows; all of it is in the page of its own."""
-    return {
-        "complete": proof["complete"],
-        "runs": proof["runs"],
-        "alone": proof["alone"],
-        "table": proof["table"],
-        "unsound": [each for each in proof["scenarios"] if not _is_sound(each["without_faults"])][:MOST],
-        "tasks": [each["task"] for each in proof["scenarios"]],
-        "unnoticed": proof["unnoticed"][:MOST],
-        "breaches": proof["breaches"][:MOST],
-    }
-
-
-def _is_sound(outcome: dict[str, Any]) -> bool:
-    return outcome["end"] == End.DONE.value and outcome["broken"] is None
 
 
 def _rename(file: Path, renamed: Callable[[str], str]) -> None:

@@ -75,7 +75,7 @@ def _opened(use: DriverUse, device: Robot, heard: Heard) -> SimpleQueue[Driver]:
             driver = use.make()
             made.put(driver)
             begin = driver.listen if isinstance(driver, Listens) else driver.start
-            begin((device,), heard.put, clock.seconds)
+            begin((device,), lambda report: heard.put(report), clock.seconds)
         except (Exception, SystemExit) as error:  # noqa: BLE001 - it is user code: whatever it raises is told
             heard.put(error)
 

@@ -16,6 +16,7 @@ from arboleda.views import view
 from .. import flight
 from ..plants import Plant
 from ..proof.calm import Calm, calm_run
+from ..proof.forks import run_on
 from ..proof.instants import Instant
 from ..proof.outcome import Run, plain
 from ..proof.scenario import Scenario, alone
@@ -51,7 +52,7 @@ def tried(model: PlantModel, files: PlantFiles, wanted: Mapping[str, Any], folde
         "task": scenario.name,
         "cell": cell.name,
         "outcome": plain(run.outcome),
-        "why": "" if stage.told is None else str(stage.told.sentence),
+        "why": "" if stage.last_change is None else str(stage.last_change.sentence),
         "faults": [_fault(each) for each in faults],
         "seconds": run.seconds,
         "instants": [{"at": each.at, "name": each.name} for each in calm.instants[:MOST_INSTANTS]],
@@ -62,13 +63,7 @@ def tried(model: PlantModel, files: PlantFiles, wanted: Mapping[str, Any], folde
 def _played(stage: Stage, calm: Calm, faults: Sequence[Fault]) -> Run:
     if not faults:
         return stage.play(ASKED_AT_S, lambda: None, expected={}, commands=None, lasts_s=calm.lasts_s)
-    return stage.play(
-        faults[0].at,
-        lambda: stage.befall(faults),
-        expected=calm.state,
-        commands=calm.commands,
-        lasts_s=calm.lasts_s,
-    )
+    return run_on(stage, calm, *faults)
 
 
 def _possible(model: PlantModel, cell: Cell, instants: Sequence[Instant]) -> Iterator[dict[str, Any]]:

@@ -12,7 +12,7 @@ from arboleda.model.commands import Command, Question
 from arboleda.model.facts import Value
 from arboleda.model.messages import OperatorAnswer, TaskChanged
 from arboleda.model.plant_model import PlantModel
-from arboleda.simulator.world import Fuse, Side
+from arboleda.simulator.plant_process import Fuse, Side
 
 from .end_state import EndState
 from .instants import Instant, Mark, instants
@@ -62,7 +62,7 @@ class _Marks:
         self._fuse = Fuse(FAR, Side.AFTER, lambda: None)
         self._counted = FAR
         self._ended = False
-        stage.world.fuses.append(self._fuse)
+        stage.world.plant_process.fuses.append(self._fuse)
         stage.world.watchers.append(self._look)
 
     def _look(self) -> None:
@@ -104,7 +104,7 @@ def calm_run(model: PlantModel, scenario: Scenario) -> Calm:
     """Run a scenario where nothing goes wrong."""
     stage = Stage(model, scenario)
     marks = _Marks(stage)
-    run = stage.play(ASKED_AT_S, lambda: None, expected={}, commands=None, lasts_s=0.0)
+    run = calm_play(stage)
     finding = next((f"{each.step}: {each.sentence}" for each in stage.watched.findings.found), "")
     rows = [Mark(at=ASKED_AT_S, what="the request", begins=True, commits=0), *marks.rows]
     given = dict(scenario.answers)
@@ -116,7 +116,7 @@ def calm_run(model: PlantModel, scenario: Scenario) -> Calm:
         scenario=scenario,
         run=run,
         finding=finding,
-        why="" if stage.told is None else str(stage.told.sentence),
+        why="" if stage.last_change is None else str(stage.last_change.sentence),
         instants=tuple(instants(rows)),
         commands=tuple(stage.commands),
         state=stage.state,
@@ -124,6 +124,11 @@ def calm_run(model: PlantModel, scenario: Scenario) -> Calm:
         asked=tuple(asked.items()),
     )
     return replace(calm, again=stage.again(calm.lasts_s)) if run.outcome.end is End.DONE else calm
+
+
+def calm_play(stage: Stage) -> Run:
+    """Run the task of a stage, where nothing goes wrong, to its end."""
+    return stage.play(ASKED_AT_S, lambda: None, expected={}, commands=None, lasts_s=0.0)
 
 
 def calm_runs(model: PlantModel, scenarios: Iterable[Scenario]) -> Iterator[Calm]:

@@ -8,12 +8,11 @@ from dataclasses import dataclass
 from arboleda.model.plant_model import PlantModel
 
 from .calm import Calm
-from .likeness import likeness
+from .likeness import Likeness, is_like, likeness
 from .outcome import Run
 from .stage import ASKED_AT_S, Rejoined, Stage
 
 EVERY_S = 0.5
-LOOKS = (1.0, 4.0)  # s after a fault: each look costs as much as 3 s of a run
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -21,13 +20,13 @@ class Course:
     """Course of a calm run: its likeness by the time of the world, and what had been done by then."""
 
     run: Run
-    points: Mapping[float, tuple[bytes, object]]
+    points: Mapping[float, tuple[Likeness, object]]
 
 
 def course_of(model: PlantModel, calm: Calm) -> Course:
     """The course of a calm run, which is run again for it."""
     stage = Stage(model, calm.scenario)
-    points: dict[float, tuple[bytes, object]] = {}
+    points: dict[float, tuple[Likeness, object]] = {}
 
     def look() -> None:
         if not points or stage.world.now >= max(points) + EVERY_S:
@@ -44,27 +43,24 @@ def rejoin(stage: Stage, course: Course) -> None:
     Its world is then as it was there at that time, and the same was done: so what follows is the same. Who
     judges excuses more after a fault, not less.
     """
-    waits = [*LOOKS]
 
     def look() -> None:
         point = course.points.get(stage.world.now)
-        if not waits or point is None or not _is_over(stage, waits[0]) or _done(stage) != point[1]:
+        if point is None or not _is_over(stage) or _done(stage) != point[1]:
             return
-        if likeness(stage.world) == point[0]:
+        if is_like(stage.world, point[0]):
             raise Rejoined(course.run)
-        del waits[0]
 
     stage.on_its_way = look
 
 
-def _is_over(stage: Stage, since_s: float) -> bool:
-    """True if the fault has ended so long ago, and nobody lies or is held any more."""
+def _is_over(stage: Stage) -> bool:
+    """True if the fault has ended, and nobody lies or is held any more."""
     world = stage.world
     kept_up = world.faults_active or any(world.deceptions.values()) or any(world.holds.values())
-    return stage.began and not kept_up and world.now >= world.last_fault_at + since_s
+    return stage.began and not kept_up
 
 
 def _done(stage: Stage) -> object:
-    """Deeds so far, and the number of reports of each robot: a quick look before the other."""
-    beliefs = stage.world.plant.dispatcher.beliefs.values()
-    return stage.done, stage.world.starts, [each.reports for each in beliefs]
+    """Deeds so far: a quick look before the other."""
+    return stage.done, stage.world.plant_process.starts

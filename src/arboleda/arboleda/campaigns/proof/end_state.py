@@ -37,7 +37,7 @@ def stated(cell: Cell, recipe: str, values: Mapping[str, object]) -> dict[str, V
     return {f"{cell.roles[role].name}.{fact}": value for role, dot, fact, value in parts if dot}
 
 
-def heard_facts(watched: JudgedWorld, cell: Cell) -> dict[str, object]:
+def facts_by_report(watched: JudgedWorld, cell: Cell) -> dict[str, object]:
     """The facts of a cell's devices as the plant has heard them last, by the same names."""
     beliefs = watched.world.plant.dispatcher.beliefs
     robots = [robot for robot in cell.robots if robot.name in beliefs]

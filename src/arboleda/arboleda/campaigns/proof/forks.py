@@ -7,6 +7,7 @@ import pickle
 from collections.abc import Callable, Sequence
 from typing import Any
 
+from arboleda.host import abilities
 from arboleda.model.errors import ArboledaError
 from arboleda.model.plant_model import PlantModel
 from arboleda.simulator.faults import Fault
@@ -18,7 +19,7 @@ from .stage import AllForked, Stage
 
 Tick = Callable[[], None]
 Faults = tuple[Fault, ...]  # of one run
-CAN_FORK = hasattr(os, "fork")
+CAN_FORK = abilities.FORKS
 
 
 def run_all(

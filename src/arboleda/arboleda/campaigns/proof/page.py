@@ -12,11 +12,12 @@ from arboleda.dashboard.wording import Words, words
 from arboleda.drawing.words import outline
 from arboleda.web.languages import FIRST, LANGUAGES, texts
 
-from ..words import told
+from ..from_above import as_svg
+from ..words import fault_words
 from .calm import Calm
 from .checks import Check, checks
 from .instants import Instant
-from .moment import Moment, as_svg
+from .moment import Moment
 from .outcome import MOST_ACTS, End
 from .pairs import PairTally
 from .proof_tally import Case, ProofTally, RecipeKey, Row
@@ -29,7 +30,7 @@ STYLE = """
 body{font:15px/1.45 system-ui,sans-serif;max-width:75rem;margin:1rem auto;padding:0 1rem}
 body{color:#1b1f24;background:#fff}h1{font-size:1.4rem}h2{font-size:1.1rem;margin-top:1.6rem}
 pre{font:12px/1.4 ui-monospace,monospace;overflow:auto;background:#f6f8fa;padding:.5rem}
-table{border-collapse:collapse;font-size:13px}
+table{border-collapse:collapse;font-size:13px}.wide{overflow-x:auto}
 td,th{padding:.1rem .6rem;text-align:right;border-bottom:1px solid #d0d7de}
 td:first-child,th:first-child,td:last-child,th:last-child{text-align:left}
 .bad{color:#b42318;font-weight:bold}.quiet{color:#57606a}"""
@@ -118,12 +119,15 @@ def _calm(calm: Calm) -> str:
     return f"<li class={style}>{name}: {escape(f'{outcome.words}: {calm.finding or calm.why}')}</li>"
 
 
+def _check(check: Check) -> str:
+    key = "check_may" if not check.is_sure else "check_between" if check.behind else "check_sure"
+    return _each(key, steps=", ".join(check.steps), behind=check.behind)
+
+
 def _unnoticed(case: Case, count: int, found: Sequence[Check]) -> str:
     what = escape("; ".join(case.outcome.untrue))
-    befell = escape(f"{case.scenario.name}: {told(case.fault)}, {case.instant.name}")
-    keys = ("check_sure" if each.is_sure else "check_may" for each in found)
-    steps = (_each(key, steps=", ".join(each.steps)) for key, each in zip(keys, found, strict=True))
-    check = "; ".join(steps) or _each("check_none")
+    befell = escape(f"{case.scenario.name}: {fault_words(case.fault)}, {case.instant.name}")
+    check = "; ".join(map(_check, found)) or _each("check_none")
     like = _each("runs_like_it", count=count)
     return f"<li>{what}<br>{check}<br><span class=quiet>{befell} ({like})</span></li>"
 
@@ -131,7 +135,7 @@ def _unnoticed(case: Case, count: int, found: Sequence[Check]) -> str:
 def _unmended(case: Case, count: int) -> str:
     acts = case.outcome.acts
     what = _each("never_ready") if acts is None else _each("acts", acts=acts)
-    befell = escape(f"{case.scenario.name}: {told(case.fault)}, {case.instant.name}")
+    befell = escape(f"{case.scenario.name}: {fault_words(case.fault)}, {case.instant.name}")
     return f"<li>{what}<br><span class=quiet>{befell} ({_each('runs_like_it', count=count)})</span></li>"
 
 
@@ -165,7 +169,8 @@ def _table(key: RecipeKey, rows: dict[str, Row]) -> str:
     body = "".join(f"<tr>{''.join(_cells(kind, row))}</tr>" for kind, row in rows.items())
     turns = "".join(_turns(kind, *each) for kind, row in rows.items() for each in row.turns.items())
     more = f"<details><summary>{_each('turns')}</summary><ul>{turns}</ul></details>" if turns else ""
-    return f"<h2>{escape(': '.join(key))}</h2><table><tr>{heads}</tr>{body}</table>{more}"
+    table = f"<div class=wide><table><tr>{heads}</tr>{body}</table></div>"
+    return f"<h2>{escape(': '.join(key))}</h2>{table}{more}"
 
 
 def _turns(kind: str, target: str, turns: Sequence[tuple[Instant, str]]) -> str:

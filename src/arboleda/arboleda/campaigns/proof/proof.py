@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from hashlib import blake2b
-from typing import TypeVar
+from typing import Any, TypeVar
 
 from arboleda.model.plant_model import PlantModel
 from arboleda.simulator.faults import Fault
@@ -103,6 +103,11 @@ class Proof:
 
     @cached_property
     def _courses(self) -> dict[int, Course]:
+        return {}
+
+    @cached_property
+    def checked(self) -> dict[tuple[int, Fault], Sequence[Any]]:
+        """The checks that were tried for a fault in a scenario, by its number."""
         return {}
 
     @cached_property

@@ -5,7 +5,9 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Iterable, Iterator
+from dataclasses import replace
 from itertools import takewhile
+from pathlib import Path
 
 from rich.console import Console
 from rich.text import Text
@@ -13,6 +15,8 @@ from rich.text import Text
 from arboleda.model.counting import counted
 
 from ..campaign import Campaign, Runs
+from ..mending.answer import Answer, run_answer
+from ..mending.noticing import noticing_mend
 from ..plants import notes
 from ..screen import Show, progress
 from ..seed_campaign import BROKEN, HELD, INTERRUPTED
@@ -21,6 +25,7 @@ from . import proof_report, proof_summary
 from .badge import badge
 from .breaches import breaches_of
 from .calm import Calm, calm_runs
+from .checks import checks
 from .junit import as_junit
 from .kept import Kept
 from .outcome import End
@@ -34,6 +39,7 @@ from .pytest_file import Breach, as_tests
 from .recipe_digest import recipe_digests
 from .scenario import scenarios
 
+MEND_S = 120.0  # a mend is looked for so long
 NOTHING_RUN = 2  # exit status: of nothing it cannot be said that it held
 
 
@@ -154,6 +160,7 @@ class ProofCampaign:
 
     def _report(self, *, complete: bool) -> None:
         tally, breaches = self._tally, breaches_of(self._tally, self._pairs)
+        self._try_checks()
         for line in proof_report.calm_lines(self._calm):
             self._console.print(line, soft_wrap=True)
         for line in proof_report.unnoticed_lines(tally):
@@ -169,7 +176,31 @@ class ProofCampaign:
             line = proof_report.pairs_line(self._pairs, sum(each.then is not None for each in breaches))
             self._console.print(line, soft_wrap=True)
         self._console.print(proof_report.verdict(tally, self._total, bad_calm=self._bad_calm), soft_wrap=True)
-        self._write(breaches, complete=complete)
+        answer = self._answer()
+        if answer.mend is not None:
+            self._say(f"would mend it: {answer.mend.words}", "green")
+        self._write(breaches, answer, complete=complete)
+
+    def _answer(self) -> Answer:
+        """The findings of the runs without faults; where it is wanted, with what would mend them, or notice
+        what nobody notices."""
+        plant = self._request.plant
+        if plant is None or not self._request.mend:
+            return run_answer(Path(), self._calm, within_s=0.0)
+        with progress(self._console, "looking for a mend", None):
+            answer = run_answer(plant, self._calm, within_s=MEND_S)
+            if answer.findings:
+                return answer
+            return replace(answer, mend=noticing_mend(plant, self._tally, within_s=MEND_S))
+
+    def _try_checks(self) -> None:
+        """Try the checks of all that nobody notices and that will be named; a check takes a few runs."""
+        is_whole = self._request.html or self._request.json
+        found = self._tally.unnoticed()[: None if is_whole else proof_report.MOST_UNNOTICED]
+        with progress(self._console, "trying checks", len(found)) as show:
+            for number, (case, _) in enumerate(found, start=1):
+                checks(self._tally.proof, case)
+                show(f"{number:,} of {len(found):,}", number)
 
     def _amount(self) -> str:
         runs, seconds = (
@@ -189,7 +220,7 @@ class ProofCampaign:
         most = self._tally.most_acts
         return f", after all others with at most {counted(most, 'act')} of one" if most else ""
 
-    def _write(self, breaches: list[Breach], *, complete: bool) -> None:
+    def _write(self, breaches: list[Breach], mended: Answer, *, complete: bool) -> None:
         request = self._request
         answer = proof_summary.summary(
             request.plant,
@@ -199,6 +230,7 @@ class ProofCampaign:
             self._total,
             complete=complete,
             pairs=self._pairs,
+            mended=mended,
         )
         self._lines.answer(answer)
         if request.json is not None:

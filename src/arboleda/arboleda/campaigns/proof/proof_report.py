@@ -62,9 +62,11 @@ def unnoticed_lines(tally: ProofTally) -> Iterator[Text]:
 def _check_words(found: Sequence[Check]) -> str:
     if not found:
         return "nothing that the cell has would notice it"
-    sure = [step for each in found if each.is_sure for step in each.steps]
+    sure = [step for each in found if each.is_sure and not each.behind for step in each.steps]
+    between = [each for each in found if each.behind]
     may = [step for each in found if not each.is_sure for step in each.steps]
     words = [f"a step notices it: {', '.join(sure)}"] if sure else []
+    words += [f"a step behind step {each.behind}, notices it: {', '.join(each.steps)}" for each in between]
     return "; ".join([*words, *([f"a question may: {', '.join(may)}"] if may else [])])
 
 

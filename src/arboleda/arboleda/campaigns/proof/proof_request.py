@@ -17,7 +17,8 @@ from .single_faults import possible_kinds
 @dataclass(frozen=True, kw_only=True)
 class ProofRequest:
     """Request: the options. `budget_s`: how long runs begin, infinite for all; `anew`: nothing kept in
-    `folder` counts; `pairs`: what is left of the time is for two faults in one run.
+    `folder` counts; `pairs`: what is left of the time is for two faults in one run; `mend`: a change of the
+    files is looked for that mends what is found.
     """
 
     plant: Path | None
@@ -27,6 +28,7 @@ class ProofRequest:
     folder: Path
     anew: bool = False
     pairs: bool = False
+    mend: bool = False
     json: Path | None = None
     html: Path | None = None
     junit: Path | None = None

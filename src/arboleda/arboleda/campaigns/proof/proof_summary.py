@@ -11,6 +11,7 @@ from typing import Any
 from arboleda import __version__
 from arboleda.model.errors import ArboledaError
 
+from ..mending.answer import Answer
 from .calm import Calm
 from .checks import checks
 from .outcome import plain
@@ -40,9 +41,10 @@ def summary(
     total: int,
     *,
     complete: bool,
+    mended: Answer,
     pairs: PairTally | None = None,
 ) -> dict[str, Any]:
-    """The whole answer."""
+    """The whole answer; `mended` has what the runs without faults found, and what would mend it."""
     return {
         "arboleda": __version__,
         "plant": str(plant) if plant else None,
@@ -50,6 +52,7 @@ def summary(
         "runs": {"done": tally.runs, "of": total},
         "pairs": None if pairs is None else {"done": pairs.runs, "of": pairs.pairs.total},
         "alone": round(tally.alone, 4),
+        **mended.plain,
         "scenarios": [_scenario(each) for each in calm],
         "table": [_row(*each) for each in tally.table().items()],
         "unnoticed": [

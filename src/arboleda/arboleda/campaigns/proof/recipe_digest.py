@@ -68,7 +68,8 @@ def _of_python(content: bytes, recipe: str) -> str:
         module = ast.parse(content)
     except (SyntaxError, ValueError, RecursionError):
         return content.decode("latin-1")
-    others = {each.name: each for each in module.body if _is_of_another(each, recipe)}
+    functions = [each for each in module.body if isinstance(each, ast.FunctionDef)]
+    others = {each.name: each for each in functions if _is_of_another(each, recipe)}
     if others.keys() & BY_OTHER_NAMES or _words(module.body) & BY_OTHER_NAMES:
         others = {}
     kept = [each for each in module.body if each not in others.values()]
@@ -77,9 +78,9 @@ def _of_python(content: bytes, recipe: str) -> str:
     return ast.dump(ast.Module(body=kept, type_ignores=[]))
 
 
-def _is_of_another(node: ast.stmt, recipe: str) -> bool:
+def _is_of_another(node: ast.FunctionDef, recipe: str) -> bool:
     """True for a function that is decorated as another recipe, and with nothing else."""
-    if not isinstance(node, ast.FunctionDef) or len(node.decorator_list) != 1:
+    if len(node.decorator_list) != 1:
         return False
     call = node.decorator_list[0]
     if not isinstance(call, ast.Call) or not isinstance(call.func, ast.Name) or call.func.id != "recipe":

@@ -17,11 +17,11 @@ from arboleda.model.task import Order
 from arboleda.simulator.faults import Fault
 from arboleda.simulator.invariants.part_places import recipes_end_as_they_say
 from arboleda.simulator.judged_world import BrokenInvariant, JudgedWorld
-from arboleda.simulator.people import Attendant, FixedAnswers
+from arboleda.simulator.people import STANDS_BY_S, Attendant, FixedAnswers
 from arboleda.simulator.run import NO_EXCEPTION
 from arboleda.simulator.world import PLANT
 
-from .end_state import EndState, differences, end_state, heard_facts, stated
+from .end_state import EndState, differences, end_state, facts_by_report, stated
 from .outcome import IS_DONE, End, Outcome, Run
 from .scenario import Scenario, alone
 from .standstill import Standstill
@@ -86,7 +86,7 @@ class Stage:
         self._people = [robot.name for robot in self.cell.robots if robot.link is Link.SCREEN]
         self._ended: dict[bool, Counter[str]] = {True: Counter(), False: Counter()}  # commands done, and not
         self._questions: set[str] = set()  # by id, of all that persons were asked so far
-        self.told: TaskChanged | None = None  # the last word on the task
+        self.last_change: TaskChanged | None = None  # the last word on the task
         self.mended_at = 0.0  # when the fault was ended, s
         self.on_its_way: Callable[[], None] = lambda: None
         self.began, self._lost_from = False, 0.0
@@ -105,7 +105,7 @@ class Stage:
     @property
     def ended(self) -> bool:
         """True once the task has ended."""
-        return self.told is not None and self.told.state in ENDS
+        return self.last_change is not None and self.last_change.state in ENDS
 
     def play(
         self,
@@ -125,8 +125,9 @@ class Stage:
             self.world.at(self.watched.start + at, lambda _: self._begin(begin))
             self._work(lasts_s + PATIENCE_S)
             outcome, attended_at = self._outcome(expected, commands), self.watched.seconds
-            self._attendant = Attendant(self.world, seed=0)
+            self._attendant = Attendant(self.world, seed=0, round_s=STANDS_BY_S)
             self.watched.come_to_rest(self._stands_still)
+            self.watched.look_around()
             outcome = replace(outcome, acts=0 if outcome.alone else self._acts)
         except Rejoined as rejoined:
             digest = _hashed(self.watched.trace.digest, rejoined.run.digest)
@@ -146,23 +147,23 @@ class Stage:
 
     def again(self, lasts_s: float) -> str:
         """Failure of the same task once more, after a calm run of `lasts_s`: empty where it is done."""
-        self.told, self._request = None, AGAIN
+        self.last_change, self._request = None, AGAIN
         try:
             self.world.request_task(self._task, self._request)
             self.world.settle()
             self.world.advance(lasts_s + PATIENCE_S, lambda: self.ended or self._is_stuck)
         except BrokenInvariant as broken:
             return f"breaks {broken}"
-        told = self.told
-        if told is None or told.state is TaskState.DONE:
-            return "" if told else "nobody takes it"
-        return f"{told.state.value}: {told.sentence}"
+        change = self.last_change
+        if change is None or change.state is TaskState.DONE:
+            return "" if change else "nobody takes it"
+        return f"{change.state.value}: {change.sentence}"
 
     @property
     def done(self) -> object:
         """All that was commanded and done so far, and the last word on the task."""
         ended = {done: dict(each) for done, each in self._ended.items()}
-        return tuple(self.commands), ended, None if self.told is None else self.told.state
+        return tuple(self.commands), ended, None if self.last_change is None else self.last_change.state
 
     def befall(self, faults: Sequence[Fault]) -> None:
         """Have the first of these faults begin now, the others at their time if the task is at work then."""
@@ -193,13 +194,13 @@ class Stage:
                 return
 
     def _is_over(self) -> bool:
-        lost = self.told is None and self.world.now >= self._lost_from
+        lost = self.last_change is None and self.world.now >= self._lost_from
         self.on_its_way()
         return self.began and (self.ended or self._is_stuck or lost)
 
     @property
     def _is_stuck(self) -> bool:
-        return self.run.state in STUCK and not self.run.goes_on
+        return self.run.state in STUCK and not self.run.absence.hold
 
     def _stands_still(self) -> bool:
         return self._standstill is not None and self._standstill.lasts
@@ -222,7 +223,7 @@ class Stage:
         """Sentences on commands of the run without a fault that failed and were not done as often as there;
         of a plant that died nobody knows them all.
         """
-        if self.world.starts == 1:
+        if self.world.plant_process.starts == 1:
             done, failed = self._ended[True], self._ended[False]
             wanted = Counter(commands).items()
             left_out = (each for each, times in wanted if failed[each] and done[each] < times)
@@ -234,12 +235,14 @@ class Stage:
         return (ENDS_AS_SAID, f"{self._task} is called done, but {'; '.join(false)}") if false else None
 
     def _end_and_cause(self) -> tuple[End, str]:
-        told, run = self.told, self.run
-        if told is not None and told.state in ENDS:
-            return ENDS[told.state], told.reason.value if told.reason and told.state in _FAILED else ""
-        if run.state in STUCK and (told is not None or run.task is not None):
+        change, run = self.last_change, self.run
+        if change is not None and change.state in ENDS:
+            return ENDS[
+                change.state
+            ], change.reason.value if change.reason and change.state in _FAILED else ""
+        if run.state in STUCK and (change is not None or run.task is not None):
             return End.HELD, run.trouble.reason.value if run.trouble else run.state.value
-        return (End.LOST if told is None and run.task is None else End.UNFINISHED), ""
+        return (End.LOST if change is None and run.task is None else End.UNFINISHED), ""
 
     def _broken(self, outcome: Outcome, broken: BrokenInvariant) -> Outcome:
         return replace(outcome, broken=(broken.invariant, broken.sentence))
@@ -256,8 +259,13 @@ class Stage:
                 self.commands.append(entry_name(entry))
         self.asked = list(self._fresh_questions())
         self.commands += map(entry_name, self.asked)
-        if self.world.starts > 1 and self.told is not None and not self.ended and self.world.is_on(PLANT):
-            self._look_up(self.told)
+        if (
+            self.world.plant_process.starts > 1
+            and self.last_change is not None
+            and not self.ended
+            and self.world.is_on(PLANT)
+        ):
+            self._look_up(self.last_change)
         if self._attendant is not None and self._acts is None and self._is_ready():
             self._acts = self._attendant.acts
 
@@ -269,23 +277,25 @@ class Stage:
                 self._questions.add(entry.command.id)
                 yield entry
 
-    def _look_up(self, told: TaskChanged) -> None:
+    def _look_up(self, change: TaskChanged) -> None:
         """Take the end of the task from what was kept, as a plant that died says no word on it any more."""
-        kept = self.world.disk.ended(told.task)
+        kept = self.world.disk.ended(change.task)
         if kept is not None:
             reason = kept.failure.reason if kept.failure else None
-            self._follow(replace(told, state=kept.state, reason=reason))
+            self._follow(replace(change, state=kept.state, reason=reason))
 
-    def _follow(self, told: TaskChanged) -> None:
-        mine = told.request == self._request or (self.told is not None and told.task == self.told.task)
+    def _follow(self, change: TaskChanged) -> None:
+        mine = change.request == self._request or (
+            self.last_change is not None and change.task == self.last_change.task
+        )
         if not mine or self.ended:
             return
-        self.told = told
-        task = self.world.plant.intake.tasks.get(told.task)
+        self.last_change = change
+        task = self.world.plant.intake.tasks.get(change.task)
         self._order = self._order or (task.order if task is not None else None)
-        if told.state is TaskState.DONE and (order := self._order) is not None:
+        if change.state is TaskState.DONE and (order := self._order) is not None:
             self.state = end_state(self.watched, self.cell)
-            self.heard = heard_facts(self.watched, self.cell)
+            self.heard = facts_by_report(self.watched, self.cell)
             self.stated = stated(self.cell, order.recipe, order.values)
 
 

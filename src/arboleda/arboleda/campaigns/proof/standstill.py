@@ -8,14 +8,15 @@ from arboleda.core.cell import CellRun
 from arboleda.model.messages import Heartbeat
 from arboleda.simulator.judged_world import JudgedWorld
 
-LASTS_S = 6.0  # longer than anybody looks back: 5 s are the most, in plant, bridge, boards and judges
+LASTS_S = 2.5  # longer than a plant, a bridge or a board looks back that hears the others and is told nothing
 
 
 class Standstill:
     """Standstill of a world: nothing is open in it, and for a while nothing was news.
 
     Then what comes is what came, a while later: each process does what follows from its state and from what
-    it is told, and it is told the same, while none of its own times is still to come.
+    it is told, and it is told the same, while none of its own times is still to come. What is asked about a
+    longer time is asked only of a plant that is not heard (5 s), and where a command comes or fails (5 s).
     """
 
     def __init__(self, watched: JudgedWorld) -> None:
@@ -57,5 +58,5 @@ class Standstill:
 
 def _waits(cell: CellRun) -> bool:
     """True for a cell that does something at a time; what a tree waited for that is over means nothing."""
-    at_work = cell.tree is not None or cell.keeping.walk is not None or cell.teaching is not None
+    at_work = cell.tree is not None or cell.keeping.walk is not None or cell.manual.teaching is not None
     return at_work and cell.due is not None

@@ -2,6 +2,7 @@
 
 import * as cells from "./make_cells.js";
 import * as device from "./make_device.js";
+import * as proposals from "./make_proposals.js";
 import * as proof from "./make_prove.js";
 import * as tryout from "./make_try.js";
 import { ask, box, draft, editor, element, fill, isMine, knownName, look, name, onDraft, say, step, take, there } from "./make_state.js";
@@ -26,6 +27,7 @@ export function start() {
   tryout.start();
   proof.start();
   device.start();
+  proposals.start();
   setInterval(() => shown && !document.hidden && look(), LOOK_MS);
 }
 
@@ -36,6 +38,7 @@ export async function show(is) {
   open(sessionStorage.getItem(PANEL) ?? FIRST);
   await look();
   if (draft.state?.is_ours === false) return;
+  await proposals.look();
   await cells.read();
   tryout.recall();
   proof.recall();
@@ -57,6 +60,7 @@ function clicked({ target }) {
   const { make: act, makePanel } = target.closest("button")?.dataset ?? {};
   ACTS[act]?.();
   if (makePanel) open(makePanel);
+  if (makePanel === "proposals") proposals.look();
 }
 
 export function open(panel) {

@@ -149,7 +149,7 @@ async function notice(row, told) {
   line.append(add);
 }
 
-function tableOf({ cell, recipe, faults }) {
+export function tableOf({ cell, recipe, faults }) {
   const made = element("table", "", { class: "make-table" });
   made.append(element("caption", `${cell}: ${recipe}`));
   const head = element("tr");

@@ -1,7 +1,7 @@
 // Where on the page somebody is, as its address says it: part, cell, task, language, and the moment of which record.
 // Links and the browser's back lead there.
 
-const KEYS = ["tab", "cell", "task", "lang", "at", "record"];
+const KEYS = ["plant", "tab", "cell", "task", "lang", "at", "record"]; // which plant: where one page has several
 let arrived = () => {};
 
 export function start(arrive) {
@@ -21,7 +21,7 @@ export function here() {
 // The address of another place: what is not named stays as it is here, null leaves it out.
 export function address(changes) {
   const there = { ...here(), ...changes };
-  return `/?${new URLSearchParams(KEYS.filter((key) => there[key] !== null).map((key) => [key, there[key]]))}`;
+  return `${location.pathname}?${new URLSearchParams(KEYS.filter((key) => there[key] !== null).map((key) => [key, there[key]]))}`;
 }
 
 export function go(changes) {

@@ -14,7 +14,7 @@ let cell = null;
 let drawn = new Map(); // the controls of each device, by name
 let shape = "";
 let timer = null;
-let recipeLink = null; // stands beside what was said of a second target
+let recipeLink = null; // stands in the note from the second target on
 let taught = null; // the targets that were made last, of one cell
 
 export function start() {
@@ -119,7 +119,6 @@ async function here({ name }, target, approach, zone) {
   if (!said) return said;
   taught = { cell, targets: [...(taught?.cell === cell ? taught.targets : []).filter((each) => each !== target), target].slice(-2) };
   say(words.teach_made.replace("{target}", target)), look();
-  if (recipeLink && taught.targets.length > 1) box("note").append(" ", recipeLink);
   const draft = await ask("/api/draft");
   if (draft?.editor) sessionStorage.setItem("arboleda_mine", draft.editor.since); // as Make of this page asks for it
   return said;
@@ -143,4 +142,7 @@ async function ask(path, body) {
   return null;
 }
 
-const say = (sentence) => (box("note").textContent = sentence);
+function say(sentence) {
+  const offered = recipeLink && taught?.cell === cell && taught.targets.length > 1;
+  box("note").replaceChildren(sentence, ...(offered ? [" ", recipeLink] : []));
+}

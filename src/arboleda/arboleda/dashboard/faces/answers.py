@@ -6,7 +6,7 @@ from typing import Any
 
 from ..wording import Words
 from . import Face
-from .links import value_said
+from .links import value_words
 
 Row = dict[str, Any]
 
@@ -16,6 +16,6 @@ def rows(words: Words, name: str, answers: list[Row], most: int | None = None) -
     numbered = [*enumerate(answers)][-most if most else 0 :]
     found: Face = {f"rows/{name}": [str(number) for number, _ in numbered]}
     for number, each in numbered:
-        texts = [each["by"], each["asked"], value_said(words, each["answer"])]
+        texts = [each["by"], each["asked"], value_words(words, each["answer"])]
         found[f"row/{name}/{number}"] = {"state": "", "texts": texts}
     return found

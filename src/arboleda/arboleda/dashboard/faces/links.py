@@ -135,10 +135,10 @@ def _fact(words: Words, name: str, value: Any) -> str:
     """A fact in its own words if there are some, such as `on` of an effector."""
     if value is None:
         return words("links.unsaid")
-    return words.flat.get(f"fact_said.{name}.{shown(value)}") or value_said(words, value)
+    return words.flat.get(f"fact_said.{name}.{shown(value)}") or value_words(words, value)
 
 
-def value_said(words: Words, value: Any) -> str:
+def value_words(words: Words, value: Any) -> str:
     """A fact or an answer for people."""
     if isinstance(value, bool):
         return words("links.yes" if value else "links.no")
@@ -152,7 +152,7 @@ def command(moment: Moment, robot: Row) -> str:
         return ""
     words = moment.words
     state = words.of("command_state", told["state"])
-    answer = "" if robot["answer"] is None else f" ({value_said(words, robot['answer'])})"
+    answer = "" if robot["answer"] is None else f" ({value_words(words, robot['answer'])})"
     return f"{words.say(told['what'])}: {state}{answer}, {words('links.ago', time=seconds(told['age_s']))}"
 
 

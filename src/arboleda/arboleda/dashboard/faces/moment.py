@@ -26,7 +26,7 @@ class Moment:
 
     def unix(self, plant_s: float) -> float:
         """A time of the plant's clock as unix s."""
-        return self.unix_s - (self.snapshot["at"] - plant_s)
+        return self.unix_s - (float(self.snapshot["at"]) - plant_s)
 
 
 def clock(unix_s: float) -> str:

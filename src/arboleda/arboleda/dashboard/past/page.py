@@ -8,7 +8,7 @@ from fastapi import FastAPI, Request
 from nicegui import Client, ui
 
 from .. import header, links, shell, tasks, timeline, trees
-from ..shell import Parts
+from ..body import Parts, body
 from ..twin import pane, window
 from ..wording import words
 from . import bar
@@ -68,7 +68,7 @@ def open_page(
     window.bring_three()
     client.on_connect(visitor.come)
     role = shell.role_shown(request)
-    made = shell.body(
+    made = body(
         layout,
         wording,
         PARTS,

@@ -75,11 +75,12 @@ class Visitor:
         self._shown, self._drawn = {}, {}
         if self._past is None:
             try:
-                self._past, self._starts = await self._turns.take(self._opened)
+                past, self._starts = await self._turns.take(self._opened)
             except ArboledaError as error:
                 self._say(self._words.say(error.sentence))
                 return
-            self._arrive(self._past)
+            self._past = past
+            self._arrive(past)
         await self._show()
 
     def _opened(self) -> tuple[Past, list[Start]]:

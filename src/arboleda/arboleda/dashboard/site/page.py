@@ -17,6 +17,7 @@ from arboleda.web.api import task_asked
 from arboleda.web.schema.bodies import TaskText
 
 from .. import header, shell
+from ..body import Parts, body
 from ..frames import Background, Frames
 from ..open_page import LONGEST, OpenPage
 from ..page_api import Layout
@@ -41,12 +42,11 @@ def mount(server: FastAPI, site: SiteSide) -> None:
         wording = words(language_of(request))
         desk = Desk(client, site, frames, wording)
         ui.on("arboleda", desk.hear)
-        client.on_connect(lambda: (frames.add(desk), opened.set()))
+        client.on_connect(lambda: frames.add(desk))
+        client.on_connect(opened.set)
         client.on_delete(lambda: frames.remove(desk))
         role = role_shown(request)
-        made = shell.body(
-            NOTHING_DRAWN, wording, PARTS, header=lambda parts: header.of_site(wording, parts, role)
-        )
+        made = body(NOTHING_DRAWN, wording, PARTS, header=lambda parts: header.of_site(wording, parts, role))
         shell.fill(NOTHING_DRAWN, wording, PARTS, script="site.js", made=made)
 
     _serve(server, site)
@@ -108,7 +108,7 @@ def _plants(_layout: Layout, wording: Words) -> None:
 
 
 NOTHING_DRAWN: Layout = {"places": {"robots": []}}
-PARTS: shell.Parts = {"plants": _plants}
+PARTS: Parts = {"plants": _plants}
 
 
 class Desk(OpenPage):

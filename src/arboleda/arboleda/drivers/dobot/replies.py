@@ -7,6 +7,10 @@ from dataclasses import dataclass
 
 LONGEST = 8192  # characters without an end
 REPLY = re.compile(r"\s*(0|-?[1-9]\d{0,8}),\{(.*?)\},(\w{1,40})\((.*)\)\s*", re.DOTALL)
+# The example in the maker's README_V4.pdf, 3.40, lacks the brace that ends the values.
+ERRORS_REPLY = re.compile(
+    r"\s*(0|-?[1-9]\d{0,8}),\{(\[.*\]),(GetErrorID)\(()\)\s*", re.DOTALL | re.IGNORECASE
+)
 OTHER_MODE = "Control Mode Is Not Tcp"
 ALARMS = re.compile(r"-?\d{1,9}")
 
@@ -18,10 +22,18 @@ REFUSALS = {
     -5: "script_running",
     -6: "wrong_motion_type",
     -7: "script_paused",
+    -8: "licence_expired",
     -10000: "unknown_command",
     -20000: "wrong_number_of_values",
 }
-"""The word for the plant of each ErrorID of the controller."""
+"""The word for the plant of each ErrorID of the controller, by the maker's README_V4.pdf, section 5."""
+OF_VALUES = {
+    -30000: "wrong_type_of_value",
+    -40000: "value_out_of_range",
+    -50000: "wrong_type_of_option",
+    -60000: "option_out_of_range",
+}
+"""The words for those whose last digits are the place of the value, from 1; it is 1 for any with a name."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -37,6 +49,9 @@ class Reply:
         """The word for the reason of a refusal."""
         if self is NOT_TCP:
             return "not_in_tcp_mode"
+        place = -self.error % 1000
+        if place and self.error + place in OF_VALUES:
+            return f"{OF_VALUES[self.error + place]}_{place}"
         return REFUSALS.get(self.error, f"error {self.error}")
 
     @property
@@ -81,7 +96,7 @@ class ReplyReader:
 
 
 def _reply(text: str) -> Reply:
-    found = REPLY.fullmatch(text)
+    found = REPLY.fullmatch(text) or ERRORS_REPLY.fullmatch(text)
     if found is None:
         raise NotAReply(f"{text[:60]!r} is no reply")
     return Reply(error=int(found[1]), values=found[2].strip(), command=found[3])

@@ -4,6 +4,10 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import ClassVar
+
+from arboleda.drivers.limits import within
+from arboleda.model.facts import HEALTH
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -20,22 +24,24 @@ class Settings:
     acceleration_percent: int | None = None
     tool_output: int | None = 1
     request_control: bool = True
+    reported_facts: ClassVar[tuple[str, ...]] = (HEALTH,)
+    home_clears_faults: ClassVar[bool] = True  # homing clears alarms, powers the arm and enables it
 
     def __post_init__(self) -> None:
-        _within("port", self.port, 1, 65535)
-        _within("feedback_port", self.feedback_port, 1, 65535)
-        _within("speed_percent", self.speed_percent, 1, 100)
-        _within("acceleration_percent", self.acceleration_percent, 1, 100)
-        _within("tool_output", self.tool_output, 1, 4)
+        within("port", self.port, 1, 65535)
+        within("feedback_port", self.feedback_port, 1, 65535)
+        within("speed_percent", self.speed_percent, 1, 100)
+        within("acceleration_percent", self.acceleration_percent, 1, 100)
+        within("tool_output", self.tool_output, 1, 4)
+
+    @property
+    def model_speed_share(self) -> float:
+        """The share of the model's speed: no move takes longer than by the slower of both percentages."""
+        return min(self.speed_percent or 100, self.acceleration_percent or 100) / 100
 
     def joint_move(self, q: tuple[float, ...]) -> str:
         """The line that moves the joints to `q`, rad."""
         joints = ",".join(f"{math.degrees(each):.4f}" for each in q)
         ratios = {"a": self.acceleration_percent, "v": self.speed_percent}
-        asked = "".join(f",{name}={ratio}" for name, ratio in ratios.items() if ratio is not None)
-        return f"MovJ(joint={{{joints}}}{asked})"
-
-
-def _within(name: str, value: int | None, lowest: int, highest: int) -> None:
-    if value is not None and not lowest <= value <= highest:
-        raise ValueError(f"{name} is {value}; allowed: {lowest} to {highest}")
+        options = "".join(f",{name}={ratio}" for name, ratio in ratios.items() if ratio is not None)
+        return f"MovJ(joint={{{joints}}}{options})"

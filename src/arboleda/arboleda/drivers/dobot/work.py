@@ -6,9 +6,10 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from arboleda.drivers.tcp_arm import SETTLE_S
+
 from .frames import Feedback, Mode
 
-SETTLE_S = 0.3  # an arm idle for so long away from its goal has stopped
 BEGIN_S = 2.0  # an idle controller begins a queued command within this time
 STEP_S = 15.0  # limit of one step to readiness; power takes some 10 s, says the maker
 

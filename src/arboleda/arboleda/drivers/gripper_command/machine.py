@@ -51,7 +51,7 @@ class GripperMover:
         self._settings, self._kind = settings, device.kind
         still = abs(settings.units_per_mm) * settings.tolerance_mm * STILL
         self._joint = Joints((settings.joint,), settings.joint_states, rest=still)
-        self._told_mm: float | None = None  # the width of the last goal
+        self._goal_mm: float | None = None  # the width of the last goal
         self._gripped: bool | None = None  # None: unknown
         self._held_mm = 0.0  # width of the part
 
@@ -60,8 +60,8 @@ class GripperMover:
         assert self._joint.q is not None
         return self._settings.width(self._joint.q[0])
 
-    def see(self, now: float, seen: Measurement) -> bool:
-        if not self._joint.see(now, seen):
+    def see(self, now: float, measurement: Measurement) -> bool:
+        if not self._joint.see(now, measurement):
             return False
         if self._gripped and not self._near(self._held_mm):
             self._gripped = False  # it slipped out, or the fingers were moved apart
@@ -75,7 +75,7 @@ class GripperMover:
             raise NoGoal(f"a gripper has no word for {type(command).__name__}")
         values, grips = dict(command.values), ("gripped", True) in command.sets
         width_mm = float(values.get("width_mm", 0.0 if grips else self._settings.width_mm))
-        self._told_mm = width_mm
+        self._goal_mm = width_mm
         goal = Width(
             joint=self._settings.joint,
             position=self._settings.position(width_mm),
@@ -136,8 +136,8 @@ class GripperMover:
 
     def _shown_mm(self) -> float:
         """The width for reports, mm: the one commanded if the fingers are near it, else as measured."""
-        if self._told_mm is not None and self._near(self._told_mm):
-            return self._told_mm
+        if self._goal_mm is not None and self._near(self._goal_mm):
+            return self._goal_mm
         return round(self.width_mm, 1)
 
 

@@ -78,5 +78,5 @@ class Settings:
         for verb in device.kind.verbs.values():
             strange = [name for name, _ in verb.parameters if name not in VALUES]
             if strange:
-                told = ", ".join(VALUES)
-                yield (), f"{verb.name} has {', '.join(strange)}; a gripper is told {told}"
+                known = ", ".join(VALUES)
+                yield (), f"{verb.name} has {', '.join(strange)}; a gripper is told {known}"

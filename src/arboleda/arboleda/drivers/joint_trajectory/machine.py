@@ -45,8 +45,8 @@ class ArmMover:
         self._arm, self._settings = arm, settings
         self._joints = Joints(settings.joint_names(arm), settings.joint_states)
 
-    def see(self, now: float, seen: Measurement) -> bool:
-        return self._joints.see(now, seen)
+    def see(self, now: float, measurement: Measurement) -> bool:
+        return self._joints.see(now, measurement)
 
     def missing(self, now: float) -> str:
         return self._joints.missing(now)
@@ -84,4 +84,4 @@ def machine(devices: Sequence[Robot], settings: Settings) -> Machine:
     """The machine of one robot of joints; raises ValueError for other devices."""
     if len(devices) != 1 or not isinstance(devices[0], Jointed):
         raise ValueError("a joint trajectory controller moves one robot of joints")
-    return Machine(ArmMover(devices[0], settings), settings.action)
+    return Machine(ArmMover(devices[0], settings), settings.action, settings.health)

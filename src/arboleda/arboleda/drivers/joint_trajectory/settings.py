@@ -7,7 +7,10 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from arboleda.kinds.joints import Joint, Jointed
+from arboleda.model.facts import HEALTH
 from arboleda.model.plant_model import Evidence, Robot
+
+from ..ros_action.health import Health
 
 SHORTEST_S = 0.1
 # A move from rest to rest along a polynomial of the fifth degree is faster at its middle than on average,
@@ -21,6 +24,7 @@ class Settings:
     """Settings of the driver `joint_trajectory`: action, joint states and joint names of the arm.
 
     `speed_percent` is of what the model of the arm allows; `lan` lets the driver reach other machines.
+    `health` says which topic tells of the arm's stops, and what leads out of them.
     """
 
     action: str = "joint_trajectory_controller/follow_joint_trajectory"
@@ -28,6 +32,7 @@ class Settings:
     joints: tuple[str, ...] = ()
     speed_percent: int = 50
     lan: bool = False
+    health: Health | None = None
 
     def __post_init__(self) -> None:
         if not 1 <= self.speed_percent <= 100:
@@ -37,6 +42,21 @@ class Settings:
         for name in ("action", "joint_states"):
             if not getattr(self, name):
                 raise ValueError(f"{name} is empty; it is a name of ROS 2")
+
+    @property
+    def model_speed_share(self) -> float:
+        """The share of the model's speed: a polynomial's mean speed is below that of its middle."""
+        return self.speed_percent / 100 / PEAK_SPEED
+
+    @property
+    def reported_facts(self) -> tuple[str, ...]:
+        """The facts that the driver reports beside those of the arm's kind."""
+        return () if self.health is None else (HEALTH,)
+
+    @property
+    def home_clears_faults(self) -> bool:
+        """True where homing leads the arm out of a fault."""
+        return self.health is not None and self.health.clear != ()
 
     def joint_names(self, arm: Jointed) -> tuple[str, ...]:
         """The names of the arm's joints in ros2_control, in the arm's order."""

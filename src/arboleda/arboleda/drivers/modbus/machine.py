@@ -58,7 +58,7 @@ class ModbusDevice:
         self._device, self._settings = device, settings
         self._numbers = Numbers()
         self._written = 0  # the number in its register: a PLC notices only a change
-        self._asked: tuple[int, Register, type[Value]] | None = None
+        self._query: tuple[int, Register, type[Value]] | None = None
         self._alive = ProgramWatch(settings.alive_s)
         read = [register for _, register in readings(settings)]
         written = [settings.sequence.write] if settings.sequence is not None else []
@@ -68,11 +68,12 @@ class ModbusDevice:
     def begin(self, raw: Raw) -> None:
         """Note the command numbers that the PLC still shows; they are of no command of this connection."""
         sequence = self._settings.sequence
-        self._numbers.begin()
+        echo = self._echo(raw)
+        self._numbers.begin(echo.get("accepted"))
         if sequence is not None:
             self._written = int(sequence.write.number(taken(sequence.write, raw)))
-            self._numbers.see({*self._echo(raw).values(), self._written})
-        self._asked = None
+            self._numbers.see({*echo.values(), self._written})
+        self._query = None
         self._alive.begin()
 
     def order(self, command: Command) -> tuple[WriteRequest, ...]:
@@ -89,7 +90,7 @@ class ModbusDevice:
             there = sequence.write
             puts.append(WriteRequest(table="holding", address=there.address, values=there.raw(number)))
             if command.told.effect is Effect.QUERY and verb.answer is not None:
-                self._asked = (number, verb.answer, type(command.told.answers[0]))
+                self._query = (number, verb.answer, type(command.told.answers[0]))
         return joined(puts)
 
     def report(self, at: float, raw: Raw) -> Report:
@@ -143,9 +144,9 @@ class ModbusDevice:
         return found
 
     def _answer(self, raw: Raw, done: int | None) -> Question | None:
-        if self._asked is None or done != self._asked[0]:
+        if self._query is None or done != self._query[0]:
             return None
-        number, register, of = self._asked
+        number, register, of = self._query
         return Question(number=number, answer=register.read(taken(register, raw), of))
 
 

@@ -41,9 +41,9 @@ class Register:
     byte_order: Order = "big"
 
     def __post_init__(self) -> None:
-        given = [name for name in TABLES if getattr(self, name) is not None]
-        if len(given) != 1:
-            what = " and ".join(given) or "none"
+        tables = [name for name in TABLES if getattr(self, name) is not None]
+        if len(tables) != 1:
+            what = " and ".join(tables) or "none"
             raise DriverError(f"needs exactly one of {', '.join(TABLES)} with its address, has {what}")
         last = LAST - self.length + 1
         if not 0 <= self.address <= last:

@@ -9,9 +9,8 @@ from typing import Literal
 from arboleda.drivers.port import DriverError
 from arboleda.model.plant_model import Robot
 
+from ..plc.limits import check_polling
 from .registers import Register, Write
-
-SHORTEST_POLL_S = 0.005
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -41,6 +40,7 @@ class Settings:
 
     host: str = ""
     port: int = 502
+    framing: Literal["tcp", "rtu"] = "tcp"
     serial: str = ""
     baud: int = 19200
     parity: Literal["even", "odd", "none"] = "even"
@@ -62,14 +62,11 @@ class Settings:
     def __post_init__(self) -> None:
         if bool(self.host) == bool(self.serial):
             raise DriverError("needs either host (Modbus TCP) or serial (Modbus RTU, as /dev/ttyUSB0)")
-        if not 0 < self.port < 65536:
-            raise DriverError(f"port is {self.port}; allowed: 1 to 65535")
+        if self.serial and self.framing == "rtu":
+            raise DriverError("framing is for host; a serial line always has that of RTU")
+        check_polling(port=self.port, poll_s=self.poll_s, timeout_s=self.timeout_s)
         if not 0 <= self.unit <= 255:
             raise DriverError(f"unit is {self.unit}; allowed: 0 to 255")
-        if not SHORTEST_POLL_S <= self.poll_s <= 0.5:
-            raise DriverError(f"poll_s is {self.poll_s:g}; allowed: {SHORTEST_POLL_S:g} to 0.5")
-        if not 0.01 <= self.timeout_s <= 5:
-            raise DriverError(f"timeout_s is {self.timeout_s:g}; allowed: 0.01 to 5")
 
     @property
     def peer(self) -> str:

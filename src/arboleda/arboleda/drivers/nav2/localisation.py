@@ -55,15 +55,15 @@ class Localisation:
             return None
         return self._map @ self._counted[-1].pose
 
-    def see(self, now: float, seen: Measurement) -> bool:
+    def see(self, now: float, measurement: Measurement) -> bool:
         """Take a measurement; True if it is news.
 
         A pose with a NaN, or with the time of the one before, is ignored.
         """
-        if isinstance(seen, OdometryPose) and seen.pose.is_finite:
-            return self._count(now, seen)
-        if isinstance(seen, MapPose) and seen.pose.is_finite:
-            self._localise(seen)
+        if isinstance(measurement, OdometryPose) and measurement.pose.is_finite:
+            return self._count(now, measurement)
+        if isinstance(measurement, MapPose) and measurement.pose.is_finite:
+            self._localise(measurement)
         return False
 
     def missing(self, now: float) -> str:
@@ -75,33 +75,33 @@ class Localisation:
             return f"{self._localisation} has said nothing new over {self._far_m:g} m of way"
         return ""
 
-    def _count(self, now: float, seen: OdometryPose) -> bool:
+    def _count(self, now: float, measurement: OdometryPose) -> bool:
         before = self._counted[-1] if self._counted else None
-        if before is not None and before.stamp == seen.stamp:
+        if before is not None and before.stamp == measurement.stamp:
             return False
         if before is not None:
-            self._gone_m += before.pose.distance(seen.pose)
-            self._turned += wrapped(seen.pose.yaw - before.pose.yaw)
-        self._counted.append(seen)
+            self._gone_m += before.pose.distance(measurement.pose)
+            self._turned += wrapped(measurement.pose.yaw - before.pose.yaw)
+        self._counted.append(measurement)
         self.heard_at = now
         if not self._localisation:
             self._map, self._gone_m = Pose(0.0, 0.0), 0.0
         elif self._early is not None:
             early, self._early = self._early, None
             self._localise(early)
-        self.rest.look(now, (seen.pose.x, seen.pose.y, self._turned))
+        self.rest.look(now, (measurement.pose.x, measurement.pose.y, self._turned))
         return self._map is not None
 
-    def _localise(self, seen: MapPose) -> None:
+    def _localise(self, measurement: MapPose) -> None:
         """Note where odometry began on the map, by the odometry of the same time."""
         if not self._counted:
-            self._early = seen
+            self._early = measurement
             return
-        then = min(self._counted, key=lambda each: abs(_seconds(each) - _seconds(seen)))
-        if self._map is not None and abs(_seconds(then) - _seconds(seen)) > TOGETHER_S:
+        then = min(self._counted, key=lambda each: abs(_seconds(each) - _seconds(measurement)))
+        if self._map is not None and abs(_seconds(then) - _seconds(measurement)) > TOGETHER_S:
             return  # odometry was silent then, so the way since is unknown
-        self._map, self._gone_m = seen.pose @ then.pose.inverse, 0.0
+        self._map, self._gone_m = measurement.pose @ then.pose.inverse, 0.0
 
 
-def _seconds(seen: Measurement) -> float:
-    return seen.stamp[0] + seen.stamp[1] / 1e9
+def _seconds(measurement: Measurement) -> float:
+    return measurement.stamp[0] + measurement.stamp[1] / 1e9

@@ -47,8 +47,8 @@ class BaseMover:
         )
         self._node: int | None = None  # the last one that it stood on
 
-    def see(self, now: float, seen: Measurement) -> bool:
-        if not self._where.see(now, seen):
+    def see(self, now: float, measurement: Measurement) -> bool:
+        if not self._where.see(now, measurement):
             return False
         node = self._stands_on()
         self._node = self._node if node is None else node

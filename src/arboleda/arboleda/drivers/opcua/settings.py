@@ -10,32 +10,55 @@ from typing import Literal
 from arboleda.drivers.port import DriverError
 from arboleda.model.plant_model import Robot
 
-from .nodes import Method, Variable, check_node
+from ..plc.limits import check_alive, check_sequence
+from ..plc.numbers import LAST
+from ..plc.variables import FORMS, LIMITS, Form
+from .nodes import Order, Variable, check_node, check_number
 
 
 @dataclass(frozen=True, kw_only=True)
-class Verb(Method):
-    """Method of a verb, and the variable with the answer to a query."""
+class Verb(Order):
+    """Call or writing for a verb, and the variable with the answer to a query."""
 
     answer: Variable | None = None
 
 
 @dataclass(frozen=True, kw_only=True)
 class Sequence:
-    """Variables that echo the number of a command, which each method of a verb takes as its last argument."""
+    """Variables for the number of a command, which a method takes as its last argument, and of which `write`
+    is written last where a verb is written; and those that echo it.
 
-    accepted: str
+    `busy` is for a program that echoes no accepted number, `error` for one that has a code for how the last
+    command ended in place of other numbers.
+    """
+
     done: str
-    type: Literal["uint16", "int32", "uint32", "int64", "uint64"] = "uint16"
+    accepted: str | None = None
+    type: Form = "uint16"
+    write: str | None = None
+    busy: str | None = None
+    error: Variable | None = None
     rejected: str | None = None
     reason: Variable | None = None
     failed: str | None = None
     failure: Variable | None = None
 
     def __post_init__(self) -> None:
-        for node in (self.accepted, self.done, self.rejected, self.failed):
+        check_number("type", self.type)
+        check_sequence(self)
+        for node in (self.accepted, self.done, self.write, self.busy, self.rejected, self.failed):
             if node is not None:
                 check_node(node)
+
+    @property
+    def greatest(self) -> int:
+        """The greatest number of a command of that type."""
+        return LIMITS[self.type][1] if self.type in LIMITS else LAST
+
+    @property
+    def floats(self) -> bool:
+        """True if numbers are shown as floats."""
+        return self.type in FORMS[float]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -47,6 +70,7 @@ class Settings:
 
     url: str
     security: Literal["none", "sign", "sign_and_encrypt"] = "sign_and_encrypt"
+    policy: Literal["basic256sha256", "aes128_sha256_rsaoaep", "aes256_sha256_rsapss"] = "basic256sha256"
     secrets: str = "ARBOLEDA_OPCUA"
     user: str | None = field(default=None, metadata={"hidden": True})
     password: str | None = field(default=None, metadata={"hidden": True})
@@ -57,12 +81,13 @@ class Settings:
     alive: str | None = None
     alive_s: float = 1.0
     heartbeat: str | None = None
+    heartbeat_type: Form = "uint16"
     facts: dict[str, Variable] = field(default_factory=dict)
     verbs: dict[str, Verb] = field(default_factory=dict)
     sequence: Sequence | None = None
-    halt: Method | None = None
-    latch: Method | None = None
-    clear: Method | None = None
+    halt: Order | None = None
+    latch: Order | None = None
+    clear: Order | None = None
 
     def __post_init__(self) -> None:
         if not re.fullmatch(r"[A-Z][A-Z0-9_]*", self.secrets):
@@ -76,8 +101,8 @@ class Settings:
             raise DriverError(f"publish_s is {self.publish_s:g}; allowed: 0.01 to 0.5")
         if not 0.05 <= self.timeout_s <= 5:
             raise DriverError(f"timeout_s is {self.timeout_s:g}; allowed: 0.05 to 5")
-        if not self.alive_s > 0:
-            raise DriverError(f"alive_s is {self.alive_s:g}; allowed: more than 0")
+        check_alive(self.alive_s)
+        check_number("heartbeat_type", self.heartbeat_type)
         for node in (self.boot, self.alive, self.heartbeat):
             if node is not None:
                 check_node(node)

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterator, Mapping, Sequence
 
 from arboleda.kinds.declared import Device, DeviceVerb, Effect, FactType
 from arboleda.model.outside import among
 from arboleda.model.plant_model import Evidence
 
 from .plc_snapshot import STATES
+from .variables import FORMS, PlcArgument, PlcVariable
 
 Place = tuple[str | int, ...]
 Problem = tuple[Place, str]
@@ -17,6 +18,14 @@ Problem = tuple[Place, str]
 def facts(mapped: Collection[str], device: Device, hint: str) -> Iterator[Problem]:
     """Problems of the mapped facts: unknown to the kind, or missing."""
     yield from _names("fact", mapped, device.kind.facts, device, hint)
+
+
+def shown_facts(mapped: Mapping[str, PlcVariable], device: Device, hint: str) -> Iterator[Problem]:
+    """Problems of the variables that show facts: of their names, and of their words."""
+    yield from facts(mapped, device, hint)
+    for name, variable in mapped.items():
+        if name in device.kind.facts:
+            yield from words(("facts", name), variable.words, device.kind.facts[name])
 
 
 def verbs(mapped: Collection[str], device: Device, hint: str) -> Iterator[Problem]:
@@ -72,3 +81,54 @@ def states(words: Collection[str]) -> Iterator[Problem]:
     missing = [word for word in ("stopped", "moving") if word not in words]
     if missing:
         yield ("state",), f"has no number for {' and '.join(missing)}: words: {{stopped: 0, moving: 1}}"
+
+
+def words(place: Place, mapped: Mapping[str, int], of: FactType) -> Iterator[Problem]:
+    """Problems of the numbers of words: for a value that has no words, or without one of them."""
+    missing = [str(word) for word in of.words if word not in mapped]
+    if mapped and of.type is not str:
+        yield place, f"has words, and is {of.allowed()}"
+    elif mapped and missing:
+        yield place, f"has no number for {', '.join(missing)}; write words: {{{missing[0]}: 0}}"
+    elif mapped and not of.words:
+        yield place, "has words, and is any text"
+
+
+def argument(
+    place: Place,
+    given: PlcArgument,
+    verb: DeviceVerb,
+    *,
+    key: str,
+    names: Mapping[type, Sequence[str]] = FORMS,
+) -> Iterator[Problem]:
+    """Problems of a value that is sent for a verb; `key` is that of its type, `names` those of types."""
+    types = dict(verb.parameters)
+    if given.parameter is None:
+        return
+    if given.parameter not in types:
+        what = f"{verb.name} has no parameter {given.parameter}"
+        yield (*place, "value"), f"{what}; {among(given.parameter, types)}"
+        return
+    of = types[given.parameter]
+    if given.words:
+        yield from words(place, given.words, of)
+    elif given.form not in FORMS[of.type]:
+        yield (*place, key), f"the value is {of.allowed()}; allowed: {', '.join(names[of.type])}"
+    else:
+        beyond = [value for value in of.samples if not given.fits(value)]
+        if beyond:
+            yield place, f"{beyond[0]} is no {given.type_name}; write a type that holds {of.allowed()}"
+
+
+def plain(place: Place, given: PlcArgument, what: str) -> Iterator[Problem]:
+    """A problem if a value that is sent for a stop names a parameter."""
+    if given.parameter is not None:
+        yield (*place, "value"), f"{what} has no parameters; write a value"
+
+
+def shown_answer(place: Place, shown: PlcVariable | None, verb: DeviceVerb, hint: str) -> Iterator[Problem]:
+    """Problems of the variable that shows the answer to a query."""
+    yield from answer(place, verb, hint, mapped=shown is not None)
+    if shown is not None and verb.answers:
+        yield from words((*place, "answer"), shown.words, answers(verb))

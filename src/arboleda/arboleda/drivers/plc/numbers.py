@@ -10,16 +10,22 @@ REMEMBERED = 256  # commands; an open one is never that old
 
 
 class Numbers:
-    """Numbers of commands, from 1 to 65535, and the commands behind them."""
+    """Numbers of commands, from 1 to the greatest that fits, and the commands behind them."""
 
-    def __init__(self) -> None:
+    def __init__(self, greatest: int = LAST) -> None:
+        self._greatest = greatest
         self._last = 0
         self._shown: frozenset[int] = frozenset()
         self._ids: OrderedDict[int, str] = OrderedDict()
 
-    def begin(self) -> None:
-        """Forget all numbers given: those shown at a new connection are of no command."""
+    def begin(self, accepted: int | None) -> None:
+        """Forget all numbers given: those shown at a new connection are of no command.
+
+        The first ones go on from the last that the PLC accepted, so that a later start of the plant can tell
+        how many there were.
+        """
         self._ids.clear()
+        self._last = self._last or accepted or 0
 
     def see(self, shown: Iterable[int]) -> None:
         """Take the numbers that the PLC shows now; no new command gets one of them."""
@@ -41,4 +47,4 @@ class Numbers:
         return None if number is None else self._ids.get(number)
 
     def _after(self) -> int:
-        return self._last % LAST + 1
+        return self._last % self._greatest + 1

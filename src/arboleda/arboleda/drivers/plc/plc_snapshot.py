@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from arboleda.drivers.port import DriverError
 from arboleda.model.facts import Facts, Value
-from arboleda.model.messages import Report
+from arboleda.model.messages import Receipt, Report
 from arboleda.model.plant_model import MotionState
 
 from .numbers import Numbers
@@ -18,6 +18,7 @@ STATES = {
     "latched": MotionState.STOP_LATCHED,
 }
 UNNAMED = "no reason given"
+PLC_EPOCH = 0  # of the numbers that a PLC shows: they go on over all starts of the plant
 
 
 class UnreadableValue(DriverError):
@@ -70,4 +71,5 @@ def report(
         answered=id(question.number) if answered and question is not None else None,
         answer=question.answer if answered and question is not None else None,
         facts=shown.facts,
+        receipt=None if shown.accepted is None else Receipt(PLC_EPOCH, shown.accepted, shown.done or None),
     )

@@ -9,6 +9,8 @@ from typing import Any
 from arboleda.model.commands import Command
 from arboleda.model.messages import Report
 
+from .health import Call, CallAnswer, HealthReading
+
 
 class Status(Enum):
     """End of a goal, as the action server gives it."""
@@ -54,6 +56,22 @@ class GoalResult:
 
 
 @dataclass(frozen=True, kw_only=True)
+class ListedGoal:
+    """Goal in a server's list: its id, 16 bytes, the time of its acceptance, (s, ns), and its end or None."""
+
+    uuid: bytes
+    stamp: tuple[int, int]
+    status: Status | None
+
+
+@dataclass(frozen=True, kw_only=True)
+class GoalList:
+    """Event: the goals that the server still knows, whoever sent them."""
+
+    goals: tuple[ListedGoal, ...]
+
+
+@dataclass(frozen=True, kw_only=True)
 class CancelAnswer:
     """Event: the server has answered the request to cancel all of its goals."""
 
@@ -69,15 +87,23 @@ class CommandRequest:
 
 @dataclass(frozen=True, kw_only=True)
 class SendGoal:
-    """Message: send the server a goal; `goal` is of the action's own kind."""
+    """Message: send the server a goal by the id `uuid`, of 16 bytes; `goal` is of the action's own kind."""
 
     id: str
+    uuid: bytes
     goal: Any
 
 
 @dataclass(frozen=True, kw_only=True)
 class CancelAll:
     """Message: cancel all goals of the server, whoever sent them."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class MakeCall:
+    """Message: make a call that leads the device out of a stop."""
+
+    call: Call
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -94,5 +120,16 @@ class UnusableMessage:
     why: str
 
 
-Event = ServersFound | Measurement | GoalAnswer | GoalResult | CancelAnswer | CommandRequest | UnusableMessage
-Message = SendGoal | CancelAll | CommandNotSent | Report
+Event = (
+    ServersFound
+    | Measurement
+    | GoalAnswer
+    | GoalResult
+    | GoalList
+    | CancelAnswer
+    | CommandRequest
+    | HealthReading
+    | CallAnswer
+    | UnusableMessage
+)
+Message = SendGoal | CancelAll | MakeCall | CommandNotSent | Report

@@ -38,9 +38,13 @@ class Goal:
     def what(self) -> Any:
         return self.parts[self.part]
 
+    @property
+    def is_at_last_part(self) -> bool:
+        return self.part + 1 == len(self.parts)
+
     def advance(self, now: float) -> bool:
         """Begin the next part; False if there is none."""
-        if self.part + 1 == len(self.parts):
+        if self.is_at_last_part:
             return False
         self.part, self.sent_at, self.accepted, self.succeeded_at = self.part + 1, now, False, None
         return True

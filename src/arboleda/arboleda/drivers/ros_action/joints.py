@@ -32,14 +32,14 @@ class Joints:
         self._topic = topic
         self._stamp: tuple[int, int] | None = None
 
-    def see(self, now: float, seen: Measurement) -> bool:
-        if not isinstance(seen, JointStateEvent) or len(seen.names) != len(seen.positions):
+    def see(self, now: float, event: Measurement) -> bool:
+        if not isinstance(event, JointStateEvent) or len(event.names) != len(event.positions):
             return False
-        at = dict(zip(seen.names, seen.positions, strict=True))
+        at = dict(zip(event.names, event.positions, strict=True))
         q = tuple(at.get(name, math.nan) for name in self.names)
-        if seen.stamp == self._stamp or not all(abs(value) < FAR for value in q):
+        if event.stamp == self._stamp or not all(abs(value) < FAR for value in q):
             return False
-        self.q, self._stamp, self.heard_at = q, seen.stamp, now
+        self.q, self._stamp, self.heard_at = q, event.stamp, now
         self.rest.look(now, q)
         return True
 

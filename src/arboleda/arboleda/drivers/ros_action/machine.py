@@ -18,7 +18,9 @@ from .events import (
     CommandRequest,
     Event,
     GoalAnswer,
+    GoalList,
     GoalResult,
+    MakeCall,
     Measurement,
     Message,
     SendGoal,
@@ -27,6 +29,8 @@ from .events import (
     UnusableMessage,
 )
 from .goal import Goal
+from .goal_history import GoalHistory
+from .health import Call, CallAnswer, Health, HealthReading, HealthWatch
 from .mover import Mover, NoGoal
 
 ANSWER_S = 2.0  # a server answers a goal or a cancel in milliseconds
@@ -39,8 +43,10 @@ LONGEST_WORD = 120
 class Machine:
     """State machine of one device behind one action; `step` takes events and returns actions and reports."""
 
-    def __init__(self, mover: Mover, action: str) -> None:
+    def __init__(self, mover: Mover, action: str, health: Health | None = None) -> None:
         self._mover, self._action = mover, action
+        self._health = HealthWatch(health)
+        self._history = GoalHistory(mover.name)
         self._out: list[Message] = []
         self._servers: tuple[int, ...] = ()
         self._server: int | None = None  # the last one that was there alone
@@ -53,7 +59,7 @@ class Machine:
         self._stop_id = ""
         self._latched = False
         self._ids: dict[str, str] = {}
-        self._seen = False  # True once there was a measurement
+        self._has_measurement = False  # True once there was a measurement
         self._news = False
         self._reported_at = -math.inf
 
@@ -82,6 +88,12 @@ class Machine:
             self._hear_answer(now, event)
         elif isinstance(event, GoalResult):
             self._hear_end(now, event)
+        elif isinstance(event, GoalList):
+            self._history.list(event.goals)
+        elif isinstance(event, HealthReading):
+            self._see_health(now, event)
+        elif isinstance(event, CallAnswer):
+            self._hear_call(now, event)
         elif isinstance(event, UnusableMessage):
             self._lose(now, event.why)
         else:
@@ -91,6 +103,8 @@ class Machine:
         goal = self._goal
         if self._cancel_at is not None and now >= self._cancel_at + ANSWER_S:
             self._cancel(now)
+        if self._homing is not None and not self._health.is_well and (why := self._health.overdue(now)):
+            self._end_homing(failure=why)
         if goal is None:
             return
         if not goal.accepted and not goal.stopped and now >= goal.sent_at + ANSWER_S:
@@ -130,6 +144,7 @@ class Machine:
         elif there and goal.advance(now):
             self._send(goal)
         else:
+            self._history.end()
             self._end(done=goal.id)
 
     # The link.
@@ -140,7 +155,7 @@ class Machine:
             return f"there is no action server {self._action}"
         if now >= self._alone_at + GONE_S:
             return f"there are {len(self._servers)} action servers {self._action}; one is needed"
-        return self._mover.missing(now)
+        return self._mover.missing(now) or self._health.missing
 
     def _find(self, now: float, servers: tuple[int, ...]) -> None:
         self._servers = servers
@@ -165,18 +180,54 @@ class Machine:
 
     def _forget(self) -> None:
         self._goal = self._homing = self._cancel_at = None
+        self._history.forget()
         self._stop_id, self._ids = "", {}
         self._mover.settle(None)
 
-    def _see(self, now: float, seen: Measurement) -> None:
-        if not self._mover.see(now, seen):
+    def _see(self, now: float, measurement: Measurement) -> None:
+        if not self._mover.see(now, measurement):
             return
-        self._news, self._seen = self._news or not self._seen, True
-        if self._homing is not None:
-            self._tell(done=self._homing)
-            self._homing = None
+        self._news, self._has_measurement = self._news or not self._has_measurement, True
+        if self._homing is not None and self._health.is_well:
+            self._end_homing()
 
-    # What it is told.
+    # Its health.
+
+    def _see_health(self, now: float, reading: HealthReading) -> None:
+        if not self._health.see(reading.value):
+            return
+        self._news = True
+        if self._goal is not None and not self._health.is_well:
+            self._drop(failed=self._goal.id, failure=self._health.word)
+            self._cancel(now)
+
+    def _hear_call(self, now: float, answer: CallAnswer) -> None:
+        if self._homing is None:
+            return
+        following = self._health.answered(now, answer)
+        if isinstance(following, Call):
+            self._out.append(MakeCall(call=following))
+        elif following is not None:
+            self._end_homing(failure=following)
+
+    def _begin_homing(self, now: float, id: str) -> None:
+        """Begin homing, which moves nothing: the device has to be heard, and to be out of a stop."""
+        if not self._health.is_well and not self._health.can_clear:
+            self._reject(id, self._health.word)
+            return
+        self._homing = id
+        self._tell(accepted=id)
+        if not self._health.is_well:
+            self._out.append(MakeCall(call=self._health.clear(now)))
+
+    def _end_homing(self, *, failure: str = "") -> None:
+        id, self._homing = self._homing or "", None
+        if failure:
+            self._tell(failed=id, failure=plain(failure, LONGEST_WORD))
+        else:
+            self._tell(done=id)
+
+    # Commands.
 
     def _ask(self, now: float, command: Command) -> None:
         why = self._missing(now)
@@ -187,9 +238,9 @@ class Machine:
         elif self._homing is not None or (self._goal is not None and not self._mover.replaces):
             self._reject(command.id, "busy")
         elif isinstance(command, Home):
-            # Its sensors know its position; all that has to be proved is that they are heard.
-            self._homing = command.id
-            self._tell(accepted=command.id)
+            self._begin_homing(now, command.id)
+        elif not self._health.is_well:
+            self._reject(command.id, self._health.word)
         else:
             self._begin(now, command)
 
@@ -203,10 +254,11 @@ class Machine:
             self._drop(failed=self._goal.id, failure="replaced_by_the_next")
         over_at = math.inf if command.at_most_s is None else now + command.at_most_s + SPARE_S
         self._goal = Goal(id=command.id, parts=parts, sent_at=now, over_at=over_at)
+        self._history.begin(command)
         self._send(self._goal)
 
     def _send(self, goal: Goal) -> None:
-        self._out.append(SendGoal(id=goal.key, goal=goal.what))
+        self._out.append(SendGoal(id=goal.key, uuid=self._history.send(goal), goal=goal.what))
         self._news = True
 
     def _ask_stop(self, now: float, command: Stop) -> None:
@@ -226,10 +278,11 @@ class Machine:
         self._cancel_at, self._news = now, True
         self._out.append(CancelAll())
 
-    # What the server says.
+    # Answers of the server.
 
     def _hear_answer(self, now: float, answer: GoalAnswer) -> None:
         goal = self._goal
+        self._history.answer(answer.id, accepted=answer.accepted)
         if goal is None or answer.id != goal.key:
             if answer.accepted:  # nobody waits for it any more
                 self._cancel(now)
@@ -262,7 +315,7 @@ class Machine:
         if answer.refused and self._goal is not None:
             self._reject(self._stop_id, "cancel_refused")
             self._stop_id = ""
-            return  # asked again once ANSWER_S have gone by
+            return  # repeated after ANSWER_S
         self._cancel_at, self._cancelled_at = None, now
         self._tell(accepted=self._stop_id)
         self._stop_id = ""
@@ -289,16 +342,22 @@ class Machine:
     def _state(self, now: float) -> MotionState:
         if self._goal is not None or self._cancel_at is not None or not self._mover.rests(now):
             return MotionState.MOVING
-        return MotionState.STOP_LATCHED if self._latched else MotionState.STOPPED
+        if self._latched:
+            return MotionState.STOP_LATCHED
+        if not self._health.is_well:
+            return MotionState.FAULT if self._homing is None else MotionState.NOT_HOMED
+        return MotionState.STOPPED
 
     def _report(self, now: float) -> Report:
         self._news, self._reported_at, self._why = False, now, ""
-        said = Report(
+        report = Report(
             at=now,
             robot=self._mover.name,
             boot_id=self._server,
             state=self._state(now),
             homed=self._homing is None,
-            **self._mover.shows(busy=self._goal is not None),
+            receipt=self._history.receipt,
+            tokens=self._history.tokens,
+            **self._mover.shows(busy=self._goal is not None) | self._health.shows,
         )
-        return said.again(now, **self._ids)
+        return report.again(now, **self._ids)

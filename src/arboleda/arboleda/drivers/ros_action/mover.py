@@ -19,7 +19,7 @@ class Mover(Protocol):
     name: str
     replaces: bool  # True: a new command replaces an open one; False: it is refused
 
-    def see(self, now: float, seen: Measurement) -> bool:
+    def see(self, now: float, measurement: Measurement) -> bool:
         """Take a measurement; True if it is news of this device."""
 
     def missing(self, now: float) -> str:
@@ -43,7 +43,7 @@ class Mover(Protocol):
     def objection(self, goal: Any) -> str:
         """The fault found at rest after a result that reports success, in a word; "" for none.
 
-        What work leads to needs none: the plant compares the position and the facts that are reported.
+        Work needs none: the plant compares the reported position and facts.
         """
 
     def settle(self, goal: Any) -> None:

@@ -10,7 +10,7 @@ from arboleda.model.plant_model import Robot
 
 from .orders import as_the_standard_writes
 from .settings import Settings
-from .state import Said
+from .state import Body
 
 WHERE = {"NODE": "at a node", "EDGE": "on an edge", "INSTANT": "at once"}
 
@@ -43,9 +43,9 @@ class Factsheet:
     only_digits: bool
 
 
-def read(said: Said) -> Factsheet:
+def read(body: Body) -> Factsheet:
     """The factsheet in a message that fits the schema of its version."""
-    limits, features = said["protocolLimits"], said["protocolFeatures"]
+    limits, features = body["protocolLimits"], body["protocolFeatures"]
     strings = limits.get("maxStringLens") or limits.get("maximumStringLengths") or {}
     arrays = limits.get("maxArrayLens") or limits.get("maximumArrayLengths") or {}
     edges = arrays.get("order.edges")
@@ -59,7 +59,7 @@ def read(said: Said) -> Factsheet:
     )
 
 
-def _ability(action: Said) -> Ability:
+def _ability(action: Body) -> Ability:
     parameters = {each["key"]: each.get("isOptional", False) for each in action.get("actionParameters", ())}
     return Ability(scopes=frozenset(action["actionScopes"]), parameters=parameters)
 

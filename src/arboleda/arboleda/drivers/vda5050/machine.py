@@ -27,7 +27,7 @@ from .link import Link
 from .map import GridMap
 from .orders import Action, Order, action_of, instant
 from .settings import Settings
-from .state import ENDS_ORDER, FACTS, Said, VehicleState, read
+from .state import ENDS_ORDER, FACTS, Body, VehicleState, read
 
 BEAT_S = 0.3
 AGAIN_S = 2.0  # after this time an unanswered stop or request is sent again
@@ -81,8 +81,8 @@ class Vehicle:
         self._stops_at = -math.inf  # time of the last stop
         self._count = 0  # of actions
         self._most_nodes: int | None = None  # of an order
-        self._has_sheet, self._asked_for_sheet, self._ask_at = False, 0, -math.inf
-        self._said: dict[str, dict[str, Any]] = {name: {} for name in self._devices}
+        self._has_sheet, self._sheet_requests, self._ask_at = False, 0, -math.inf
+        self._answers: dict[str, dict[str, Any]] = {name: {} for name in self._devices}
         self.next_deadline = 0.0
 
     def step(self, now: float) -> list[Message]:
@@ -99,14 +99,14 @@ class Vehicle:
             self._forget()
         return list(self._reports(now))
 
-    def connection(self, now: float, said: Said) -> list[Message]:
+    def connection(self, now: float, body: Body) -> list[Message]:
         """Take a message of the topic `connection`."""
         was_online = self._link.is_online
-        self._link.connection(now, said["connectionState"])
+        self._link.connection(now, body["connectionState"])
         if not self._link.is_online:
             self._forget()
         elif not was_online:
-            self._ask_at, self._asked_for_sheet = now, 0
+            self._ask_at, self._sheet_requests = now, 0
         return [*self._ask(now), *self._reports(now)]
 
     def _ask(self, now: float) -> list[Message]:
@@ -115,8 +115,8 @@ class Vehicle:
             return []
         self._ask_at = now + AGAIN_S
         missing = [] if self._state is not None else ["stateRequest"]
-        if not self._has_sheet and self._asked_for_sheet < FACTSHEET_TRIES:
-            self._asked_for_sheet += 1
+        if not self._has_sheet and self._sheet_requests < FACTSHEET_TRIES:
+            self._sheet_requests += 1
             missing.append("factsheetRequest")
         return [*self._request(*missing)]
 
@@ -125,9 +125,9 @@ class Vehicle:
         if len(self._link.neighbours) < NEIGHBOURS:
             self._link.neighbours.add(vehicle)
 
-    def state(self, now: float, said: Said) -> list[Message]:
+    def state(self, now: float, body: Body) -> list[Message]:
         """Take a state that fits the schema; one not newer than the last is ignored."""
-        state = read(said)
+        state = read(body)
         if not self._link.takes(now, state):
             return []
         if self._link.has_booted:
@@ -148,9 +148,9 @@ class Vehicle:
         self._forget()
         return [*self._reports(now)]
 
-    def factsheet(self, now: float, said: Said) -> list[Message]:
+    def factsheet(self, now: float, body: Body) -> list[Message]:
         """Take the vehicle's factsheet: limit orders to its lengths, and name what it lacks."""
-        sheet, self._has_sheet = factsheet.read(said), True
+        sheet, self._has_sheet = factsheet.read(body), True
         self._most_nodes = None if sheet.most_nodes is None else max(2, sheet.most_nodes)
         wanted = factsheet.wanted(self._devices.values(), self._settings)
         ids = (f"{OURS}{self._mark}-{LONGEST_COMMAND}", *self._map.edge_ids)
@@ -159,7 +159,7 @@ class Vehicle:
             LogLine(text=f"{name} by its factsheet: {each}") for each in factsheet.lacks(sheet, wanted, ids)
         ]
 
-    # --- what it is told ---
+    # --- commands ---
 
     def command(self, now: float, command: Command) -> list[Message]:
         """The messages that carry out a command; raises NotSent if that is impossible."""
@@ -181,9 +181,9 @@ class Vehicle:
     def _at(self) -> str:
         return self._state.node if self._state is not None else ""
 
-    def _place(self, told: VerbCall) -> str:
+    def _place(self, call: VerbCall) -> str:
         if not self._at:
-            raise NotSent(f"the vehicle says of no node that it stands there, so it cannot {told.verb} there")
+            raise NotSent(f"the vehicle says of no node that it stands there, so it cannot {call.verb} there")
         return self._at
 
     def _begin(self, command: Command, nodes: tuple[str, ...], verb: VerbCall | None = None) -> list[Message]:
@@ -254,7 +254,7 @@ class Vehicle:
             self._order = None
         self._instants = {id: each for id, each in self._instants.items() if each is not command}
 
-    # --- what it says ---
+    # --- states of the vehicle ---
 
     def _judge_order(self, now: float, state: VehicleState) -> list[Message]:
         order = self._order
@@ -371,13 +371,13 @@ class Vehicle:
     def _trouble_with(self, action: str, state: VehicleState) -> str | None:
         return next((each.word for each in state.troubles if action in dict(each.about).values()), None)
 
-    # --- what the plant hears ---
+    # --- reports for the plant ---
 
     def _say(self, command: Command, what: str, word: Value | None = None) -> None:
-        said = self._said[command.robot]
-        said[what] = command.id
+        answers = self._answers[command.robot]
+        answers[what] = command.id
         if word is not None:
-            said[WORDS[what]] = plain(word, 100) if isinstance(word, str) else word
+            answers[WORDS[what]] = plain(word, 100) if isinstance(word, str) else word
 
     def _reports(self, now: float) -> Iterator[Report]:
         self.next_deadline = now + BEAT_S
@@ -398,7 +398,7 @@ class Vehicle:
             node=self._map.number(state.node) if mobile else None,
             homed=state.homed if mobile else None,
             facts=_facts(device, state),
-            **self._said[device.name],
+            **self._answers[device.name],
         )
 
     def _motion(self, state: VehicleState) -> MotionState | None:
@@ -425,8 +425,8 @@ class Vehicle:
         """Forget open work; an order that the vehicle still has is cancelled when it is back."""
         self._state, self._order, self._stops, self._stops_at = None, None, {}, -math.inf
         self._instants.clear()
-        for said in self._said.values():
-            said.clear()
+        for answers in self._answers.values():
+            answers.clear()
 
 
 WORDS = {"rejected": "refusal", "failed": "failure", "answered": "answer"}

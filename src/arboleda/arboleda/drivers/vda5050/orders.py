@@ -111,8 +111,8 @@ def edge_id(start: str, end: str) -> str:
 
 def action_of(id: str, verb: str, values: Facts, *, blocking: str) -> Action:
     """The action of a verb: `startCharging` for `start_charging`, its values as parameters so named."""
-    given = tuple((as_the_standard_writes(name), value) for name, value in values)
-    return Action(id=id, type=as_the_standard_writes(verb), values=given, blocking=blocking)
+    parameters = tuple((as_the_standard_writes(name), value) for name, value in values)
+    return Action(id=id, type=as_the_standard_writes(verb), values=parameters, blocking=blocking)
 
 
 def as_the_standard_writes(name: str) -> str:

@@ -8,7 +8,7 @@ from typing import Any
 
 from arboleda.model.facts import Value
 
-Said = Mapping[str, Any]
+Body = Mapping[str, Any]
 """A message that fits the schema of its topic."""
 BROKEN = frozenset({"FATAL"})  # levels of errors with which a vehicle takes no order
 ENDS_ORDER = frozenset({"FATAL", "CRITICAL"})
@@ -81,45 +81,45 @@ FACTS: dict[str, Callable[[VehicleState], Value | None]] = {
 """The facts that a declared kind may have."""
 
 
-def read(said: Said) -> VehicleState:
+def read(body: Body) -> VehicleState:
     """The state in a message that fits the schema of its version."""
-    power = said.get("batteryState") or said.get("powerSupply") or {}
-    position = said.get("agvPosition") or said.get("mobileRobotPosition")
-    safety, loads = said["safetyState"], said.get("loads")
-    actions = [*said["actionStates"], *said.get("instantActionStates", ())]
+    power = body.get("batteryState") or body.get("powerSupply") or {}
+    position = body.get("agvPosition") or body.get("mobileRobotPosition")
+    safety, loads = body["safetyState"], body.get("loads")
+    actions = [*body["actionStates"], *body.get("instantActionStates", ())]
     return VehicleState(
-        header=said["headerId"],
-        timestamp=said["timestamp"],
-        order=said["orderId"],
-        update=said["orderUpdateId"],
-        node=said["lastNodeId"],
-        sequence=said["lastNodeSequenceId"],
-        ahead=len(said["nodeStates"]) + len(said["edgeStates"]),
-        driving=said["driving"],
-        paused=said.get("paused"),
-        homed=_homed(position, said["lastNodeId"]),
-        mode=said["operatingMode"],
+        header=body["headerId"],
+        timestamp=body["timestamp"],
+        order=body["orderId"],
+        update=body["orderUpdateId"],
+        node=body["lastNodeId"],
+        sequence=body["lastNodeSequenceId"],
+        ahead=len(body["nodeStates"]) + len(body["edgeStates"]),
+        driving=body["driving"],
+        paused=body.get("paused"),
+        homed=_homed(position, body["lastNodeId"]),
+        mode=body["operatingMode"],
         stop=safety.get("eStop") or safety.get("activeEmergencyStop", "NONE"),
         actions={each["actionId"]: _action(each) for each in actions},
-        troubles=tuple(map(_trouble, said["errors"])),
+        troubles=tuple(map(_trouble, body["errors"])),
         loaded=None if loads is None else len(loads) > 0,
         charging=power.get("charging", False),
         battery=float(power.get("batteryCharge", power.get("stateOfCharge", 0.0))),
     )
 
 
-def _homed(position: Said | None, node: str) -> bool:
+def _homed(position: Body | None, node: str) -> bool:
     if position is None:
         return node != ""
     return bool(position.get("positionInitialized", position.get("localized", False)))
 
 
-def _action(said: Said) -> ActionState:
+def _action(body: Body) -> ActionState:
     return ActionState(
-        status=said["actionStatus"], result=said.get("resultDescription") or said.get("actionResult")
+        status=body["actionStatus"], result=body.get("resultDescription") or body.get("actionResult")
     )
 
 
-def _trouble(said: Said) -> Trouble:
-    about = tuple((each["referenceKey"], each["referenceValue"]) for each in said.get("errorReferences", ()))
-    return Trouble(word=said["errorType"], level=said["errorLevel"], about=about)
+def _trouble(body: Body) -> Trouble:
+    about = tuple((each["referenceKey"], each["referenceValue"]) for each in body.get("errorReferences", ()))
+    return Trouble(word=body["errorType"], level=body["errorLevel"], about=about)

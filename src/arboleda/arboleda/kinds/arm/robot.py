@@ -21,7 +21,7 @@ class Arm(Jointed):
 
     @property
     def fact_names(self) -> tuple[str, ...]:
-        return ("effector",)
+        return ("effector", *super().fact_names)
 
     @property
     def twin_name(self) -> str:

@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from operator import attrgetter
 from typing import ClassVar
 
 from arboleda.model.commands import Position
 from arboleda.model.counting import counted
 from arboleda.model.messages import Report
-from arboleda.model.plant_model import Robot
+from arboleda.model.plant_model import JointStates, Robot
 
 from .commands import MoveJoints
 from .joint import Joint
@@ -42,11 +43,14 @@ class Jointed(Robot):
     unsaid: ClassVar[tuple[str, ...]] = ("node", "effector", "piece")  # what no report of it has
 
     @property
-    def joint_names(self) -> tuple[str, ...]:
-        return tuple(f"{self.twin_name}_{joint.name}" for joint in self.joints)
+    def twin_name(self) -> str:
+        """The name under which its joints are published."""
+        return self.name
 
-    def measured(self, report: Report) -> tuple[float, ...] | None:
-        return report.q
+    @cached_property
+    def joint_states(self) -> JointStates:
+        names = tuple(f"{self.twin_name}_{joint.name}" for joint in self.joints)
+        return JointStates(twin=self.twin_name, joints=names, measured=attrgetter("q"))
 
     @property
     def units(self) -> list[str]:

@@ -9,7 +9,7 @@ from typing import ClassVar
 
 from arboleda.model.commands import Position
 from arboleda.model.messages import Report
-from arboleda.model.plant_model import Robot
+from arboleda.model.plant_model import JointStates, Robot
 
 from .commands import FollowPath
 from .grid import Grid
@@ -37,11 +37,12 @@ class Mobile(Robot):
         at, speeds = self.grid.origin.on_floor, [self.speed, self.speed]
         return {"at": at, "speeds": speeds, "reference": nodes[0], "nodes": nodes}
 
-    @property
-    def joint_names(self) -> tuple[str, ...]:
-        return (f"{self.name}_x_joint", f"{self.name}_y_joint")
+    @cached_property
+    def joint_states(self) -> JointStates:
+        names = (f"{self.name}_x_joint", f"{self.name}_y_joint")
+        return JointStates(twin=self.name, joints=names, measured=self._on_floor)
 
-    def measured(self, report: Report) -> tuple[float, ...] | None:
+    def _on_floor(self, report: Report) -> tuple[float, ...] | None:
         return None if report.node is None else self.grid.position(report.node)
 
     def at_rate(self, rate: float) -> Mobile:

@@ -67,8 +67,8 @@ def _fault(trouble: Trouble, others: Iterable[Trouble], board: str) -> Fault:
         lasting = max(0.0, min(each.ends for each in together) - lost_at - RECONNECT_S)
         return Fault(kind="broker_restart", target="broker", at=lost_at, seconds=lasting)
     if trouble.kind == BOOT or trouble.cut:
-        told_s = (trouble.lost_at or trouble.ends) - at if trouble.cut else LATE_S
-        return Fault(kind="brown_out", target=board, at=at, seconds=seconds, amount=told_s)
+        lost_s = (trouble.lost_at or trouble.ends) - at if trouble.cut else LATE_S
+        return Fault(kind="brown_out", target=board, at=at, seconds=seconds, amount=lost_s)
     return Fault(kind="mute", target=board, at=at, seconds=seconds)
 
 
@@ -88,7 +88,7 @@ def _while_switching(kind: str) -> Callable[[Evidence, str], Iterator[Fault]]:
     return make
 
 
-def _while_told(kind: str, *, word: bool = False) -> Callable[[Evidence, str], Iterator[Fault]]:
+def _while_ordered(kind: str, *, word: bool = False) -> Callable[[Evidence, str], Iterator[Fault]]:
     """Maker of a fault from before the robot's last command on, with the word of the evidence if wanted."""
 
     def make(evidence: Evidence, board: str) -> Iterator[Fault]:
@@ -129,9 +129,9 @@ OF_CAUSE: dict[str, Callable[[Evidence, str], Iterator[Fault]]] = {
     "part_lost": _just_before("lost_part"),
     "opened": _just_before("opened_effector", "opened_device"),
     "unheard": _unheard,
-    "switch": _either(_while_switching("stuck_effector"), _while_told("never_ends")),
-    "unended": _while_told("never_ends"),
-    "off_target": _while_told("only_says_done"),
-    "gave_up": _while_told("gives_up", word=True),
-    "refused": _while_told("refuses", word=True),
+    "switch": _either(_while_switching("stuck_effector"), _while_ordered("never_ends")),
+    "unended": _while_ordered("never_ends"),
+    "off_target": _while_ordered("only_says_done"),
+    "gave_up": _while_ordered("gives_up", word=True),
+    "refused": _while_ordered("refuses", word=True),
 }

@@ -39,7 +39,7 @@ class Case:
 
 
 @dataclass
-class _Collected:
+class _CaseEvents:
     """Acts, causes and stalls found so far; times of the plant's clock."""
 
     model: PlantModel
@@ -86,7 +86,7 @@ class _Making:
         self._plant = plant_of(self._beginning, model_of(self._beginning), versions_of(record))
         model = self._plant.model
         self._task = task
-        self._found = _Collected(model.on_boards(*ELSEWHERE))
+        self._found = _CaseEvents(model.on_boards(*ELSEWHERE))
         self._troubles = Troubles(supervised(model), model.timing.stale_after_s)
         self._from: tuple[float, list[Act]] | None = (
             None  # the beginning of the task, and the tasks at work then
@@ -148,7 +148,7 @@ class _Making:
                 self._found.causes += faults_behind(incident, cause, self._found.model)
 
     def _cut(self) -> Case:
-        """The part of the record that was asked for, with times from its own beginning."""
+        """The wanted part of the record, with times from its own beginning."""
         found = self._found
         began, ends = self._beginning.now, self._now
         acts = found.acts

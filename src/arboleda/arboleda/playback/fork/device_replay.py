@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 
 from arboleda.model.messages import Event, OperatorRequest, RestartRequest, Revision, Shutdown, TaskRequest
 from arboleda.model.plant_model import Evidence, Link
@@ -38,17 +38,21 @@ def befall(world: World, troubles: Iterable[Trouble]) -> None:
                 world.at(_off_at(trouble), lambda _: _restart_bridge(world))
             restarted_at = trouble.at
         elif trouble.kind == ALARM:
-            world.at(trouble.at, lambda _, name=robot.mqtt: _alarm(world, name))
-            _later(world, trouble.ends, lambda _, name=robot.mqtt: _repair(world, name))
+            world.at(trouble.at, _at_board(_alarm, world, robot.mqtt))
+            _later(world, trouble.ends, _at_board(_repair, world, robot.mqtt))
         elif trouble.kind == BOOT and robot.evidence is Evidence.IDS and trouble.at >= world.now:
             _boot(world, robot.mqtt, trouble)
         else:
             _silence(world, robot.mqtt, trouble)
 
 
-def _later(world: World, at: float, call: object) -> None:
+def _later(world: World, at: float, call: Callable[[None], None]) -> None:
     if at < math.inf:
-        world.at(at, call)  # type: ignore[arg-type]
+        world.at(at, call)
+
+
+def _at_board(act: Callable[[World, str], None], world: World, board: str) -> Callable[[None], None]:
+    return lambda _: act(world, board)
 
 
 def _silence(world: World, board: str, trouble: Trouble) -> None:

@@ -25,13 +25,13 @@ class PlantEvent:
     """Something that a plant did at a time of its clock.
 
     `stream` names the row that it stands in: a robot or a task; `cell` is that of a task. `what` is compared,
-    `said` is for people.
+    `text` is for people.
     """
 
     at: float
     stream: str
     what: str
-    said: str
+    text: str
     cell: str | None = None
 
 
@@ -67,14 +67,14 @@ def happenings(at: float, messages: Iterable[Mapping[str, Any]], words: Words) -
             why = words(row.get("sentence"))
             sentence = f"{row['state']} {row['text']} (id {row['task']})" + (f": {why}" if why else "")
             what = f"{row['state']} {row.get('reason', '')}"
-            yield PlantEvent(at=at, stream=f"{TASK}{row['task']}", what=what, said=sentence, cell=row["cell"])
+            yield PlantEvent(at=at, stream=f"{TASK}{row['task']}", what=what, text=sentence, cell=row["cell"])
         elif row[TYPE] == "OperatorAnswer":
             why = words(row.get("refusal"))
             arguments = tuple((name, value) for name, value in row.get("arguments", ()))
             request = f"{row['verb']} {as_text(Verb(row['verb']), row['scope'], arguments)}"
             sentence = request + (f" is refused: {why}" if why else " is done")
             what = f"refused {(row.get('refusal') or {}).get('key')}"
-            yield PlantEvent(at=at, stream=request, what=what, said=sentence)
+            yield PlantEvent(at=at, stream=request, what=what, text=sentence)
         elif "robot" in row and "id" in row:
             yield _command(at, row)
 
@@ -84,7 +84,7 @@ def _command(at: float, row: Mapping[str, Any]) -> PlantEvent:
     shown = " ".join(f"{key}={_short(value)}" for key, value in values.items())
     what = json.dumps([row[TYPE], values], sort_keys=True)
     sentence = f"{row['robot']} {row[TYPE]} {shown}".strip()
-    return PlantEvent(at=at, stream=row["robot"], what=what, said=sentence)
+    return PlantEvent(at=at, stream=row["robot"], what=what, text=sentence)
 
 
 def _short(value: Any) -> str:

@@ -62,7 +62,7 @@ class ForkResult:
     at: float = 0.0  # on the plant's clock
     unix_ns: int = 0
     steps: int = 0  # executed before it
-    early: bool = False  # the changed plant did otherwise before the time that was asked for
+    early: bool = False  # the changed plant differed before the wanted time
     difference: ReplayedStep | None = None
     until: float = 0.0  # the last step of the record
     recorded: list[PlantEvent] = field(default_factory=list)
@@ -98,13 +98,13 @@ def forked(
     inputs: list[tuple[float, tuple[Event, ...]]] = []
     if found.early and first is not None:
         found.fork += happenings(first.now, _plain(others), words)
-        found.recorded += happenings(first.now, first.said["messages"], words)
+        found.recorded += happenings(first.now, first.result["messages"], words)
     elif first is not None:
         rest = chain([first], rest)
     for step in _until(rest, request.until_ns):
         troubles.take(step.events)
         inputs.append((step.now, step.events))
-        found.recorded += happenings(step.now, step.said["messages"], words)
+        found.recorded += happenings(step.now, step.result["messages"], words)
         found.until = step.now
     found.troubles = [each for each in troubles.of(found.until) if each.ends > found.at]
     found.world = _go_on(plant, found, inputs, request, words)
@@ -136,13 +136,13 @@ def _execute(
         troubles.take(step.events)
         messages = plant.step(step.now, step.events)
         if request.changed:
-            if _leaves(_plain(messages)) != _leaves(step.said["messages"]):
+            if _leaves(_plain(messages)) != _leaves(step.result["messages"]):
                 found.early = True
                 return [step, *messages]
             continue
         result = outcome(messages, state_of(plant, found.steps))
         if hash_of(result) != step.hash:
-            found.difference = ReplayedStep(found.steps, step, first_difference(step.said, result))
+            found.difference = ReplayedStep(found.steps, step, first_difference(step.result, result))
             return [step]
     return [None]
 

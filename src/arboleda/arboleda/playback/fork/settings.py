@@ -32,7 +32,7 @@ def _value(setting: str, text: str) -> yaml.Node:
     return node
 
 
-def _set(node: yaml.Node, keys: Sequence[str], value: yaml.Node, setting: str) -> None:
+def _set(node: yaml.Node | None, keys: Sequence[str], value: yaml.Node, setting: str) -> None:
     """Set the value that the keys lead to from here; a missing mapping is made."""
     first, *rest = keys
     if isinstance(node, yaml.SequenceNode) and first.isdecimal() and int(first) < len(node.value):

@@ -22,7 +22,7 @@ def case_of(incident: Incident, cause: Cause, model: PlantModel, plant_file: str
     lines = [f"    sim.run({BEGIN_S:g})", f'    task = sim.submit("{_text(incident)}")']
     lines += _faults(incident, cause, model)
     end = incident.ended_at or math.inf
-    acts = [(at - incident.asked_at, word) for at, word in incident.acts if incident.asked_at <= at <= end]
+    acts = [(at - incident.began_at, word) for at, word in incident.acts if incident.began_at <= at <= end]
     passed = 0.0
     for after, word in acts:
         verb, _, scope = word.partition(" ")
@@ -44,9 +44,9 @@ def _faults(incident: Incident, cause: Cause, model: PlantModel) -> Iterator[str
     """The faults of the cell's devices, and those that are the cause of the failure, as lines of the test."""
     end = incident.failed_at or math.inf
     mine = [each for each in incident.troubles if _concerns(incident, each.robot, model)]
-    began = [each for each in mine if incident.asked_at <= each.at <= end]
+    began = [each for each in mine if incident.began_at <= each.at <= end]
     for fault in _once(faults_of(began, model), faults_behind(incident, cause, model)):
-        yield _line(fault, max(0.0, fault.at - incident.asked_at))
+        yield _line(fault, max(0.0, fault.at - incident.began_at))
 
 
 def _concerns(incident: Incident, robot: str, model: PlantModel) -> bool:

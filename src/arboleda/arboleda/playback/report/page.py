@@ -19,6 +19,7 @@ from arboleda.recorder.cause import Cause
 from arboleda.recorder.incident import Incident
 from arboleda.web.languages import FIRST, LANGUAGES, texts
 
+from .facts import facts
 from .scene import scene
 from .tries import ForkTrial
 
@@ -40,7 +41,7 @@ def page(report: Report) -> str:
     template = resources.files(__package__).joinpath("report.html").read_text("utf-8")
     drawn = scene(report.incident, report.model)
     body = "\n".join(_parts(report, has_twin=drawn is not None))
-    data = json.dumps({"scene": drawn}).replace("<", "\\u003c")
+    data = json.dumps({"scene": drawn, "facts": facts(report.incident, report.cause)}).replace("<", "\\u003c")
     title = escape(texts(FIRST, "report")["title"].format(task=report.incident.task))
     hidden = ",".join(f"html[lang={each}] body [lang]:not([lang={each}])" for each in LANGUAGES)
     names = " / ".join(escape(texts(each, "page")["name"]) for each in LANGUAGES)
@@ -113,10 +114,10 @@ def _mine(report: Report) -> list[str]:
 def _evidence(found: Incident) -> Iterator[str]:
     zero = _zero(found)
     for trouble in found.troubles:
-        if trouble.ends >= found.asked_at:
-            seconds = "…" if trouble.seconds == math.inf else f"{trouble.seconds:.1f}"
+        if trouble.ends >= found.began_at:
+            lasted = "…" if trouble.seconds == math.inf else f"{trouble.seconds:.1f}"
             cut = f" ({_each('cut')})" if trouble.cut else ""
-            what = _each(f"trouble_{trouble.kind}", seconds=seconds)
+            what = _each(f"trouble_{trouble.kind}", seconds=lasted)
             yield f"<li>{trouble.at - zero:+.2f} s {escape(trouble.robot)}: {what}{cut}</li>"
     last = found.evidence.last if found.failure else None
     if last is not None:

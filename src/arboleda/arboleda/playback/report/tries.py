@@ -17,7 +17,7 @@ from ..recorded_plant import versions_of
 from .reading import TaskRecord
 
 LONGER = 3.0  # times a deadline
-EARLIER_NS = 100_000_000  # the fork begins so long before the task was asked for
+EARLIER_NS = 100_000_000  # the fork begins so long before the request of the task
 MARGIN_S = 0.5
 WITHOUT, HEALTHY, STALE, DEADLINE = "without", "healthy", "stale", "deadline"
 
@@ -65,7 +65,7 @@ def _changes(model: PlantModel, incident: Incident) -> Iterator[tuple[str, float
 
 def _tried(read: TaskRecord, what: str, value: float, model: PlantModel, options: str) -> ForkTrial:
     incident, record = read.incident, read.record
-    since_s = (incident.ended_at or 0.0) - incident.asked_at
+    since_s = (incident.ended_at or 0.0) - incident.began_at
     versions = {
         digest: replace(each, timing=model.timing) if model is not read.model else each
         for digest, each in versions_of(record).items()
@@ -79,7 +79,7 @@ def _tried(read: TaskRecord, what: str, value: float, model: PlantModel, options
     )
     found = forked(record.first.beginning, record.steps(), request, sentence_of)
     fork, recorded = (_last(row, incident.task) for row in (found.fork, found.recorded))
-    end = fork.said if fork else "?"
+    end = fork.text if fork else "?"
     alike = fork is not None and recorded is not None and fork.what == recorded.what
     done = end.startswith("done")
     return ForkTrial(what=what, value=value, end=end, done=done, alike=alike, options=options)

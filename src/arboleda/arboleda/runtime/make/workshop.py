@@ -98,8 +98,10 @@ class Workshop:
 
     def _has_devices_of(self, files: PlantFiles) -> bool:
         """True if the process knows the plant file of these, on which alone it depends what a tree can be."""
-        is_there = self._run is not None and self._run.poll() is None and self._files is not None
-        return is_there and self._files.contents[self._files.plant] == files.contents[files.plant]
+        known = self._files
+        if self._run is None or self._run.poll() is not None or known is None:
+            return False
+        return known.contents[known.plant] == files.contents[files.plant]
 
     def _load(self, base: PlantFiles, files: PlantFiles) -> None:
         """Have the process look at these files; where they cannot be read, at those of before, or `base`."""

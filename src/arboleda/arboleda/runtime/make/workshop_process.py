@@ -7,6 +7,7 @@ import pickle
 import sys
 from typing import Any
 
+from arboleda.host.limits import give_way
 from arboleda.model.errors import ArboledaError
 
 from .workshop_plant import WorkshopPlant
@@ -16,7 +17,7 @@ KINDNESS = 10  # that of `nice`: whatever the plant does comes first
 
 def main() -> None:
     """Answer requests, (name, values) each, until there are no more."""
-    os.nice(KINDNESS)
+    give_way(KINDNESS)
     answers = os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)  # what a plant's Python prints is no answer
     plant = WorkshopPlant()

@@ -14,7 +14,8 @@ from arboleda.adapters.rate_limit import RateLimit
 from arboleda.model.commands import Command
 from arboleda.model.messages import Heartbeat, Notice, Report
 from arboleda.model.plant_model import PlantModel
-from arboleda.wire.bridge import Bridge, Leaving, Message
+from arboleda.wire.board import Message
+from arboleda.wire.bridge import Bridge, Leaving
 from arboleda.wire.hop import FromPlant
 from arboleda.wire.rejections import ForeignCommand, Rejection
 from arboleda.wire.transport import Connection, Delivery

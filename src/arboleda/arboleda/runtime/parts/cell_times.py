@@ -5,6 +5,7 @@ from __future__ import annotations
 import logging
 import time
 from collections.abc import Callable
+from functools import partial
 
 from arboleda.core.cell_states import CellState
 from arboleda.core.plant import Plant
@@ -57,8 +58,7 @@ class CellTimes:
                 self._down.pop(name, None)
                 if state is not None:
                     self._down[name] = state
-                word = None if state is None else state.value
-                self._kept(lambda store, name=name, word=word: store.stands(name, word, now_s))
+                self._kept(partial(_stands, name, None if state is None else state.value, now_s))
 
     def stop(self) -> None:
         """Keep that the plant was ended on purpose, so that the time after it is not planned; idempotent."""
@@ -73,3 +73,7 @@ class CellTimes:
         except ArboledaError as error:
             self._keeps = False
             LOG.warning("the times of cells are not kept any more, `arboleda oee` lacks them: %s", error)
+
+
+def _stands(cell: str, state: str | None, now_s: float, store: PlantMemory) -> None:
+    store.stands(cell, state, now_s)

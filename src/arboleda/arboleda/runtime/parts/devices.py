@@ -12,6 +12,7 @@ from arboleda.adapters import clock
 from arboleda.adapters.mqtt import MqttClient, NotConnected
 from arboleda.model.plant_model import PlantModel
 from arboleda.sim.devices import Alarm, Devices, FromBoard, Reboot, ToBoard
+from arboleda.simulator.fault_bench import FaultBench, MishapBegins, MishapEnds, MishapNote, MishapOver
 from arboleda.wire.payloads import Presence, encode
 from arboleda.wire.topics import Channel, topic
 from arboleda.wire.transport import Publication
@@ -45,13 +46,14 @@ class DevicesPart:
         self._scout = scout
         self._version = model.mqtt_version
         boot_ids = count(first_boot).__next__
-        self._devices = Devices(model, now=clock.seconds(), boot_ids=boot_ids, elsewhere=elsewhere)
+        self.noted: Callable[[MishapNote | MishapOver], None] = _ignore  # called in the loop's thread
+        now = clock.seconds()
+        self._devices = Devices(model, now=now, boot_ids=boot_ids, elsewhere=elsewhere)
+        bench = FaultBench(model, self._devices, now=now)
         self._clients: dict[str, MqttClient] = {}
         self._lock = threading.Lock()
         self._lookout: BrokerSurvey | None = None
-        self.loop: Loop[Any, Any] = Loop(
-            "devices", self._devices, self._send, on_crash=crash, on_send_error=not_sent
-        )
+        self.loop: Loop[Any, Any] = Loop("devices", bench, self._send, on_crash=crash, on_send_error=not_sent)
 
     def start(self) -> None:
         """Join the broker; with `scout`, only after it was seen that no real board has these names."""
@@ -71,9 +73,18 @@ class DevicesPart:
             self._leave(board, client)
         self.loop.stop()
 
-    def befall(self, fault: Reboot | Alarm) -> None:
-        """Have something go wrong with a board; from any thread."""
+    @property
+    def boards(self) -> tuple[str, ...]:
+        """The boards, by MQTT name."""
+        return tuple(self._devices.boards)
+
+    def befall(self, fault: Reboot | Alarm | MishapBegins | MishapEnds) -> None:
+        """Have something go wrong with a board, or be over; from any thread."""
         self.loop.post(fault)
+
+    def begun(self) -> tuple[float, list[MishapNote]]:
+        """The time, and the mishaps that go on; from any thread."""
+        return clock.seconds(), self.loop.read(lambda bench: list(bench.begun.values()))
 
     def _join(self) -> None:
         with self._lock:
@@ -102,7 +113,13 @@ class DevicesPart:
             client.publish(Publication(topic=topic(board, Channel.PRESENCE), payload=gone, retain=True))
         client.close()
 
-    def _send(self, message: FromBoard) -> None:
+    def _send(self, message: FromBoard | MishapNote | MishapOver) -> None:
+        if isinstance(message, MishapNote | MishapOver):
+            self.noted(message)
+            return
         client = self._clients.get(message.board)
         if client is not None:
             client.publish(message.publication)
+
+
+def _ignore(note: MishapNote | MishapOver) -> None: ...

@@ -10,12 +10,12 @@ from collections.abc import Callable
 from types import FrameType
 from typing import Any
 
+from arboleda.host.signals import HANG_UP, has_terminal
 from arboleda.model.errors import ArboledaError
 from arboleda.model.outside import plain
 
 LOG = logging.getLogger("arboleda.operators")
 NAME = "SIGHUP"  # who puts it to work, in the journal
-TERMINAL = "/dev/tty"
 LONGEST = 500  # characters of a line
 
 
@@ -32,18 +32,20 @@ class HangUpPart:
         self._had_terminal = False
 
     def start(self) -> None:
-        if threading.current_thread() is threading.main_thread():
-            self._had_terminal = _has_terminal()
-            self._before = signal.signal(signal.SIGHUP, self._take)
+        if HANG_UP is not None and threading.current_thread() is threading.main_thread():
+            self._had_terminal = has_terminal()
+            self._before = signal.signal(HANG_UP, self._take)
 
     def stop(self) -> None:
         """Leave the signal to who had it before. Idempotent."""
-        if self._before is not None and threading.current_thread() is threading.main_thread():
-            signal.signal(signal.SIGHUP, self._before)
+        if self._before is None or HANG_UP is None:
+            return
+        if threading.current_thread() is threading.main_thread():
+            signal.signal(HANG_UP, self._before)
             self._before = None
 
     def _take(self, number: int, frame: FrameType | None) -> None:
-        if self._had_terminal and not _has_terminal():
+        if self._had_terminal and not has_terminal():
             os.kill(os.getpid(), signal.SIGTERM)
             return
         threading.Thread(target=self._put, name="sighup", daemon=True).start()
@@ -60,11 +62,3 @@ class HangUpPart:
             LOG.warning("this needs a restart: %s", plain(line, LONGEST))
         for cell, when in answer["cells"].items():
             LOG.info("%s takes it %s", cell, when)
-
-
-def _has_terminal() -> bool:
-    try:
-        os.close(os.open(TERMINAL, os.O_RDONLY | os.O_NOCTTY))
-    except OSError:
-        return False
-    return True

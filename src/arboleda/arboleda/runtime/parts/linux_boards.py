@@ -8,6 +8,7 @@ import subprocess
 import threading
 from collections.abc import Iterator, Sequence
 from pathlib import Path
+from typing import cast
 
 from arboleda.kinds.arm import Arm
 from arboleda.model.errors import StartError
@@ -27,7 +28,7 @@ END_S = 5.0
 
 def on_linux(model: PlantModel) -> tuple[Arm, ...]:
     """The robots whose boards can be the firmware's; StartError where there is none."""
-    arms = [robot for robot in model.robots.values() if robot.joints]
+    arms = [cast(Arm, robot) for robot in model.robots.values() if robot.joints]
     fitting = tuple(arm for arm in arms if arm.model == MODEL and arm.link is Link.MQTT and _speaks_as(arm))
     if not fitting:
         raise StartError(

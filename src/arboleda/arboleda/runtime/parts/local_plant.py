@@ -18,13 +18,16 @@ from arboleda.store.task_rows import History, TaskQuery, TaskRow
 from arboleda.views import view
 from arboleda.views.oee import Oee
 from arboleda.web.desks.draft import DraftApi
+from arboleda.web.desks.faults import FaultsApi
 from arboleda.web.desks.make import MakeApi
+from arboleda.web.desks.proposals import ProposalsApi
 from arboleda.web.desks.teach import TeachApi
 from arboleda.web.desks.versions import VersionsApi
 from arboleda.web.plant_api import Found, PlantApi, Snapshot
 
 from ..teach_desk import TeachDesk
 from .orchestrator import GLANCE_S, Orchestrator
+from .reports import NO_RECORD, NoReport
 
 LOG = logging.getLogger(__name__)
 
@@ -39,7 +42,13 @@ class LocalPlant(PlantApi):
         draft: DraftApi | None = None,
         versions: VersionsApi | None = None,
         make: MakeApi | None = None,
+        report: Callable[[str], str | None] | None = None,
+        proposals: ProposalsApi | None = None,
+        faults: FaultsApi | None = None,
     ) -> None:
+        self._faults = faults
+        self._report = report
+        self._proposals = proposals
         self._plant = plant
         self._draft = draft
         self._versions = versions
@@ -79,8 +88,16 @@ class LocalPlant(PlantApi):
         return self._make
 
     @property
+    def faults(self) -> FaultsApi | None:
+        return self._faults
+
+    @property
     def versions(self) -> VersionsApi | None:
         return self._versions
+
+    @property
+    def proposals(self) -> ProposalsApi | None:
+        return self._proposals
 
     def find(self, task: str) -> dict[str, Any] | None:
         return self._plant.find(task)
@@ -88,12 +105,18 @@ class LocalPlant(PlantApi):
     def history(self, query: TaskQuery) -> list[TaskRow]:
         return self._history.select(query)
 
+    def report(self, task: str) -> str | None:
+        if self._report is None:
+            raise NoReport(NO_RECORD())
+        return self._report(task)
+
     def oee(self, query: OeeQuery) -> list[Oee]:
         return self._history.oee(query, [cell.name for cell in self.model.cells])
 
-    def submit(self, text: str, asked_by: str, choice: str = "") -> Future[dict[str, Any]]:
+    def submit(self, text: str, asked_by: str, choice: str = "", version: str = "") -> Future[dict[str, Any]]:
         plain: Future[dict[str, Any]] = Future()
-        self._plant.submit(text, asked_by, choice).add_done_callback(lambda answer: _pass_on(answer, plain))
+        answer = self._plant.submit(text, asked_by, choice, version)
+        answer.add_done_callback(lambda each: _pass_on(each, plain))
         return plain
 
     def operate(

@@ -53,13 +53,13 @@ from arboleda.model.messages import (
 )
 from arboleda.model.plant_model import PlantModel
 from arboleda.model.revision import RevisionName
-from arboleda.model.sentence import Phrase, as_sentence
+from arboleda.model.sentence import Phrase, Sentence, as_sentence
 from arboleda.model.verbs import Arguments
 from arboleda.recorder.preamble import PlantFiles
 from arboleda.store.plant_memory import PlantMemory, Superseded
 from arboleda.store.task_rows import COMMAND, ROS, History, TaskQuery
 from arboleda.views import diagnostics, twin_view, view
-from arboleda.views.remembered import RestingCells
+from arboleda.views.resting_cells import RestingCells
 
 from ..loop import Loop, StepInFlight
 from ..memory import begun, kept_task, kept_tasks, remembered
@@ -84,6 +84,8 @@ READ_S = 1.0  # from a step on, for a reader to wait for its commits
 GLANCE_S = 0.03  # the same in the server's thread, where the next stop waits, too
 
 
+IN_CELL = Phrase("act.in_cell", "{did} ({cell})")
+VERB_REFUSED = Phrase("act.verb_refused", "{verb} {scope} was refused: {why}")
 NOT_KEPT = Phrase(
     "plant.not_kept", "the plant has not kept yet what it did last, so it cannot tell of it; ask again later"
 )
@@ -278,14 +280,17 @@ class Orchestrator:
             _log_defect("the screens", error)
             return {}
 
-    def submit(self, text: str, asked_by: str = COMMAND, choice: str = "") -> Future[TaskChanged]:
+    def submit(
+        self, text: str, asked_by: str = COMMAND, choice: str = "", version: str = ""
+    ) -> Future[TaskChanged]:
         """Ask for a task; the future holds the answer: queued, refused, or the known task's state.
 
-        `choice` is the reason for which it goes to its cell, if somebody chose between plants.
+        `choice` is the reason for which it goes to its cell, if somebody chose between plants; `version` the
+        digest of the only version of the plant for which it is allowed, if it is not for any.
         """
         answer, token = self._expect()
         self._asked_by[token] = asked_by
-        self.hear(TaskRequest(at=clock.seconds(), text=text, request=token, choice=choice))
+        self.hear(TaskRequest(at=clock.seconds(), text=text, request=token, choice=choice, version=version))
         return answer
 
     def operate(
@@ -376,7 +381,8 @@ class Orchestrator:
     @property
     def stepped_at(self) -> float:
         """The time of the plant's last step, on its clock; it makes one for each of its heartbeats."""
-        return self.loop.read(lambda plant: plant.now)
+        now: float = self.loop.read(lambda plant: plant.now)
+        return now
 
     def positions(self) -> dict[str, Any]:
         """The positions of everything that moves; `now` is on the plant's clock."""
@@ -539,7 +545,8 @@ class Orchestrator:
 
     def _keep_act(self, message: Journal) -> None:
         level = logging.WARNING if message.outcome is Outcome.FAILED else logging.INFO
-        OPERATORS.log(level, "%s", act_line(message))
+        line = act_line(message)
+        OPERATORS.log(level, "%s", line, extra={"sentence": line})
         if self._store is None or self._amnesia is not None:
             return
         self._store.journal(message, time.time())
@@ -704,8 +711,8 @@ class Orchestrator:
             yield from self._ros.publish_view(snapshot)
             if self._ros.diagnosed:
                 recorder = [] if self.recorder is None else [diagnostics.record(self.recorder.trouble)]
-                rows = (*diagnostics.diagnostics(snapshot), *recorder, *(each() for each in self.diagnoses))
-                yield from self._ros.publish_diagnostics(rows)
+                found = (*diagnostics.diagnostics(snapshot), *recorder, *(each() for each in self.diagnoses))
+                yield from self._ros.publish_diagnostics(found)
         rows = [row for kind in ("cells", "robots", "tasks") for row in before.get(kind, ())]
         del before
         while rows:  # to give back the memory of them all at once takes as long as some slices
@@ -743,21 +750,21 @@ def task_line(change: TaskChanged) -> str:
     )
 
 
-def act_line(act: Journal) -> str:
+def act_line(act: Journal) -> Sentence:
     """The line on an operator's act or its outcome, with the cell if no sentence names it."""
-    return str(act.sentence) if act.cell in (None, act.scope) else f"{act.sentence} ({act.cell})"
+    return act.sentence if act.cell in (None, act.scope) else IN_CELL(did=act.sentence, cell=act.cell)
 
 
 def _log(message: Durable) -> None:
-    """Log each change of a task, and refusals; `change` is for screens that show it in colours."""
+    """Log each change of a task, and refusals; `change` is for screens that show it in colours, `sentence`
+    for those that say it in another language."""
     if isinstance(message, RevisionAnswer):
         if message.refusal is not None:
-            OPERATORS.warning("%s", message.refusal)
+            OPERATORS.warning("%s", message.refusal, extra={"sentence": message.refusal})
     elif isinstance(message, OperatorAnswer):
         if message.refusal is not None:
-            OPERATORS.info(
-                "%s %s was refused: %s", message.verb.value, message.scope or "plant", message.refusal
-            )
+            line = VERB_REFUSED(verb=message.verb.value, scope=message.scope or "plant", why=message.refusal)
+            OPERATORS.info("%s", line, extra={"sentence": line})
     elif message.state is TaskState.REFUSED:
         REQUESTS.warning("%s", task_line(message), extra={"change": message})
     else:

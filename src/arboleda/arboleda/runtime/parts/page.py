@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -17,6 +17,8 @@ from arboleda.recorder.errors import NoRecord
 from arboleda.store.task_rows import History
 from arboleda.views import view
 from arboleda.web.desks.draft import DraftApi
+from arboleda.web.desks.faults import FaultsApi
+from arboleda.web.desks.proposals import ProposalsApi
 from arboleda.web.desks.versions import VersionsApi
 
 from ..make.bench import MakeBench
@@ -45,6 +47,8 @@ class Sources:
     draft: DraftApi | None = None
     versions: VersionsApi | None = None
     make: MakeBench | None = None
+    faults: FaultsApi | None = None
+    proposals: ProposalsApi | None = None
     end_demo: Callable[[], None] | None = None  # None: this start is no demonstration
 
 
@@ -52,13 +56,21 @@ class PagePlant(LocalPlant):
     """PageApi of the plant in this process: LocalPlant with what only the page shows."""
 
     def __init__(self, plant: Orchestrator, history: History, sources: Sources) -> None:
-        super().__init__(plant, history, sources.draft, sources.versions, sources.make)
+        super().__init__(
+            plant,
+            history,
+            sources.draft,
+            sources.versions,
+            sources.make,
+            sources.report,
+            sources.proposals,
+            sources.faults,
+        )
         self._drawn: tuple[PlantModel | None, dict[str, Any]] = None, {}
         self._sources = sources
         self.links = sources.links
         self.positions = sources.positions
         self.past_acts = sources.past_acts
-        self.report = sources.report
 
     def mount(self, app: FastAPI) -> None:
         """Put the page on the server's application."""
@@ -73,6 +85,7 @@ class PagePlant(LocalPlant):
                 "recorded": self._sources.recorded is not None,
                 "demo": self._sources.end_demo is not None,
                 "draft": self._sources.make is not None,
+                "faults": [asdict(each) for each in self.faults.offers()] if self.faults else [],
             }
             self._drawn = model, view.layout(model) | beside
         return self._drawn[1]

@@ -13,6 +13,7 @@ from contextlib import suppress
 from pathlib import Path
 
 from arboleda.core.text import ID
+from arboleda.host.limits import BEHIND
 from arboleda.model.errors import ArboledaError
 from arboleda.model.messages import TaskChanged, TaskState
 from arboleda.model.outside import plain, quoted
@@ -24,7 +25,6 @@ MOST_WAITING = 20  # a plant in which everything fails has one report after the 
 MOST_KEPT = 100
 AFTER_S = 12.0  # so long after a failure: by then its record is on the disk, with what came right after it
 AT_MOST_S = 600.0
-NICE = "import os, sys; os.nice(10); from arboleda.cli.main import main; sys.argv[0] = 'arboleda'; main()"
 NO_RECORD = Phrase("report.no_record", "this plant writes no record, of which reports are made")
 NO_TASK = Phrase("report.no_task", "{task} is not the id of a task")
 TOO_MANY = Phrase("report.too_many", "{most} other reports wait; try again in some minutes")
@@ -37,7 +37,7 @@ class NoReport(ArboledaError):
 
 def _command(task: str, state: Path, target: Path) -> Sequence[str]:
     where = ["--state", str(state), "--output", str(target)]
-    return [sys.executable, "-c", NICE, "report", *where, "--", task]
+    return [sys.executable, "-c", BEHIND, "report", *where, "--", task]
 
 
 class ReportsPart:

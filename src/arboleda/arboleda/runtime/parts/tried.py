@@ -22,7 +22,7 @@ class TriedPlant:
     def __init__(self, record: Path, about: Path, made: int) -> None:
         known: dict[str, Any] = json.loads(about.read_text("utf-8"))
         self.made = made
-        self._layout = known["layout"] | {"tried": True}
+        self._layout: dict[str, Any] = known["layout"] | {"tried": True}
         self._urdf: dict[str, str] = known["urdf"]
         self._past = Past(Views(reader.opened(record)), self._layout)
 

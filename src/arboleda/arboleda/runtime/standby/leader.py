@@ -53,7 +53,7 @@ def of_leader(plant: str, leader: Leader) -> LeaderInfo:
     )
 
 
-def said_of(led: LeaderInfo | None) -> dict[str, Any]:
+def leader_row(led: LeaderInfo | None) -> dict[str, Any]:
     """The leader's row in the answer of a process that stands by, for `of_standby`."""
     if led is None:
         return {"leader": "", "host": "", "process": 0, "epoch": 0}

@@ -23,7 +23,7 @@ from arboleda.web.server import Server
 from .. import tokens
 from ..parts.web import Announce
 from ..web_options import WebOptions
-from .leader import LeaderInfo, said_of
+from .leader import LeaderInfo, leader_row
 
 SOON_S = "1"  # Retry-After: within seconds somebody leads
 METHODS = ["GET", "POST", "PUT", "PATCH", "DELETE"]
@@ -84,7 +84,8 @@ class WaitingRoom:
 
     def __init__(self, plant: str, state: Path, options: WebOptions) -> None:
         self._plant, self._state, self._options = plant, state, options
-        self._sentence, self._led = "begins to wait", None
+        self._sentence = "begins to wait"
+        self._led: LeaderInfo | None = None
         self.port = 0
         app = FastAPI(docs_url=None, redoc_url=None, openapi_url=None, redirect_slashes=False)
         app.include_router(login.routes())
@@ -110,7 +111,8 @@ class WaitingRoom:
 
     def show(self, sentence: str, led: LeaderInfo | None) -> None:
         """Show the reason for waiting and the leader, None if that one is unknown."""
-        self._sentence, self._led = sentence, led
+        self._sentence = sentence
+        self._led = led
 
     def start(self, announce: Announce) -> None:
         if self._options.guarded:
@@ -125,7 +127,7 @@ class WaitingRoom:
     @property
     def _known(self) -> dict[str, Any]:
         known = {"plant": self._plant, "standby": True, "sentence": self._sentence}
-        return known | said_of(self._led)
+        return known | leader_row(self._led)
 
     async def _status(self, request: Request) -> Response:
         return JSONResponse(self._known)

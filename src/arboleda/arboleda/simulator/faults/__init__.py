@@ -17,18 +17,21 @@ from . import (
     teachers,
     telemetry,
 )
-from .kind import Fault, Kind
+from .kind import BoardKind, End, Fault, Kind
 
 __all__ = [
     "COUNTED",
     "KINDS",
     "NOT_WITH_STANDBY",
+    "OF_BOARDS",
     "OF_CRASHES",
     "OF_DEVICES",
     "OF_HOSTS",
     "OF_PLACES",
     "OF_WORK",
     "ON_ONE_HOST",
+    "BoardKind",
+    "End",
     "Fault",
     "Kind",
 ]
@@ -49,6 +52,9 @@ FAMILIES = (
     teachers,
 )
 KINDS: dict[str, Kind] = {kind.name: kind for family in FAMILIES for kind in family.KINDS}
+
+OF_BOARDS = {name: kind for name, kind in KINDS.items() if isinstance(kind, BoardKind)}
+"""The kinds that need boards and their connections alone, and so can befall those of a real start."""
 
 OF_DEVICES = tuple(kind.name for kind in devices.KINDS)
 """The kinds that befall devices of declared kinds alone: nobody in the packaged plants and in drawn ones."""

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from ..chance import Dice
-from ..world import BRIDGE, PLANT, Fuse, Side, World
+from ..plant_process import Fuse, Side
+from ..world import BRIDGE, PLANT, World
 from . import targets
 from .kind import End, Fault, kind, words
 from .shared_effects import hold
@@ -18,7 +19,7 @@ IN_ONE_PROCESS = 0.3  # the share of plants that die together with their bridge
 def crash_in_step(world: World, fault: Fault) -> End:
     """The plant's process dies on one side of its `amount`th commit or message, and is back at the end."""
     with_bridge = Dice(fault.seed, "bridge").chance(IN_ONE_PROCESS)
-    return _dies(world, fault, world.stop_plant, with_bridge=with_bridge)
+    return _dies(world, fault, world.plant_process.stop, with_bridge=with_bridge)
 
 
 @kind(targets=targets.plant, words=SIDES, seconds=(0.5, 12.0), amount=(1.0, 30.0), weight=0.0)
@@ -26,7 +27,7 @@ def power_cut(world: World, fault: Fault) -> End:
     """So does the whole machine of plant and bridge, and what it had not synced is gone, but for a part."""
 
     def cut() -> None:
-        world.cut_power(Dice(fault.seed, "reached").below(world.disk.unsynced(world.now) + 1))
+        world.plant_process.cut_power(Dice(fault.seed, "reached").below(world.disk.unsynced(world.now) + 1))
 
     return _dies(world, fault, cut, with_bridge=True)
 
@@ -36,7 +37,7 @@ def full_disk(world: World, fault: Fault) -> End:
     """Nothing can be kept: at its next commit the plant, at times the bridge too, ends till there is room."""
     with_bridge = Dice(fault.seed, "bridge").chance(IN_ONE_PROCESS)
     ends: list[End] = [hold(world, "full", "disk", lambda: _make_room(world))]
-    ends.append(hold(world, "down", PLANT, world.start_plant))
+    ends.append(hold(world, "down", PLANT, world.plant_process.start))
 
     def gone() -> None:
         if not with_bridge:
@@ -49,15 +50,15 @@ def full_disk(world: World, fault: Fault) -> End:
             world.start_bridge()
 
     world.disk.full = True
-    world.when_gone.append(gone)
+    world.plant_process.when_gone.append(gone)
 
     def end() -> None:
         called = [*ends]
         ends.clear()
         for each in called:
             each()
-        if world.is_on(PLANT) and gone in world.when_gone:
-            world.when_gone.remove(gone)
+        if world.is_on(PLANT) and gone in world.plant_process.when_gone:
+            world.plant_process.when_gone.remove(gone)
 
     return end
 
@@ -74,7 +75,7 @@ def _make_room(world: World) -> None:
 
 
 def _dies(world: World, fault: Fault, die: Callable[[], None], *, with_bridge: bool) -> End:
-    ends: list[End] = [hold(world, "down", PLANT, world.start_plant)]
+    ends: list[End] = [hold(world, "down", PLANT, world.plant_process.start)]
 
     def burn() -> None:
         die()
@@ -84,11 +85,11 @@ def _dies(world: World, fault: Fault, die: Callable[[], None], *, with_bridge: b
             ends.append(hold(world, "down", BRIDGE, lambda: _start_bridge(world)))
 
     fuse = Fuse(round(fault.amount), Side(fault.word), burn)
-    world.fuses.append(fuse)
+    world.plant_process.fuses.append(fuse)
 
     def end() -> None:
-        if fuse in world.fuses:
-            world.fuses.remove(fuse)
+        if fuse in world.plant_process.fuses:
+            world.plant_process.fuses.remove(fuse)
         for each in ends:
             each()
 

@@ -12,33 +12,34 @@ from ..chance import Dice
 from ..deceptions import begin_to_deceive
 from ..world import World
 from . import targets
+from .board_site import BoardSite
 from .false_telemetry import Fields, deceive
-from .kind import End, Fault, kind, words
+from .kind import End, Fault, board_kind, kind, words
 from .shared_effects import hold
 
 FOR_EVER_S = 86_400.0
 
 
-@kind(targets=targets.machines, words=words("atasco", "sin_aire"), seconds=(1.0, 60.0))
-def gives_up(world: World, fault: Fault) -> End:
+@board_kind(targets=targets.machines, words=words("atasco", "sin_aire"), seconds=(1.0, 60.0))
+def gives_up(world: BoardSite, fault: Fault) -> End:
     """A device ends every order that it has carried out as failed, with this word."""
     return _behave(world, fault, "fails", lambda goal: fault.word)
 
 
-@kind(targets=targets.machines, words=words("ocupado", "condicion"), seconds=(1.0, 30.0))
-def refuses(world: World, fault: Fault) -> End:
+@board_kind(targets=targets.machines, words=words("ocupado", "condicion"), seconds=(1.0, 30.0))
+def refuses(world: BoardSite, fault: Fault) -> End:
     """A device takes no order, and says so with this word."""
     return _behave(world, fault, "refuses", lambda goal: fault.word)
 
 
-@kind(targets=targets.machines, seconds=(1.0, 60.0))
-def never_ends(world: World, fault: Fault) -> End:
+@board_kind(targets=targets.machines, seconds=(1.0, 60.0))
+def never_ends(world: BoardSite, fault: Fault) -> End:
     """A device goes on and on with whatever it begins, and answers nothing, until this is over."""
     return _be_late(world, fault, FOR_EVER_S)
 
 
-@kind(targets=targets.machines, seconds=(1.0, 60.0), amount=(0.1, 60.0))
-def ends_late(world: World, fault: Fault) -> End:
+@board_kind(targets=targets.machines, seconds=(1.0, 60.0), amount=(0.1, 60.0))
+def ends_late(world: BoardSite, fault: Fault) -> End:
     """A device takes `amount` s longer for whatever it begins, and for its answers."""
     return _be_late(world, fault, fault.amount)
 
@@ -56,14 +57,14 @@ def only_says_done(world: World, fault: Fault) -> End:
     return stop
 
 
-@kind(targets=targets.askable, seconds=(1.0, 60.0), amount=(0.05, 10.0))
-def answers_twice(world: World, fault: Fault) -> End:
+@board_kind(targets=targets.askable, seconds=(1.0, 60.0), amount=(0.05, 10.0))
+def answers_twice(world: BoardSite, fault: Fault) -> End:
     """A device answers every question once more after `amount` s, and perhaps otherwise."""
     return _behave(world, fault, "repeats", lambda goal: fault.amount)
 
 
-@kind(targets=targets.machines)
-def forgets(world: World, fault: Fault) -> None:
+@board_kind(targets=targets.machines)
+def forgets(world: BoardSite, fault: Fault) -> None:
     """A device boots, and what was switched is as it was in the beginning."""
     if world.is_on(fault.target):
         world.power_off(fault.target)
@@ -71,12 +72,12 @@ def forgets(world: World, fault: Fault) -> None:
         world.power_on(fault.target)
 
 
-@kind(targets=targets.holders)
-def opened_device(world: World, fault: Fault) -> None:
+@board_kind(targets=targets.holders)
+def opened_device(world: BoardSite, fault: Fault) -> None:
     """Somebody takes out what a device holds, and it says so."""
     held = targets.robot_of(world.model, fault.target).held_fact
     if held is not None and world.is_on(fault.target):
-        world.set_by_hand(fault.target, ((held, False),))
+        world.manual.set_facts(fault.target, ((held, False),))
 
 
 def _facts_of(model: PlantModel, target: str) -> tuple[str, ...]:
@@ -118,7 +119,7 @@ def _lie(world: World, fault: Fault, value: Value) -> End:
     return deceive(world, fault.target, ("facts",), lie)
 
 
-def _behave(world: World, fault: Fault, how: str, does: Any) -> End:
+def _behave(world: BoardSite, fault: Fault, how: str, does: Any) -> End:
     """Have a device behave so; several faults add up, until the last of them ends."""
     body = targets.machine_body(world, fault.target)
     usual = getattr(type(body)(body.kind), how)
@@ -126,7 +127,7 @@ def _behave(world: World, fault: Fault, how: str, does: Any) -> End:
     return hold(world, how, fault.target, lambda: setattr(body, how, usual))
 
 
-def _be_late(world: World, fault: Fault, late_s: float) -> End:
+def _be_late(world: BoardSite, fault: Fault, late_s: float) -> End:
     body = targets.machine_body(world, fault.target)
     end = _behave(world, fault, "lasts", lambda goal: late_s)
 

@@ -10,6 +10,7 @@ from arboleda.model.plant_model import PlantModel
 
 from ..chance import Dice
 from ..world import World
+from .board_site import BoardSite
 
 End = Callable[[], None]
 
@@ -32,6 +33,7 @@ class Fault:
 
 
 Begin = Callable[[World, Fault], End | None]
+BeginAtBoards = Callable[[BoardSite, Fault], End | None]
 Targets = Callable[[PlantModel], Sequence[str]]
 Words = Callable[[PlantModel, str], Sequence[str]]
 Range = tuple[float, float]
@@ -83,6 +85,13 @@ class Kind:
         return None
 
 
+@dataclass(frozen=True, kw_only=True)
+class BoardKind(Kind):
+    """Kind of fault that needs boards and their connections alone: those of a real start, too."""
+
+    begin: BeginAtBoards
+
+
 def kind(
     *,
     targets: Targets,
@@ -104,6 +113,25 @@ def kind(
             amount=amount,
             weight=weight,
         )
+
+    return make
+
+
+def board_kind(
+    *,
+    targets: Targets,
+    words: Words = no_words,
+    seconds: Range = NONE,
+    amount: Range = NONE,
+    weight: float = 1.0,
+) -> Callable[[BeginAtBoards], BoardKind]:
+    """Make a function `(boards, fault)` a kind of fault of boards, as `kind` does."""
+
+    general = kind(targets=targets, words=words, seconds=seconds, amount=amount, weight=weight)
+
+    def make(begin: BeginAtBoards) -> BoardKind:
+        fields = vars(general(begin)) | {"begin": begin}
+        return BoardKind(**fields)
 
     return make
 

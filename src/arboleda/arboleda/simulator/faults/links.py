@@ -13,7 +13,8 @@ from ..chance import Dice
 from ..network import Line, Trouble, keeps_its_place
 from ..world import World
 from . import targets
-from .kind import End, Fault, kind, words
+from .board_site import BoardSite
+from .kind import End, Fault, board_kind, kind, words
 from .shared_effects import trouble
 
 AT_ONCE = (0.0,)
@@ -26,15 +27,15 @@ def _cut(ways: tuple[str, ...]) -> tuple[str, ...]:
     return tuple(f"{way}, {cut}" for way in ways for cut in CUTS)
 
 
-@kind(targets=targets.clients, words=words(*WAYS), seconds=(1.0, 30.0), amount=(0.01, 0.3))
-def loss(world: World, fault: Fault) -> End:
+@board_kind(targets=targets.clients, words=words(*WAYS), seconds=(1.0, 30.0), amount=(0.01, 0.3))
+def loss(world: BoardSite, fault: Fault) -> End:
     """A share of `amount` of the messages is lost one way."""
     dice = Dice(fault.seed, "loss")
     return trouble(_line(world, fault), _sparing(lambda _: () if dice.chance(fault.amount) else AT_ONCE))
 
 
-@kind(targets=targets.clients, words=words(*WAYS), seconds=(1.0, 30.0), amount=(0.01, 0.5))
-def duplicate(world: World, fault: Fault) -> End:
+@board_kind(targets=targets.clients, words=words(*WAYS), seconds=(1.0, 30.0), amount=(0.01, 0.5))
+def duplicate(world: BoardSite, fault: Fault) -> End:
     """A share of `amount` of the messages comes twice one way, as QoS 1 allows."""
     dice = Dice(fault.seed, "duplicate")
 
@@ -44,8 +45,8 @@ def duplicate(world: World, fault: Fault) -> End:
     return trouble(_line(world, fault), _sparing(twice))
 
 
-@kind(targets=targets.clients, words=words(*WAYS), seconds=(1.0, 30.0), amount=(0.02, 0.5))
-def reorder(world: World, fault: Fault) -> End:
+@board_kind(targets=targets.clients, words=words(*WAYS), seconds=(1.0, 30.0), amount=(0.02, 0.5))
+def reorder(world: BoardSite, fault: Fault) -> End:
     """Messages overtake each other one way: each is up to `amount` s late."""
     dice, line = Dice(fault.seed, "reorder"), _line(world, fault)
     calm = trouble(line, _sparing(lambda _: (dice.between(0.0, fault.amount),)))
@@ -58,14 +59,14 @@ def reorder(world: World, fault: Fault) -> End:
     return end
 
 
-@kind(targets=targets.clients, words=words(*WAYS), seconds=(1.0, 20.0), amount=(0.005, 5.0))
-def delay(world: World, fault: Fault) -> End:
+@board_kind(targets=targets.clients, words=words(*WAYS), seconds=(1.0, 20.0), amount=(0.005, 5.0))
+def delay(world: BoardSite, fault: Fault) -> End:
     """Every message is `amount` s late one way."""
     return trouble(_line(world, fault), lambda _: (fault.amount,))
 
 
-@kind(targets=targets.clients, words=words(*_cut(WAYS)), seconds=(0.2, 10.0))
-def partition(world: World, fault: Fault) -> End:
+@board_kind(targets=targets.clients, words=words(*_cut(WAYS)), seconds=(0.2, 10.0))
+def partition(world: BoardSite, fault: Fault) -> End:
     """Nothing gets through one way; what is sent meanwhile is held until the end, or lost."""
     return trouble(_line(world, fault), _sparing(_lose) if _loses(fault) else _hold(world, fault))
 
@@ -73,28 +74,33 @@ def partition(world: World, fault: Fault) -> End:
 @kind(targets=targets.plant, words=words(*HOPS), seconds=(1.0, 20.0), amount=(0.005, 5.0))
 def hop_delay(world: World, fault: Fault) -> End:
     """Every message between plant and bridge is `amount` s late one way."""
-    return trouble(_line(world, fault), lambda _: (fault.amount,))
+    return trouble(_hop(world, fault), lambda _: (fault.amount,))
 
 
 @kind(targets=targets.plant, words=words(*HOPS), seconds=(1.0, 20.0), amount=(0.02, 1.0))
 def hop_reorder(world: World, fault: Fault) -> End:
     """Topics between plant and bridge overtake each other one way: each message is up to `amount` s late."""
     dice = Dice(fault.seed, "hop_reorder")
-    return trouble(_line(world, fault), lambda _: (dice.between(0.0, fault.amount),))
+    return trouble(_hop(world, fault), lambda _: (dice.between(0.0, fault.amount),))
 
 
 @kind(targets=targets.plant, words=words(*_cut(HOPS)), seconds=(0.2, 10.0))
 def hop_partition(world: World, fault: Fault) -> End:
     """Nothing gets through one way between plant and bridge; what is sent meanwhile is held, or lost."""
-    return trouble(_line(world, fault), _lose if _loses(fault) else _hold(world, fault))
+    return trouble(_hop(world, fault), _lose if _loses(fault) else _hold(world, fault))
 
 
-def _line(world: World, fault: Fault) -> Line:
-    way = fault.word.split(",")[0]
-    if way in HOPS:
-        return world.to_bridge if way == "to bridge" else world.to_plant
+def _line(world: BoardSite, fault: Fault) -> Line:
     client = world.broker.clients[fault.target]
-    return client.up if way == "up" else client.down
+    return client.up if _way(fault) == "up" else client.down
+
+
+def _hop(world: World, fault: Fault) -> Line:
+    return world.to_bridge if _way(fault) == "to bridge" else world.to_plant
+
+
+def _way(fault: Fault) -> str:
+    return fault.word.split(",")[0]
 
 
 def _loses(fault: Fault) -> bool:
@@ -105,7 +111,7 @@ def _lose(_: Any) -> tuple[float, ...]:
     return ()
 
 
-def _hold(world: World, fault: Fault) -> Trouble:
+def _hold(world: BoardSite, fault: Fault) -> Trouble:
     end = world.awake_s + fault.seconds
     return lambda _: (max(0.0, end - world.awake_s),)
 

@@ -71,7 +71,7 @@ def _operate(verb: Verb) -> Callable[[World, Fault], None]:
     def begin(world: World, fault: Fault) -> None:
         scope = _task(world, fault) if fault.word in OF_THE_CELL else fault.target
         if fault.word == BY_HAND:
-            hands.BY_HAND[verb](world, scope)
+            hands.BY_HAND[verb](world.manual, scope)
         elif fault.word and fault.word not in OF_THE_CELL and not fault.word.isdigit():
             world.request_verb(verb, scope, arguments=(("place", fault.word),))
         elif STATION in verb.arguments and fault.word:

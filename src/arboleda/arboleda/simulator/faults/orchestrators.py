@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import cast
 
 from arboleda.kinds.arm import SetEffector
-from arboleda.kinds.declared import FactType
+from arboleda.kinds.declared import Device, FactType
 from arboleda.kinds.joints import MoveJoints
 from arboleda.kinds.mobile import FollowPath
 from arboleda.model.commands import Command, Home, Stop, StopMode
@@ -36,8 +37,10 @@ def _orders(model: PlantModel, target: str) -> tuple[str, ...]:
 def second_orchestrator(world: World, fault: Fault) -> None:
     """An orchestrator that was superseded speaks to the bridge; only its stops count."""
     dice = Dice(fault.seed, "second")
-    epoch = world.plant.epoch - 1 - dice.below(LATEST)
-    message = Heartbeat(epoch=epoch)
+    # a start that has not yet beaten has superseded nobody
+    newest = world.epoch_at_bridge or world.plant.epoch
+    epoch = newest - 1 - dice.below(LATEST)
+    message: Command | Heartbeat = Heartbeat(epoch=epoch)
     if fault.word != "beat":
         message = ORDERS[fault.word](world.model, fault.target, f"{epoch}-{1 + dice.below(10**9)}", dice)
     if world.is_on(BRIDGE):
@@ -99,7 +102,7 @@ def _path(model: PlantModel, robot: str, id: str, dice: Dice) -> Command:
 
 def _verb(model: PlantModel, robot: str, id: str, dice: Dice) -> Command:
     """Any verb of a device, with any of the values that it takes."""
-    kind = model.robots[robot].kind
+    kind = cast(Device, model.robots[robot]).kind
     verb = kind.verbs[dice.pick(list(kind.verbs))]
     values = {name: dice.pick(_values(type)) for name, type in verb.parameters}
     return kind.command(id=id, robot=robot, verb=verb.name, values=values)

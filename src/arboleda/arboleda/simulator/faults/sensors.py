@@ -24,9 +24,9 @@ def piece_flicker(world: World, fault: Fault) -> End:
     """A piece sensor is wrong now and then; `amount` is the share of wrong values."""
     dice = Dice(fault.seed, "flicker")
 
-    def flicker(said: dict[str, Any]) -> dict[str, Any]:
-        wrong = dice.chance(fault.amount) and "pieza" in said
-        return {**said, "pieza": 1 - said["pieza"]} if wrong else said
+    def flicker(row: dict[str, Any]) -> dict[str, Any]:
+        wrong = dice.chance(fault.amount) and "pieza" in row
+        return {**row, "pieza": 1 - row["pieza"]} if wrong else row
 
     return deceive(world, fault.target, ("piece",), flicker)
 

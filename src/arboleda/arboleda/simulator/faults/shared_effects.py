@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from ..network import Line, Trouble
-from ..world import World
+from .board_site import BoardSite
 from .kind import End
 
 
-def hold(world: World, what: str, whom: str, end: End) -> End:
+def hold(world: BoardSite, what: str, whom: str, end: Callable[[], object]) -> End:
     """Keep `what` up at `whom` for one more fault; `end` is called when the last such fault ends."""
     world.holds[what, whom] += 1
 
@@ -19,7 +21,7 @@ def hold(world: World, what: str, whom: str, end: End) -> End:
     return release
 
 
-def stall(world: World, process: str, seconds: float) -> End:
+def stall(world: BoardSite, process: str, seconds: float) -> End:
     """A process does nothing until all that stalls it has ended."""
     world.stall(process, seconds)
     return hold(world, "stall", process, lambda: world.go_on(process))

@@ -8,7 +8,8 @@ from arboleda.model.plant_model import Evidence, Link, PlantModel, Robot
 from arboleda.sim.arm import ArmBody
 from arboleda.sim.machine import MachineBody
 
-from ..world import BRIDGE, PLANT, World
+from ..world import BRIDGE, PLANT
+from .board_site import BoardSite
 
 
 def boards(model: PlantModel) -> tuple[str, ...]:
@@ -95,12 +96,12 @@ def robot_of(model: PlantModel, board: str) -> Robot:
     return next(robot for robot in model.robots.values() if robot.mqtt == board)
 
 
-def arm_body(world: World, board: str) -> ArmBody:
+def arm_body(world: BoardSite, board: str) -> ArmBody:
     """The axes and the effector of an arm's board."""
     return cast(ArmBody, world.boards[board].body)
 
 
-def machine_body(world: World, board: str) -> MachineBody:
+def machine_body(world: BoardSite, board: str) -> MachineBody:
     """The virtual body of the board of a declared device."""
     return cast(MachineBody, world.boards[board].body)
 

@@ -59,7 +59,7 @@ class Teacher:
     @property
     def _teaching(self) -> Teaching | None:
         """Its own manual mode; None where that has ended, or was refused."""
-        found = self.world.plant.cells[self.cell].teaching
+        found = self.world.plant.cells[self.cell].manual.teaching
         return found if found is not None and found.teacher == self.name else None
 
     def _go_on(self, _: object) -> None:

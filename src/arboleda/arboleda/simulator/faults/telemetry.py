@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from typing import Any
+from typing import Any, cast
 
-from arboleda.kinds.arm import Arm
-from arboleda.kinds.joints import Joint
-from arboleda.model.plant_model import Evidence, MotionState, PlantModel
+from arboleda.kinds.joints import Joint, Jointed
+from arboleda.model.plant_model import Evidence, MotionState, PlantModel, Robot
 from arboleda.wire.units import to_wire
 
 from ..chance import Dice
@@ -93,9 +92,9 @@ def _about(word: str) -> tuple[str, ...]:
     return ("q",) if word[0] == "q" else ABOUT[word]
 
 
-def _keys(arm: Arm) -> dict[str, tuple[Joint, float]]:
+def _keys(arm: Robot) -> dict[str, tuple[Joint, float]]:
     """The joints of an arm and their tolerances by the keys that its telemetry has for them."""
-    rows = zip(arm.joints, arm.tolerances, strict=True)
+    rows = zip(arm.joints, cast(Jointed, arm).tolerances, strict=True)
     return {f"q{number}_mov": row for number, row in enumerate(rows, start=1)}
 
 
@@ -123,7 +122,7 @@ def _other_node(world: World, fault: Fault) -> Lie:
     robot = targets.robot_of(world.model, fault.target)
     assert robot.floor_grid
     told = world.boards[fault.target].body.tell().node
-    return _another(fault, -1 if told is None else told, range(robot.grid.size))
+    return _another(fault, -1 if told is None else told, range(robot.floor_grid.size))
 
 
 def _other_number(world: World, fault: Fault) -> Lie:

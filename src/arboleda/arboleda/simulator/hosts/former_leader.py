@@ -13,7 +13,9 @@ from arboleda.wire.hop import FromPlant
 from arboleda.wire.transport import Publication
 
 from ..disk import is_kept
-from ..world import ENDS_S, SupersededProcess, World
+from ..plant_process import ENDS_S
+from ..world import World
+from .change_of_leaders import SupersededProcess, bury
 from .database import SharedDisk, StoreRefused, StoreUnreachable
 from .process import Process
 
@@ -43,7 +45,7 @@ class FormerLeader:
         """End it, as if it was killed; may be called twice."""
         if not self.over:
             self.over = True
-            self._world.bury(self._left)
+            bury(self._world, self._left)
 
     def _go_on(self, _: object) -> None:
         if self.over:

@@ -7,6 +7,7 @@ from arboleda.model.commands import Command
 from arboleda.model.messages import Heartbeat, OperatorRequest, Verb
 
 from ..world import BRIDGE, PLANT, World
+from .change_of_leaders import change_leaders
 from .database import SharedDisk, StoreRefused, StoreUnreachable
 from .former_leader import FormerLeader
 from .process import Host, Process
@@ -34,7 +35,7 @@ class Hosts:
         self.numbers = [(disk.row.epoch, first.name)]
         self._waits = {second.name}
         self._handing = False
-        world.hosts, world.gate = self, self._look_before_it_leaves
+        world.hosts, world.plant_process.gate = self, self._look_before_it_leaves
         disk.writes = world.moment.writes
         self._tend(first)
         self._tend(second)
@@ -43,7 +44,7 @@ class Hosts:
         """Kill the process that leads, and its bridge with it."""
         world = self.world
         if world.is_on(PLANT) and not (world.is_stalled(PLANT) or world.is_stalled(BRIDGE)):
-            world.stop_plant()
+            world.plant_process.stop()
             world.stop_bridge()
 
     def hand_over(self) -> None:
@@ -59,7 +60,7 @@ class Hosts:
         if host.name in self._waits:
             self._look(host)
             period_s = LOOK_S
-        elif host is self.leader.host and (world.is_on(PLANT) or world.is_ending):
+        elif host is self.leader.host and (world.is_on(PLANT) or world.plant_process.is_ending):
             self._renew(self.leader)
             period_s = RENEW_S
         elif any(each.process.host is host and not each.over for each in self.formers):
@@ -82,7 +83,7 @@ class Hosts:
     def _renew(self, process: Process) -> None:
         world, host = self.world, process.host
         frozen = world.is_stalled(PLANT) and world.is_stalled(BRIDGE)
-        if not frozen and not world.is_ending and host.reaches:
+        if not frozen and not world.plant_process.is_ending and host.reaches:
             asked_at = host.clock(world.now)
             world.at(world.now + host.delay_s / 2, lambda _: self._renewed(process, asked_at))
 
@@ -116,7 +117,7 @@ class Hosts:
         if (got := row.lead(proposed, now)) is None or not host.hears:
             return
         epoch, going = got
-        before, left = self.leader, self.world.change_leaders(epoch)
+        before, left = self.leader, change_leaders(self.world, epoch)
         if left is not None:
             self.formers.append(FormerLeader(self.world, self.disk, before, left))
         self.leader = self._new_leader(host, epoch, asked_at)
@@ -169,7 +170,7 @@ class Hosts:
         world = self.world
         if not cells or epoch != self.leader.epoch or not world.is_on(PLANT) or world.now > until:
             return
-        if world.has_stepped and not world.is_stalled(PLANT):
+        if world.plant_process.has_stepped and not world.is_stalled(PLANT):
             for name in list(cells):
                 asked = OperatorRequest(at=world.now, verb=Verb.RESUME, scope=name)
                 if world.plant.refusal(asked) is None:

@@ -20,7 +20,8 @@ ENDS = (TaskState.DONE, TaskState.FAILED, TaskState.CANCELLED)
 HARMLESS = (Verb.ANSWER, Verb.LOAD, Verb.UNLOAD)
 NAME = "recipes_do_what_was_drawn"
 SENTENCE = """A task of a drawn recipe that is called done, before anything went wrong, has told each device
-    what was drawn, in that order, and has waited as long, in Python as in a tree of a file."""
+    what was drawn, in that order, and has waited as long, in Python as in a tree of a file; one that
+    was drawn to fail fails with the words of that step."""
 JITTER_S = 0.05
 
 
@@ -52,26 +53,33 @@ class DrawnTasks:
             if not change.answer and change.said.state in ENDS:
                 yield from self._ended(look, change.said)
 
-    def _ended(self, look: Look, said: TaskChanged) -> Iterator[str]:
-        cell, task = look.world.model.cell(said.cell or ""), look.world.plant.intake.tasks.get(said.task)
+    def _ended(self, look: Look, change: TaskChanged) -> Iterator[str]:
+        cell, task = look.world.model.cell(change.cell or ""), look.world.plant.intake.tasks.get(change.task)
         sent = self._sent.pop(cell.name, [])
         if cell.name in look.record.tasks.running:  # the next one has begun in this step
             self._sent[cell.name] = [each for each in sent if each in look.record.commands.new]
             sent = [each for each in sent if each not in look.record.commands.new]
-        if task is None or said.state is not TaskState.DONE or task.order.recipe not in self._names:
+        if task is None or change.state is TaskState.CANCELLED or task.order.recipe not in self._names:
             return
         drawn = _meaning(self._recipes, cell, task, sent, pauses=self._pauses)
         try:
-            if not drawn.run(task.order.recipe, task.order.values):
-                yield f"{said.task} of {task.order.recipe} is called done, and was drawn to fail"
+            succeeds = drawn.run(task.order.recipe, task.order.values)
         except Unsure:
             return
+        if change.state is TaskState.FAILED:
+            words = f"{change.sentence} {task.failed_step or ''}"  # of a tree as XML the node has them
+            if not succeeds and drawn.cause is not None and drawn.cause not in words:
+                yield f"{change.task} is said to have failed ({words}), and was drawn to: {drawn.cause}"
+            return
+        if not succeeds:
+            yield f"{change.task} of {task.order.recipe} is called done, and was drawn to fail"
         tools = {space.tool.name for space in cell.spaces if space.tool is not None}  # told by grips
         roles = [role for role, robot in cell.roles.items() if robot.name not in tools]
-        yield from _differences(said.task, roles, _told(cell, sent), drawn.told)
+        yield from _differences(change.task, roles, _told(cell, sent), drawn.orders)
         took_s = (task.ended_at or 0.0) - (task.started_at or 0.0)
         if took_s < drawn.seconds - JITTER_S:
-            yield f"{said.task} is called done after {took_s:g} s, and was drawn to wait {drawn.seconds:g} s"
+            least = f"was drawn to wait {drawn.seconds:g} s"
+            yield f"{change.task} is called done after {took_s:g} s, and {least}"
 
 
 def _meaning(
@@ -84,8 +92,9 @@ def _meaning(
         answers.setdefault(roles.get(each.by, each.by), []).append(plain(each.answer))
 
     def takes_s(role: str, told: Told) -> float:
-        alike = (each for each in sent if roles[each.robot] == role and _order(each.command) == told)
-        return max((each.command.takes_s for each in alike), default=0.0)
+        mine = [each.command for each in sent if roles[each.robot] == role]
+        alike = (each for each in mine if isinstance(each, VerbCall) and _order(each) == told)
+        return max((each.takes_s for each in alike), default=0.0)
 
     return Meaning(recipes, answers, takes_s, pauses=pauses)
 

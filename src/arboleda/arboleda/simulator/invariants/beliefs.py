@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from operator import attrgetter
+from typing import Any
 
 from arboleda.kinds.declared import Device
 from arboleda.model.facts import Value
-from arboleda.model.plant_model import Evidence
+from arboleda.model.plant_model import Evidence, Robot
 
 from ..recorded.scopes import UNSENT
 from .invariant import Look, Trigger, invariant
@@ -49,10 +50,11 @@ def _beyond(device: Device, facts: Mapping[str, Value]) -> Iterator[str]:
     """Sentences on facts that are none of the values of their kind."""
     for fact, value in facts.items():
         type = device.kind.facts[fact]
-        is_number = isinstance(value, int | float)
-        if (type.words and value not in type.words) or (is_number and not type.lower <= value <= type.upper):
+        unknown = type.words and value not in type.words
+        if unknown or (isinstance(value, int | float) and not type.lower <= value <= type.upper):
             yield f"{device.name}: {fact} is taken for {value}, which a {device.kind.name} cannot say"
 
 
-BEYOND = {Device: _beyond}  # of the robots whose facts have types
+Objections = Callable[[Any, Mapping[str, Value]], Iterator[str]]
+BEYOND: Mapping[type[Robot], Objections] = {Device: _beyond}  # of the robots whose facts have types
 BELIEFS = (believed_as_said,)

@@ -145,9 +145,9 @@ def _longest_s(robot: Robot, sent: SentCommand, timing: Timing) -> float:
         return command.at_most_s
     if isinstance(command, Switch):
         return timing.effector_timeout_s
-    way_s = (
-        robot.motion.travel_s(None, command.way) if isinstance(command, Motion) and command.way else HOMING_S
-    )
+    way_s = HOMING_S
+    if isinstance(command, Motion) and command.way:
+        way_s = robot.motion.travel_s(None, command.way) / robot.pace
     return max(robot.timeout_s, way_s * timing.deadline_factor + timing.deadline_floor_s)
 
 
@@ -196,7 +196,7 @@ def _too_many_turns(cell: KnownCell, leaf: Behaviour) -> Iterator[str]:
 
 def _rounds(loop: Loop) -> float:
     """The number that a loop of a file says of its rounds; without end where that is a variable, or -1."""
-    said = loop.given.said[loop.port]
+    said = loop.ports.texts[loop.port]
     return int(said) if said.isdecimal() else math.inf
 
 
@@ -219,7 +219,8 @@ def _left(look: Look) -> Iterator[str]:
         if not sent.can_be_halted or sent.state is State.CANCELLING or isinstance(sent.command, Home):
             continue
         cell = record.cells[sent.entry.cell] if sent.entry else None
-        if cell is None or (cell.run.teaching is not None and cell.run.teaching.held is not None):
+        teaching = None if cell is None else cell.run.manual.teaching
+        if cell is None or (teaching is not None and teaching.held is not None):
             continue  # of a cell that is taught whoever holds its button waits for it
         if cell.run.tree is None:
             yield f"{sent} is open, and no tree of {cell.name} runs"

@@ -29,8 +29,9 @@ def what_is_done_was_so(look: Look) -> Iterator[str]:
         for name, value in command.sets:
             if not truth.was_so(command.robot, name, value, booked.sent_at):
                 yield f"{command.robot}: {name} was never {value} since {what}"
-        goes = isinstance(command, Motion) and command.way
-        if goes and not truth.stood_at(command.robot, command, booked.sent_at):
+        if not isinstance(command, Motion) or not command.way:
+            continue
+        if not truth.stood_at(command.robot, command, booked.sent_at):
             yield f"{command.robot} never stood at the goal of {what}"
 
 

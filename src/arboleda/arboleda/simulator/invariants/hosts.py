@@ -26,18 +26,21 @@ def a_lead_is_over_before_the_next_begins(look: Look) -> Iterable[str]:
 @invariant(Trigger.LED_TWICE)
 def each_number_is_led_once(look: Look) -> Iterable[str]:
     """A number under which the plant is led belongs to one process, and is higher than any before."""
+    assert look.leaders is not None
     return look.leaders.twice
 
 
 @invariant(Trigger.OLD_NUMBER)
 def old_numbers_have_no_effect(look: Look) -> Iterable[str]:
     """A board that knows a number, by a beat or a command, carries out nothing of a lower one but stops."""
+    assert look.leaders is not None
     return look.leaders.old
 
 
 @invariant(Trigger.WRONG_HISTORY)
 def history_is_one(look: Look) -> Iterable[str]:
     """Only who leads writes; a task is accepted once and ends once; who starts finds all that was taken."""
+    assert look.leaders is not None
     return look.leaders.wrong
 
 

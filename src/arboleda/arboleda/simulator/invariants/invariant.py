@@ -10,10 +10,11 @@ from enum import Enum
 from itertools import compress
 from operator import attrgetter
 
+from ..moment import Moment
 from ..record import Record
 from ..recorded.leaders import Leaders
 from ..truth.truth import Truth
-from ..world import Moment, World
+from ..world import World
 
 
 @dataclass(kw_only=True)
@@ -137,6 +138,12 @@ class Judges:
                     yield name, sentence
         if look.record.stepped and look.world.now >= self._next_round_at:
             yield from self._look_around(look)
+
+    def look_around(self, look: Look) -> Iterator[tuple[str, str]]:
+        """Each breach by an invariant that looks at the whole every so often: all of them look now."""
+        for each in self._rounds:
+            each.at = look.world.now
+        return self._look_around(look)
 
     def _look_around(self, look: Look) -> Iterator[tuple[str, str]]:
         """Each breach by an invariant that is to look at the whole now."""

@@ -103,7 +103,10 @@ def _outside(look: Look, cell: KnownCell) -> bool:
     """
     if any(_is_away(look, cell, name) for name in cell.cell.shared_movers):
         return False
-    if look.world.found.facts.get(Fact.QUARANTINE) and look.world.now < look.record.born_at + SURE_S:
+    if (
+        look.world.plant_process.found.facts.get(Fact.QUARANTINE)
+        and look.world.now < look.record.born_at + SURE_S
+    ):
         return not (cell.cell.zone_users or cell.cell.shared_movers)
     return all(_is_outside(look, cell.cell.workspaces[name]) for name in cell.cell.zone_users)
 
@@ -117,6 +120,12 @@ def _is_away(look: Look, cell: KnownCell, robot: str) -> bool:
 
 
 def _is_outside(look: Look, space: Workspace) -> bool:
+    """True for a robot outside of the shared zones; at `state` it counts where its last motion led, not what
+    it says of its place.
+    """
+    if space.robot.evidence is Evidence.STATE:
+        goal = look.world.plant.dispatcher.reached.get(space.robot.name)
+        return goal is None or any(not pose.zones and pose.q == goal for pose in space.poses)
     return _stands_at(look, space, [pose for pose in space.poses if not pose.zones])
 
 

@@ -41,7 +41,7 @@ def kept_is_what_is(look: Look) -> Iterable[str]:
 
 def _stops(look: Look) -> Iterator[str]:
     """Sentences on stops kept wrongly. A cell's clear counts, until its reset, for unstopped robots, too."""
-    kept = look.world.memory.get(Fact.LATCH, {})
+    kept = look.world.disk.facts.get(Fact.LATCH, {})
     for cell in look.record.cells.values():
         for robot in [each for each in cell.cell.robots if each.link not in UNSENT]:
             stop, word = look.record.robots[robot.name].stop, kept.get(robot.name)
@@ -50,7 +50,7 @@ def _stops(look: Look) -> Iterator[str]:
 
 
 def _effectors(look: Look) -> Iterator[str]:
-    kept = look.world.memory.get(Fact.EFFECTOR, {})
+    kept = look.world.disk.facts.get(Fact.EFFECTOR, {})
     for cell in look.record.cells.values():
         for name in cell.cell.holders:
             grip = cell.context.parts.grip(name)
@@ -60,7 +60,7 @@ def _effectors(look: Look) -> Iterator[str]:
 
 def _zones(look: Look) -> Iterator[str]:
     zones = look.world.plant.zones
-    for zone, robot in look.world.memory.get(Fact.QUARANTINE, {}).items():
+    for zone, robot in look.world.disk.facts.get(Fact.QUARANTINE, {}).items():
         if zones.holder(zone) != robot:
             yield f"zone {zone} belongs to {zones.holder(zone) or 'nobody'}, and is kept for {robot}"
 

@@ -29,7 +29,7 @@ def no_move_after_a_boot_that_was_told(look: Look) -> Iterator[str]:
     """A robot whose board reports no homing gets no absolute move once the plant has heard that it booted."""
     boots = look.truth.boots
     for command in look.moment.sent if boots.mute else ():
-        if isinstance(command, MoveJoints | FollowPath) and boots.told(command.robot):
+        if isinstance(command, MoveJoints | FollowPath) and boots.is_known(command.robot):
             yield f"{command.robot} booted and was not put right since, but gets {command}"
 
 

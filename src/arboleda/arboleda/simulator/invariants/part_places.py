@@ -30,7 +30,7 @@ def books_of_parts_are_true(look: Look) -> Iterator[str]:
         if places is None:
             continue
         booked = look.world.plant.cells[cell].context.places.counts
-        kept = look.world.memory.get(Fact.PARTS, {}).get(cell, "")
+        kept = look.world.disk.facts.get(Fact.PARTS, {}).get(cell, "")
         known = places.parts.keys() - (places.by_people if look.moment.last_words else ())
         wrong = {each: booked[each] for each in known if booked[each] != places.parts[each]}
         if wrong and not places.is_doubtful:
@@ -48,15 +48,15 @@ def _parted(word: str) -> tuple[str, str, str]:
 @invariant(Trigger.DONE_TASKS)
 def done_tasks_leave_nothing_behind(look: Look) -> Iterator[str]:
     """A task that is called done leaves no part in a hand, and none in a device where there was none before,
-    unless its recipe says so or people fill and empty that place; as long as nothing has gone wrong in a cell
-    without places.
+    unless its recipe says so or people fill and empty that place; in a cell without places, and in a device
+    that is no hand of one, as long as nothing has gone wrong: an alternative may leave it closed.
     """
     for cell, task, _ in look.truth.done_tasks:
         model = look.world.model.cell(cell)
         if not _is_known(look, cell) or task not in look.world.plant.intake.tasks:
             continue
         wanted = _wanted(look, model, task)
-        for name in model.holders:
+        for name in model.holders if _is_calm(look) else _hands(look, model):
             robot = look.truth.robot(name)
             if robot is not None and robot.body.true_facts.get(robot.robot.held_fact) and name not in wanted:
                 yield f"{task} is called done, and {name} still holds a part"
@@ -89,7 +89,17 @@ def _is_known(look: Look, cell: str) -> bool:
     """True where somebody can know what a task of the cell did."""
     if look.world.model.cell(cell).places:
         return not look.truth.places.cells[cell].end_is_doubtful
+    return _is_calm(look)
+
+
+def _is_calm(look: Look) -> bool:
+    """True as long as nothing has gone wrong."""
     return look.world.last_fault_at == -math.inf and look.record.undisturbed
+
+
+def _hands(look: Look, cell: Cell) -> list[str]:
+    """The holders that move parts between the places of a cell."""
+    return [name for name in cell.holders if look.truth.places.cells[cell.name].has(name)]
 
 
 def _wanted(look: Look, cell: Cell, task: str) -> dict[str, Value]:

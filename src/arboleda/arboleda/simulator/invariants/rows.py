@@ -15,6 +15,7 @@ from arboleda.dispatch.belief import FAULTY, FENCED, MOVING, OFFLINE, STOPPED, U
 from arboleda.dispatch.ledger import OPEN, State
 from arboleda.kinds.joints import MoveJoints
 from arboleda.kinds.mobile import FollowPath
+from arboleda.model.commands import Position
 from arboleda.model.messages import ENDED, Reason, TaskChanged
 from arboleda.model.plant_model import MotionState, Robot
 from arboleda.model.sentence import Phrase, Sentence
@@ -40,15 +41,15 @@ WORDS = {
 UNTOLD = ("age_s", "telemetry_hz")  # change all the time
 
 
-def line(said: TaskChanged) -> Row:
+def line(change: TaskChanged) -> Row:
     """The row for one change of a task, for people who follow it."""
     return {
-        "id": said.task,
-        "text": said.text,
-        "cell": said.cell,
-        "state": said.state.value,
-        "reason": None if said.reason is None else said.reason.value,
-        "sentence": said.sentence,
+        "id": change.task,
+        "text": change.text,
+        "cell": change.cell,
+        "state": change.state.value,
+        "reason": None if change.reason is None else change.reason.value,
+        "sentence": change.sentence,
     }
 
 
@@ -83,8 +84,10 @@ def queue(cell: KnownCell, row: Row, *, own: bool) -> Iterator[str]:
         yield from _progress(cell, row)
 
 
-def _says_held(cell: str, said: Sentence | None) -> bool:
-    return said is not None and said.phrase in (HELD, HELD_STRANDED) and said.values["cell"] == cell
+def _says_held(cell: str, sentence: Sentence | None) -> bool:
+    return (
+        sentence is not None and sentence.phrase in (HELD, HELD_STRANDED) and sentence.values["cell"] == cell
+    )
 
 
 def _steps(frame: Behaviour) -> Iterator[Behaviour]:
@@ -227,10 +230,10 @@ def of_cell(row: Row) -> dict[str, str]:
     }
 
 
-def ended_at(robot: Robot, last: SentCommand | None, q: tuple[float, ...] | None) -> Row | None:
-    """The place where the last motion of a robot ended, as far as that was proven; `q`: an arm's place."""
+def ended_at(robot: Robot, last: SentCommand | None, at: Position | None) -> Row | None:
+    """The place where the last motion of a robot ended, as far as that was proven; `at`: an arm's place."""
     if robot.joints:
-        return None if q is None else {"q": list(q)}
+        return {"q": list(at)} if isinstance(at, tuple) else None
     done = last is not None and last.state is State.DONE and isinstance(last.command, FollowPath)
     return {"node": last.command.nodes[-1]} if done else None  # type: ignore[union-attr]
 
@@ -246,7 +249,7 @@ def waits_at(cell: KnownCell, text: str, part: Row | None) -> Iterator[str]:
         stored = any(goals[-1] == station.q for station in cell.cell.stations) if goals else True
         expected = None if stored else {"at": "pose", "q": list(goals[-1])}
     elif text.endswith(" palletizing"):
-        expected = {"at": "pose", "q": list(cell.layout.palletizing.pick.q)}
+        expected = {"at": "pose", "q": list(cell.layout.palletizing.pick.joints)}
     else:
         expected = {"at": "mobile"}
     if part != expected:
@@ -265,6 +268,6 @@ def place(cell: StorageLayout) -> Row:
         "mobile": cell.mobile.name,
         "pitch": cell.mobile.grid.pitch,
         "columns": cell.mobile.grid.columns,
-        "pickups": [list(pose.q) for pose in cell.pickups],
-        "stations": [list(station.q) for station in cell.stations],
+        "pickups": [list(pose.joints) for pose in cell.pickups],
+        "stations": [list(station.joints) for station in cell.stations],
     }

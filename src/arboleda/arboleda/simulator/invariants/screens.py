@@ -82,8 +82,8 @@ def _shown(look: Look) -> Iterator[str]:
         yield from rows.queue(cell, row, own=_is_own(look, cell))
         yield from _refused(look, row, "cell")
         yield from rows.ways(plant.advice(cell.name), row)
-        if view.standing_said(row) != rows.stands(row):
-            yield f"{cell.name} is said to be {view.standing_said(row)}, it is {rows.stands(row)}"
+        if view.standing_text(row) != rows.stands(row):
+            yield f"{cell.name} is said to be {view.standing_text(row)}, it is {rows.stands(row)}"
         yield from _tree(cell, row["tree"], record.stepped_at, own=_is_own(look, cell))
     for row in shown["robots"]:
         known = record.robots[row["name"]]
@@ -136,7 +136,7 @@ def _time_line(look: Look, shown: Row) -> Iterator[str]:
     """Differences between time line and record: each thing's last event, and an event for each act."""
     line = look.record.time_line
     line.see(shown)
-    if line.told != shown:
+    if line.received != shown:
         yield "who hears only what is new of the plant knows something else than who is shown all of it"
     if not line.whole:
         return
@@ -320,7 +320,7 @@ def _goal(last: SentCommand | None) -> Row | None:
 
 
 def _diagnoses(shown: Row) -> Iterator[str]:
-    told = {name: rest for name, *rest in diagnostics.diagnostics(shown)}
+    told = {each[0]: each[1:] for each in diagnostics.diagnostics(shown)}
     for robot in shown["robots"]:
         whose, level, message, values = told.pop(f"arboleda: {robot['name']}", (None, None, "", {}))
         yield from rows.of_robot(robot, values)

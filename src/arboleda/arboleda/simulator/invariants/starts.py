@@ -16,8 +16,9 @@ from .invariant import Look, Trigger, invariant
 @invariant(Trigger.BORN)
 def accepted_is_found_again(look: Look) -> Iterator[str]:
     """Whatever was told of a task and of a stop is so for the plant that starts next."""
-    starts, found, known = look.record.starts, look.world.found.tasks, look.world.plant.intake.tasks
-    for id, said in [*starts.told.items()][-SURE:]:
+    starts, known = look.record.starts, look.world.plant.intake.tasks
+    found = look.world.plant_process.found.tasks
+    for id, said in [*starts.changes.items()][-SURE:]:
         row, end = found.get(id), starts.ended.get(id)
         if row is None or id not in known:
             yield f"task {id} was told to be {said.state.value}, and who starts knows nothing of it"
@@ -37,15 +38,15 @@ def asked_again_is_the_same_task(look: Look) -> Iterator[str]:
         if not isinstance(request, TaskRequest) or "#" not in request.text or request.request not in answers:
             continue
         id, answer = request.text.rpartition("#")[2], answers[request.request]
-        said = look.record.starts.told.get(id)
+        said = look.record.starts.changes.get(id)
         if said is not None and answer.task != id and not answer.for_now and _asks_for(look, request, said):
             yield f"task {id} was accepted, and is now {answer.state.value}: {answer.sentence}"
 
 
-def _asks_for(look: Look, request: TaskRequest, said: TaskChanged) -> bool:
+def _asks_for(look: Look, request: TaskRequest, change: TaskChanged) -> bool:
     try:
         allowed = text.alternatives(request.text, look.world.offers)
-        return any(order.text == said.text for order in allowed)
+        return any(order.text == change.text for order in allowed)
     except TextError:
         return False
 

@@ -86,8 +86,9 @@ def nothing_of_an_ended_task_moves(look: Look) -> Iterable[str]:
             continue
         for sent in commands.open.values():
             entry = sent.entry
-            is_of_task = entry is not None and entry.cell == change.said.cell and sent not in commands.new
-            if is_of_task and sent.can_be_halted and not sent.verbs and entry.cancelled_at is None:
+            if entry is None or entry.cell != change.said.cell or sent in commands.new:
+                continue
+            if sent.can_be_halted and not sent.verbs and entry.cancelled_at is None:
                 yield f"{change.said.task} has ended, and {sent} is under way"
 
 
@@ -181,7 +182,7 @@ def _asked_to_cancel(look: Look) -> bool:
 @invariant(Trigger.NEWS)
 def accepted_tasks_are_kept(look: Look) -> Iterable[str]:
     """Each accepted task is in its cell's queue, runs there, or has ended."""
-    return _unkept(look) if look.world.has_stepped else ()
+    return _unkept(look) if look.world.plant_process.has_stepped else ()
 
 
 def _unkept(look: Look) -> Iterator[str]:
@@ -201,7 +202,7 @@ def _unkept(look: Look) -> Iterator[str]:
         told = tasks.known(change.said.task)
         if known is not None and told is not None and known.state is not told.state:
             yield f"task {known.id} is {known.state.value}, and was told to be {told.state.value}"
-        retried = look.world.starts > 1 or look.record.cells[change.said.cell or ""].retries
+        retried = look.world.plant_process.starts > 1 or look.record.cells[change.said.cell or ""].retries
         if known is not None and not retried and known.attempts != (known.started_at is not None):
             yield f"task {known.id} began at {known.started_at}, and that was attempt {known.attempts}"
 
@@ -255,7 +256,7 @@ def _stop_of(look: Look, name: str) -> StopProgress | None:
     known = look.record.robots[name]
     if known.robot.link not in UNSENT:
         return known.stop
-    return STOPS.get(look.world.found.facts.get(Fact.LATCH, {}).get(name, ""))
+    return STOPS.get(look.world.plant_process.found.facts.get(Fact.LATCH, {}).get(name, ""))
 
 
 def _at_birth(look: Look) -> Iterator[str]:
@@ -338,25 +339,25 @@ def no_task_fails_without_a_fault(look: Look) -> Iterable[str]:
             yield f"task {change.said.task} ({change.said.text}) failed: {change.said.sentence}"
 
 
-def _may_fail(look: Look, said: TaskChanged) -> bool:
-    if look.world.plant.intake.tasks[said.task].order.recipe in NAMES:
-        return _cannot_be_done(look, said)
-    return said.reason not in ONLY_BY_FAULTS
+def _may_fail(look: Look, change: TaskChanged) -> bool:
+    if look.world.plant.intake.tasks[change.task].order.recipe in NAMES:
+        return _cannot_be_done(look, change)
+    return change.reason not in ONLY_BY_FAULTS
 
 
-def _cannot_be_done(look: Look, said: TaskChanged) -> bool:
+def _cannot_be_done(look: Look, change: TaskChanged) -> bool:
     """True if the plant file asks for what its robots, as they are simulated, cannot do.
 
     A virtual board without ids has no piece sensor. A path may begin where the mobile robot is not: the board
     refuses it if the plant may not drive there, or at `state` does not know the place.
     """
-    order = look.world.plant.intake.tasks[said.task].order
+    order = look.world.plant.intake.tasks[change.task].order
     cell = look.world.model.cell(order.cell)
     layout = StorageLayout(cell)
     mobile = look.truth.robot(layout.mobile.name)
-    if said.reason is Reason.ZONE_UNAVAILABLE:
+    if change.reason is Reason.ZONE_UNAVAILABLE:
         return look.record.cells[order.cell].behind_work
-    if said.reason in PIECES and layout.arm.evidence is not Evidence.IDS:
+    if change.reason in PIECES and layout.arm.evidence is not Evidence.IDS:
         return True
     led_there = cell.drive_to_start and layout.mobile.evidence is not Evidence.STATE
     if led_there or "path" not in order.values or not isinstance(mobile, MobileTruth):

@@ -6,12 +6,12 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from itertools import pairwise
 from typing import Any
 
-from arboleda.kinds.arm import Arm, SetEffector
+from arboleda.kinds.arm import SetEffector
 from arboleda.kinds.joints import Joint, MoveJoints
 from arboleda.kinds.mobile import FollowPath, Grid
 from arboleda.model.commands import Command, Home, Stop, StopMode
 from arboleda.model.messages import Heartbeat
-from arboleda.model.plant_model import Evidence
+from arboleda.model.plant_model import Evidence, Robot
 from arboleda.wire.payloads import StopGoal
 
 from ..record import SLOW_S
@@ -51,11 +51,11 @@ def nothing_of_an_old_epoch_has_effect(look: Look) -> Iterable[str]:
 @invariant(Trigger.EXECUTED)
 def nothing_late_has_effect(look: Look) -> Iterable[str]:
     """A board carries out no command, but for a stop, whose giver had not heard it for FRESH_S by then."""
-    for board, goal, *_, told_at in look.record.boards.executed:
+    for board, goal, *_, reported_at in look.record.boards.executed:
         if isinstance(goal, StopGoal) or goal.heard is None:
             continue
-        if told_at is None or look.world.now - told_at > FRESH_S + ROUNDING_S:
-            when = "unknown" if told_at is None else f"{look.world.now - told_at:.3f} s old"
+        if reported_at is None or look.world.now - reported_at > FRESH_S + ROUNDING_S:
+            when = "unknown" if reported_at is None else f"{look.world.now - reported_at:.3f} s old"
             yield f"{board} carried out {goal}, which names telemetry that is {when}"
 
 
@@ -83,7 +83,7 @@ def _joints(look: Look, name: str, body: Mapping[str, Any]) -> Iterator[str]:
     board = look.record.boards.by_name[name]
     arm = board.robot
     assert arm.joints
-    goal = [body.get(f"q{number}") for number in range(1, len(arm.joints) + 1)]
+    goal: list[Any] = [body.get(f"q{number}") for number in range(1, len(arm.joints) + 1)]
     if not all(is_number(value) for value in goal) or not _numbered(arm.evidence, body):
         yield f"{name}/juntas is {body}"
         return
@@ -107,7 +107,7 @@ def _off_step(name: str, joint: Joint, value: float) -> Iterator[str]:
         yield f"{name}: {joint.name} {value} is beyond {lower:.4f} to {upper:.4f}"
 
 
-def _is_goal(arm: Arm, q: tuple[float, ...], goal: list[Any]) -> bool:
+def _is_goal(arm: Robot, q: tuple[float, ...], goal: list[Any]) -> bool:
     rows = zip(arm.joints, q, goal, strict=True)
     return all(abs(on_wire(j, q) - said) <= on_wire(j, j.step) / 2 + ROUNDING_DEG for j, q, said in rows)
 
@@ -116,13 +116,13 @@ def _path(look: Look, name: str, body: Mapping[str, Any]) -> Iterator[str]:
     board = look.record.boards.by_name[name]
     mobile = board.robot
     assert mobile.floor_grid
-    nodes = body.get("nodos")
+    nodes: Any = body.get("nodos")
     whole = isinstance(nodes, list) and nodes and all(type(node) is int for node in nodes)
     if not whole or not _numbered(mobile.evidence, body):
         yield f"{name}/camino is {body}"
         return
     if (way := tuple(nodes)) not in board.legal:
-        yield from _off_grid(name, mobile.grid, nodes)
+        yield from _off_grid(name, mobile.floor_grid, nodes)
         board.legal.add(way)
     recent = reversed(look.record.commands.goals.get(mobile.name, ()))
     if not any(isinstance(each, FollowPath) and list(each.nodes) == nodes for each in recent):
@@ -179,7 +179,7 @@ def _untold(look: Look) -> Iterator[str]:
         if where is None or report.robot not in record.shown:
             continue
         _, board, _ = record.shown[report.robot]
-        if board.said(report.q, report.node, record.told_since(report.at)):
+        if board.said(report.q, report.node, record.reports_from_s(report.at)):
             continue
         if board.remembers(report.at - SLOW_S):  # else the plant waited longer for its disk than that
             yield f"{report.robot} is reported at {where}, which its board has not told lately"

@@ -21,7 +21,10 @@ NOT_DRAWN = (
     ("", "shared"),
     ("", "history_days"),
     ("", "groot2"),
+    ("", "opcua_view"),
     ("", "store"),
+    ("", "assistants"),
+    ("", "assistant_limits"),
     ("cells", "on_restart"),  # a plant that crashes here starts without the tasks that it had
     ("cells", "teach"),  # people who teach are asked for apart (`rates: {teach: 3}`)
     ("cells", "on_absence"),  # people of the simulator get a held cell going

@@ -34,7 +34,7 @@ def _places(value: Any, place: Place = ()) -> Iterator[Place]:
         keys: list[str | int] = [key for key in value if key not in NEEDED]
         inner: list[str | int] = list(value)
     elif isinstance(value, list) and place[-1] in ("poses", "moves"):
-        keys = inner = list(range(len(value)))[::-1]
+        keys = inner = [*reversed(range(len(value)))]
     else:
         return
     yield from ((*place, key) for key in keys)

@@ -47,7 +47,7 @@ class Acts:
     def _works(self, cell: KnownCell) -> bool:
         """True if a cell would start a task, or works on another one than at the first noted act."""
         run = cell.run
-        if run.teaching is not None:  # as its teacher wants it to be
+        if run.manual.teaching is not None:  # as its teacher wants it to be
             return True
         if run.state is CellState.IDLE:
             return run.not_ready is None

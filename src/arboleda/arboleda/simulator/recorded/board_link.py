@@ -56,8 +56,8 @@ class KnownLink:
     def hear(self, at: float, fields: dict[str, Any], *, in_hindsight: bool = False) -> bool:
         """Take telemetry; False if it does not count, as its number does not rise above that of its boot."""
         number, boot = fields.get("seq"), fields.get("arranque")
-        counts_on = boot is not None and boot == self._boot and None not in (number, self.number)
-        if counts_on and number <= self.number and not in_hindsight:
+        is_counted = boot is not None and boot == self._boot and not in_hindsight
+        if is_counted and number is not None and self.number is not None and number <= self.number:
             return False
         self.is_boot = boot is not None and self._boot is not None and boot != self._boot
         self.rose |= not self.up or self.is_boot

@@ -31,8 +31,8 @@ Numbers = tuple[int, int]  # (epoca, seq)
 class ExecutedCommand(NamedTuple):
     """A command that a board carried out, with the number of the one `before`; `delivered`: it had arrived.
 
-    `beat` is the newest epoch of which the board had heard a beat, `told_at` when it sent the telemetry that
-    the command names, None if it did not lately.
+    `beat` is the newest epoch of which the board had heard a beat, `reported_at` when it sent the telemetry
+    that the command names, None if it did not lately.
     """
 
     board: str
@@ -40,7 +40,7 @@ class ExecutedCommand(NamedTuple):
     before: Numbers | None
     delivered: bool
     beat: int | None
-    told_at: float | None
+    reported_at: float | None
 
 
 class KnownBoard:
@@ -52,7 +52,9 @@ class KnownBoard:
         self.boot = board.boot_id
         self.last: Numbers | None = None
         self.beat: int | None = None  # the newest epoch in the beats that it has read since it booted
-        self.told: deque[tuple[bytes, float]] = deque(maxlen=RECENT)  # telemetry since it booted, and when
+        self.published: deque[tuple[bytes, float]] = deque(
+            maxlen=RECENT
+        )  # telemetry since it booted, and when
         self.inbox: list[Delivery] = []
         self.telemetry: deque[Delivery] = deque(maxlen=RECENT)
         self.legal: set[tuple[float, ...]] = set()  # goals and paths on the wire that the robot can follow
@@ -67,7 +69,7 @@ class KnownBoard:
         """Take over what the board said before this record began, as far as the plant has heard it."""
         q, node = belief.q, belief.node
         if belief.number is not None:
-            self.told.append((b'"seq":%d' % belief.number, at))
+            self.published.append((b'"seq":%d' % belief.number, at))
         if q is not None or node is not None:
             words = self._words(q, node) + b'"estado":0}'
             self.telemetry.append(Delivery(at=at, topic="", payload=words))
@@ -78,14 +80,14 @@ class KnownBoard:
         before, delivered = self.last, self._was_delivered(goal)
         if goal.seq is not None and goal.epoch is not None:
             self.last = (goal.epoch, goal.seq)
-        told_at = None if isinstance(goal, StopGoal) else self._told_at(goal.heard)
-        return ExecutedCommand(self.robot.mqtt, goal, before, delivered, self.beat, told_at)
+        reported_at = None if isinstance(goal, StopGoal) else self._reported_at(goal.heard)
+        return ExecutedCommand(self.robot.mqtt, goal, before, delivered, self.beat, reported_at)
 
-    def _told_at(self, number: int | None) -> float | None:
+    def _reported_at(self, number: int | None) -> float | None:
         if number is None:
             return None
         wanted = b"%d" % number
-        for told, at in reversed(self.told):
+        for told, at in reversed(self.published):
             if parts(told)[1] == wanted:
                 return at
         return None
@@ -104,7 +106,7 @@ class KnownBoard:
         booted = self.boot != self.board.boot_id
         if booted:
             self.boot, self.last, self.beat = self.board.boot_id, None, None
-            self.told.clear()
+            self.published.clear()
         return booted
 
     def _read(self, delivery: Delivery) -> None:
@@ -181,7 +183,7 @@ class Boards:
             if publication.topic in self._hears and (board := self.by_name.get(name)) is not None:
                 if board.boot != board.board.boot_id:
                     board.notice_boot()
-                board.told.append((publication.payload, at))
+                board.published.append((publication.payload, at))
 
     def execute(self, name: str, goal: Goal) -> None:
         """Note that a board carries out a command."""

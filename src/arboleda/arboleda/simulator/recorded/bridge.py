@@ -19,7 +19,7 @@ from arboleda.wire.hop import FromPlant
 from arboleda.wire.rejections import ForeignCommand, Rejection
 from arboleda.wire.transport import Connection, Delivery, Publication
 
-from ..world import BridgeStep
+from ..moment import BridgeStep
 from .bridged_board import BridgedBoard
 
 YEAR_2100, AHEAD_S = 4_102_444_800, 366 * 86_400  # Unix time; how far ahead another machine's clock may be
@@ -120,21 +120,23 @@ class _Bridge:
         if isinstance(event, Connection):
             for board in self._boards.values():
                 board.connect(event.up)
-        elif isinstance(event, FromPlant) and isinstance(event.message, Heartbeat):
-            self._beat(event.at, event.message.epoch, event.unix_s)
         elif isinstance(event, FromPlant):
-            self._command(event, now, self._boards.get(event.message.robot))
+            message = event.message
+            if isinstance(message, Heartbeat):
+                self._beat(event.at, message.epoch, event.unix_s)
+            else:
+                self._command(event, message, now, self._boards.get(message.robot))
 
-    def _command(self, event: FromPlant, now: float, board: BridgedBoard | None) -> None:
-        if not event.message.id:
+    def _command(self, event: FromPlant, command: Command, now: float, board: BridgedBoard | None) -> None:
+        if not command.id:
             is_alone = event.at >= self._beat_at + PLANT_GONE_S and now - event.at <= self._patience_s
-            self.of_others += [event.message] if is_alone else []
+            self.of_others += [command] if is_alone else []
             if board is not None:
-                board.hear_others(event.at, event.message, is_alone=is_alone)
+                board.hear_others(event.at, command, is_alone=is_alone)
         elif board is not None:
             if event.copied:
-                board.expect_copy(event.at, event.message)
-            board.command(event.message, self._plant)
+                board.expect_copy(event.at, command)
+            board.command(command, self._plant)
 
     def _beat(self, at: float, epoch: int, unix_s: int | None) -> None:
         if epoch > (YEAR_2100 if unix_s is None else unix_s + AHEAD_S):

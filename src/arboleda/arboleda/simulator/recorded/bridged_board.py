@@ -130,7 +130,7 @@ class BridgedBoard:
         begins = bool(commands.orders) and commands.begins
         self._beats.compare(published, link, begins=begins, late=late)
         if commands.orders or published:
-            returned = link.rose or (bool(telemetry.maybe) and telemetry.is_heard_again(reports))
+            returned = link.rose or (bool(telemetry.maybe) and telemetry.is_reported_late(reports))
             commands.compare(reports, published, returned=returned, late=late)
         if reports or telemetry.counted or link.fell:
             telemetry.compare(reports)

@@ -151,7 +151,8 @@ def _runs(leaf: Behaviour, tree: Behaviour | None) -> bool:
 
 def _running(tree: Behaviour | None) -> list[Behaviour]:
     """The leaves of a tree that run, in its order."""
-    leaves, nodes = [], [tree] if tree else []
+    leaves: list[Behaviour] = []
+    nodes = [tree] if tree else []
     while nodes:
         node = nodes.pop()
         if node.status is Status.RUNNING:

@@ -8,6 +8,7 @@ from collections import deque
 from arboleda.dispatch.ledger import OPEN, Entry, Ledger, State
 from arboleda.model.commands import Command, Motion, OnStop, Stop, StopMode, Switch, Work
 from arboleda.model.messages import Heartbeat, Report, Verb
+from arboleda.model.plant_model import MotionState
 
 from .robots import KnownRobot, Obstacle
 
@@ -102,7 +103,7 @@ class Commands:
         rejected = self.open.get(report.rejected or "")
         if rejected is not None:
             rejected.rejected = True
-            known.barred |= report.refusal == "paro" and not known.robot.has_stop
+            known.barred |= report.refusal == "paro" and known.state is not MotionState.STOP_LATCHED
 
     def follow(self, ledger: Ledger, now: float) -> bool:
         """Take over from the ledger what became of open commands; True if anything changed."""

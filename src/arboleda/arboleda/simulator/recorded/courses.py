@@ -35,7 +35,9 @@ class TaskInProgress:
         self.begun: dict[Behaviour, float] = {}
         self._steps = [node for node in nodes if isinstance(node, TAKES_TIME)]
         self._was = {} if whole else {step: step.status for step in self._steps if not _waits(step)}
-        self._turns = {step: turns for step in self._steps if (turns := turns_of(step))}
+        self._turns: dict[Behaviour, list[int]] = {
+            step: turns for step in self._steps if (turns := turns_of(step))
+        }
         self.rested: object = None  # as what its tree came to rest last
         self._repeats = False  # whether a step began more than once
         self._rests: list[float] = []  # when it came to rest
@@ -71,9 +73,23 @@ class TaskInProgress:
 
     @property
     def steps(self) -> Mapping[str, float]:
-        """The beginnings of steps, earliest first, by name and count of that name in the tree."""
-        begun = {name: self.begun[step] for name, step in self._named().items()}
+        """The beginnings of steps, earliest first, by name and count of that name in the tree.
+
+        Of a step that began and ended within a pass only itself knows that; it counts where it may be so.
+        """
+        begun = {
+            name: at for name, step in self._names.items() if (at := self._last_beginning(step)) is not None
+        }
         return dict(sorted(begun.items(), key=lambda each: each[1]))
+
+    def _last_beginning(self, step: Behaviour) -> float | None:
+        """The time at which a step began last; None if it did not."""
+        seen = self.begun.get(step)
+        if not isinstance(step, TAKES_TIME) or step.began in (-math.inf, seen):
+            return seen
+        after_s = step.began - self.began
+        may_be = self._may_be_left(after_s) if seen is None else self._began(step, after_s)
+        return step.began if may_be else seen
 
     @property
     def recovers(self) -> bool:
@@ -119,8 +135,9 @@ class TaskInProgress:
             return True
         if not self._repeats and not self._is_in_a_later_turn(step):
             return False
-        over = self._over.get(step, math.inf)
-        since = over - ROUNDING_S if self._is_in_a_later_turn(step) else over
+        since = self._over.get(step, math.inf)
+        if self._is_in_a_later_turn(step):  # one that a reset made neither done nor failed began since then
+            since = self._over.get(step, self.begun[step]) - ROUNDING_S
         return at > since and any(abs(each - at) <= ROUNDING_S for each in (*self._rests, self.ended_at))
 
     def _is_in_a_later_turn(self, step: Behaviour) -> bool:

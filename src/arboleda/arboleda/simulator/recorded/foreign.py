@@ -8,7 +8,7 @@ from arboleda.model.commands import Command
 from arboleda.wire.hop import FromPlant
 from arboleda.wire.rejections import ForeignCommand, Rejection
 
-from ..world import BridgeStep
+from ..moment import BridgeStep
 
 # for so long a command may turn out to be a copy of one of the plant's, or a copy to be a foreign command
 UNSURE_S = 1.0
@@ -30,7 +30,9 @@ class ForeignCommands:
                 self._bridge = each.bridge
                 self._waiting.clear()
             for event in each.events:
-                if isinstance(event, FromPlant) and event.sender and event.message not in obeyed:
+                if not isinstance(event, FromPlant) or not event.sender or event.message in obeyed:
+                    continue
+                if isinstance(event.message, Command):
                     self._waiting.append((each.now + UNSURE_S, event.message))
             if self._waiting:
                 self._tell(each)

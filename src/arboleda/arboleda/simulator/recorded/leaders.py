@@ -36,7 +36,7 @@ class Leaders:
         self._beats: dict[str, tuple[int, int]] = {}  # boot and newest beat of each board before this step
         self._states: dict[str, TaskState] = {}
         self._last: Write | None = None
-        self._starts = world.starts
+        self._starts = world.plant_process.starts
         self.twice: list[str] = []
         self.sure: list[str] = []
         self.old: list[str] = []
@@ -54,8 +54,8 @@ class Leaders:
         self._beats = {name: (each.boot, each.beat or 0) for name, each in self._boards.by_name.items()}
         for write in moment.writes:
             self._wrote(write)
-        if self._world.starts != self._starts:
-            self._starts = self._world.starts
+        if self._world.plant_process.starts != self._starts:
+            self._starts = self._world.plant_process.starts
             self._look_at_found()
 
     def _look_at_numbers(self) -> None:
@@ -94,14 +94,16 @@ class Leaders:
         if isinstance(write.message, TaskChanged) and not again:
             self._changed(write.message)
 
-    def _changed(self, said: TaskChanged) -> None:
-        before = self._states.get(said.task)
-        if before in ENDED and said.state is not before:
-            self.wrong.append(f"task {said.task} had ended as {before.value}, is kept as {said.state.value}")
-        if before is None and said.state is not TaskState.QUEUED:
-            self.wrong.append(f"task {said.task} is {said.state.value}, and was never kept as accepted")
+    def _changed(self, change: TaskChanged) -> None:
+        before = self._states.get(change.task)
+        if before in ENDED and change.state is not before:
+            self.wrong.append(
+                f"task {change.task} had ended as {before.value}, is kept as {change.state.value}"
+            )
+        if before is None and change.state is not TaskState.QUEUED:
+            self.wrong.append(f"task {change.task} is {change.state.value}, and was never kept as accepted")
         if before not in ENDED:
-            self._states[said.task] = said.state
+            self._states[change.task] = change.state
 
     def _look_at_found(self) -> None:
         """Check that a process that starts finds all that the store took."""

@@ -47,7 +47,7 @@ class KnownNumbers:
             return report.accepted is None and report.done is None
         epoch, named = fields.get("epoca_ack"), []
         for key in ("ack", "hecho", "rechazo_seq"):
-            number = (epoch, fields.get(key))
+            number: tuple[Any, Any] = (epoch, fields.get(key))
             named.append(self._commands.get(number) if self.given.get(number, -1) < place else None)
         accepted, done, rejected = named
         if report.accepted != (accepted or None) or report.done != (done or None):

@@ -8,8 +8,9 @@ from __future__ import annotations
 import math
 from collections import defaultdict
 from dataclasses import dataclass, field, replace
+from typing import cast
 
-from arboleda.kinds.joints import MoveJoints
+from arboleda.kinds.joints import Jointed, MoveJoints
 from arboleda.kinds.mobile import FollowPath
 from arboleda.model.commands import Home, Query, Switch
 from arboleda.model.messages import Failure, Reason, Report
@@ -231,9 +232,9 @@ def _off(sent: SentCommand, robot: Robot, q: tuple[float, ...] | None, node: int
         return None if node is None else _off_path(command.nodes, node)
     if not isinstance(command, MoveJoints) or not robot.joints or q is None:
         return None
-    beyond = -math.inf
+    beyond, tolerances = -math.inf, cast(Jointed, robot).tolerance
     for number, (at, goal, joint) in enumerate(zip(q, command.q, robot.joints, strict=True)):
-        tolerance = robot.tolerance[number] if robot.tolerance else joint.step / 2 + 1e-5
+        tolerance = tolerances[number] if tolerances else joint.step / 2 + 1e-5
         steps = math.floor(abs(goal) / joint.step + 0.5) * (1 if goal >= 0 else -1)
         beyond = max(beyond, abs(at - steps * joint.step) - tolerance)
     return beyond

@@ -29,7 +29,7 @@ def _only_refused(record: Record) -> bool:
 
 def _something_was_due(record: Record) -> bool:
     now = record.world.plant.now
-    if record.away:
+    if record.away or record.begins:  # what an earlier start left is found in the first step
         return True
     # an arm whose tree has ended gives its zones back in the next step, whatever happens in that
     if any(isinstance(each, Remember) and each.fact is Fact.QUARANTINE for each in record.world.moment.sent):

@@ -65,7 +65,7 @@ class ReportedTelemetry:
         elif not self._link.up:  # a counter that began anew counts again after some time
             self.maybe.append((delivery, place))
 
-    def is_heard_again(self, reports: list[Report]) -> bool:
+    def is_reported_late(self, reports: list[Report]) -> bool:
         """True if a lost board is reported by telemetry that counts only in hindsight."""
         return any(report.at == delivery.at for delivery, _ in self.maybe for report in reports)
 

@@ -68,7 +68,7 @@ class KnownRobot:
         self.piece: bool | None = None
         self.facts: dict[str, Value] = {}
         self.displaced = False  # it cannot report its homing, and has booted
-        self.barred = False  # it has no stop, and its bridge refused a command because of one
+        self.barred = False  # a command was refused because of a stop that it does not tell
         self.unnamed: str | None = None  # the last command that it was sent, until a report names it
 
     def take_over(self, heard_at: float | None) -> None:

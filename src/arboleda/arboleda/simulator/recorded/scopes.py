@@ -17,10 +17,11 @@ class Scopes:
     def __init__(self, model: PlantModel) -> None:
         self._model = model
         cells = {cell.name: tuple(robot.name for robot in cell.robots) for cell in model.cells}
+        self._cells: dict[str, tuple[str, ...]] = {cell.name: (cell.name,) for cell in model.cells}
         everybody = tuple(model.robots)
         self._robots = {name: (name,) for name in everybody} | cells | {"": everybody, "plant": everybody}
         self._unsent = {name for name, robot in model.robots.items() if robot.link in UNSENT}
-        self._cells = {cell.name: (cell.name,) for cell in model.cells}
+
         self._cells |= {robot: tuple(cell.name for cell in cells) for robot, cells in model.cells_of.items()}
 
     def robots(self, scope: str) -> tuple[str, ...]:
@@ -61,5 +62,5 @@ def _named(cell: Cell, told: Mapping[str, int | str]) -> list[Place]:
         return [each for each in cell.counted if each.target == str(told["place"]).lower()]
     if "station" not in told:
         return [*cell.counted]
-    stations = dict(enumerate(cell.station_targets))
+    stations: dict[object, str] = dict(enumerate(cell.station_targets))
     return [each for each in cell.counted if each.target == stations.get(told["station"])]

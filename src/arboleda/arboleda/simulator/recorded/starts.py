@@ -41,14 +41,14 @@ class Step:
 
 
 class Starts:
-    """Tasks over all starts: `told` is the last word on each accepted one, `ended` its first end told.
+    """Tasks over all starts: `changes` is the last word on each accepted one, `ended` its first end told.
 
     `wrong` are ends that were told again or otherwise in this step. `twice` are steps that a board has begun
     again although an earlier start had done them, or had gone on from them.
     """
 
     def __init__(self, model: PlantModel) -> None:
-        self.told: dict[str, TaskChanged] = {}
+        self.changes: dict[str, TaskChanged] = {}
         self.ended: dict[str, TaskChanged] = {}
         self.wrong: list[str] = []
         self.twice: list[str] = []
@@ -104,20 +104,21 @@ class Starts:
             sent.remove(step)
             self._carry_out(step)
 
-    def _hear(self, said: TaskChanged) -> None:
-        end = self.ended.get(said.task)
-        if end is not None and (said.state is not end.state or said.request is None):
+    def _hear(self, change: TaskChanged) -> None:
+        end = self.ended.get(change.task)
+        if end is not None and (change.state is not end.state or change.request is None):
+            before, now = end.state.value, change.state.value
             self.wrong.append(
-                f"task {said.task} was told to have ended as {end.state.value}, and now as {said.state.value}"
-                if said.state in ENDED
-                else f"task {said.task} had ended as {end.state.value}, and is told to be {said.state.value}"
+                f"task {change.task} was told to have ended as {before}, and now as {now}"
+                if change.state in ENDED
+                else f"task {change.task} had ended as {before}, and is told to be {now}"
             )
-        elif end is None and said.state in ENDED:
-            self.ended[said.task] = said
-        self.told[said.task] = said
-        if len(self.told) > TASKS:
-            oldest = next(iter(self.told))
-            del self.told[oldest]
+        elif end is None and change.state in ENDED:
+            self.ended[change.task] = change
+        self.changes[change.task] = change
+        if len(self.changes) > TASKS:
+            oldest = next(iter(self.changes))
+            del self.changes[oldest]
             self.ended.pop(oldest, None)
 
     def _carry_out(self, step: Step) -> None:

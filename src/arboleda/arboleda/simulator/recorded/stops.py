@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from arboleda.model.commands import Motion
+from arboleda.model.messages import Heartbeat
 from arboleda.wire.hop import FromPlant, is_stop
 
 Number = tuple[int, int]  # the number of the plant's start, and that of the command in it
@@ -21,7 +22,9 @@ class EarlyStops:
         """Take in what the bridge took in, in its order; `epoch` is that of the running plant."""
         self.overtaken.clear()
         for command in (each.message for each in taken):
-            number = _number(getattr(command, "id", ""))
+            if isinstance(command, Heartbeat):
+                continue
+            number = _number(command.id)
             if number is None or number[0] != epoch:
                 continue
             if is_stop(command):

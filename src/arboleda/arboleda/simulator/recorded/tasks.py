@@ -105,38 +105,38 @@ class Tasks:
         known = (*self.ended.values(), *self.open.values())
         return sorted((task for task in known if task.cell == cell), key=lambda task: task.number)
 
-    def take(self, said: TaskChanged, now: float, *, asked_again: bool) -> None:
-        """Take in the plant's word on a task; `asked_again`: it may be a mere answer to a request."""
-        if said.state is TaskState.REFUSED or said.cell is None:
+    def take(self, change: TaskChanged, now: float, *, is_repeated: bool) -> None:
+        """Take in the plant's word on a task; `is_repeated`: it may be a mere answer to a request."""
+        if change.state is TaskState.REFUSED or change.cell is None:
             self.refused += 1
             return
-        task = self.known(said.task) or self._answered(said, asked_again=asked_again)
+        task = self.known(change.task) or self._answered(change, is_repeated=is_repeated)
         before = task.state if task else None
-        answer = asked_again and before is said.state
-        first = next(iter(self.queues[said.cell]), None)
-        self.changes.append(Change(said, before, answer, first, task.cancelled if task else False))
+        answer = is_repeated and before is change.state
+        first = next(iter(self.queues[change.cell]), None)
+        self.changes.append(Change(change, before, answer, first, task.cancelled if task else False))
         if not answer:
-            self._follow(said, task, now)
+            self._follow(change, task, now)
 
-    def _answered(self, said: TaskChanged, *, asked_again: bool) -> KnownTask | None:
+    def _answered(self, change: TaskChanged, *, is_repeated: bool) -> KnownTask | None:
         """The ended task that this word only repeats, as an answer to a repeated request; None for news."""
-        task = self.ended.get(said.task) if asked_again else None
-        return task if task is not None and task.state is said.state else None
+        task = self.ended.get(change.task) if is_repeated else None
+        return task if task is not None and task.state is change.state else None
 
-    def _follow(self, said: TaskChanged, task: KnownTask | None, now: float) -> None:
-        if task is None or said.state is TaskState.QUEUED:
+    def _follow(self, change: TaskChanged, task: KnownTask | None, now: float) -> None:
+        if task is None or change.state is TaskState.QUEUED:
             self._accepted += 1
-            task = KnownTask(said.task, said.cell or "", self._accepted, said.state, now, said, now)
-        task.state, task.since, task.said = said.state, now, said
-        task.began = now if said.state is TaskState.RUNNING else task.began
+            task = KnownTask(change.task, change.cell or "", self._accepted, change.state, now, change, now)
+        task.state, task.since, task.said = change.state, now, change
+        task.began = now if change.state is TaskState.RUNNING else task.began
         queue = self.queues[task.cell]
         queue.pop(task.id, None)
         self.open.pop(task.id, None)
         if self.running.get(task.cell) == task.id:
             del self.running[task.cell]
-        if said.state in OPEN:
+        if change.state in OPEN:
             self.open[task.id] = task
-            if said.state is TaskState.QUEUED:
+            if change.state is TaskState.QUEUED:
                 queue[task.id] = task
             else:
                 self.running[task.cell] = task.id

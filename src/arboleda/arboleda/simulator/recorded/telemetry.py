@@ -51,7 +51,8 @@ def read(payload: bytes, robot: Robot) -> dict[str, Any] | None:
         return None
     if not fields.keys().isdisjoint(FOREIGN_TO_ARMS if robot.joints else FOREIGN_TO_MOBILES):
         return None
-    if robot.floor_grid and not 0 <= fields["nodo"] < robot.grid.size:
+    grid = robot.floor_grid
+    if grid and not 0 <= fields["nodo"] < grid.size:
         return None
     for key in place:
         if type(fields[key]) not in (int, float) or not math.isfinite(fields[key]):

@@ -13,7 +13,7 @@ UNIX_S = 1_700_000_000.0  # what the clock on the wall says where the plant's sa
 
 
 class TimeLine:
-    """Time line over one start of the plant; `told` is what a page has that receives only news.
+    """Time line over one start of the plant; `received` is what a page has that receives only news.
 
     `last` is the last event about each kind and subject, also where the time line has forgotten it; `acts`
     are events of what operators did, `foreign` counts those of other nodes' commands. `whole`: no event was
@@ -25,7 +25,7 @@ class TimeLine:
 
     def begin(self) -> None:
         """Begin anew with a plant that starts, and with its pages."""
-        self.told: Row = {}
+        self.received: Row = {}
         self.last: dict[tuple[str, str], Row] = {}
         self.acts: deque[Row] = deque(maxlen=EVENTS)
         self.foreign = 0
@@ -35,7 +35,7 @@ class TimeLine:
 
     def see(self, shown: Row) -> None:
         self._chronicle.see(shown, UNIX_S + shown["at"])
-        self.told |= changed(self.told, shown)
+        self.received |= changed(self.received, shown)
         new = [each for each in self._chronicle.events if each["number"] > self._seen]
         self.whole = self.whole and (not new or new[0]["number"] == self._seen + 1)
         self._seen += len(new)

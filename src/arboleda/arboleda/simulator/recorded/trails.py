@@ -45,7 +45,7 @@ class Trails:
         """Take in what became of the tasks that were found; `retried`: somebody had steps given anew."""
         self.wrong = []
         for name in self.found:
-            self.wrong += self._told_more(cells[name])
+            self.wrong += self._more_commands(cells[name])
         for cell, _, after in transitions:
             trail = self.found.pop(cell.name, None)
             if trail is None or after is not CellState.EXECUTE or retried or cell.run.run.recovering:
@@ -57,18 +57,20 @@ class Trails:
         """Take in what is kept of tasks in this step, in which somebody holds a cell or gets one going: the
         commands of steps that wait for that may be done.
         """
-        steps = [each for each in said if isinstance(each, Remember) and each.fact is Fact.STEP]
+        kept = [each for each in said if isinstance(each, Remember) and each.fact is Fact.STEP]
+        last = {each.name: each for each in kept}
         at_work = {cell.run.task.id: cell for cell in cells.values() if cell.run.task is not None}
-        for each in steps:
+        for each in kept:
             if each.value is not None and each.name in at_work:
-                self.wrong += _said_otherwise(at_work[each.name], Trail.read(each.value), commands)
+                cell, trail, is_last = at_work[each.name], Trail.read(each.value), each is last[each.name]
+                self.wrong += _said_otherwise(cell, trail, commands, is_last=is_last)
 
     def _devices(self, cell: KnownCell) -> list[str]:
         """The devices of a cell, of shared ones those that it held when the plant started."""
         shared = [name for name in cell.cell.shared if self._holders.get(name) == cell.name]
         return [*cell.cell.own, *shared]
 
-    def _told_more(self, cell: KnownCell) -> Iterator[str]:
+    def _more_commands(self, cell: KnownCell) -> Iterator[str]:
         """Sentences on a device that has booted, of which it is said now that it was told more."""
         trouble = cell.run.trouble
         said, before = trouble.sentence if trouble else None, self._said.get(cell.name)
@@ -86,16 +88,18 @@ class Trails:
         return numbers and known is not None and None not in (known.boot, now.boot) and known.boot != now.boot
 
 
-def _said_otherwise(cell: KnownCell, trail: Trail, commands: Commands) -> Iterator[str]:
+def _said_otherwise(cell: KnownCell, trail: Trail, commands: Commands, *, is_last: bool) -> Iterator[str]:
     """Sentences on steps under way of which a trail does not say whether their last command is done.
 
     One that was cancelled, or that a hold lets end, and then ended in this very step may be kept as not
-    done: whoever holds the cell was heard before the report that proves it.
+    done: whoever holds the cell was heard before the report that proves it. A trail that is kept once more
+    in the same step says nothing of what was given or has ended in it, and may be of a tree that has ended
+    since.
     """
     moved = [sent for sent, _ in commands.moved]
     nodes = cell.run.run.nodes
     for number, kept in trail.nodes.items():
-        step, last = nodes[number], kept.get("last")
+        step, last = nodes[number] if number < len(nodes) else None, kept.get("last")
         if last is None or not isinstance(step, Act) or step.entry is None:
             continue
         sent = commands.last.get(last["robot"])
@@ -103,6 +107,8 @@ def _said_otherwise(cell: KnownCell, trail: Trail, commands: Commands) -> Iterat
             continue  # it gave another one since
         awaited = step.entry.cancelled_at is not None or not step.entry.halts
         if sent in moved and awaited and not last["done"]:
+            continue
+        if not is_last and (sent in moved or sent in commands.new):
             continue
         if last["done"] is not (sent.state is State.DONE):
             yield f"of {sent} it is kept that it is {'' if last['done'] else 'not '}done"

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from arboleda.core.cell_states import CellState
 from arboleda.model.messages import OperatorRequest, TaskState
+from arboleda.model.sentence import Sentence
 
 from ..world import World
 from .cells import KnownCell
@@ -37,7 +38,7 @@ class EarlierState:
     def __init__(self) -> None:
         self.cells: list[CellSnapshot] = []
         self.quarantined: dict[str, str] = {}  # zone -> its silent robot
-        self.foretold: list[tuple[OperatorRequest, str | None]] = []  # of a verb that comes alone
+        self.foretold: list[tuple[OperatorRequest, Sentence | None]] = []  # of a verb that comes alone
         self.tasks: dict[str, TaskState] = {}
         self.ids: frozenset[str] = frozenset()  # of all tasks that were accepted and may be remembered
 

@@ -10,8 +10,9 @@ from arboleda.model.task import Order
 from arboleda.recipes.storage_layout import StorageLayout
 from arboleda.wire.payloads import EffectorGoal, PathGoal
 
-from ..truth.arm import NOWHERE, ArmTruth
+from ..truth.arm import ArmTruth
 from ..truth.mobile import MobileTruth
+from ..truth.robot import NOWHERE
 from .tasks import path_of, station_of
 
 KEPT = 50  # switches of one task

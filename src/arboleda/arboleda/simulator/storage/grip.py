@@ -155,7 +155,9 @@ def _opened(look: Look) -> Iterator[str]:
 
 
 def _repeated(look: Look) -> Iterator[str]:
-    for each in (*look.truth.storage.cells.values(), *look.truth.storage.ended):
+    storage = look.truth.storage
+    known: tuple[CellTruth | EndedTask, ...] = (*storage.cells.values(), *storage.ended)
+    for each in known:
         if not each.blind and (each.picks > 1 or each.places > 1):
             yield f"task {each.task} has {each.picks} picks and {each.places} places"
 

@@ -8,6 +8,7 @@ from itertools import dropwhile
 from arboleda.dispatch.ledger import State
 from arboleda.kinds.arm import Arm
 from arboleda.kinds.joints import MoveJoints
+from arboleda.model.commands import Position
 from arboleda.model.plant_model import Evidence, Pose
 from arboleda.recipes.storage_layout import StorageLayout
 
@@ -47,7 +48,7 @@ def _lacking(look: Look, cell: KnownCell, sent: SentCommand) -> Iterator[str]:
     if cell.held_before_recovery:
         return  # it stands in zones that it holds already
     pickups = cell.layout.pickups
-    goals = [pickup for pickup in pickups if sent.command.q in (pickup.q, pickup.above)] or pickups
+    goals = [pickup for pickup in pickups if _goal(sent) in (pickup.q, pickup.above)] or pickups
     lacking = min((_of_any_way(cell.layout, pickup) - held for pickup in goals), key=len)
     if lacking:
         yield f"{sent} leaves from an unknown place without zone {', '.join(sorted(lacking))}"
@@ -70,7 +71,13 @@ def _sets_out(cell: KnownCell, sent: SentCommand) -> bool:
         moves = [*dropwhile(lambda each: each.state is not State.DONE, moves)][1:]
     goals = [each.command.q for each in moves if isinstance(each.command, MoveJoints)]
     ends = [cell.layout.home.q, *(spot for each in cell.layout.pickups for spot in (each.q, each.above))]
-    return [goal for goal in goals if goal in ends] == [sent.command.q]
+    return [goal for goal in goals if goal in ends] == [_goal(sent)]
+
+
+def _goal(sent: SentCommand) -> Position:
+    """The goal of an arm's motion."""
+    assert isinstance(sent.command, MoveJoints)
+    return sent.command.q
 
 
 def _is_seen(look: Look, cell: StorageLayout) -> bool:
@@ -79,7 +86,8 @@ def _is_seen(look: Look, cell: StorageLayout) -> bool:
     if arm.evidence is Evidence.STATE:
         return True
     spots = [spot for pose in cell.space.poses if not pose.zones for spot in (pose.q, pose.above) if spot]
-    return q is not None and any(_near(arm, q, spot) for spot in (*spots, (0.0,) * len(arm.joints)))
+    goals = (*(spot for spot in spots if isinstance(spot, tuple)), (0.0,) * len(arm.joints))
+    return q is not None and any(_near(arm, q, goal) for goal in goals)
 
 
 def _near(arm: Arm, q: tuple[float, ...], goal: tuple[float, ...]) -> bool:

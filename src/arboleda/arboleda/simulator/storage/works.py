@@ -178,9 +178,9 @@ def _fits(step: Step | None, expected: Step) -> bool:
     if step is None:
         return False
     if expected[0] == OPTIONAL:
-        return step == expected[1]
+        return bool(step == expected[1])
     if expected[0] == TO_START:
-        return step[0] == "path" and step[1][-1] == expected[1]
+        return bool(step[0] == "path" and step[1][-1] == expected[1])
     return step == expected
 
 

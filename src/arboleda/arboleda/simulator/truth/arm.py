@@ -6,6 +6,7 @@ import math
 from operator import add, sub
 
 from arboleda.kinds.arm import Arm
+from arboleda.model.commands import Position
 from arboleda.model.plant_model import Cell, Pose
 from arboleda.sim.arm import ArmBody
 from arboleda.sim.board import Board
@@ -47,7 +48,7 @@ class ArmTruth(RobotTruth):
         self.zones = NOWHERE
         self.true, self.counted = self.body.true_position, self.body.position
         self._shift = tuple(map(sub, self.true, self.counted))  # of the counters, by boots alone
-        self._told: dict[tuple[float, ...], Steps] = {}  # of the poses
+        self._told: dict[Position, Steps] = {}  # of the poses
         self._names: dict[Steps, frozenset[str]] = {}
         self._spots: dict[Steps, frozenset[str]] = {}  # with the points above poses
         space = cell.workspaces.get(robot.name)
@@ -81,7 +82,7 @@ class ArmTruth(RobotTruth):
         if self.on:
             self.robbed_at = at
 
-    def poses_like(self, q: tuple[float, ...]) -> frozenset[str]:
+    def poses_like(self, q: Position) -> frozenset[str]:
         """The names of all poses that are at `q`."""
         return self._names.get(self._steps(q), NOWHERE)
 
@@ -90,9 +91,9 @@ class ArmTruth(RobotTruth):
         """The names of the poses where its axes truly are, with all the steps that they lost."""
         return self._names.get(self.true, NOWHERE)
 
-    def stands_at(self, q: tuple[float, ...]) -> bool:
-        """True if it stands within its tolerance of the motor step nearest to `q`."""
-        return self.stands and self._is_near(self.intended, self._steps(q))
+    def stands_at(self, place: Position) -> bool:
+        """True if it stands within its tolerance of the motor step nearest to `place`."""
+        return self.stands and self._is_near(self.intended, self._steps(place))
 
     @property
     def let_go(self) -> bool:
@@ -220,9 +221,10 @@ class ArmTruth(RobotTruth):
                 place = self._told[q] = self._steps(q)
                 book[place] = book.get(place, NOWHERE) | {pose.name}
 
-    def _steps(self, q: tuple[float, ...]) -> Steps:
+    def _steps(self, q: Position) -> Steps:
         if q in self._told:
             return self._told[q]
+        assert isinstance(q, tuple)
         return tuple(joint.steps(value) for joint, value in zip(self.arm.joints, q, strict=True))
 
 

@@ -21,10 +21,10 @@ class Boots:
         self._told: set[str] = set()
         self._known: set[str] = set()  # those told before any command of this step
 
-    def look(self, heard: Iterable[Report], *, asked: bool) -> None:
+    def look(self, reports: Iterable[Report], *, asked: bool) -> None:
         """Take in what the plant heard in this step; what was `asked` in it may have come before that."""
         before = self._told.copy() if asked else None
-        for report in heard:
+        for report in reports:
             if report.robot in self.mute and report.boot_id is not None:
                 self._hear(report)
         if self._told:
@@ -46,7 +46,7 @@ class Boots:
             if each.robot.evidence is Evidence.JOINTS:
                 self._last.pop(name, None)
 
-    def told(self, robot: str) -> bool:
+    def is_known(self, robot: str) -> bool:
         """True if the plant knows that the robot booted, and nobody has put it right since."""
         return robot in self._known
 

@@ -80,7 +80,8 @@ class Books:
         # what came out of order a moment ago may still be on its way where state and position come apart
         since = world.now - (APART_S if robot in world.partings else 0.0)
         late = any(line.busy_until > since or line.troubles for line in lines)
-        return late or world.writes or world.is_stalled(BRIDGE) or world.is_stalled(name)
+        late = late or world.plant_process.waits_for_disk
+        return late or world.is_stalled(BRIDGE) or world.is_stalled(name)
 
     def calm_since(self, at: float) -> bool:
         """True if nothing that a fault did can have touched what happened since then."""

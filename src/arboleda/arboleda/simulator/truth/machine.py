@@ -26,7 +26,7 @@ class MachineTruth(RobotTruth):
     nobody counts on that any more.
     """
 
-    SIGNS = ("next_change_us",)
+    SIGNS = ("next_change_us", "moving")  # its work may end while a switch goes on until the same time
     PLACE = "facts"
 
     def __init__(self, robot: Robot, cell: Cell, board: Board, client: Client) -> None:

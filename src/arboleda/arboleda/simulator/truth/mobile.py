@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from arboleda.kinds.mobile import Mobile
+from arboleda.model.commands import Position
 from arboleda.model.plant_model import Cell
 from arboleda.sim.board import Board
 from arboleda.sim.mobile import MobileBody
@@ -36,9 +37,9 @@ class MobileTruth(RobotTruth):
     def strayed(self) -> bool:
         return self.homed and self.node != self.counted
 
-    def stands_at(self, node: int) -> bool:
+    def stands_at(self, place: Position) -> bool:
         """True if it stands at the node, or would if nobody had moved it."""
-        return not self.moving and node in (self.node, self.counted if self.strayed else None)
+        return not self.moving and place in (self.node, self.counted if self.strayed else None)
 
     @property
     def at_reference(self) -> bool:

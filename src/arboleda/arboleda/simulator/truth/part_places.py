@@ -22,7 +22,7 @@ class CellPlaces:
     know them any more, `end_is_doubtful` where that was so when that task ended: a device has lied or lost
     its power, its effector was stuck and nobody reports that, somebody took a hand's part, a hand took one
     at a station where none was known, or two places are one to its robot. The next task begins with what is
-    in the books then.
+    in the books then, unless a hand still holds something.
     """
 
     def __init__(self, cell: Cell, robots: Mapping[str, Any]) -> None:
@@ -40,7 +40,8 @@ class CellPlaces:
     def begin(self, booked: Mapping[str, int]) -> None:
         """A task begins: people have filled the supplies and emptied the outputs."""
         if self.is_doubtful:
-            self.parts, self.is_doubtful = dict(booked), False
+            self.parts = dict(booked)
+            self.is_doubtful = any(self._held.values())  # a hand has what the plant may not know of
         for target in self.by_people:
             place = self._places[target]
             self.parts[target] = place.holds if place.supply else 0
@@ -152,7 +153,7 @@ class PlacesTruth:
                 if found is not None and not places.is_doubtful and not self._released(name):
                     self.wrong.append(found)
 
-    def told(self, answer: OperatorAnswer) -> None:
+    def take_answer(self, answer: OperatorAnswer) -> None:
         """Take in what a person did before they said it: they put parts at a place, or took them out."""
         for name, parts in with_common_places(self._scopes.parts(answer), self._world.model.cells).items():
             self.cells[name].set(parts)

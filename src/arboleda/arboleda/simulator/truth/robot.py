@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from operator import attrgetter
 from typing import Any
 
-from arboleda.model.commands import Command, StopMode
+from arboleda.model.commands import Command, Position, StopMode
 from arboleda.model.plant_model import Cell, Evidence, Interlock, Robot
 from arboleda.sim.board import Board
 from arboleda.wire.payloads import EffectorGoal, Goal, HomeGoal, JointsGoal, PathGoal, StopGoal
@@ -58,10 +58,10 @@ class RobotTruth:
     stood = NOWHERE  # the same, in this step, if it has moved on
     unmet: Sequence[tuple[Command, str]] = ()  # commands that it carries out without their needs
     cut_short = False  # it ended work that goes on through a stop, and nothing explains that
-    unbidden = False  # what moved it in this step was none of its goals
+
     overdue = False  # in this step it switched so late that nobody counts on that any more
     switched_from: float | None = None  # when it was given the switch that changed a fact in this step, s
-    let_go = False  # in this step it let go of what it held, by itself and with its power on
+
     worked_from: float | None = None  # for a machine that reports only ends: when it began to move, s
 
     def __init__(self, robot: Robot, cell: Cell, board: Board, client: Client) -> None:
@@ -91,6 +91,20 @@ class RobotTruth:
         self._due: int | None = None  # when its motion was to end
         self._was_due: int | None = None  # the same, before this step
         self.forget()
+
+    @property
+    def unbidden(self) -> bool:
+        """True if what moved it in this step was none of its goals."""
+        return False
+
+    @property
+    def let_go(self) -> bool:
+        """True if it let go in this step of what it held, by itself and with its power on."""
+        return False
+
+    def stands_at(self, place: Position) -> bool:
+        """True if it stands at this place; what goes nowhere stands at none."""
+        return False
 
     def forget(self) -> None:
         """Forget what happened in the step before."""

@@ -164,10 +164,10 @@ class RobotsTruth:
                 self._take_in(message)
             self.stops.settle()
 
-    def _listen(self, heard: list[Report]) -> None:
+    def _listen(self, reports: list[Report]) -> None:
         """Take in what the plant hears."""
         if self.boots.mute:
-            self.boots.look(heard, asked=bool(self.world.moment.asked))
+            self.boots.look(reports, asked=bool(self.world.moment.asked))
 
     def _revise(self) -> None:
         """Know the places of what cells work by now."""
@@ -200,7 +200,7 @@ class RobotsTruth:
             self._take_in(message)
         self.stops.settle()
         if words:
-            self.stops.restart(self.world.found.facts.get(Fact.LATCH, {}))
+            self.stops.restart(self.world.plant_process.found.facts.get(Fact.LATCH, {}))
         self._plant = self.world.plant
 
     def _overhear(self) -> None:

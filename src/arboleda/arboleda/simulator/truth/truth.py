@@ -84,10 +84,10 @@ class Truth(RobotsTruth):
             self.places.follow(self.changed)
         self._follow_facts()
 
-    def _listen(self, heard: list[Report]) -> None:
+    def _listen(self, reports: list[Report]) -> None:
         if self.storage.cells:
-            self.storage.hear(heard)
-        super()._listen(heard)
+            self.storage.hear(reports)
+        super()._listen(reports)
 
     def look(self) -> None:
         if self.done_tasks:
@@ -130,8 +130,8 @@ class Truth(RobotsTruth):
 
     def _follow_questions(self, events: list[object], out: list[object]) -> None:
         """Take in the questions that the bridge sent on, each under a number."""
-        said = [each for each in events if isinstance(each, FromPlant) and isinstance(each.message, Query)]
-        asked = [each.message for each in said if each.message.id] if said else []
+        messages = [each.message for each in events if isinstance(each, FromPlant)]
+        asked = [each for each in messages if isinstance(each, Query) and each.id]
         for each in out if asked else ():
             name = self._orders.get(each.topic) if isinstance(each, Publication) else None
             if name is None or not isinstance(each, Publication):
@@ -173,7 +173,7 @@ class Truth(RobotsTruth):
     def _answered(self, answer: OperatorAnswer) -> None:
         super()._answered(answer)
         if self.places.cells and answer.verb in (Verb.LOAD, Verb.UNLOAD):
-            self.places.told(answer)
+            self.places.take_answer(answer)
         if answer.verb.row.drops:
             robots = robots_of(self.world.model, answer.scope)
             self._released.update(dict.fromkeys(robots, self.world.now))

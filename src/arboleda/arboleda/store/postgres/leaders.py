@@ -6,12 +6,12 @@ from typing import Any
 
 from psycopg import sql
 
+from arboleda.core.leading import LEASE_S
 from arboleda.model.errors import ArboledaError
 from arboleda.model.outside import plain
 
 from .leader_row import lately
 from .leadership import Leader
-from .memory import LEASE_S
 from .schema import PREFIX
 from .server import Impatient, checked, connected, explained
 

@@ -59,7 +59,7 @@ class Leadership:
             prepare(self._connection(), self._schema, self.name)
 
     def leader(self) -> Leader:
-        (row,) = self._asked(LEADER, LEASE_S, LEASE_S)
+        (row,) = self._query(LEADER, LEASE_S, LEASE_S)
         epoch, host, process, url, leads, standbys = row
         return Leader(
             epoch=epoch, host=plain(host), process=process, url=plain(url), leads=leads, standbys=standbys
@@ -70,14 +70,14 @@ class Leadership:
 
         Ends the lease in the second case. The silence is counted over repeated calls.
         """
-        (seen,) = self._asked(LAST_SEEN)
-        if seen[1] is None:
+        (row,) = self._query(LAST_SEEN)
+        if row[1] is None:
             return True
-        return self._silence.ends_lease(clock.seconds(), seen) and bool(self._asked(END_LEASE, *seen))
+        return self._silence.ends_lease(clock.seconds(), row) and bool(self._query(END_LEASE, *row))
 
     def wait_here(self, url: str = "") -> None:
         """Store that this process waits to lead, and the address of its page."""
-        self._asked(WAITS, *self._me, url)
+        self._query(WAITS, *self._me, url)
 
     def own_address(self) -> str:
         """The address by which hosts that reach the database may reach this one; "" if unknown."""
@@ -85,11 +85,11 @@ class Leadership:
             return own_address(self._connection())
 
     def wait_no_more(self) -> None:
-        self._asked("DELETE FROM standby WHERE host = %s AND process = %s", *self._me)
+        self._query("DELETE FROM standby WHERE host = %s AND process = %s", *self._me)
 
     def ask_for_handover(self) -> None:
         """Ask the leader to hold all work, and to hand the plant over."""
-        self._asked("UPDATE leader SET wanted = clock_timestamp()")
+        self._query("UPDATE leader SET wanted = clock_timestamp()")
 
     def close(self) -> None:
         """Close the connection; idempotent."""
@@ -97,7 +97,7 @@ class Leadership:
             self._opened.close()
             self._opened = None
 
-    def _asked(self, statement: str, *values: object) -> list[tuple[Any, ...]]:
+    def _query(self, statement: str, *values: object) -> list[tuple[Any, ...]]:
         with explained(self.name, ArboledaError, "cannot be reached"):
             cursor = self._connection().execute(statement, values)
             return cursor.fetchall() if cursor.description else []

@@ -26,7 +26,7 @@ PAUSE_S = 0.1
 LEAD = (
     "UPDATE leader SET epoch = greatest(epoch + 1, %s), host = %s, process = %s, seen = clock_timestamp(),"
     " url = '', wanted = NULL,"
-    # work goes on by itself only if the change of leader was just asked for
+    # work goes on without a person only if the change of leader was requested just now
     f" going = CASE WHEN {lately('wanted')} THEN going ELSE '[]' END"
     " WHERE seen IS NULL RETURNING epoch, going"
 )
@@ -88,18 +88,18 @@ class PostgresMemory(PlantMemory):
         while True:
             asked_at = clock.seconds()
             me = plain(socket.gethostname()), os.getpid()
-            row = self._asked(LEAD, epoch, *me, WANTED_S)
+            row = self._query(LEAD, epoch, *me, WANTED_S)
             if row is not None:
                 self._epoch = int(row[0])
                 self._lease.renewed(asked_at)
                 self.going = tuple(json.loads(row[1]))
-                self._asked("UPDATE leader SET going = '[]' WHERE epoch = %s RETURNING epoch", self._epoch)
+                self._query("UPDATE leader SET going = '[]' WHERE epoch = %s RETURNING epoch", self._epoch)
                 return self._epoch
             seen = self._last_seen()
             if seen != first and seen[1] is not None:
                 self._refuse_second()
             if silence.ends_lease(clock.seconds(), seen):
-                self._asked(END_LEASE, *seen)
+                self._query(END_LEASE, *seen)
             else:
                 time.sleep(PAUSE_S)
 
@@ -150,12 +150,12 @@ class PostgresMemory(PlantMemory):
         begin = f"WITH {', '.join(parts)} " if parts else ""
         values = [value for _, each in statements for value in each]
         statement = translated(f"{begin}SELECT fenced(?, ?)")
-        given = plain_values((*values, self._epoch, durable))
+        parameters = plain_values((*values, self._epoch, durable))
         with self.timing if durable else nullcontext():
-            self._patiently(lambda db: db.execute(statement, given))
+            self._patiently(lambda db: db.execute(statement, parameters))
 
     def sync(self) -> None:
-        """Nothing is left to do: the server was asked for each commit whether to wait for its disk."""
+        """Nothing is left to do: each commit already chose whether the server waits for its disk."""
 
     def _read(self, statement: str, *values: object) -> list[tuple[Any, ...]]:
         return self._patiently(lambda db: db.execute(translated(statement), plain_values(values)).fetchall())
@@ -194,12 +194,12 @@ class PostgresMemory(PlantMemory):
             self._opened.close()
             self._opened = None
 
-    def _asked(self, statement: str, *values: object) -> tuple[Any, ...] | None:
+    def _query(self, statement: str, *values: object) -> tuple[Any, ...] | None:
         with explained(self.name, StartError):
             return self._connection().execute(statement, values).fetchone()
 
     def _last_seen(self) -> tuple[Any, ...]:
-        row = self._asked(LAST_SEEN)
+        row = self._query(LAST_SEEN)
         if row is None:
             raise self._damaged()
         return row

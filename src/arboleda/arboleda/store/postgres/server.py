@@ -19,7 +19,7 @@ from arboleda.model.errors import ArboledaError, StartError
 from ..address import has_password, is_address
 
 OLDEST = 13  # the oldest supported version of the server
-ANSWER_S = 1.0  # a server that says nothing for so long counts as away
+ANSWER_S = 1.0  # a server that is silent for so long counts as away
 CONNECT_S = 2  # libpq takes no less
 SETTINGS = {
     "connect_timeout": CONNECT_S,
@@ -47,7 +47,7 @@ class NoAnswer(psycopg.OperationalError):
 class Impatient(psycopg.Connection[Any]):
     """A connection that is closed when its server says nothing for ANSWER_S.
 
-    The answer may still come, and nobody could tell it from that to the next statement.
+    The answer may still come, and would be taken for that to the next statement.
     """
 
     def wait(self, gen: Generator[Any, Any, T], *options: Any, **named: Any) -> T:
@@ -65,7 +65,8 @@ def _limited(gen: Generator[Any, Any, T], until: float) -> Generator[Any, Any, T
         try:
             wanted = gen.send(ready)
         except StopIteration as end:
-            return end.value
+            result: T = end.value
+            return result
         ready = yield wanted
         if not ready and time.monotonic() > until:
             raise NoAnswer(f"the server gave no answer for {ANSWER_S:g} s")
@@ -95,7 +96,7 @@ def connected(address: str, schema: str, *, idle_s: float = 1.0) -> Impatient:
     known = psycopg.conninfo.conninfo_to_dict(address)
     limits = f"-c idle_in_transaction_session_timeout={1000 * idle_s:.0f} -c statement_timeout=5000"
     wanted = SETTINGS | {"options": f"{limits} -c timezone=UTC"}
-    ours = {key: value for key, value in wanted.items() if key not in known}
+    ours: dict[str, Any] = {key: value for key, value in wanted.items() if key not in known}
     db = Impatient.connect(address, autocommit=True, **ours)
     try:
         if db.info.server_version < OLDEST * 10_000:
@@ -134,7 +135,7 @@ def plain_values(values: tuple[object, ...]) -> tuple[object, ...]:
 
 @contextmanager
 def explained(name: str, kind: type[ArboledaError], cannot: str = "cannot be used") -> Iterator[None]:
-    """Turn what PostgreSQL raises into one sentence on the plant's memory."""
+    """Context that turns errors of PostgreSQL into one sentence on the plant's memory."""
     try:
         yield
     except psycopg.Error as error:

@@ -19,8 +19,8 @@ HELP = with_faults(
 
 
 def run(
-    port: Annotated[int, typer.Option(help="Of the dashboard; 0: any free.")] = 29999,
-    feedback_port: Annotated[int, typer.Option(help="Of the feedback; 0: any free.")] = 30004,
+    port: Annotated[int, typer.Option(help="Port of the dashboard; 0: any free one.")] = 29999,
+    feedback_port: Annotated[int, typer.Option(help="Port of the feedback; 0: any free one.")] = 30004,
     host: Annotated[str, typer.Option(help="The address that it listens on.")] = "127.0.0.1",
     enabled: Annotated[bool, typer.Option("--enabled", help="Begin enabled, ready to move.")] = False,
     fault: FaultNames = None,

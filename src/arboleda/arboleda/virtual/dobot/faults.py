@@ -15,6 +15,7 @@ FAULTS = {
     "no_replies": "what the dashboard is told is done and not answered",
     "late_replies": "the dashboard answers a second late",
     "nonsense_replies": "the dashboard answers what is no reply",
+    "no_brace": "GetErrorID is answered as in an example of the maker's document, without its last brace",
     "wrong_number": "a move is answered with the number of the one before",
     "hang_up": "the connections end whenever a move is told, which is begun nevertheless",
     "mute": "the feedback port sends nothing",

@@ -10,9 +10,11 @@ from dataclasses import dataclass, replace
 
 from arboleda.drivers.dobot.frames import SIZE, TEST_AT, Feedback, Mode
 
-from .motion import Joints, Path, path
+from ..joint_path import Joints, Path, between
 
 FRAME_S = 0.008
+SPEED_DEG_S = (150.0, 150.0, 180.0, 223.0, 223.0, 223.0)  # of a CR10A, as its maker publishes them
+ACCELERATION_DEG_S2 = 180.0
 ENABLE_S, POWER_S = 0.5, 1.0  # a real one takes some 10 s to be powered
 LATE_S, LATE_START_S = 1.0, 0.2
 SHORT_DEG = 2.0
@@ -222,7 +224,7 @@ class VirtualDobot:
             goal = (goal[0] - math.copysign(SHORT_DEG, goal[0] - self.joints_deg[0]), *goal[1:])
         speed = queued.speed_percent * self.speed_percent / 100 * (0.1 if "slow" in self.faults else 1.0)
         begins_at = now + LATE_START_S if "late_start" in self.faults else now
-        self._path = path(self.joints_deg, goal, begins_at, speed, queued.acceleration_percent)
+        self._path = _path(self.joints_deg, goal, begins_at, speed, queued.acceleration_percent)
 
     def _halt(self, now: float, *, disable: bool = False) -> None:
         self._queue.clear()
@@ -232,7 +234,7 @@ class VirtualDobot:
         if disable:
             self._enabled_at = math.inf
 
-    # What it is told.
+    # Commands.
 
     def _answer(self, now: float, client: int, line: str) -> list[Message]:
         text, hang_up = self._reply(now, line)
@@ -264,10 +266,14 @@ class VirtualDobot:
             error = 0
         except ErrorReply as refused:
             value, error = "", refused.error
+        if name == "geterrorid" and "no_brace" in self.faults:
+            return f"{error},{{{value},GetErrorId();", False
         hangs_up = name == "movj" and error == 0 and "hang_up" in self.faults
         return f"{error},{{{value}}},{found[1]}({found[2]});", hangs_up
 
     def _do_requestcontrol(self, now: float, values: str) -> str:
+        if self.mode not in (Mode.POWER_OFF, Mode.DISABLED):
+            raise ErrorReply(-1)
         return ""
 
     def _do_poweron(self, now: float, values: str) -> str:
@@ -343,18 +349,19 @@ class VirtualDobot:
         if found is None:  # poses need the arm's kinematics, which are not played here
             raise ErrorReply(WRONG_TYPE)
         goal = _numbers(found[1], 6)
-        asked = dict(re.findall(r"(\w+)=([\d.]+)", found[2]))
+        options = dict(re.findall(r"(\w+)=([\d.]+)", found[2]))
         before, self._number = self._number, self._number + 1
         queued = QueuedMove(
             number=self._number,
             goal=goal,
-            speed_percent=float(asked.get("v", 100)),
-            acceleration_percent=float(asked.get("a", 100)),
+            speed_percent=float(options.get("v", 100)),
+            acceleration_percent=float(options.get("a", 100)),
         )
         self._queue.append(queued)
         return str(before if "wrong_number" in self.faults else self._number)
 
     def _do_tooldoinstant(self, now: float, values: str) -> str:
+        self._check(power=True)
         index, on = _numbers(values, 2)
         bit = self._bit(index)
         if "stuck_output" not in self.faults:
@@ -362,6 +369,9 @@ class VirtualDobot:
         return ""
 
     def _do_gettooldo(self, now: float, values: str) -> str:
+        self._check(power=True)
+        if "script" in self.faults:
+            raise ErrorReply(-5)
         (index,) = _numbers(values, 1)
         return "1" if self.outputs & self._bit(index) else "0"
 
@@ -383,7 +393,7 @@ class VirtualDobot:
         if moves and ("refuse" in self.faults or not self._enabled or self._paused):
             raise ErrorReply(-1)
 
-    # What it says by itself.
+    # Feedback, sent without a request.
 
     def _frame(self, now: float) -> list[Message]:
         self._frames += 1
@@ -426,3 +436,18 @@ def _numbers(text: str, count: int) -> Joints:
     if not all(map(math.isfinite, numbers)):
         raise ErrorReply(WRONG_TYPE)
     return numbers
+
+
+def _path(start: Joints, goal: Joints, now: float, speed_percent: float, acceleration_percent: float) -> Path:
+    """The path of a joint move that begins now."""
+    distances = [abs(b - a) for a, b in zip(start, goal, strict=True)]
+    times = [distance / speed for distance, speed in zip(distances, SPEED_DEG_S, strict=True)]
+    slowest = times.index(max(times))
+    return between(
+        start,
+        goal,
+        now,
+        speed=SPEED_DEG_S[slowest] * speed_percent / 100,
+        acceleration=ACCELERATION_DEG_S2 * acceleration_percent / 100,
+        leading=slowest,
+    )

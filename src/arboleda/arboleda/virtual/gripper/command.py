@@ -28,7 +28,7 @@ def run(
         float, typer.Option("--open", help="Its joint's position when open; closed it is 0.")
     ] = 0.085,
     part: Annotated[float, typer.Option(help="Its joint's position when it has the part.")] = 0.04,
-    speed: Annotated[float, typer.Option(help="Of its joint, m/s or rad/s.")] = 0.1,
+    speed: Annotated[float, typer.Option(help="Speed of its joint, m/s or rad/s.")] = 0.1,
     rate: Rate = 50.0,
     lan: Lan = False,
     fault: FaultNames = None,

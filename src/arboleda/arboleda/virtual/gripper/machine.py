@@ -1,4 +1,4 @@
-"""Gripper that closes until it is told otherwise, or until a part stops it."""
+"""Gripper that closes until another goal or a part stops it."""
 
 from __future__ import annotations
 
@@ -52,17 +52,17 @@ class GripperBody:
         self.position: Position = (opened,)
         self.stalled = False
         self._faults, self._opened, self._part, self._speed = faults, opened, part, speed
-        self._told = opened
+        self._goal = opened
         self._stuck_since: float | None = None
 
     def ride(self, now: float, goal: Grip, slower: float) -> Ride:
         if not math.isfinite(goal.position) or not math.isfinite(goal.effort):
             raise BadGoal("it is no number")
-        self._told = min(max(goal.position, min(0.0, self._opened)), max(0.0, self._opened))
+        self._goal = min(max(goal.position, min(0.0, self._opened)), max(0.0, self._opened))
         self._stuck_since = None
-        way = abs(self._told - self.position[0])
+        way = abs(self._goal - self.position[0])
         takes_s = max(0.05, PEAK * way / self._speed * slower)
-        points = ((now, self.position), (now + takes_s, (self._told,)))
+        points = ((now, self.position), (now + takes_s, (self._goal,)))
         return Ride(points=points)
 
     def moved(self, now: float, position: Position) -> bool:
@@ -78,7 +78,7 @@ class GripperBody:
     def rests(self, now: float) -> None:
         """Without a goal it goes on pressing, and closes if the part is gone."""
         if "slip" in self._faults and self.position == (self._part,):
-            self.position = (self._told,)
+            self.position = (self._goal,)
 
     def end(self, id: str, ride: Ride, *, arrived: bool) -> GoalResult:
         if arrived and self.position == ride.goal:

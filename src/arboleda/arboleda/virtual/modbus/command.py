@@ -18,7 +18,7 @@ HELP = with_faults(
 
 def run(
     host: Annotated[str, typer.Option(help="Where to listen.")] = "127.0.0.1",
-    port: Annotated[int, typer.Option(help="Its port; 0: any free.")] = 5020,
+    port: Annotated[int, typer.Option(help="Its port; 0: any free one.")] = 5020,
     serial: Annotated[
         str, typer.Option(help="A serial line, as /dev/ttyUSB0, at 19200 baud without parity.")
     ] = "",

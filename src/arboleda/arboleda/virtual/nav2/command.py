@@ -32,7 +32,7 @@ def run(
     x: Annotated[float, typer.Option(help="Where it begins on the map, m.")] = 0.0,
     y: Annotated[float, typer.Option(help="Where it begins on the map, m.")] = 0.0,
     yaw: Annotated[float, typer.Option(help="Its direction there, degrees.")] = 0.0,
-    speed: Annotated[float, typer.Option(min=0.01, help="m/s.")] = 0.5,
+    speed: Annotated[float, typer.Option(min=0.01, help="Speed, m/s.")] = 0.5,
     rate: Rate = 50.0,
     lan: Lan = False,
     fault: FaultNames = None,

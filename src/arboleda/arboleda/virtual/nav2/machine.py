@@ -17,7 +17,7 @@ from ..ros_action.ride import Position, Ride
 TURN_RAD_S = 1.5
 PEAK = 15 / 8  # of a ride's speed, by its average
 LOCALISED_M = 0.2  # as amcl, it says where the base is whenever that has gone so far
-SILENCE_S = 0.5  # after so long without a word it says that at once
+SILENCE_S = 0.5  # after so long without an estimate it publishes one at once
 JUMP_M = 0.5
 FAULTS = {
     **OF_ALL,
@@ -48,8 +48,8 @@ class BaseBody:
     ) -> None:
         self.position: Position = (start.x, start.y, start.yaw)
         self._start, self._speed, self._frame, self._faults = start, speed, frame, faults
-        self._said: Pose | None = None  # by localisation
-        self._said_at = -math.inf
+        self._estimate: Pose | None = None  # by localisation
+        self._estimated_at = -math.inf
         self._missed = False
 
     def ride(self, now: float, goal: Drive, slower: float) -> Ride:
@@ -82,16 +82,16 @@ class BaseBody:
 
     def measured(self, stamp: tuple[int, int], position: Position) -> list[Measurement]:
         pose = Pose(*position)
-        said: list[Measurement] = []
+        measurements: list[Measurement] = []
         if "no_odometry" not in self._faults:
-            said.append(OdometryPose(stamp=stamp, pose=self._start.inverse @ pose))
+            measurements.append(OdometryPose(stamp=stamp, pose=self._start.inverse @ pose))
         at = stamp[0] + stamp[1] / 1e9
-        quiet = at > self._said_at + SILENCE_S
-        self._said_at = at
+        quiet = at > self._estimated_at + SILENCE_S
+        self._estimated_at = at
         if "unlocalised" in self._faults:
-            return said
+            return measurements
         found = replace(pose, y=pose.y + JUMP_M) if "jump" in self._faults else pose
-        if self._said is None or quiet or not self._said.distance(found) < LOCALISED_M:
-            self._said = found
-            said.append(MapPose(stamp=stamp, pose=found))
-        return said
+        if self._estimate is None or quiet or not self._estimate.distance(found) < LOCALISED_M:
+            self._estimate = found
+            measurements.append(MapPose(stamp=stamp, pose=found))
+        return measurements

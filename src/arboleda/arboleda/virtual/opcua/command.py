@@ -18,7 +18,7 @@ HELP = with_faults(
 
 def run(
     host: Annotated[str, typer.Option(help="Where to listen.")] = "127.0.0.1",
-    port: Annotated[int, typer.Option(help="Its port; 0: any free.")] = 4840,
+    port: Annotated[int, typer.Option(help="Its port; 0: any free one.")] = 4840,
     fault: FaultNames = None,
     fault_port: FaultPort = 4716,
 ) -> None:

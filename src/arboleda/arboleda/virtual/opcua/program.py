@@ -44,11 +44,11 @@ class BeltProgram:
                 values["part_at"] = value
         return values
 
-    def call(self, method: str, given: Sequence[object]) -> str | None:
+    def call(self, method: str, arguments: Sequence[object]) -> str | None:
         if "refuses_calls" in self._faults:
             return "BadUserAccessDenied"
-        now, numbers = self._clock(), [each for each in given if isinstance(each, int)]
-        if len(numbers) != len(given) or len(given) != len(self.methods[method]):
+        now, numbers = self._clock(), [each for each in arguments if isinstance(each, int)]
+        if len(numbers) != len(arguments) or len(arguments) != len(self.methods[method]):
             return "BadInvalidArgument"
         if method in VERBS:
             to, speed = [*numbers[:-1], 0, 0][:2]

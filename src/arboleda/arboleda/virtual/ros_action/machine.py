@@ -82,7 +82,7 @@ class VirtualServer:
         self._ride: Ride | None = None
         self._late: list[tuple[float, Message]] = []
         self._measure_at = -math.inf
-        self._said: tuple[tuple[int, int], Position] | None = None  # the last measurement
+        self._measured: tuple[tuple[int, int], Position] | None = None  # the last measurement
         self._off = False
 
     @property
@@ -164,34 +164,34 @@ class VirtualServer:
 
     # What clients ask.
 
-    def _begin(self, now: float, asked: GoalRequest) -> list[Message]:
+    def _begin(self, now: float, request: GoalRequest) -> list[Message]:
         try:
             if "refuse" in self.faults:
                 raise BadGoal("refused")
-            ride = self.body.ride(now, asked.goal, SLOW if "slow" in self.faults else 1.0)
+            ride = self.body.ride(now, request.goal, SLOW if "slow" in self.faults else 1.0)
         except BadGoal:
-            return [GoalAnswer(id=asked.id, accepted=False)]
+            return [GoalAnswer(id=request.id, accepted=False)]
         out = self._stand(lambda id: GoalResult(id=id, status=self.body.preempted))
-        answer = GoalAnswer(id=asked.id, accepted=True)
+        answer = GoalAnswer(id=request.id, accepted=True)
         if "late_answer" in self.faults:
             self._late.append((now + LATE_ANSWER_S, answer))
         else:
             out.append(answer)
-        self._goal, self._ride = asked.id, ride.cut(SHORT) if "short" in self.faults else ride
+        self._goal, self._ride = request.id, ride.cut(SHORT) if "short" in self.faults else ride
         if "lie" in self.faults or "early" in self.faults:
-            out.append(GoalResult(id=asked.id, status=Status.SUCCEEDED))
+            out.append(GoalResult(id=request.id, status=Status.SUCCEEDED))
             self._goal = None
             self._ride = None if "lie" in self.faults else ride
         return out
 
-    def _cancel(self, asked: CancelRequest) -> list[Message]:
-        if asked.id != self._goal or "refuse_cancel" in self.faults:
-            return [CancelDecision(id=asked.id, accepted=False)]
-        decided = CancelDecision(id=asked.id, accepted=True)
+    def _cancel(self, request: CancelRequest) -> list[Message]:
+        if request.id != self._goal or "refuse_cancel" in self.faults:
+            return [CancelDecision(id=request.id, accepted=False)]
+        decided = CancelDecision(id=request.id, accepted=True)
         if "deaf" in self.faults:
             return [decided]
         self._ride = self._goal = None
-        return [decided, GoalResult(id=asked.id, status=Status.CANCELED)]
+        return [decided, GoalResult(id=request.id, status=Status.CANCELED)]
 
     # What it measures.
 
@@ -199,11 +199,11 @@ class VirtualServer:
         if "mute" in self.faults:
             return []
         stamp = (int(now), int(now % 1 * 1e9))
-        if self._said is None or not {"frozen", "stuck"} & set(self.faults):
-            self._said = (stamp, self.body.position)
+        if self._measured is None or not {"frozen", "stuck"} & set(self.faults):
+            self._measured = (stamp, self.body.position)
         elif "stuck" in self.faults:
-            self._said = (stamp, self._said[1])
-        position = self._said[1]
+            self._measured = (stamp, self._measured[1])
+        position = self._measured[1]
         if "no_number" in self.faults:
             position = (math.nan,) * len(position)
-        return list(self.body.measured(self._said[0], position))
+        return list(self.body.measured(self._measured[0], position))

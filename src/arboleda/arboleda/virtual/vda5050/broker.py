@@ -71,7 +71,7 @@ class Server:
     def _run(self) -> None:
         began = time.monotonic()
         while not self._ending.is_set():
-            messages = self.machine.step(time.monotonic() - began, self._heard())
+            messages = self.machine.step(time.monotonic() - began, self._received())
             for message in messages:
                 self._do(message)
             if self._came.is_set():
@@ -81,11 +81,11 @@ class Server:
             with suppress(Empty):
                 self._events.put(self._events.get(timeout=max(0.001, wait_s)))
 
-    def _heard(self) -> list[VehicleMessage]:
-        heard = []
+    def _received(self) -> list[VehicleMessage]:
+        messages = []
         while not self._events.empty():
-            heard.append(self._events.get())
-        return heard
+            messages.append(self._events.get())
+        return messages
 
     def _do(self, message: Message) -> None:
         if isinstance(message, OutgoingMessage):
@@ -121,10 +121,10 @@ class Server:
         topic = event.topic.rpartition("/")[2]
         try:
             self._events.put(
-                VehicleMessage(topic=topic, said=from_bytes(self._version, topic, event.payload))
+                VehicleMessage(topic=topic, body=from_bytes(self._version, topic, event.payload))
             )
         except SchemaMismatch:
-            self._events.put(VehicleMessage(topic=topic, said=None))
+            self._events.put(VehicleMessage(topic=topic, body=None))
 
     def _publish(self, say: OutgoingMessage) -> None:
         with suppress(NotConnected):  # nobody hears it, as on any wire that is cut

@@ -28,17 +28,17 @@ HELP = with_faults(
 
 
 def run(
-    manufacturer: Annotated[str, typer.Option(help="As its topics have it.")] = "arboleda",
-    serial: Annotated[str, typer.Option(help="As its topics have it.")] = "agv1",
-    version: Annotated[Version, typer.Option(help="Of VDA 5050.")] = Version.V2_1,
+    manufacturer: Annotated[str, typer.Option(help="Its manufacturer, as in its topics.")] = "arboleda",
+    serial: Annotated[str, typer.Option(help="Its serial number, as in its topics.")] = "agv1",
+    version: Annotated[Version, typer.Option(help="Version of VDA 5050.")] = Version.V2_1,
     interface: Annotated[str, typer.Option(help="What its topics begin with.")] = "uagv",
     node: Annotated[str, typer.Option(help="The node that it stands on at first.")] = "0",
-    speed: Annotated[float, typer.Option(help="m/s; an edge without positions takes a second.")] = 0.5,
+    speed: Annotated[float, typer.Option(help="Speed, m/s; an edge without positions takes a second.")] = 0.5,
     state_s: Annotated[float, typer.Option(help="A state at least so often, s.")] = 1.0,
     broker: Annotated[
         str | None, typer.Option(metavar="HOST:PORT", help="A broker that is there, mqtts:// for TLS.")
     ] = None,
-    port: Annotated[int, typer.Option(help="Of the broker that it brings; 0: any free.")] = 1884,
+    port: Annotated[int, typer.Option(help="Port of the broker that it brings; 0: any free one.")] = 1884,
     fault: FaultNames = None,
     fault_port: FaultPort = 4715,
 ) -> None:

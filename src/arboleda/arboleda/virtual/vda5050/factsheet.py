@@ -27,8 +27,8 @@ def factsheet_of(version: str) -> dict[str, Any]:
 
 def _action(name: str) -> dict[str, Any]:
     value = VALUES.get(name)
-    given = [] if value is None else [{"key": value, "valueDataType": "NUMBER", "isOptional": True}]
-    return {"actionType": name, "actionScopes": list(ACTIONS[name]), "actionParameters": given}
+    parameters = [] if value is None else [{"key": value, "valueDataType": "NUMBER", "isOptional": True}]
+    return {"actionType": name, "actionScopes": list(ACTIONS[name]), "actionParameters": parameters}
 
 
 _OF_2: dict[str, Any] = {

@@ -9,7 +9,7 @@ from typing import Any
 
 from .factsheet import factsheet_of
 from .faults import STANDING
-from .order import UPDATE, Course, Said
+from .order import UPDATE, Body, Course
 from .words import state_of
 
 TICK_S = 0.05
@@ -22,10 +22,10 @@ OVER = ("FINISHED", "FAILED")
 
 @dataclass(frozen=True, kw_only=True)
 class VehicleMessage:
-    """Event: a message for the vehicle; `said` is None if it does not fit the schema of its topic."""
+    """Event: a message for the vehicle; `body` is None if it does not fit the schema of its topic."""
 
     topic: str
-    said: Said | None
+    body: Body | None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -130,7 +130,7 @@ class VirtualAgv:
         self._changed = True
         return [Connect(anew=booted)] if self._online else [ConnectionCut()]
 
-    # --- what befalls it ---
+    # --- faults ---
 
     def _befall(self) -> None:
         under_way = self._edge_left_s is not None or (self.course.steps and self.sequence > 0)
@@ -149,40 +149,40 @@ class VirtualAgv:
             if each.status not in OVER and not each.instant:
                 each.status = "FAILED"
 
-    # --- what it is told ---
+    # --- orders and instant actions ---
 
     def _take(self, event: VehicleMessage) -> None:
         self._changed = True
-        if event.said is None:
+        if event.body is None:
             self._complain("validationError", {"topic": event.topic})
         elif event.topic == "order":
-            self._take_order(event.said)
+            self._take_order(event.body)
         elif event.topic == "instantActions":
-            for action in event.said["actions"]:
+            for action in event.body["actions"]:
                 self._take_instant(action)
 
-    def _take_order(self, said: Said) -> None:
-        mine = said["orderId"] == self.course.id and self.course.id != ""
-        why = self.course.objection(said, self.node)
+    def _take_order(self, body: Body) -> None:
+        mine = body["orderId"] == self.course.id and self.course.id != ""
+        why = self.course.objection(body, self.node)
         if "no_route" in self._faults and not mine:
             why = "noRouteError"
         if "no_update" in self._faults and mine:
             why = UPDATE
         if why is not None:
-            update = str(said["orderUpdateId"])
-            self._complain(why, {"orderId": said["orderId"], "orderUpdateId": update})
+            update = str(body["orderUpdateId"])
+            self._complain(why, {"orderId": body["orderId"], "orderUpdateId": update})
             return
         if not mine:
-            self.errors, self.sequence = [], said["nodes"][0]["sequenceId"]
+            self.errors, self.sequence = [], body["nodes"][0]["sequenceId"]
             self.actions = {}
-        self.course.take(said)
+        self.course.take(body)
         for step in self.course.steps:
             for action in step["actions"]:
                 self.actions.setdefault(action["actionId"], _doing(action))
         if not mine:
             self._arrive()
 
-    def _take_instant(self, action: Said) -> None:
+    def _take_instant(self, action: Body) -> None:
         doing = _doing(action, instant=True)
         self.actions[doing.id] = doing
         if "deaf" in self._faults and doing.type in INSTANT_ONLY:
@@ -215,7 +215,7 @@ class VirtualAgv:
         self.errors = [each for each in self.errors if each["errorType"] != word]
         self.errors.append({"errorType": word, "errorLevel": "WARNING", "errorReferences": references})
 
-    # --- what it does ---
+    # --- driving and actions ---
 
     @property
     def stands(self) -> bool:
@@ -301,7 +301,7 @@ class VirtualAgv:
         if len(steps) == 1 and steps[0]["sequenceId"] == self.sequence and ended:
             self.course.steps = []
 
-    # --- what it says ---
+    # --- messages ---
 
     def _speak(self, now: float) -> list[Message]:
         if self._online and (self._changed or now >= self._state_at) and "hush" not in self._faults:
@@ -327,7 +327,7 @@ class VirtualAgv:
         return [say, say] if "double" in self._faults else [say]
 
 
-def _doing(action: Said, *, instant: bool = False) -> RunningAction:
+def _doing(action: Body, *, instant: bool = False) -> RunningAction:
     values = {each["key"]: each["value"] for each in action.get("actionParameters", ())}
     return RunningAction(
         id=action["actionId"],
@@ -338,6 +338,6 @@ def _doing(action: Said, *, instant: bool = False) -> RunningAction:
     )
 
 
-def _position(step: Said) -> tuple[float, float] | None:
+def _position(step: Body) -> tuple[float, float] | None:
     position = step.get("nodePosition")
     return None if position is None else (position["x"], position["y"])

@@ -68,8 +68,8 @@ def _place(agv: VirtualAgv) -> dict[str, Any]:
 
 
 def _action(doing: RunningAction, result: str) -> dict[str, Any]:
-    said = {"actionId": doing.id, "actionType": doing.type, "actionStatus": doing.status}
-    return said if doing.result is None else {**said, result: doing.result}
+    row = {"actionId": doing.id, "actionType": doing.type, "actionStatus": doing.status}
+    return row if doing.result is None else {**row, result: doing.result}
 
 
 def _part(steps: Iterable[Mapping[str, Any]], keys: Iterable[str]) -> list[dict[str, Any]]:

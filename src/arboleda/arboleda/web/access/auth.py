@@ -1,4 +1,4 @@
-"""Logins: two roles, a token for each, and sessions behind a cookie."""
+"""Logins: three roles, a token for each, and sessions behind a cookie."""
 
 from __future__ import annotations
 
@@ -21,7 +21,14 @@ SESSIONS = 256  # only holders of a token make one; the oldest makes room
 
 
 SUBMIT = "submit"
+PROPOSE, GIVE, DRAW = "proposing", "giving a task as an assistant", "drawing a tree"
+ASSISTANTS_MAY = {PROPOSE, GIVE, DRAW}
 EVERYBODY_MAY = {verb.value for verb in Verb if verb.row.role is Role.VIEWER}
+MAY = {
+    None: "{act} needs the operator's token.",
+    Role.VIEWER: "A viewer may look and stop; {act} needs the operator's token.",
+    Role.ASSISTANT: "An assistant may look, propose and stop; {act} needs the operator's token.",
+}
 Tokens = Callable[[], "dict[Role, str]"]
 
 
@@ -30,14 +37,17 @@ class Forbidden(ArboledaError):
 
 
 def allowed(role: Role | None, act: str) -> bool:
-    """True if a role may do `act`, a verb's word or SUBMIT; everybody who is logged in may stop."""
-    return role is Role.OPERATOR or (role is Role.VIEWER and act in EVERYBODY_MAY)
+    """True if a role may do `act`, a verb's word or one of the acts above; everybody who is logged in may
+    stop."""
+    if role is Role.ASSISTANT and act in ASSISTANTS_MAY:
+        return True
+    return role is Role.OPERATOR or (role is not None and act in EVERYBODY_MAY)
 
 
 def require(role: Role | None, act: str) -> None:
     """Raises Forbidden if `allowed` is False."""
     if not allowed(role, act):
-        raise Forbidden(f"A viewer may look and stop; {act} needs the operator's token.")
+        raise Forbidden(MAY[role].format(act=act))
 
 
 @dataclass(frozen=True, kw_only=True)

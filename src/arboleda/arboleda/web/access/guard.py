@@ -10,11 +10,11 @@ from urllib.parse import parse_qsl
 from starlette.responses import RedirectResponse
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
+from arboleda.client.protocol import PLANT
 from arboleda.model.outside import quoted
 
 from .. import limits
 from ..limits import Buckets
-from ..plant_api import PLANT
 from ..request import LOGIN, ClientGone, HttpError, RequestHead, with_headers
 from .auth import LOCAL, Door, Login
 from .names import Names
@@ -206,6 +206,7 @@ class Guard:
         self._check_plant(head)
         scope = self._introduced(head.scope, login)
         if head.socket:
+            assert login is not None  # nobody logs in by a socket
             return await self._sockets.run(scope, receive, send, login)
         if head.logs_in:
             send = self._counting_guesses(peer, send)

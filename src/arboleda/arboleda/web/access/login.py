@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 from base64 import b64encode
 from html import escape
+from typing import Any
 from urllib.parse import parse_qsl
 
 from fastapi import APIRouter, Request
@@ -68,7 +69,7 @@ def routes() -> APIRouter:
     return pages
 
 
-def _cookie(request: Request) -> dict[str, object]:
+def _cookie(request: Request) -> dict[str, Any]:
     encrypted = request.headers.get("origin", "").startswith("https://")
     name = cookie_name(request.scope)
     return {"key": name, "path": "/", "httponly": True, "samesite": "strict", "secure": encrypted}

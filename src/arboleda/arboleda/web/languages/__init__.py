@@ -24,7 +24,7 @@ LANGUAGES = _found()
 @cache
 def contents(language: str, part: str) -> dict[str, Any]:
     """The file of a part of a language: page, nodes, login and so on; without what it does not say."""
-    file = resources.files(__package__).joinpath(language, f"{part}.yaml")
+    file = resources.files(__package__) / language / f"{part}.yaml"
     found: dict[str, Any] = yaml.safe_load(file.read_text(encoding="utf-8")) if file.is_file() else {}
     return found
 

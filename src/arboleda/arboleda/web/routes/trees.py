@@ -9,7 +9,7 @@ from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import JSONResponse
 from pydantic import BaseModel, ConfigDict
 
-from ..access.auth import require
+from ..access.auth import DRAW, require
 from ..languages import FIRST
 from ..plant_api import PlantApi
 from ..schema.bodies import Sentence
@@ -17,7 +17,6 @@ from ..schema.plain_json import PlainJson
 from ..schema.queries import WRONG, Answers, described, described_body, query_of, read_body
 from ..schema.trees import CopyForm, Drawn, EditForm, Nodes, TreeCopy, TreeFile, TreeForm, operation_of
 
-DRAW = "drawing a tree"
 REFUSED: Answers = {
     403: {"model": Sentence, "description": "The role is not enough."},
     422: {"model": Sentence, "description": "The text cannot be read, or the operation cannot be done."},

@@ -91,7 +91,7 @@ class TaskForm(_RequestModel):
         return named | {"cell": self.cell or BETWEEN_CELLS.join(self.any_of)}
 
 
-class _ByHand(_RequestModel):
+class AnyVerbArguments(_RequestModel):
     """Arguments of an operator's verb."""
 
     by_hand: bool = Field(
@@ -123,7 +123,7 @@ def _fields() -> dict[str, Any]:
     return found
 
 
-VerbArguments: type[_ByHand] = create_model("VerbArguments", __base__=_ByHand, **_fields())
+VerbArguments: type[AnyVerbArguments] = create_model("VerbArguments", __base__=AnyVerbArguments, **_fields())
 
 
 class Sentence(ResponseModel):
@@ -148,6 +148,7 @@ OUTCOME = (
     "sent: a stop; whether robots stand shows in what they report. under_way: devices were told to. done. "
     "unchecked: devices were told, and report nothing of it. failed."
 )
+KEPT_CHOICE = "Why it was given to its cell, if others were allowed; of an assistant's, who approved it."
 CHOICE = "Why it is done in this cell, where several were allowed."
 UNCHECKED = "Of one that is done what no device confirmed: grip, release; its sentence says it for people."
 
@@ -184,10 +185,11 @@ class KeptTask(ResponseModel):
     ended_s: float | None = None
     asked_by: str | None = Field(
         default=None,
-        description="The way by which it came: command, page, http, ros2, demo; null: not known.",
+        description="The way by which it came: command, page, http, ros2, demo, assistant; null: not known.",
     )
     attempts: int = Field(default=0, description="How often it was begun, or tried again by `retry`.")
     answers: list[TaskAnswer] = Field(default=[], description="Of one that has ended, in their order.")
+    choice: str | None = Field(default=None, description=KEPT_CHOICE)
     unchecked: list[str] = Field(default=[], description=UNCHECKED)
 
 

@@ -105,11 +105,12 @@ def _default(field: Field[Any]) -> Any:
     return ... if field.default_factory is MISSING else {}
 
 
-def _form(name: str, type: type, **more: Any) -> type[BaseModel]:
+def _form(name: str, shape: type, **more: Any) -> type[BaseModel]:
     """The model of a request for a dataclass of operations."""
-    hints = get_type_hints(type)
-    known = {each.name: (_typed(hints[each.name]), _default(each)) for each in fields(type)}
-    return create_model(name, __base__=_Strict, __doc__=type.__doc__, **more, **known)
+    hints = get_type_hints(shape)
+    known: dict[str, Any] = {each.name: (_typed(hints[each.name]), _default(each)) for each in fields(shape)}
+    form: type[BaseModel] = create_model(name, __base__=_Strict, __doc__=shape.__doc__, **more, **known)
+    return form
 
 
 def _typed(hint: Any) -> Any:
@@ -121,7 +122,7 @@ def _typed(hint: Any) -> Any:
 NODE: Any = None
 NODE = _form("NewNode", NewNode)
 FORMS = {do: _form(each.__name__, each, do=(Literal[do], ...)) for do, each in OPERATIONS.items()}
-AnyForm = Annotated[Union[tuple(FORMS.values())], Described(discriminator="do")]  # noqa: UP007 - of a tuple
+AnyForm: Any = Annotated[Union[tuple(FORMS.values())], Described(discriminator="do")]  # noqa: UP007 - of a tuple
 EditForm: Any = create_model("EditForm", __base__=TreeForm, operation=(AnyForm, ...))
 
 

@@ -8,7 +8,7 @@ from functools import partial
 
 from ...chance import Dice
 from .durations import longest_s
-from .kinds import Span
+from .kinds import Span, Verb
 from .layout import Device, Layout, Need, Robot
 from .state import Planner, State
 from .steps import (
@@ -123,8 +123,8 @@ class Blocks:
     # -- simple steps
 
     def _simple(self) -> list[Step]:
-        makers = (self._tell,) * 5 + (self._query,) * 3 + (self._ask, self._wait, self._fact, self._fact)
-        makers += (self._go,) * 3
+        makers = [self._tell] * 5 + [self._query] * 3 + [self._ask, self._wait, self._fact, self._fact]
+        makers += [self._go] * 3 + [self._refused] * 4
         for _ in range(6):
             if made := self._dice.pick(makers)():
                 return made
@@ -398,8 +398,40 @@ class Blocks:
             return []
         *before, told = made[0]
         self.state = made[1].without([(device.role, fact) for fact, _ in verb.sets])
-        left = Timeout(step=told, seconds=round(verb.takes_s * dice.pick((0.2, 0.5)), 3))
+        after_s = round(verb.takes_s * dice.pick((0.2, 0.5)), 3)
+        left: Step = Timeout(step=told, seconds=after_s)
+        if dice.chance(0.4):
+            fails = Work(steps=(Wait(seconds=after_s), Fail(sentence="the other branch")))
+            left = Parallel(branches=(fails, told))
         return [*before, Fallback(steps=(left, Wait(seconds=STANDS_S)))]
+
+    def _refused(self) -> list[Step]:
+        """A verb that the plant has to refuse: a fact that it needs is another one, or no part is there."""
+        verbs = [
+            (each, verb)
+            for each in self._devices()
+            if not each.is_shared and each.role not in self._layout.lock_roles
+            for verb in each.kind.verbs
+            if not verb.holds and (each.role, verb.name) not in self._layout.waits
+            if self._is_unmet(each, verb)
+        ]
+        if not verbs:
+            return []
+        device, verb = self._dice.pick(verbs)
+        answer = self._variable() if verb.effect == "query" else ""
+        values = self._planner.values(verb)
+        told = Tell(role=device.role, verb=verb.name, values=values, answer=answer, refused=True)
+        return [Invert(step=told)]
+
+    def _is_unmet(self, device: Device, verb: Verb) -> bool:
+        """True where it is known that a fact which a verb needs is another one, or that it has no part."""
+        if verb.works_on:
+            return not self.resting
+        needs = self._layout.all_needs(device.role, verb)
+        believed = [
+            each for each in needs if self._free(each[0]) and self._layout.device(each[0]).tells_facts
+        ]
+        return any(self.state.facts.get(each[:2], each[2]) != each[2] for each in believed)
 
     def _parallel(self, depth: int) -> list[Step]:
         """Branches of roles that nothing joins."""

@@ -8,7 +8,7 @@ from dataclasses import replace
 from ...chance import Dice
 from .joined import groups_apart
 from .kinds import Kind, draw_kind, shipped, value_of
-from .layout import Device, Layout, Need, Section
+from .layout import Device, Layout, Need, Robot, Section
 from .robots import RobotDrawer
 from .steps import Value
 
@@ -29,6 +29,7 @@ class CellDrawer:
         self.zones: Section = {}
         self.section: Section = {}
         self.shared: Section = {}
+        self._waits: frozenset[tuple[str, str]] = frozenset()
 
     def draw(self) -> Layout:
         dice = self._dice
@@ -53,12 +54,14 @@ class CellDrawer:
             parts=robots.parts,
             groups=robots.groups,
             shared_people=people if self._alike and dice.chance(0.4) else (),
+            waits=self._waits,
         )
         self._say(layout, robots)
         return replace(layout, apart=groups_apart(layout))
 
     def _devices(self) -> list[Device]:
-        dice, found = self._dice, []
+        dice = self._dice
+        found: list[Device] = []
         count = dice.pick((1, 2, 2, 3, 3, 4))
         names = [f"kind_{number}" for number in range(1, 1 + min(count, dice.pick((1, 2, 3))))]
         self.kinds = {name: draw_kind(dice, name, is_written=self._are_written) for name in names}
@@ -193,6 +196,7 @@ class CellDrawer:
                 if any((role, name) == (ram.role, fact) for role, name, _ in known):
                     return
                 needs[device.role, verb.name] = (*known, (ram.role, fact, value))
+                self._waits = frozenset({(device.role, verb.name)})
                 self.zones["mouth"] = {
                     "free_while": {ram.role: {fact: value}},
                     "held_while": {device.role: [verb.name]},
@@ -201,7 +205,8 @@ class CellDrawer:
 
     def _say(self, layout: Layout, robots: RobotDrawer) -> None:
         rows: Section = {}
-        for each in (*robots.robots, *layout.devices):
+        members: tuple[Robot | Device, ...] = (*robots.robots, *layout.devices)
+        for each in members:
             if each.is_shared:
                 self.shared[f"our_{each.role}"] = dict(each.section)
                 rows[each.role] = {"shared": f"our_{each.role}"}

@@ -10,7 +10,7 @@ from .kinds import Kind
 from .kinds_text import kinds_of
 from .layout import Section
 from .python_text import python_of
-from .steps import Follow, OfGroup, Recipe, Tour, Using, walk
+from .steps import Follow, OfGroup, Recipe, Tell, Tour, Using, walk
 from .xml_text import xml_of
 
 
@@ -29,6 +29,12 @@ class DrawnDevices:
     recipes: tuple[Recipe, ...]
     form: Form
     kinds: tuple[Kind, ...] | None = None
+
+    @property
+    def refused(self) -> frozenset[tuple[str, str]]:
+        """The verbs, by role and name, that the plant has to refuse somewhere."""
+        told = (each for recipe in self.recipes for each in walk(recipe.step) if isinstance(each, Tell))
+        return frozenset((each.role, each.verb) for each in told if each.refused)
 
     @property
     def file(self) -> Section:

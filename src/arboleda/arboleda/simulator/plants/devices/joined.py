@@ -7,7 +7,7 @@ from .layout import Layout
 
 def groups_apart(layout: Layout) -> tuple[frozenset[str], ...]:
     """The groups of roles that can work at the same time."""
-    groups = [{each.role} for each in (*layout.devices, *layout.robots)]
+    groups = [{each.role} for each in layout.members]
     groups += [{name} for name in layout.people]
     for pair in _pairs(layout):
         joined = [each for each in groups if each & pair]

@@ -77,6 +77,13 @@ class Layout:
     parts: Parts | None = None
     groups: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     shared_people: tuple[str, ...] = ()
+    waits: frozenset[tuple[str, str]] = frozenset()  # verbs that wait for a zone, by role and name
+
+    @property
+    def lock_roles(self) -> set[str]:
+        """The machines whose facts free a zone."""
+        doors = {door[0] for robot in self.robots for door in robot.doors.values() if door is not None}
+        return doors | {need[0] for key in self.waits for need in self.needs[key]}
 
     def device(self, role: str) -> Device:
         return next(each for each in self.devices if each.role == role)
@@ -95,5 +102,9 @@ class Layout:
 
     @property
     def shared_roles(self) -> tuple[str, ...]:
-        found = (each.role for each in (*self.devices, *self.robots) if each.is_shared)
-        return (*found, *self.shared_people)
+        return (*(each.role for each in self.members if each.is_shared), *self.shared_people)
+
+    @property
+    def members(self) -> tuple[Device | Robot, ...]:
+        """All that is in the cell but people."""
+        return (*self.devices, *self.robots)

@@ -44,7 +44,8 @@ class Scope:
 
 
 class Meaning:
-    """Reader of drawn recipes; `told` has what it tells each role, `seconds` how long it waits at least.
+    """Reader of drawn recipes; `orders` are those to each role, `seconds` how long it waits at least, and
+    `cause` the words of the step that failed last, None where that has none of its own.
 
     `answers` are those to the questions of each role, in their order; `pauses`: a retry has its pause.
     """
@@ -57,8 +58,9 @@ class Meaning:
         *,
         pauses: bool = True,
     ) -> None:
-        self.told: dict[str, list[Told]] = {}
+        self.orders: dict[str, list[Told]] = {}
         self.seconds = 0.0
+        self.cause: str | None = None
         self._pauses = pauses
         self._recipes = {each.name: each for each in recipes}
         self._answers = {role: deque(those) for role, those in answers.items()}
@@ -73,7 +75,10 @@ class Meaning:
         return True if read is None else read(step, scope)
 
     def _tell(self, step: steps.Tell, scope: Scope) -> bool:
-        self.told.setdefault(step.role, []).append(_order(step, scope))
+        if step.refused:
+            self.cause = None
+            return False
+        self.orders.setdefault(step.role, []).append(_order(step, scope))
         if step.answer:
             scope.answers[step.answer] = self._answer(step.role)
         return True
@@ -89,6 +94,7 @@ class Meaning:
         return left.popleft()
 
     def _fail(self, step: steps.Fail, scope: Scope) -> bool:
+        self.cause = step.sentence
         return False
 
     def _wait(self, step: steps.Wait, scope: Scope) -> bool:
@@ -102,14 +108,16 @@ class Meaning:
         return all(self._does(each, scope) for each in step.steps)
 
     def _parallel(self, step: steps.Parallel, scope: Scope) -> bool:
-        began, ends = self.seconds, []
+        began = self.seconds
+        ends: list[float] = []
+        failing: list[float] = []
         for each in step.branches:
             self.seconds = began
-            if not self._does(each, scope):
-                raise Unsure  # how far the others came by then is a matter of time
-            ends.append(self.seconds)
-        self.seconds = max(ends)
-        return True
+            (ends if self._does(each, scope) else failing).append(self.seconds)
+        self.seconds = min(failing) if failing else max(ends)
+        if failing and not all(isinstance(each, steps.Tell) for each in step.branches[len(failing) :]):
+            raise Unsure  # how far the others came by then is a matter of time
+        return not failing
 
     def _choose(self, step: steps.Choose, scope: Scope) -> bool:
         ways = {plain(value): way for value, way in step.ways}
@@ -130,7 +138,7 @@ class Meaning:
         succeeds = self._does(step.step, scope)
         if not self._is_late(step, scope):
             return succeeds
-        self.seconds = until
+        self.seconds, self.cause = until, None
         return False
 
     def _is_late(self, step: steps.Timeout, scope: Scope) -> bool:
@@ -147,7 +155,9 @@ class Meaning:
     def _recover(self, step: steps.Recover, scope: Scope) -> bool:
         if self._does(step.work, scope):
             return True
+        cause = self.cause
         self._does(step.rescue, scope)
+        self.cause = cause
         return False
 
     def _invert(self, step: steps.Invert, scope: Scope) -> bool:

@@ -55,7 +55,7 @@ def python_of(recipes: Sequence[Recipe]) -> str:
 
 def _recipe(recipe: Recipe) -> str:
     given = ", ".join(["cell", *map(_parameter, recipe.parameters)])
-    asked = [each for each in walk(recipe.step) if isinstance(each, Ask) or getattr(each, "answer", "")]
+    asked = [each for each in walk(recipe.step) if isinstance(each, Ask) or getattr(each, "answer", None)]
     asked = [each for each in asked if not isinstance(each, Choose)]
     roles = dict.fromkeys(str(each.role) for each in walk(recipe.step) if hasattr(each, "role"))
     lines = [f"    {role} = cell.device({role!r})" for role in roles]

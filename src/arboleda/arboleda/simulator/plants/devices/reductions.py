@@ -56,12 +56,17 @@ def _with_smaller(step: Step) -> Iterator[Step]:
     for each in fields(step):
         value = getattr(step, each.name)
         if isinstance(value, Step):
-            yield from (replace(step, **{each.name: less}) for less in _smaller_steps(value))
+            yield from (_changed(step, each.name, less) for less in _smaller_steps(value))
         elif each.name in ("steps", "branches"):
             for number, inner in enumerate(value):
                 for less in _smaller_steps(inner):
-                    changed = (*value[:number], less, *value[number + 1 :])
-                    yield replace(step, **{each.name: changed})
+                    yield _changed(step, each.name, (*value[:number], less, *value[number + 1 :]))
+
+
+def _changed(step: Step, name: str, value: object) -> Step:
+    changes: dict[str, Any] = {name: value}
+    changed: Step = replace(step, **changes)
+    return changed
 
 
 def _trimmed(recipe: Recipe) -> Recipe:

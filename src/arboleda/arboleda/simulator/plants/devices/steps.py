@@ -20,12 +20,16 @@ Given = tuple[tuple[str, Value | Param], ...]
 
 @dataclass(frozen=True, kw_only=True)
 class Tell:
-    """A verb of a device; `answer` names the variable for what it answers, empty where it is no query."""
+    """A verb of a device; `answer` names the variable for what it answers, empty where it is no query.
+
+    `refused`: the plant has to refuse it, as something that it needs is not so.
+    """
 
     role: str
     verb: str
     values: Given = ()
     answer: str = ""
+    refused: bool = False
 
 
 @dataclass(frozen=True, kw_only=True)

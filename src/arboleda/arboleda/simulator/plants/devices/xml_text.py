@@ -9,6 +9,7 @@ from .steps import (
     Ask,
     Becomes,
     Choose,
+    Fail,
     Fallback,
     Go,
     Grip,
@@ -102,6 +103,8 @@ def _node(step: Step) -> tuple[str, dict[str, str], Sequence[Step]]:
     if isinstance(step, Run):
         given = {name: _text(value) for name, value in step.values}
         return "SubTree", {"ID": _id(step.recipe), **given}, ()
+    if isinstance(step, Fail):
+        return "AlwaysFailure", {"name": step.sentence}, ()
     return (
         ("Sleep", {"msec": _msec(step.seconds)}, ()) if isinstance(step, Wait) else ("AlwaysFailure", {}, ())
     )
@@ -131,7 +134,7 @@ def _leaf(step: Step) -> tuple[str, dict[str, str], Sequence[Step]]:
     if isinstance(step, Go):
         return f"{step.role}_go", {"target": _text(step.target)}, ()
     ways = {Home: "home", Grip: "grip", LetGo: "let_go"}
-    return f"{step.role}_{ways[type(step)]}", {}, ()  # type: ignore[index, union-attr]
+    return f"{step.role}_{ways[type(step)]}", {}, ()  # type: ignore[union-attr]
 
 
 def _text(value: Value | Param) -> str:

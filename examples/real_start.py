@@ -1,0 +1,30 @@
+"""A plant that really runs, as `arboleda up` does, for as long as a lesson needs it."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from arboleda.client import Plant
+
+LESSONS = Path(__file__).parent
+ARBOLEDA = (sys.executable, "-c", "from arboleda.cli.main import main; main()")
+PAGE = "Page: "
+
+
+@contextmanager
+def running(plant: str, state: Path) -> Iterator[Plant]:
+    """A plant of `plants/` on virtual devices, ten times as fast, that keeps its state in this folder."""
+    options = ("up", "--no-ros", "--rate", "10", "--state", state, "--plant", LESSONS / "plants" / plant)
+    up = subprocess.Popen([*ARBOLEDA, *map(str, options)], stdout=subprocess.PIPE, text=True)
+    try:
+        assert up.stdout is not None
+        address = next(line.removeprefix(PAGE).strip() for line in up.stdout if line.startswith(PAGE))
+        with Plant(address) as client:
+            yield client
+    finally:
+        up.terminate()
+        up.communicate()

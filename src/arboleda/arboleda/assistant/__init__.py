@@ -1,0 +1,1 @@
+"""Assistants: what a language model may ask of a plant, over the Model Context Protocol."""

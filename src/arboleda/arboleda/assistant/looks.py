@@ -1,0 +1,71 @@
+"""Looks of an assistant at a plant: plain data out of the answers of the client."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import asdict
+from typing import Any
+
+from arboleda.client import AsyncPlant
+from arboleda.client.answers import Cell
+from arboleda.drawing.picture import picture
+from arboleda.drawing.svg import svg
+from arboleda.model.errors import ArboledaError
+from arboleda.model.outside import among, quoted
+
+Row = dict[str, Any]
+
+
+class NothingThere(ArboledaError):
+    """There is no such thing in the plant; the sentence says what there is."""
+
+
+async def plant(reached: AsyncPlant) -> Row:
+    """The plant with its cells, without their trees."""
+    seen = await reached.snapshot()
+    cells = [{name: value for name, value in asdict(each).items() if name != "tree"} for each in seen.cells]
+    return {
+        "plant": seen.plant,
+        "ending": seen.ending,
+        "cells": cells,
+        "zones": seen.zones,
+        "acts": seen.acts,
+    }
+
+
+async def devices(reached: AsyncPlant) -> Row:
+    return {"devices": (await reached.snapshot()).robots}
+
+
+async def recipes(reached: AsyncPlant) -> Row:
+    return {"offers": await reached.recipes()}
+
+
+async def nodes(reached: AsyncPlant, cell: str) -> Row:
+    return {"nodes": await reached.palette(cell), "trees": await reached.trees()}
+
+
+async def targets(reached: AsyncPlant, cell: str) -> Row:
+    """The targets of a cell as its plant file has them, and its devices with their kinds."""
+    found = await reached.proposal_base()
+    return {**one(found.cells, cell), "kinds": found.kinds}
+
+
+async def tree(reached: AsyncPlant, cell: str) -> Row:
+    """The behavior tree that runs in a cell, as rows and as a picture."""
+    one = await _cell(reached, cell)
+    if not one.tree:
+        raise NothingThere(f"No task is at work in {quoted(cell)}, so it has no tree now.")
+    return {"rows": one.tree, "svg": svg(picture(one.tree))}
+
+
+async def _cell(reached: AsyncPlant, cell: str) -> Cell:
+    found: Cell = one({each.name: each for each in (await reached.snapshot()).cells}, cell)
+    return found
+
+
+def one(known: Mapping[str, Any], name: str) -> Any:
+    """The cell of a name; NothingThere for another one, with those that there are."""
+    if name not in known:
+        raise NothingThere(f"{quoted(name)} is not a cell; {among(name, known)}")
+    return known[name]

@@ -1,0 +1,1 @@
+"""Mends: edits of a plant's files after which it was tried, and found better."""

@@ -1,0 +1,125 @@
+"""The command `arboleda check`: what is wrong with a plant file, or with trees, and what would mend it."""
+
+from __future__ import annotations
+
+import json as plain_json
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from arboleda.model.sentence import Phrase
+from arboleda.plant_file import advance_check, loader, plant_check, tree_file
+from arboleda.plant_file.user_file import check_writable
+
+from . import apply, nodes
+from .language import say
+from .plant_options import IN_FOLDER, plant_here
+
+MEND_S = 120.0  # a mend is looked for so long
+TO_SCREEN = "-"
+PROBLEMS = 2  # exit status
+NO_FILE = Phrase("cli.check.no_file", "there is no {file} in this folder; name the file to check")
+FOR_TREES = Phrase("cli.check.for_trees", "--plant and --cell are for files of trees, *.xml")
+FOR_PLANTS = Phrase("cli.check.for_plants", "--json and --mend are for plant files")
+NOTE = Phrase("cli.check.note", "{file}: note: {note}")
+GOOD = Phrase("cli.check.good", "{file}: good: plant {plant}; cells {cells}")
+MEND_IS = Phrase("cli.check.mend", "{file}: mend: {mend}")
+NO_MEND = Phrase(
+    "cli.check.no_mend",
+    "no mend is known: of all that is likely here nothing that was tried makes it better",
+)
+
+Json = Annotated[
+    Path | None,
+    typer.Option("--json", metavar="FILE", help="Write what is found as data; -: to the screen, alone."),
+]
+Mend = Annotated[
+    bool,
+    typer.Option(
+        "--mend",
+        help=f"Look for a change of the files that mends it, for at most {MEND_S:g} s: each is tried.",
+    ),
+]
+
+
+def add_to(cli: typer.Typer) -> None:
+    """Add the command."""
+    cli.command()(check)
+
+
+def check(
+    file: Annotated[
+        Path | None,
+        typer.Argument(
+            metavar="FILE",
+            callback=plant_here,
+            help=f"The plant file to check, or a file of trees, *.xml. [default: {IN_FOLDER} of this folder]",
+        ),
+    ] = None,
+    plant: Annotated[
+        Path | None,
+        typer.Option("--plant", metavar="FILE", help="The plant whose devices a tree is to tell what to do."),
+    ] = None,
+    cell: nodes.CellName = None,
+    ends: Annotated[
+        bool, typer.Option("--ends", help="Say what holds once a task of each recipe is done.")
+    ] = False,
+    json: Json = None,
+    mend: Mend = False,
+) -> None:
+    """Check a plant file, or behavior trees in the XML of BehaviorTree.CPP; every problem at once, each with
+    its line. Exit status: 0 good, 2 problems.
+
+    Trees are checked without a plant: leaves that nobody here knows are listed, not refused. With --plant
+    they have to be nodes of its devices, which `arboleda nodes` lists.
+    """
+    if file is None:
+        raise typer.BadParameter(say(NO_FILE(file=str(IN_FOLDER))))
+    if tree_file.is_tree_file(file):
+        if json is not None or mend:
+            raise typer.BadParameter(say(FOR_PLANTS()))
+        known = None if plant is None else nodes.of_plant(loader.load(plant), cell)
+        print("\n".join(tree_file.report(file, known)))
+        return
+    if plant is not None or cell is not None:
+        raise typer.BadParameter(say(FOR_TREES()))
+    if json is not None or mend:
+        _as_data(file, json, mend=mend)
+    if json is None or str(json) != TO_SCREEN:
+        _in_words(file, ends=ends)
+
+
+def _as_data(file: Path, json: Path | None, *, mend: bool) -> None:
+    """Write the answer where that is wanted, and say what would mend it; alone on the screen it ends the
+    command after problems."""
+    from arboleda.campaigns.mending.answer import check_answer  # it takes the simulator, which loads a while
+    from arboleda.campaigns.mending.finding import Source
+
+    to_screen = json is not None and str(json) == TO_SCREEN
+    if json is not None and not to_screen:
+        check_writable(json)
+    answer = check_answer(file, within_s=MEND_S if mend else 0.0)
+    text = plain_json.dumps(answer.plain, indent=1, ensure_ascii=False)
+    if to_screen:
+        print(text)
+    elif json is not None:
+        json.write_text(f"{text}\n", "utf-8")
+    if mend and answer.findings and not to_screen:
+        words = say(NO_MEND()) if answer.mend is None else answer.mend.words
+        print(say(MEND_IS(file=str(file), mend=words)))
+    if to_screen and any(each.source is Source.PROBLEM for each in answer.findings):
+        raise typer.Exit(PROBLEMS)
+
+
+def _in_words(file: Path, *, ends: bool) -> None:
+    """Print what the plant is, and what it is warned of; ConfigError with every problem."""
+    model, missed = loader.load_with_offers(file)
+    for note in loader.notes(model):
+        print(say(NOTE(file=str(file), note=note)))
+    for warning in plant_check.warnings(model):
+        print(say(apply.WARNING(file=str(file), warning=warning)))
+    cells = tuple(cell.name for cell in model.cells)
+    print(say(GOOD(file=str(file), plant=model.name, cells=cells)))
+    for line in (*loader.offers(model, missed), *(advance_check.ends(model) if ends else ())):
+        print(f"  {line}")

@@ -1,0 +1,176 @@
+"""Calls: methods that both clients have, declared once. On one that blocks they return the result, on one of
+asyncio something to await."""
+
+from __future__ import annotations
+
+import inspect
+import re
+from collections.abc import AsyncGenerator, AsyncIterator, Callable, Coroutine, Iterator
+from functools import update_wrapper, wraps
+from typing import Any, Concatenate, Generic, ParamSpec, TypeVar, get_origin, overload
+
+from .errors import NoAnswer
+from .http import TIMEOUT_S, at_once, each_at_once
+from .line import Call, Line, path_of
+from .reading import read
+
+P = ParamSpec("P")
+Result = TypeVar("Result")
+Item = TypeVar("Item")
+MODULES = re.compile(r"\b[a-z_]+(\.[a-z_]+)*\.(?=[A-Z])")  # before the name of a class
+
+
+class Side:
+    """Client with a line to a plant; `_editor` is the id under which it edits a draft."""
+
+    def __init__(self, line: Line, editor: str = "") -> None:
+        self._line = line
+        self._editor = editor
+
+
+class Blocking(Side):
+    """Client whose methods return results."""
+
+
+class Awaiting(Side):
+    """Client whose methods return something to await."""
+
+
+class Flow(Generic[P, Result]):
+    """Method that asks a plant, perhaps several times; `routes` are those that it uses."""
+
+    def __init__(
+        self, work: Callable[Concatenate[Any, P], Coroutine[Any, Any, Result]], routes: tuple[str, ...] = ()
+    ) -> None:
+        self.work = work
+        self.routes = routes
+        self.__doc__ = work.__doc__
+
+    @overload
+    def __get__(self, side: None, owner: type) -> Flow[P, Result]: ...
+
+    @overload
+    def __get__(self, side: Blocking, owner: type) -> Callable[P, Result]: ...
+
+    @overload
+    def __get__(self, side: Awaiting, owner: type) -> Callable[P, Coroutine[Any, Any, Result]]: ...
+
+    def __get__(self, side: Side | None, owner: type) -> Any:
+        if side is None:
+            return self
+
+        def asked(*args: P.args, **named: P.kwargs) -> Any:
+            work = self.work(side, *args, **named)
+            return at_once(work) if isinstance(side, Blocking) else work
+
+        return update_wrapper(asked, self.work)
+
+
+class Following(Generic[P, Item]):
+    """Method that gives items as they come: an iterator, or one of asyncio."""
+
+    def __init__(self, work: Callable[Concatenate[Any, P], AsyncGenerator[Item, None]], route: str) -> None:
+        self.work = work
+        self.routes = (route,)
+        self.__doc__ = work.__doc__
+
+    @overload
+    def __get__(self, side: None, owner: type) -> Following[P, Item]: ...
+
+    @overload
+    def __get__(self, side: Blocking, owner: type) -> Callable[P, Iterator[Item]]: ...
+
+    @overload
+    def __get__(self, side: Awaiting, owner: type) -> Callable[P, AsyncIterator[Item]]: ...
+
+    def __get__(self, side: Side | None, owner: type) -> Any:
+        if side is None:
+            return self
+
+        def asked(*args: P.args, **named: P.kwargs) -> Any:
+            items = self.work(side, *args, **named)
+            return each_at_once(items) if isinstance(side, Blocking) else items
+
+        return update_wrapper(asked, self.work)
+
+
+class Route(Flow[P, Result]):
+    """Method that is one route of the API: what it is given goes into its path, query or body by name, and
+    what it is not given is left to the plant."""
+
+    def __init__(
+        self,
+        method: str,
+        path: str,
+        answer: type[Result],
+        declared: Callable[Concatenate[Any, P], None],
+        within_s: float,
+        by_editor: bool,
+    ) -> None:
+        self.method, self.path, self.answer, self.within_s = method, path, answer, within_s
+        self.by_editor = by_editor
+        self._signature = inspect.signature(declared)
+
+        @wraps(declared)
+        async def work(side: Side, /, *args: Any, **named: Any) -> Any:
+            call = self.call(side._editor, *args, **named)
+            if answer is str:
+                return (await side._line.reply(call)).text
+            return read_answer(answer, await side._line.data(call))
+
+        returned = getattr(answer, "__name__", str(answer)) if get_origin(answer) is None else str(answer)
+        shown = self._signature.replace(return_annotation=MODULES.sub("", returned))
+        vars(work)["__signature__"] = shown  # for `help` and the reference
+        super().__init__(work, (f"{method} {path}",))
+
+    @property
+    def parameters(self) -> list[str]:
+        """The names of what it is given."""
+        return list(self._signature.parameters)[1:]
+
+    def call(self, editor: str, *args: Any, **named: Any) -> Call:
+        """The request for these arguments."""
+        signed = {"editor": editor} if self.by_editor else {}
+        given = dict(list(self._signature.bind(None, *args, **named).arguments.items())[1:])
+        in_path = {name: given.pop(name) for name in list(given) if f"{{{name}}}" in self.path}
+        reads = self.method == "GET"
+        takes_body = not reads and (signed or len(self.parameters) > len(in_path))
+        return Call(
+            method=self.method,
+            path=path_of(self.path, in_path),
+            query={name: value for name, value in given.items() if value is not None} if reads else {},
+            body={**signed, **given} if takes_body else None,
+            is_repeatable=reads,
+            within_s=self.within_s,
+        )
+
+
+def read_answer(wanted: Any, data: Any) -> Any:
+    """An answer as its type; NoAnswer for one that no plant would give."""
+    try:
+        return read(wanted, data)
+    except ValueError as error:
+        sentence = f"What answers is no plant, or one of another version: {error}."
+        raise NoAnswer(sentence, may_have_heard=True) from error
+
+
+def route(
+    method: str, path: str, answer: type[Result], *, within_s: float = TIMEOUT_S, by_editor: bool = False
+) -> Callable[[Callable[Concatenate[Any, P], None]], Route[P, Result]]:
+    """Decorator that makes a method of a route; the function only declares what it takes. `by_editor`: the id
+    of who edits the draft goes with it."""
+    return lambda declared: Route(method, path, answer, declared, within_s, by_editor)
+
+
+def flow(
+    *routes: str,
+) -> Callable[[Callable[Concatenate[Any, P], Coroutine[Any, Any, Result]]], Flow[P, Result]]:
+    """Decorator that makes a method of a coroutine."""
+    return lambda work: Flow(work, routes)
+
+
+def following(
+    route: str,
+) -> Callable[[Callable[Concatenate[Any, P], AsyncGenerator[Item, None]]], Following[P, Item]]:
+    """Decorator that makes a method of an asynchronous generator."""
+    return lambda work: Following(work, route)

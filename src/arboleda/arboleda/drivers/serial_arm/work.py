@@ -1,0 +1,131 @@
+"""Work of the arm: a move, the way to readiness, and a switch of the gripper, judged by what servos show."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from .servos import Reading
+from .settings import ServoGripper
+
+TAKE_S = 0.2  # a servo shows its new goal within this time
+SETTLE_S = 0.2  # an arm that stands for so long has come to rest
+STALL_S = 1.0  # one that stands for so long away from its goal gets no further
+STEP_S = 0.5  # between two tries to switch the torque of a servo on
+READY_S = 5.0
+TORQUE_OFF = "torque_off"
+NOT_TAKEN = "goal_not_taken"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Picture:
+    """Readings of all servos of one round; `rest_s` is how long the joints have stood, `names` of servos."""
+
+    readings: Mapping[int, Reading]
+    names: Mapping[int, str]
+    rest_s: float
+
+    @property
+    def trouble(self) -> str | None:
+        """The word for what keeps the arm from moving, with the servo; None if nothing does."""
+        for id, reading in self.readings.items():
+            if reading.alarms:
+                return f"{reading.alarms[0]} of {self.names[id]}"
+        return next(
+            (f"{TORQUE_OFF} of {self.names[id]}" for id, each in self.readings.items() if not each.torque),
+            None,
+        )
+
+    @property
+    def since(self) -> float:
+        """The time of the oldest reading, s."""
+        return min(each.at for each in self.readings.values())
+
+    def other_goal(self, goals: Mapping[int, int]) -> str | None:
+        """The name of a servo whose goal is another one."""
+        return next((self.names[id] for id, goal in goals.items() if self.readings[id].goal != goal), None)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Look:
+    """Progress of a work by one picture."""
+
+    accepted: bool = False
+    done: bool = False
+    refused: str | None = None
+    failed: str | None = None
+
+
+@dataclass(kw_only=True)
+class Move:
+    """Move of the joints: taken when every servo shows its goal, over when all have come to rest."""
+
+    id: str
+    goals: Mapping[int, int]
+    near: Mapping[int, int]  # how far from its goal a servo may stand, ticks
+    began_at: float
+    taken: bool = False
+
+    def look(self, now: float, picture: Picture) -> Look:
+        if picture.since <= self.began_at:
+            return Look()  # a reading is of before
+        trouble, other = picture.trouble, picture.other_goal(self.goals)
+        accepted = not self.taken and other is None
+        self.taken = self.taken or accepted
+        if trouble is not None:
+            return Look(accepted=accepted, failed=trouble) if self.taken else Look(refused=trouble)
+        if other is not None and self.taken:
+            return Look(failed=f"another_goal of {other}")
+        if other is not None:
+            return Look(refused=f"{NOT_TAKEN} by {other}") if now - self.began_at > TAKE_S else Look()
+        if accepted:
+            return Look(accepted=True)
+        # One that stands away from its goal gets no further: the plant finds it there, and the move failed.
+        there = all(
+            abs(picture.readings[id].position - goal) <= self.near[id] for id, goal in self.goals.items()
+        )
+        return Look(done=min(picture.rest_s, now - self.began_at) >= (SETTLE_S if there else STALL_S))
+
+
+@dataclass(kw_only=True)
+class Readying:
+    """Way to readiness: alarms end, and each servo holds where it is."""
+
+    id: str
+    began_at: float
+    tried: dict[int, float] = field(default_factory=dict)
+
+    def look(self, now: float, picture: Picture) -> Look:
+        if picture.trouble is None:
+            return Look(done=True)
+        return Look(failed=picture.trouble) if now - self.began_at > READY_S else Look()
+
+    def due(self, now: float, picture: Picture) -> list[int]:
+        """The servos that are to be made ready now."""
+        found = [
+            id
+            for id, each in picture.readings.items()
+            if (each.alarms or not each.torque) and now - self.tried.get(id, -READY_S) >= STEP_S
+        ]
+        self.tried.update(dict.fromkeys(found, now))
+        return found
+
+
+@dataclass(frozen=True, kw_only=True)
+class Switching:
+    """Switch of the gripper that is under way."""
+
+    id: str
+    on: bool
+    began_at: float
+
+
+def hand(gripper: ServoGripper, reading: Reading, rest_s: float) -> str:
+    """The gripper's state: open, part (it has closed on one), empty (closed to its end), or moving."""
+    if not reading.torque or rest_s < SETTLE_S:
+        return "moving"
+    if reading.goal == gripper.open and abs(reading.position - gripper.open) <= gripper.near:
+        return "open"
+    if reading.goal != gripper.closed or abs(reading.position - gripper.open) <= gripper.near:
+        return "moving"
+    return "empty" if abs(reading.position - gripper.closed) <= gripper.near else "part"

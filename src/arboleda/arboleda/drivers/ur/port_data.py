@@ -1,0 +1,21 @@
+"""Bytes that come from a port of the controller, and those that go there."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, kw_only=True)
+class Received:
+    """Event: bytes from the port of this name."""
+
+    port: str
+    data: bytes
+
+
+@dataclass(frozen=True, kw_only=True)
+class Send:
+    """Message: send bytes to the port of this name."""
+
+    port: str
+    data: bytes

@@ -1,0 +1,58 @@
+"""Facts of a report as plain data: what the page shows, for programs. Times in s since the failure."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from arboleda.model.sentence import OWN, Sentence
+from arboleda.recorder.cause import Cause
+from arboleda.recorder.incident import Incident
+
+
+def facts(found: Incident, cause: Cause) -> dict[str, Any] | None:
+    """The facts of a task that failed; None of one that did not."""
+    if found.failure is None:
+        return None
+    zero = found.failed_at or found.ended_at or 0.0
+    last = found.evidence.last
+    accepted_at = None if last is None else last.accepted_at
+    return {
+        "task": found.task,
+        "text": found.text,
+        "cell": found.cell,
+        "ended_s": found.unix_ns / 1e9,
+        "reason": found.failure.reason.value,
+        "failure": _said(found.failure.sentence),
+        "cause": {"kind": cause.kind, "robot": cause.robot, **_said(cause.sentence)},
+        "evidence": {
+            "troubles": [
+                {
+                    "at_s": each.at - zero,
+                    "robot": each.robot,
+                    "kind": each.kind,
+                    "seconds": None if each.seconds == math.inf else each.seconds,
+                    "cut": each.cut,
+                }
+                for each in found.troubles
+                if each.ends >= found.began_at
+            ],
+            "last_command": None
+            if last is None
+            else {
+                "at_s": last.at - zero,
+                "robot": last.robot,
+                "id": last.id,
+                "accepted_after_s": None if accepted_at is None else accepted_at - last.at,
+            },
+            "absences": [{"at_s": at - zero, "seconds": seconds} for at, seconds in found.absences],
+            "acts": [{"at_s": at - zero, "words": words} for at, words in found.acts],
+            "foreign": [{"at_s": at - zero, "robot": robot} for at, robot in found.foreign],
+        },
+    }
+
+
+def _said(sentence: Sentence | str) -> dict[str, Any]:
+    """A sentence as its text, and as data where it is more than a text."""
+    data = sentence.data() if isinstance(sentence, Sentence) and sentence.phrase is not OWN else {}
+    return {"sentence": str(sentence), "key": data.get("key"), "values": data.get("values")}

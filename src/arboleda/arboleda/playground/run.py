@@ -1,0 +1,125 @@
+"""Run of a plant with virtual devices: moved tick by tick, so that the same acts give the same run."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any
+
+from arboleda.core.advice import Hand
+from arboleda.dashboard.page_state import PageState
+from arboleda.model.messages import OperatorAnswer, OperatorRequest, TaskChanged, Verb
+from arboleda.model.plant_model import PlantModel
+from arboleda.simulator import hands
+from arboleda.simulator.climate import Climate
+from arboleda.simulator.judged_world import JudgedWorld
+from arboleda.simulator.mishaps import MISHAPS
+from arboleda.views import twin_view, view
+from arboleda.views.resting_cells import RestingCells
+
+from .acts import Act, HandLent, MishapBegun, TaskAsked, VerbAsked
+
+TICK_S = 1 / 16  # exact in binary: a sum of ticks is the same however it was made
+LOOK_TICKS = 4  # between two looks of the screen's memory
+MINUTE_TICKS = round(60 / TICK_S)
+
+Answer = TaskChanged | OperatorAnswer
+Row = dict[str, Any]
+
+
+class Run:
+    """Run: a world from its first moment on. `climate` gives the faults of each minute, besides mishaps;
+    `began_unix_s` is what screens take the first moment for."""
+
+    def __init__(self, model: PlantModel, layout: Row, climate: Climate, *, began_unix_s: float) -> None:
+        self.tick = 0
+        self.answers: dict[str, Answer] = {}  # by the token of the request
+        self.state = PageState(layout, [])
+        self.seen: Row = {}  # the last snapshot that the screen's memory took in
+        self._watched = JudgedWorld(model, invariants=())
+        self._climate = climate
+        self._began_unix_s = began_unix_s
+        self._resting = RestingCells(), self._watched.world.plant
+        self._watched.world.watchers.append(self._hear)
+        self._look()
+
+    @property
+    def digest(self) -> str:
+        """The digest of all that happened; equal runs have equal ones."""
+        return self._watched.trace.digest
+
+    @property
+    def positions(self) -> Row:
+        """Positions that the twin is drawn from, as `PageApi.positions` has it."""
+        world = self._watched.world
+        return twin_view.positions(world.plant) | {"now": world.now}
+
+    @property
+    def links(self) -> Row:
+        """The links, as `PageApi.links` has them."""
+        broker = {"address": "MQTT", "connected": self._watched.world.broker.is_up}
+        return {"broker": broker, "ros": None, "refused": {}, "standbys": []}
+
+    def _snapshot(self) -> Row:
+        plant = self._watched.world.plant
+        if self._resting[1] is not plant:  # another start
+            self._resting = RestingCells(), plant
+        return view.snapshot(plant, self._resting[0].part)
+
+    def outcome(self, number: int) -> Row | None:
+        """An operator's act by its number; None if the plant has forgotten it."""
+        return view.act_by_number(self._watched.world.plant, number)
+
+    def advance(self) -> None:
+        """Let a tick pass."""
+        if self.tick % MINUTE_TICKS == 0:
+            for fault in self._climate.faults(self.tick // MINUTE_TICKS):
+                self._watched.expect(fault)
+        self._watched.world.advance(TICK_S)
+        self.tick += 1
+        if self.tick % LOOK_TICKS == 0:
+            self._look()
+
+    def befall(self, act: Act, token: str) -> None:
+        """Have an act happen now; the answer to a request comes under its token."""
+        world = self._watched.world
+        if isinstance(act, TaskAsked):
+            world.request_task(act.text, token)
+        elif isinstance(act, VerbAsked):
+            self._operate(act, token)
+        elif isinstance(act, HandLent):
+            hands.HANDS[Hand(act.do)](world, act.scope)
+        else:
+            self._begin(act)
+
+    def _operate(self, act: VerbAsked, token: str) -> None:
+        world = self._watched.world
+        if act.by_hand and act.verb in hands.BEFOREHAND:
+            hands.BEFOREHAND[act.verb](world.manual, act.scope)
+        world.tell(
+            OperatorRequest(
+                at=world.now,
+                verb=Verb(act.verb),
+                scope=act.scope,
+                by_hand=act.by_hand,
+                arguments=act.arguments,
+                request=token,
+            )
+        )
+
+    def _begin(self, act: MishapBegun) -> None:
+        for fault in MISHAPS[act.name].of(act.target, at=self._watched.seconds, seconds=act.seconds):
+            self._watched.begin(fault)
+
+    def _look(self) -> None:
+        self.seen = self._snapshot()
+        self.state.see(self.seen, self._began_unix_s + self._watched.seconds)
+
+    def _hear(self) -> None:
+        moment = self._watched.world.moment
+        for message in _answers((*moment.last_words, *moment.sent, *moment.unkept)):
+            if message.request is not None:
+                self.answers[message.request] = message
+
+
+def _answers(messages: Iterable[Any]) -> Iterable[Answer]:
+    return (each for each in messages if isinstance(each, TaskChanged | OperatorAnswer))

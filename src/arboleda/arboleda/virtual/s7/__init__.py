@@ -1,0 +1,1 @@
+"""The belt behind an S7: `arboleda virtual s7`."""

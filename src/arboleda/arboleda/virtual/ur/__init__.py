@@ -1,0 +1,1 @@
+"""A virtual controller of an arm of Universal Robots."""

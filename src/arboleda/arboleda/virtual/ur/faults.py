@@ -1,0 +1,45 @@
+"""Faults of a virtual controller of Universal Robots, with a sentence on each."""
+
+from __future__ import annotations
+
+FAULTS = {
+    "protective_stop": "whenever the arm moves it goes into a protective stop half way, of 5 s at least",
+    "safeguard": "a safeguard is open: the arm brakes, its program is paused, and goes on once it is closed",
+    "stop_button": "the button at the robot is pressed: it brakes, its program ends, and power is off",
+    "local_control": "somebody takes local control: the program ends, and nothing that is sent is done",
+    "slider": "the speed slider stands at 3 %",
+    "popup": "a popup waits at the pendant: no program begins until it is closed",
+    "power_off": "the arm has no power, and gets none",
+    "brakes_stuck": "brakes are not released, and whenever the arm moves they fall in",
+    "program_stopped": "whenever the arm moves somebody stops the program half way",
+    "other_program": "whenever the arm moves another program takes the place of ours half way",
+    "joint_limit": "whenever the arm moves the program breaks off half way with an error of a joint limit",
+    "reboot": "the controller is off while this is on; then it boots: without power, and its registers are 0",
+    "refuse": "programs are refused with an error",
+    "not_begun": "programs are taken and never begin",
+    "echo_lost": "programs run, and their registers are not written",
+    "wrong_number": "registers get a number that is one too small",
+    "late_start": "a program begins 0.3 s late",
+    "late_runtime": "the state of the program is 0.1 s behind its registers",
+    "heartbeat_lost": "inputs of RTDE do not arrive: the watchdog of a program ends it",
+    "dashboard_mute": "the dashboard does what it is told and answers nothing",
+    "late_replies": "the dashboard answers a second late",
+    "unasked_replies": "the dashboard says a line more than it was asked",
+    "rate_drops": "RTDE sends every 0.6 s only",
+    "mute": "RTDE sends nothing",
+    "frozen": "RTDE sends the same frame again and again",
+    "garbled": "RTDE sends joints that are no numbers",
+    "torn": "every second frame of RTDE lacks its last twenty bytes",
+    "old_rtde": "RTDE does not speak version 2",
+    "in_use": "another client of RTDE writes the inputs",
+    "connections_full": "all connections end, and new ones are closed at once",
+    "hang_up": "the connections end whenever a move is told, which is begun nevertheless",
+    "lie": "a move is said to be over at once, and the arm stays where it is",
+    "short": "moves end two degrees before their goal",
+    "stall": "a move stands still half way, and its program runs on",
+    "deaf": "the program of a stop is taken, and the arm moves on",
+    "stuck_output": "outputs do not switch",
+    "slow": "the arm moves at a tenth of its speed",
+}
+SEVERING = ("old_rtde", "in_use", "connections_full", "reboot")
+"""Those that end all connections as they come."""

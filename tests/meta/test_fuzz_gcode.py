@@ -1,0 +1,38 @@
+"""A short run of scripts/fuzz-gcode, and that it finds what it is for."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+from arboleda.drivers.gcode import lines, machine
+
+from ..scripts import load
+
+RUNS = 2000
+
+
+@pytest.fixture
+def fuzz() -> Any:
+    return load("fuzz-gcode")
+
+
+def test_nothing_is_raised_and_nothing_refused_counts(fuzz: Any) -> None:
+    seen = fuzz.run(RUNS, 1)
+    assert sum(seen.values()) == RUNS
+    assert all(
+        seen[what] > RUNS / 100 for what in ("line refused", "line read", "answer read", "no answer")
+    ), seen
+
+
+def test_a_driver_that_takes_ok_from_anything_would_be_found(
+    fuzz: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    class Lenient(lines.LineReader):
+        def feed(self, data: bytes) -> list[lines.Line]:
+            return [*super().feed(data), *([lines.Answer()] if b"o" in data else [])]
+
+    monkeypatch.setattr(machine, "LineReader", Lenient)
+    with pytest.raises(AssertionError, match="of seed 1"):
+        fuzz.run(RUNS, 1)

@@ -1,0 +1,40 @@
+"""The gallery has every plant of the playground, as its list and the plants are now."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from arboleda.playground import plants
+from arboleda.web.languages import LANGUAGES
+
+from ..scripts import load
+
+PICTURES = Path(__file__).parents[2] / "docs/images/gallery"
+
+
+@pytest.mark.parametrize("language", LANGUAGES)
+def test_the_page_is_what_make_gallery_writes(language: str) -> None:
+    gallery = load("gallery")
+    assert gallery.page_of(language).read_text("utf-8") == gallery.page(language), "make gallery"
+
+
+def test_every_plant_has_its_pictures_and_no_picture_is_left_over() -> None:
+    gallery = load("gallery")
+    wanted = {f"{name}-tree.svg" for name in plants.FILES}
+    wanted |= {f"{name}.webp" for name in plants.FILES if gallery.has_twin(name)}
+    assert {each.name for each in PICTURES.iterdir()} == wanted, "make gallery GALLERY=--pictures"
+
+
+@pytest.mark.parametrize("name", plants.FILES)
+def test_its_line_names_a_plant_that_is_there(name: str) -> None:
+    line = load("gallery").start(name)
+    for word in line.split():
+        assert not word.startswith(("examples/", "src/")) or (PICTURES.parents[2] / word).is_file(), line
+
+
+def test_no_example_with_a_plant_is_missing() -> None:
+    root = PICTURES.parents[2]
+    found = {each.relative_to(root).as_posix() for each in root.glob("examples/*/plant.yaml")}
+    assert found <= set(plants.FILES.values())

@@ -1,0 +1,59 @@
+"""No module of Arboleda needs at its import what Linux alone has; only `host/` asks which system this is."""
+
+from __future__ import annotations
+
+import ast
+import os
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from ..lesser_host import NOWHERE, OF_UNIX
+
+TESTS = Path(__file__).parents[1]
+PACKAGE = TESTS.parent / "src/arboleda/arboleda"
+HOST = PACKAGE / "host"
+GUARDED = {  # not reached where there are none
+    "adapters/clock.py: time.clock_gettime",
+    "campaigns/proof/forks.py: os.fork",
+}
+NAMES = {f"{module.__name__}.{name}" for module, names in NOWHERE["win32"].items() for name in names.split()}
+ASKS = {"sys.platform", "os.name"}
+IMPORT_ALL = f"""
+import sys; sys.path[:0] = [{str(TESTS)!r}]
+import lesser_host
+lesser_host.pretend(sys.argv[1])
+import importlib, pkgutil, arboleda
+for module in pkgutil.walk_packages(arboleda.__path__, "arboleda."):
+    importlib.import_module(module.name)
+print(len([name for name in sys.modules if name.startswith("arboleda.")]))
+"""
+
+
+def uses_of_unix(path: Path) -> Iterator[str]:
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names if alias.name in OF_UNIX)
+        elif isinstance(node, ast.ImportFrom) and node.module in OF_UNIX:
+            yield str(node.module)
+        elif isinstance(node, ast.Attribute) and ast.unparse(node) in NAMES | ASKS:
+            yield ast.unparse(node)
+
+
+def test_what_not_every_system_has_stands_in_one_place() -> None:
+    files = [path for path in PACKAGE.rglob("*.py") if HOST not in path.parents]
+    found = {f"{path.relative_to(PACKAGE)}: {use}" for path in files for use in uses_of_unix(path)}
+    assert found == GUARDED
+    assert {use for path in HOST.glob("*.py") for use in uses_of_unix(path)}  # else nothing is looked for
+
+
+@pytest.mark.parametrize("platform", ["win32", "darwin"])
+def test_every_module_is_imported_where_the_system_has_less(platform: str) -> None:
+    command = [sys.executable, "-c", IMPORT_ALL, platform]
+    environ = {**os.environ, "PYTHONPATH": str(PACKAGE.parent)}
+    ran = subprocess.run(command, env=environ, capture_output=True, text=True, check=False)
+    assert ran.returncode == 0, ran.stderr
+    assert int(ran.stdout.split()[-1]) > 900

@@ -1,0 +1,50 @@
+"""Requests of `make wheel-check` to the package index: what people install, for each machine and Python."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from ..scripts import load
+
+ROOT = Path(__file__).parents[2]
+CHECK = load("wheel-check")
+
+
+def test_the_parts_are_those_that_who_runs_a_plant_installs() -> None:
+    parts = CHECK.optional_parts((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
+    assert {"modbus", "opcua", "certs", "postgres", "mcp"} <= set(parts)
+    assert not CHECK.OF_DEVELOPERS & set(parts)
+
+
+def test_nothing_but_wheels_for_that_machine_counts() -> None:
+    words = CHECK.command("uv", "windows-x86_64", "3.12", ["mcp"])
+    assert words[words.index("--only-binary") + 1] == ":all:"
+    assert words[words.index("--python-platform") + 1] == "x86_64-pc-windows-msvc"
+    assert words[words.index("--python-version") + 1] == "3.12" and "--extra=mcp" in words
+
+
+def test_the_part_that_fails_is_named_with_its_machine(monkeypatch: pytest.MonkeyPatch) -> None:
+    def trouble(uv: str, machine: str, python: str, extras: list[str]) -> str:
+        return "snap7 has no wheels" if "s7" in extras else ""
+
+    monkeypatch.setattr(CHECK, "trouble", trouble)
+    found = CHECK.troubles("uv", "macos-arm64", "3.14", ["certs", "s7"])
+    assert found == ["arboleda[s7] on macos-arm64, Python 3.14: snap7 has no wheels"]
+    assert CHECK.troubles("uv", "macos-arm64", "3.14", ["certs"]) == []
+
+
+def test_parts_that_exclude_each_other_are_no_silence(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(CHECK, "trouble", lambda _uv, _machine, _python, extras: "no" * (len(extras) > 1))
+    (found,) = CHECK.troubles("uv", "macos-arm64", "3.14", ["certs", "s7"])
+    assert "not all of them together" in found
+
+
+@pytest.mark.parametrize(("words", "said"), [(["amiga"], "amiga is none of"), ([], "needs uv")])
+def test_what_it_cannot_do_is_one_sentence(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], words: list[str], said: str
+) -> None:
+    monkeypatch.setattr(CHECK.shutil, "which", lambda _name: "uv" if words else None)
+    assert CHECK.main(words) == 2
+    assert said in capsys.readouterr().err

@@ -1,0 +1,43 @@
+"""A playground that is made now, and served as files alone."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from ..scripts import load
+
+ROOT = Path(__file__).parents[2]
+BELOW = "some/where"
+
+
+@pytest.fixture(scope="session")
+def playground(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
+    """The address of a playground that was made now, below a folder of its server."""
+    if not load("playground").is_fetched():
+        pytest.skip("what the playground is made of is not there: make test-tools")
+    folder = tmp_path_factory.mktemp("served")
+    made = [sys.executable, str(ROOT / "scripts/playground"), str(folder / BELOW)]
+    done = subprocess.run(made, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout + done.stderr
+    # In a process of its own: a browser keeps connections open beyond the test that made them.
+    command = [
+        sys.executable,
+        "-u",
+        "-m",
+        "http.server",
+        "0",
+        "--bind",
+        "127.0.0.1",
+        "--directory",
+        str(folder),
+    ]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True) as server:
+        assert server.stdout is not None
+        port = server.stdout.readline().split()[5]  # Serving HTTP on 127.0.0.1 port 41371 (...)
+        yield f"http://127.0.0.1:{port}/{BELOW}/"
+        server.terminate()

@@ -1,0 +1,68 @@
+"""The language of the terminal: which one, and what is said in it."""
+
+from __future__ import annotations
+
+import pytest
+import typer.testing
+
+from arboleda.cli.language import VARIABLES, language, say_error, say_row
+from arboleda.cli.main import cli
+from arboleda.cli.overview import SECTIONS
+from arboleda.client.errors import Conflict
+from arboleda.model.errors import ArboledaError
+from arboleda.runtime.fault_desk import AN_INSTANT
+
+
+@pytest.fixture
+def spanish(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("ARBOLEDA_LANG", "es")
+
+
+@pytest.mark.parametrize(
+    ("given", "wanted"),
+    [
+        ({"ARBOLEDA_LANG": "es"}, "es"),
+        ({"LANG": "es_CO.UTF-8"}, "es"),
+        ({"LC_ALL": "C", "LANG": "es_ES.UTF-8"}, "en"),
+        ({"LC_MESSAGES": "es_ES.UTF-8", "LANG": "en_US.UTF-8"}, "es"),
+        ({"ARBOLEDA_LANG": "en", "LANG": "es_ES.UTF-8"}, "en"),
+        ({"ARBOLEDA_LANG": "fr"}, "en"),
+        ({}, "en"),
+    ],
+)
+def test_the_first_variable_that_is_set_says_the_language(
+    monkeypatch: pytest.MonkeyPatch, given: dict[str, str], wanted: str
+) -> None:
+    for name in VARIABLES:
+        monkeypatch.delenv(name, raising=False)
+    for name, value in given.items():
+        monkeypatch.setenv(name, value)
+    assert language() == wanted
+
+
+def test_the_overview_is_in_the_language(spanish: None) -> None:
+    shown = typer.testing.CliRunner().invoke(cli, ["--help"]).output
+    words = " ".join(shown.split())
+    assert "Maneja celdas de robots" in words
+    assert "Poner en marcha una planta:" in words
+    assert "Lleva un robot a su referencia." in words
+    for title in SECTIONS:
+        assert f"{title}:" not in words
+
+
+def test_errors_of_this_process_and_of_a_plant_are_said_in_it(spanish: None) -> None:
+    said = "lost_part termina al instante: no indique cuánto dura"
+    sentence = AN_INSTANT(kind="lost_part")
+    assert say_error(ArboledaError(sentence)) == said
+    assert say_error(Conflict(409, {"sentence": str(sentence), **sentence.data()})) == said
+    assert say_error(ArboledaError("in words of its own")) == "in words of its own"
+    assert say_error(Conflict(409, {"sentence": "of a later version", "key": "x.y", "values": {}})) == (
+        "of a later version"
+    )
+
+
+def test_a_task_is_told_in_it(spanish: None) -> None:
+    sentence = AN_INSTANT(kind="jam")
+    assert say_row({"sentence": str(sentence), **sentence.data()}).startswith("jam termina al instante")
+    assert say_row({"sentence": None}) == ""
+    assert say_row({"sentence": "broken", "key": "fault.an_instant", "values": {"kind": None}}) == "broken"

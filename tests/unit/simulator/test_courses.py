@@ -1,0 +1,58 @@
+"""Courses of tasks as their trees show them: when a repeated step began last."""
+
+from __future__ import annotations
+
+import pytest
+from py_trees.behaviour import Behaviour
+from py_trees.common import Status
+
+from arboleda.model.messages import Course
+from arboleda.recipes.decorators import Times
+from arboleda.simulator.recorded.courses import TaskInProgress
+from arboleda.trees.leaves import Await
+
+
+class Turns(Times):
+    """Repeating step of which only the turn counts."""
+
+    def __init__(self, child: Behaviour) -> None:
+        Behaviour.__init__(self, "turns")
+        self.done = 0
+        child.parent = self
+
+
+class Leaving(Await):
+    """Step that ends in the pass in which it began."""
+
+    def __init__(self) -> None:
+        Behaviour.__init__(self, "leave")
+
+
+@pytest.fixture
+def seen() -> TaskInProgress:
+    """A task of 3 s whose step was seen at 1 s, was reset, and began anew as the task ended."""
+    step = Leaving()
+    turns = Turns(step)
+    task = TaskInProgress("t", [turns, step], 0.0, whole=True)
+    for status, now in ((Status.SUCCESS, 1.0), (Status.INVALID, 2.0)):
+        step.status = status
+        task.look(now, now)
+    turns.done, step.status, step.began, task.ended_at = 1, Status.SUCCESS, 3.0, 3.0
+    return task
+
+
+@pytest.mark.parametrize(
+    ("begun", "differs"),
+    [
+        ({}, False),  # its last turn took no time before the end, and is not told
+        ({"leave #1": 3.0}, False),
+        ({"leave #1": 2.0}, False),  # nobody looked between two rests
+        ({"leave #1": 0.5}, True),
+        ({"leave #1": 2.5}, True),
+        ({"other #1": 1.0}, True),
+    ],
+)
+def test_a_step_that_was_reset_may_have_begun_anew_at_a_rest(
+    seen: TaskInProgress, begun: dict[str, float], differs: bool
+) -> None:
+    assert seen.differs(Course(seconds=3.0, begun=begun)) is differs
