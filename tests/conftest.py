@@ -11,6 +11,7 @@ import signal
 import socket
 import subprocess
 import threading
+import warnings
 from collections.abc import Callable, Iterator
 from contextlib import suppress
 from functools import lru_cache
@@ -243,7 +244,11 @@ def postgres() -> Iterator[Server]:
 @pytest.fixture
 def database(postgres: Server, monkeypatch: pytest.MonkeyPatch) -> str:
     """The address of its database; the password is where people have it. A server is silent for as long as
-    it likes: in this process that decides nothing but where a test says so."""
+    it likes: in this process that decides nothing but where a test says so. One that has ended between two
+    tests is started again, with a warning that has its last words."""
+    if not postgres.runs:
+        warnings.warn(f"PostgreSQL had ended: {postgres.last_words()}", stacklevel=1)
+        postgres.start()
     monkeypatch.setenv("PGPASSWORD", PASSWORD)
     monkeypatch.setattr("arboleda.store.postgres.server.ANSWER_S", PATIENCE_S)
     return postgres.address

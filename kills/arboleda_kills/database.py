@@ -69,9 +69,20 @@ class Server:
                 with self.connection("postgres"):
                     return
             except psycopg.OperationalError:
-                assert self._process is not None and self._process.poll() is None, "postgres has ended"
+                assert self.runs, f"postgres has ended: {self.last_words()}"
                 time.sleep(LOOK_S)
-        raise AssertionError("postgres does not answer")
+        raise AssertionError(f"postgres does not answer: {self.last_words()}")
+
+    @property
+    def runs(self) -> bool:
+        """Whether its process is there."""
+        return self._process is not None and self._process.poll() is None
+
+    def last_words(self, lines: int = 20) -> str:
+        """The end of its log, and its exit status where it has ended."""
+        status = None if self._process is None else self._process.poll()
+        log = (self._folder / "log").read_text(errors="replace").splitlines()
+        return "\n".join([f"exit status {status}", *log[-lines:]])
 
     def stop(self, how: signal.Signals = signal.SIGQUIT) -> None:
         """End it: at once, as in a crash, unless asked otherwise; idempotent."""
