@@ -153,6 +153,8 @@ lint:  ## check style, format, types and the import rules
 	$(BIN)/ruff check
 	$(BIN)/ruff format --check
 	$(BIN)/mypy
+	$(BIN)/mypy --explicit-package-bases firmware/test/*.py
+	$(BIN)/mypy --scripts-are-modules $$(grep -lE '^#!.*python' scripts/* 2>/dev/null) scripts/*.py
 	@PYTHONPATH=src/arboleda_bringup $(BIN)/lint-imports # pip does not install that one
 
 diagrams:  ## write docs/reference/states.md anew from the state tables of the core

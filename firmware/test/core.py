@@ -64,6 +64,10 @@ def _buffer() -> ctypes.Array[ctypes.c_char]:
     return ctypes.create_string_buffer(CAPACITY)
 
 
+def _written(size: int) -> bytes:
+    return _buffer().raw[:size]
+
+
 def run(lines: list[str]) -> list[str]:
     """What the core's board said under a script, a line each."""
     return run_in(library().arboleda_run, lines)
@@ -75,13 +79,13 @@ def run_in(runner: Any, lines: list[str]) -> list[str]:
     runner.argtypes = (ctypes.c_char_p, ctypes.c_char_p, ctypes.c_size_t)
     size = runner("\n".join(lines).encode(), _buffer(), CAPACITY)
     assert size < CAPACITY, "the board says more than this test has room for"
-    return _buffer()[:size].decode().splitlines()
+    return _written(size).decode().splitlines()
 
 
 def angle(degrees: float) -> str:
     """An angle as the core writes it."""
     size = library().arboleda_angle(degrees, _buffer(), CAPACITY)
-    return _buffer()[len('{"q":') : size - 1].decode()
+    return _written(size)[len('{"q":') : -1].decode()
 
 
 def decode(channel: int, raw: bytes, axes: int) -> Decoded:

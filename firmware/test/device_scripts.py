@@ -70,7 +70,8 @@ class Author(AnyAuthor):
         if channel == "latido":
             return self._beaten()
         if fate > 0.97:
-            return self.chance.choice(({}, {"seq": self._seq}, {"seq": "1", "epoca": self._epoch}))
+            odd: tuple[dict[str, object], ...] = ({}, {"seq": self._seq}, {"seq": "1", "epoca": self._epoch})
+            return self.chance.choice(odd)
         return {"seq": self._seq, "epoca": self._epoch}
 
 

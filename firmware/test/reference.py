@@ -20,6 +20,7 @@ class Reference(Virtual):
 
     def __init__(self, setting: Setting, now_us: int) -> None:
         arm = shipped("sis_a").cell("sis_a").roles["arm"]
+        assert isinstance(arm, Arm)
         self.arm: Arm = replace(arm, evidence=Evidence.IDS if setting.ids else Evidence.JOINTS)
         self.body = ArmBody(
             self.arm, start=self._si(setting.start), pickups=[self._si(place) for place in PLACES]

@@ -7,6 +7,7 @@ import json
 import sys
 from hashlib import sha1
 from pathlib import Path
+from typing import Any
 
 VECTORS = Path(__file__).parents[2] / "wire_vectors"
 CHANNELS = ("juntas", "efector", "paro", "referencia", "latido")
@@ -36,11 +37,11 @@ def inputs() -> list[bytes]:
     return [_input(row) for row in rows if row["channel"] in CHANNELS]
 
 
-def _input(row: dict) -> bytes:
+def _input(row: dict[str, Any]) -> bytes:
     return bytes([CHANNELS.index(row["channel"]) + (SIX_AXES if row["axes"] == 6 else 0)]) + _raw(row)
 
 
-def _raw(row: dict) -> bytes:
+def _raw(row: dict[str, Any]) -> bytes:
     return bytes.fromhex(row["hex"]) if "hex" in row else row["bytes"].encode()
 
 

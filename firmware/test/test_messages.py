@@ -6,6 +6,7 @@ import json
 from decimal import Decimal, localcontext
 from pathlib import Path
 from random import Random
+from typing import Any
 
 import pytest
 
@@ -19,45 +20,53 @@ from .scripts import CHANNELS
 
 VECTORS = Path(__file__).parents[2] / "wire_vectors"
 MUTATIONS = 40_000
+Body = tuple[float, ...] | bool | int | None
+Reading = tuple[Body, int | None, int | None, int | None, str | None]
 LEAST = 1e-30  # what is smaller is 0 for the core
 
 
-def rows(*names: str) -> list:
+def rows(*names: str) -> list[Any]:
     read = [row for name in names for row in json.loads((VECTORS / name).read_text(encoding="ascii"))]
     heard = [row for row in read if row["channel"] in CHANNELS and row["axes"] is not None]
     return [pytest.param(row["channel"], _raw(row), row["axes"], id=row["name"]) for row in heard]
 
 
-def _raw(row: dict) -> bytes:
+def _raw(row: dict[str, Any]) -> bytes:
     return bytes.fromhex(row["hex"]) if "hex" in row else row["bytes"].encode()
 
 
-def ours(channel: str, raw: bytes, axes: int) -> tuple | None:
+def ours(channel: str, raw: bytes, axes: int) -> Reading | None:
     """What the core reads; None where it refuses."""
-    said = core.decode(CHANNELS.index(channel), raw, axes)
-    if not said.well_formed:
+    read = core.decode(CHANNELS.index(channel), raw, axes)
+    if not read.well_formed:
         return None
-    body = {"juntas": tuple(said.q_deg[:axes]), "efector": bool(said.on), "paro": said.stop}.get(channel)
-    seq = said.seq if said.has_seq and channel != "latido" else None
-    heard = said.heard if said.has_heard else None
-    return body, seq, said.epoch if said.has_epoch else None, heard, said.token.decode() or None
+    bodies: dict[str, Body] = {
+        "juntas": tuple(read.q_deg[:axes]),
+        "efector": bool(read.on),
+        "paro": read.stop,
+    }
+    seq = read.seq if read.has_seq and channel != "latido" else None
+    heard = read.heard if read.has_heard else None
+    epoch = read.epoch if read.has_epoch else None
+    return bodies.get(channel), seq, epoch, heard, read.token.decode() or None
 
 
-def theirs(channel: str, raw: bytes, axes: int) -> tuple | None:
+def theirs(channel: str, raw: bytes, axes: int) -> Reading | None:
     """What the plant's own reader makes of it."""
     try:
-        said = payloads.decode(Channel(channel), raw, axes=axes)
+        message = payloads.decode(Channel(channel), raw, axes=axes)
     except PayloadError:
         return None
-    body = None
-    if isinstance(said, JointsGoal):
-        body = tuple(value if abs(value) >= LEAST else 0.0 for value in said.q)
-    elif isinstance(said, EffectorGoal):
-        body = said.on
-    elif isinstance(said, StopGoal):
-        body = said.mode.value
-    labels = (getattr(said, "heard", None), getattr(said, "token", None))
-    return body, None if isinstance(said, Beat) else said.seq, said.epoch, *labels
+    body: Body = None
+    if isinstance(message, JointsGoal):
+        body = tuple(value if abs(value) >= LEAST else 0.0 for value in message.q)
+    elif isinstance(message, EffectorGoal):
+        body = message.on
+    elif isinstance(message, StopGoal):
+        body = message.mode.value
+    seq = None if isinstance(message, Beat) else getattr(message, "seq", None)
+    epoch, heard, token = (getattr(message, name, None) for name in ("epoch", "heard", "token"))
+    return body, seq, epoch, heard, token
 
 
 @pytest.mark.parametrize(("channel", "raw", "axes"), rows("messages.json", "accepted.json"))

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 from random import Random
+from typing import Any
 
 import pytest
 
@@ -35,7 +37,7 @@ def test_rv32imc_steps_when_the_reference_steps() -> None:
 
 def order(chance: Random, stepper: Stepper, ours: int) -> None:
     """One random call on both."""
-    calls = {
+    calls: dict[str, tuple[Callable[[Any], None], float]] = {
         "speed": (stepper.set_max_speed, chance.uniform(1, 5000)),
         "acceleration": (stepper.set_acceleration, chance.uniform(1, 20000)),
         "move": (stepper.move_to, chance.randint(-3000, 3000)),
