@@ -198,7 +198,7 @@ class Machine:
             if task.over is not None and self._is_full_look and task.seen_by <= event.number:
                 del self._tasks[number]
                 self._settle(task, task.over)
-        if any(task.over is not None for task in self._tasks.values()):
+        if self._may_read and self._tasks:
             self._look_at = now  # it ended after this look had begun
         self._report(now)
 
