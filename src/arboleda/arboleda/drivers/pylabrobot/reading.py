@@ -16,6 +16,7 @@ from ..port import DriverError
 from .paths import steps
 
 SCALARS = (bool, int, float, str)
+LARGEST = 2**63
 
 
 class UnreadableValue(DriverError):
@@ -50,10 +51,11 @@ class Reading:
         """The value read, as that type; raises UnreadableValue if it has no meaning there."""
         if isinstance(raw, Enum):
             raw = raw.value
-        for meant in self._meanings(raw, of):
-            found = of.read(meant) if not isinstance(meant, float) or math.isfinite(meant) else None
-            if found is not None:
-                return found
+        if isinstance(raw, str) or not isinstance(raw, SCALARS) or _is_number(raw) or isinstance(raw, bool):
+            for meant in self._meanings(raw, of):
+                found = of.read(meant)
+                if found is not None:
+                    return found
         where = self.read or "the result"
         raise UnreadableValue(f"{where} is {_shown(raw)}; allowed: {of.allowed()}")
 
@@ -86,7 +88,8 @@ class Reading:
 
 
 def _is_number(value: object) -> bool:
-    return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
+    """True for a number that a report may have."""
+    return isinstance(value, int | float) and not isinstance(value, bool) and -LARGEST < value < LARGEST
 
 
 def _is_meant(raw: object, meant: Any) -> bool:
@@ -98,4 +101,6 @@ def _is_meant(raw: object, meant: Any) -> bool:
 
 
 def _shown(raw: object) -> str:
+    if isinstance(raw, int) and not -LARGEST < raw < LARGEST:
+        return "too large a number"
     return quoted(raw) if isinstance(raw, SCALARS) or raw is None else f"of the type {type(raw).__name__}"
