@@ -63,6 +63,11 @@ class HandLoop(asyncio.SelectorEventLoop):
 
     now = START_S
 
+    def __init__(self) -> None:
+        super().__init__()
+        # Coroutines that hang are left behind, which asyncio complains of.
+        self.set_exception_handler(lambda loop, context: None)
+
     def time(self) -> float:
         return self.now
 

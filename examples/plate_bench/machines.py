@@ -1,11 +1,11 @@
-"""The machines of the bench, as PyLabRobot has them; for real ones put their backends in the place of these."""
+"""Machines of the bench, on simulators of PyLabRobot; for real ones put their backends here."""
 
 from arboleda.adapters.pylabrobot import machine
 
 
 @machine("liquid_handler")
 def liquid_handler():
-    """A liquid handler with one channel, on the deck of an Opentrons OT-2, with a rack of tips in slot 1 and a plate in slot 2."""
+    """A liquid handler of one channel: tips in slot 1, a plate in slot 2 of the deck of an OT-2."""
     from pylabrobot.liquid_handling import LiquidHandler
     from pylabrobot.liquid_handling.backends import LiquidHandlerChatterboxBackend
     from pylabrobot.resources import Cor_96_wellplate_360ul_Fb, hamilton_96_tiprack_300uL

@@ -3,8 +3,11 @@
 from arboleda.recipes import Choice, recipe, work
 
 
+Well = Choice["B1", "C1"]
+
+
 @recipe("dilute")
-def dilute(cell, to: Choice["B1", "C1"]):
+def dilute(cell, to: Well):
     """Move 50 ul from A1 to another well, with a tip of its own; then warm the plate and shake it."""
     handler, hotplate = cell.device("handler"), cell.device("hotplate")
     return work(

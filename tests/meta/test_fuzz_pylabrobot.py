@@ -31,7 +31,7 @@ def test_a_driver_that_takes_begun_for_done_would_be_found(
     monkeypatch.setattr(
         machine.Machine,
         "_tell",
-        lambda self, now, **ids: tell(self, now, **ids, **{"done": id for id in ids.values() if id}),
+        lambda self, now, **ids: tell(self, now, **ids, done=next(iter(ids.values()))),
     )
     with pytest.raises(AssertionError, match="have not returned"):
         fuzz.run(RUNS, 1)

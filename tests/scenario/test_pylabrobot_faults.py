@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from pathlib import Path
 
 import pytest
 
+from arboleda.adapters.pylabrobot import Bench
 from arboleda.dispatch import evidence
-from arboleda.drivers.pylabrobot import machine
+from arboleda.drivers.pylabrobot.settings import Call
 from arboleda.plant_file.loader import load
 
 from ..lengths import sample
@@ -39,12 +41,15 @@ def test_every_fault_by_itself_has_only_the_reasons_that_it_may_give() -> None:
     assert [fault for fault in FAULTS if breaches(1, fault, tasks=FEW)] == []
 
 
-def test_a_call_that_is_done_once_it_was_begun_would_be_found(monkeypatch: pytest.MonkeyPatch) -> None:
-    tell = machine.Machine._tell
+def test_an_exception_that_is_taken_for_a_return_would_be_found(monkeypatch: pytest.MonkeyPatch) -> None:
+    one = Bench._one
+
+    async def quiet(bench: Bench, call: Call) -> object:
+        with suppress(Exception):
+            return await one(bench, call)
+        return None
+
     monkeypatch.setattr(evidence, "reached", lambda entry, belief: True)
-    monkeypatch.setattr(
-        machine.Machine,
-        "_tell",
-        lambda self, now, **ids: tell(self, now, **ids, done=ids.get("accepted", "")),
-    )
-    assert breaches(1, "slow") != []
+    monkeypatch.setattr(Bench, "_one", quiet)
+    found = [each for seed in range(6) for each in breaches(seed, "refuses", "unplugged")]
+    assert any("false success" in each for each in found)

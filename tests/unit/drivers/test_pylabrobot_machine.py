@@ -150,7 +150,6 @@ def test_a_question_without_an_answer_is_silence() -> None:
 def test_it_is_set_up_again_only_where_that_is_allowed() -> None:
     for allowed in (False, True):
         bench = Bench(setup_again=allowed)
-        out = bench.step(LookFailed(number=bench.look, why="gone"), after=0.0)
         bench.step(after=1.1)
         out = bench.step(LookFailed(number=bench.look, why="gone"))
         assert any(isinstance(each, Close) for each in out) is allowed
