@@ -16,7 +16,7 @@ from ..lengths import sample
 
 pytestmark = pytest.mark.requires("pylabrobot")
 
-EXAMPLE = load(Path(__file__).parents[2] / "examples/plate_bench/plant.yaml")
+EXAMPLE = load(Path(__file__).parents[2] / "examples/plate_bench/bench.yaml")
 SEEDS = 8
 FEW = 1  # task, in which a fault comes by itself
 

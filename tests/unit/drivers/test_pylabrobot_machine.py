@@ -29,7 +29,7 @@ from arboleda.drivers.pylabrobot.settings import Call, MachineMapping
 from arboleda.kinds.declared import Device, FactType
 from arboleda.plant_file.loader import load
 
-MODEL = load(Path(__file__).parents[3] / "examples/plate_bench/plant.yaml")
+MODEL = load(Path(__file__).parents[3] / "examples/plate_bench/bench.yaml")
 SHAKER = MODEL.robots["hotplate"]
 PATH = "get_temperature()"
 WORDS = FactType(type=str, words=("low", "high"), first="low")
