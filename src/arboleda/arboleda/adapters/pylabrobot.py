@@ -307,15 +307,12 @@ class _nothing:
 
 
 def _named(place: str) -> Any:
-    """What stands at `module:name`; raises DriverError with install advice if PyLabRobot is missing."""
+    """What stands at `module:name`."""
     module, _, name = place.partition(":")
-    try:
-        return getattr(import_module(module), name)
-    except ModuleNotFoundError as error:
-        if error.name == "pylabrobot":
-            raise DriverError(MISSING) from error
-        raise
+    return getattr(import_module(module), name)
 
 
 def _text(error: Exception) -> str:
+    if isinstance(error, ModuleNotFoundError) and error.name == "pylabrobot":
+        return MISSING
     return str(error) if isinstance(error, DriverError) else f"{type(error).__name__}: {said_by(error)}"
