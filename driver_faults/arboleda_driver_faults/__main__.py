@@ -23,6 +23,7 @@ from .gripper import CarryRig
 from .modbus import ModbusRig
 from .nav2 import RoundRig, WaypointsRig
 from .opcua import OpcUaRig
+from .pylabrobot import SIDE_BY_SIDE, ShakerRig
 from .rig import Rig, run
 from .s7 import S7Rig
 from .serial_arm import ServoRig
@@ -40,6 +41,8 @@ RIGS: dict[str, tuple[Path | None, Callable[..., Rig]]] = {
     "navigate_to_pose": (EXAMPLES / "nav2/plant.yaml", RoundRig),
     "follow_waypoints": (EXAMPLES / "nav2/plant.yaml", WaypointsRig),
     "gcode": (EXAMPLES / "gantry/bench.yaml", GantryRig),
+    "pylabrobot": (EXAMPLES / "plate_bench/bench.yaml", ShakerRig),
+    "pylabrobot-side_by_side": (EXAMPLES / "plate_bench/bench.yaml", SIDE_BY_SIDE),
     "serial_arm-dynamixel": (EXAMPLES / "serial_arm/desk.yaml", partial(ServoRig, maker="dynamixel")),
     "serial_arm-feetech": (EXAMPLES / "serial_arm/desk.yaml", ServoRig),
     **{

@@ -38,6 +38,7 @@ setup(
             "gcode = arboleda.adapters.gcode:Gcode",
             "modbus = arboleda.adapters.modbus:Modbus",
             "opcua = arboleda.adapters.opcua:OpcUa",
+            "pylabrobot = arboleda.adapters.pylabrobot:PyLabRobot",
             "serial_arm = arboleda.adapters.serial_arm:SerialArm",
             "s7 = arboleda.adapters.s7:S7",
             "ur = arboleda.adapters.ur:Ur",
