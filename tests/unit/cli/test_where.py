@@ -13,7 +13,7 @@ import pytest
 import yaml
 
 from arboleda.campaigns.request import Request
-from arboleda.cli import main as command
+from arboleda.cli import submit as command
 from arboleda.cli import remote_plant
 from arboleda.cli.client import PlantClient
 from arboleda.cli.main import main
