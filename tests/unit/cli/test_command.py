@@ -21,17 +21,20 @@ import os, signal, sys
 
 class CtrlC:
     def find_spec(self, name, path=None, target=None):
-        if name == "arboleda.cli.main":
+        if name == {module!r}:
             os.kill(os.getpid(), signal.SIGINT)
 
 sys.meta_path.insert(0, CtrlC())
+sys.argv[1:] = ["up", "--help"]
 from arboleda.cli.entry import main
 main()
 """
 
 
-def test_ctrl_c_while_the_command_loads_is_no_error() -> None:
-    ended = subprocess.run([sys.executable, "-c", INTERRUPTED], capture_output=True, text=True)
+@pytest.mark.parametrize("module", ["arboleda.cli.main", "arboleda.cli.up"])
+def test_ctrl_c_while_the_command_loads_is_no_error(module: str) -> None:
+    code = INTERRUPTED.format(module=module)
+    ended = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
     assert (ended.returncode, ended.stdout, ended.stderr) == (-signal.SIGINT, "", "")
 
 

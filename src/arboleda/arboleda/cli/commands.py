@@ -11,6 +11,8 @@ import typer
 
 from arboleda.views.verb_words import ABOUT
 
+from .entry import loading
+
 
 class Command(NamedTuple):
     """Command: the name of a module of this room, whose `add_to` adds it, and what it does in a sentence."""
@@ -147,7 +149,9 @@ def _commands_of(module: str) -> Mapping[str, Any]:
     """All commands that a module adds."""
     cli = typer.Typer(add_completion=False, rich_markup_mode=None)
     cli.callback()(_nothing)  # typer makes a group only of what has one, or several commands
-    import_module(f".{module}", __package__).add_to(cli)
+    with loading():
+        loaded = import_module(f".{module}", __package__)
+    loaded.add_to(cli)
     group: Any = typer.main.get_command(cli)
     commands: Mapping[str, Any] = group.commands
     return commands

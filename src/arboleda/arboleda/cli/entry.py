@@ -3,18 +3,34 @@
 from __future__ import annotations
 
 import signal
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
 
 
 def main() -> None:
     """Load the command line and run it; Ctrl-C while Python loads or ends ends the process without a word."""
     handler = signal.getsignal(signal.SIGINT)
-    if handler is signal.default_int_handler:
-        signal.signal(signal.SIGINT, signal.SIG_DFL)
-    from .main import main as run  # it takes most of a second, and starts nothing that would have to be ended
+    with loading():
+        from .main import main as run
 
-    signal.signal(signal.SIGINT, handler)
     try:
         run()
     finally:
         if handler is signal.default_int_handler:
             signal.signal(signal.SIGINT, signal.SIG_DFL)
+
+
+@contextmanager
+def loading() -> Iterator[None]:
+    """Time in which modules are loaded: nothing has begun that Ctrl-C would have to end in order."""
+    handler = signal.getsignal(signal.SIGINT)
+    in_main = threading.current_thread() is threading.main_thread()
+    if handler is not signal.default_int_handler or not in_main:
+        yield
+        return
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, handler)
