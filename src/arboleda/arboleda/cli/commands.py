@@ -11,7 +11,7 @@ import typer
 
 from arboleda.views.verb_words import ABOUT
 
-from .entry import loading
+from .loading import loading
 
 
 class Command(NamedTuple):

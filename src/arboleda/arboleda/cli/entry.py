@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import signal
-import threading
-from collections.abc import Iterator
-from contextlib import contextmanager
+
+from .loading import loading
 
 
 def main() -> None:
@@ -19,18 +18,3 @@ def main() -> None:
     finally:
         if handler is signal.default_int_handler:
             signal.signal(signal.SIGINT, signal.SIG_DFL)
-
-
-@contextmanager
-def loading() -> Iterator[None]:
-    """Time in which modules are loaded: nothing has begun that Ctrl-C would have to end in order."""
-    handler = signal.getsignal(signal.SIGINT)
-    in_main = threading.current_thread() is threading.main_thread()
-    if handler is not signal.default_int_handler or not in_main:
-        yield
-        return
-    signal.signal(signal.SIGINT, signal.SIG_DFL)
-    try:
-        yield
-    finally:
-        signal.signal(signal.SIGINT, handler)
