@@ -13,8 +13,8 @@ import pytest
 import yaml
 
 from arboleda.campaigns.request import Request
-from arboleda.cli import main as command
 from arboleda.cli import remote_plant
+from arboleda.cli import submit as command
 from arboleda.cli.client import PlantClient
 from arboleda.cli.main import main
 from arboleda.cli.plant_options import located, plant_here

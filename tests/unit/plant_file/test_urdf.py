@@ -84,7 +84,8 @@ def test_without_the_xacro_library_a_sentence_says_what_to_install(
 
 
 def test_the_command_starts_without_the_xacro_library() -> None:
-    code = "import sys; sys.modules['xacro'] = None; import arboleda.cli.main"
+    commands = "arboleda.cli.up, arboleda.cli.check, arboleda.cli.urdf"
+    code = f"import sys; sys.modules['xacro'] = None; import {commands}"
     subprocess.run([sys.executable, "-c", code], env={"PYTHONPATH": ":".join(sys.path)}, check=True)
 
 

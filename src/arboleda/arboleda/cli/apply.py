@@ -105,6 +105,12 @@ class _Base:
         return say(VERSION_OF(number=number, time=time) if number else STARTED_WITH(time=time))
 
 
+def add_to(cli: typer.Typer) -> None:
+    """Add the commands."""
+    cli.command()(apply)
+    cli.command()(versions)
+
+
 def apply(
     plant: PlantFile = None,
     back: Back = None,

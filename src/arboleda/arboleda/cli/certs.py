@@ -69,6 +69,11 @@ Renew = Annotated[
 ]
 
 
+def add_to(cli: typer.Typer) -> None:
+    """Add the command."""
+    cli.command()(certs)
+
+
 def certs(
     folder: Folder = Path("certs"),
     name: Names = None,

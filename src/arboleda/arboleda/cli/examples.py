@@ -22,6 +22,11 @@ NO_EXAMPLE = Phrase("cli.examples.none", "there is no example {name}; {others}")
 RUN_IT = Phrase("cli.examples.run_it", "On virtual devices, with a page:")
 
 
+def add_to(cli: typer.Typer) -> None:
+    """Add the command."""
+    cli.command()(examples)
+
+
 def examples(
     name: Annotated[
         str, typer.Argument(metavar="NAME", help="The example to write; without it all are listed.")

@@ -224,3 +224,8 @@ def _language(asked: str) -> str:
     if asked and asked not in LANGUAGES:
         raise typer.BadParameter(say(NO_LANGUAGE(asked=repr(asked), others=allowed(asked, LANGUAGES))))
     return asked or language()
+
+
+def add_to(parent: typer.Typer) -> None:
+    """Add the group."""
+    parent.add_typer(cli, name="exercise")

@@ -40,6 +40,11 @@ def _seconds(value: str | None) -> float | None:
     return float(found[1]) * SECONDS[found[2] or "s"]
 
 
+def add_to(cli: typer.Typer) -> None:
+    """Add the command."""
+    cli.command()(fault)
+
+
 def fault(
     kind: Annotated[
         str | None,

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import time
 
+import typer
+
 from arboleda.model.errors import ArboledaError, StartError
 from arboleda.model.sentence import Phrase
 
@@ -28,6 +30,11 @@ STILL_LEADS = Phrase(
     "cli.handover.still_leads",
     "After {seconds} s process {process} on {host} still leads the plant; its log says why.",
 )
+
+
+def add_to(cli: typer.Typer) -> None:
+    """Add the command."""
+    cli.command()(handover)
 
 
 def handover(plant: RunningPlant = None, state: StateFolder = None, store: StoreAddress = "") -> None:

@@ -41,6 +41,11 @@ What the devices can do is in plant.yaml, what they do together in recipes.py. C
 NAMED = "PLANT"  # stands for the plant's name in what is written
 
 
+def add_to(cli: typer.Typer) -> None:
+    """Add the command."""
+    cli.command()(new)
+
+
 def new(
     folder: Annotated[
         Path, typer.Argument(metavar="FOLDER", help="The folder to write; its name is that of the plant.")

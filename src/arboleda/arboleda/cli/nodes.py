@@ -20,6 +20,11 @@ from .tree import NO_CELL
 CellName = Annotated[str | None, typer.Option("--cell", help="Only for this cell. [default: for all]")]
 
 
+def add_to(cli: typer.Typer) -> None:
+    """Add the command."""
+    cli.command()(nodes)
+
+
 def nodes(
     plant: PlantFile = None,
     cell: CellName = None,

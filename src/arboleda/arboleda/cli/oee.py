@@ -36,6 +36,11 @@ NO_CELL = Phrase("cli.oee.no_cell", "no cell had a task in that time")
 SINCE = Phrase("cli.oee.since", "since {begin}")
 
 
+def add_to(cli: typer.Typer) -> None:
+    """Add the command."""
+    cli.command()(oee)
+
+
 def oee(
     cell: Annotated[str, typer.Option(metavar="CELL", help="Only this cell.")] = "",
     since: Annotated[

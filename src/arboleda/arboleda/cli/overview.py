@@ -11,6 +11,7 @@ from typer.core import TyperGroup
 
 from arboleda.model.verbs import Verb
 
+from .commands import COMMANDS, LoadedCommands
 from .help_language import WrongUse, complain, first_sentence, speaking, translated
 from .language import help_words
 
@@ -74,10 +75,25 @@ class WholeSentences(TyperGroup):
 
 
 class Overview(WholeSentences):
-    """The group of all commands."""
+    """The group of all commands: none is loaded to list them."""
+
+    def __init__(self, **settings: Any) -> None:
+        super().__init__(**settings)
+        self.commands: Any = LoadedCommands()
+
+    def list_commands(self, ctx: Any) -> list[str]:
+        """Names of all commands."""
+        return list(COMMANDS)
 
     def sections(self, ctx: Any) -> Mapping[str, Sequence[str]]:
         return SECTIONS
+
+    def _what(self, ctx: Any, name: str) -> str:
+        """The sentence of a command; in another language the first of the paragraph that begins with it."""
+        brief, known = COMMANDS[name].brief, help_words("help")
+        if brief in known or not known:
+            return translated(brief)
+        return first_sentence(next((text for text in known if text.startswith(f"{brief} ")), brief))
 
     def main(self, *args: Any, **extra: Any) -> Any:
         """Run a command, and say in the language of the terminal what is wrong with its arguments."""

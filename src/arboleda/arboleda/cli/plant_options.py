@@ -9,17 +9,17 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from arboleda.model.outside import plain
-from arboleda.plant_file import loader
+from arboleda.plant_file.shipped import shipped_name
 from arboleda.runtime.endpoints import tokens_of
 from arboleda.runtime.state import default_state, find_running, last_run, plants_of_databases, running_plants
-from arboleda.runtime.stores import history_of, leadership_of
-from arboleda.store.task_rows import History
 
 from .client import PlantClient
 from .remote_plant import RemotePlant
 
 if TYPE_CHECKING:
+    from arboleda.model.plant_model import PlantModel
     from arboleda.store.postgres.leadership import Leadership
+    from arboleda.store.task_rows import History
 
 LONGEST = 500  # characters of a line
 IN_FOLDER = Path("plant.yaml")  # as `arboleda new` calls it
@@ -121,6 +121,8 @@ def located(plant: Path | None, state: Path | None) -> Path:
 
 def history(plant: Path | None, state: Path | None, store: str) -> History:
     """The history of that plant's tasks, read from the store that keeps them."""
+    from arboleda.runtime.stores import history_of
+
     where = located(plant, state)
     kept_in, name = _kept_in(plant, where, store)
     return history_of(kept_in, where, name if kept_in else name_of(plant))
@@ -128,6 +130,8 @@ def history(plant: Path | None, state: Path | None, store: str) -> History:
 
 def database(plant: Path | None, state: Path | None, store: str) -> Leadership:
     """The leadership of that plant; StartError if its memory is no database."""
+    from arboleda.runtime.stores import leadership_of
+
     return leadership_of(*_kept_in(plant, located(plant, state), store))
 
 
@@ -142,19 +146,31 @@ def _kept_in(plant: Path | None, where: Path, store: str) -> tuple[str, str]:
         return "", ""
     if plant is None and last is not None and last.plant:
         return kept_in, last.plant
-    return kept_in, loader.load(plant, recipes=False).name
+    return kept_in, _name(plant)
 
 
 def store_of(plant: Path | None) -> str:
-    """The database that the plant file names, "" if it names none."""
-    return loader.load(plant, recipes=False).store
+    """The database that the plant file names, "" if it names none, as the shipped one does."""
+    return "" if plant is None else _model(plant).store
 
 
 def folder(plant: Path | None, state: Path | None) -> Path:
     """`state`, or the state directory of that plant file."""
-    return state or default_state(loader.load(plant, recipes=False).name)
+    return state or default_state(_name(plant))
 
 
 def name_of(plant: Path | None) -> str:
     """The name of the plant of that file; "" if none is named."""
-    return "" if plant is None else loader.load(plant, recipes=False).name
+    return "" if plant is None else _name(plant)
+
+
+def _name(plant: Path | None) -> str:
+    return shipped_name() if plant is None else _model(plant).name
+
+
+def _model(plant: Path) -> PlantModel:
+    from arboleda.plant_file import (
+        loader,  # takes longer to load than most commands, and few name a plant file
+    )
+
+    return loader.load(plant, recipes=False)

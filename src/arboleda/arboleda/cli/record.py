@@ -271,3 +271,8 @@ def _export_case(record: Any, task: str | None, output: Path) -> None:
 def _counted(of: str, number: int) -> Sentence:
     one, more = COUNTS[of]
     return (one if number == 1 else more)(number=number)
+
+
+def add_to(parent: typer.Typer) -> None:
+    """Add the group."""
+    parent.add_typer(cli, name="record")

@@ -221,3 +221,8 @@ def _state_of(plant: str, user: str | None) -> Path:
     if home is None:
         raise StartError(f"this machine has no user {plain(user)}; name one with --user")
     return home / ".local/state/arboleda" / plant
+
+
+def add_to(parent: typer.Typer) -> None:
+    """Add the group."""
+    parent.add_typer(cli, name="service")

@@ -77,6 +77,11 @@ TlsKey = Annotated[
 ]
 
 
+def add_to(cli: typer.Typer) -> None:
+    """Add the command."""
+    cli.command()(site)
+
+
 def site(
     addresses: Addresses = None,
     store: Store = "",

@@ -70,6 +70,11 @@ def moment(text: str | None) -> float | None:
         raise typer.BadParameter(say(NO_TIME(text=text))) from None
 
 
+def add_to(cli: typer.Typer) -> None:
+    """Add the command."""
+    cli.command()(tasks)
+
+
 def tasks(
     words: Annotated[
         str, typer.Argument(metavar="WORDS", help="Only tasks with these words in their text or id.")

@@ -39,6 +39,11 @@ RUNS = Phrase("cli.tree.runs", "{cell} runs {recipe}")
 NO_CELL = Phrase("cli.tree.no_cell", "'{name}' is not a cell; {others}")
 
 
+def add_to(cli: typer.Typer) -> None:
+    """Add the command."""
+    cli.command()(tree)
+
+
 def tree(
     recipe: Annotated[
         str,

@@ -35,3 +35,8 @@ cli.command("s7", help=s7.HELP)(s7.run)
 cli.command("trajectory", help=trajectory.HELP)(trajectory.run)
 cli.command(gripper.NAME, help=gripper.HELP)(gripper.run)
 cli.command("nav2", help=nav2.HELP)(nav2.run)
+
+
+def add_to(parent: typer.Typer) -> None:
+    """Add the group."""
+    parent.add_typer(cli, name="virtual")

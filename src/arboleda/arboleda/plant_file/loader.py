@@ -6,7 +6,6 @@ import os
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
-from importlib.resources import files
 from pathlib import Path
 from typing import NamedTuple
 
@@ -39,6 +38,7 @@ from .recipe_check import MOST, Trial, combinations
 from .recipe_trial import Verdict, brought
 from .shapes import FileShape, OpcUaViewShape, RecordShape, TimingShape
 from .shared import check_homes
+from .shipped import SHIPPED, shipped
 from .storage_form import check_sections, storage_cell
 from .urdf import own_description
 from .yaml_marks import LARGEST
@@ -46,7 +46,6 @@ from .zones import with_zones, zones
 
 Offers = Callable[[Sequence[Cell]], Mapping[str, tuple[Recipe, ...]]]
 Misses = Mapping[str, Mapping[str, str]]
-SHIPPED = "plant.yaml"
 RECORD: Place = ("record",)
 REPORTS: Place = ("reports",)
 ON, OFF = "on", "off"
@@ -101,7 +100,7 @@ def parse(name: str, content: bytes, folder: Path | None = None, *, recipes: boo
 def _content(path: Path | None) -> tuple[str, bytes, Path | None]:
     """The name of a plant file, its content, and the folder of the files beside it."""
     if path is None:
-        return SHIPPED, (files("arboleda") / "plants" / SHIPPED).read_bytes(), None
+        return SHIPPED, shipped(), None
     return str(path), user_file.read_bytes(path, LARGEST), path.parent
 
 

@@ -1,0 +1,161 @@
+"""Commands of `arboleda`: the module that has each, which is loaded when the command is called, and its
+sentence in the overview."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from importlib import import_module
+from typing import Any, NamedTuple
+
+import typer
+
+from arboleda.views.verb_words import ABOUT
+
+from .loading import loading
+
+
+class Command(NamedTuple):
+    """Command: the name of a module of this room, whose `add_to` adds it, and what it does in a sentence."""
+
+    module: str
+    brief: str
+
+
+COMMANDS: Mapping[str, Command] = {
+    "up": Command(
+        "up", "Run the plant until Ctrl-C; tasks come from here, `arboleda submit` or ROS 2 (/task_request)."
+    ),
+    "run": Command("up", "Start the plant, do the tasks, end."),
+    "submit": Command(
+        "submit", "Send a task to the plant that runs on this machine, or that another host leads."
+    ),
+    "status": Command(
+        "status", "Show what the plant is doing that runs on this machine, or that another host leads."
+    ),
+    "token": Command(
+        "token",
+        "Show the token of viewers, operators or assistants of a plant open to a network (`up --host`).",
+    ),
+    "simulate": Command(
+        "simulate",
+        "Run whole plants under virtual time, with faults drawn from a seed, and judge every step.",
+    ),
+    "prove": Command("prove", "Try every single fault at every moment of every recipe, and judge each run."),
+    "conformance": Command(
+        "conformance",
+        "Test the board of an arm or of a declared kind against the contract, and say which level "
+        "it reaches.",
+    ),
+    "firmware-config": Command(
+        "firmware_config",
+        "Write the header with which the boards' firmware becomes a device of a declared kind.",
+    ),
+    "bench": Command(
+        "bench", "Measure this machine: our figures beside the least that the same run can take, so that two"
+    ),
+    **{verb.value: Command("verbs", words.brief) for verb, words in ABOUT.items()},
+    "check": Command(
+        "check",
+        "Check a plant file, or behavior trees in the XML of BehaviorTree.CPP; every problem at "
+        "once, each with its line.",
+    ),
+    "tree": Command("tree", "Draw the behavior tree of a recipe, or the one that runs."),
+    "nodes": Command("nodes", "List what a tree can tell the devices of a plant, and ask them, with values."),
+    "new": Command(
+        "new", "Write a plant of your own: an arm, a device, a recipe and a test, in a folder of its own."
+    ),
+    "examples": Command(
+        "examples", "List the examples that come with Arboleda, or write one to a folder, to be changed."
+    ),
+    "apply": Command(
+        "apply",
+        "Check a plant file and all that it uses, show how it differs from what is at work, and "
+        "put it to work.",
+    ),
+    "versions": Command(
+        "apply",
+        "List the versions of a plant file that were put to work, oldest first, with what each has changed.",
+    ),
+    "tasks": Command(
+        "tasks", "List tasks and their outcomes, also of earlier starts, whether the plant runs or not."
+    ),
+    "oee": Command(
+        "oee", "OEE of the cells, availability x performance x quality, whether the plant runs or not."
+    ),
+    "certs": Command(
+        "certs",
+        "Make a small authority for a lab, and certificates for the plant on this machine and for "
+        "each board.",
+    ),
+    "handover": Command(
+        "handover", "Have the standby of a plant lead it: what is at work is held, and goes on there."
+    ),
+    "fault": Command(
+        "fault",
+        "Have something go wrong with a virtual device: cut its link, reboot its board, lose its part.",
+    ),
+    "site": Command(
+        "site", "Show many plants on one page: how each stands, trouble first, tasks and OEE over all."
+    ),
+    "backup": Command("backup", "Copy the plant's memory to a file, while the plant runs or not."),
+    "restore": Command("backup", "Put a backup in the place of the plant's memory; the plant must not run."),
+    "replay": Command("replay", "Execute a record again, and compare every step with what it was."),
+    "report": Command(
+        "report", "Write why a task failed: one HTML file, without network, in English and Spanish."
+    ),
+    "mcp": Command(
+        "mcp", "Let an assistant (a language model) look at a plant, try its plant file, and propose changes."
+    ),
+    "logs": Command(
+        "logs", "Show what became of tasks and cells and what operators did, of all starts that are recorded."
+    ),
+    "urdf": Command("urdf", "Print a robot of the plant as URDF."),
+    "service": Command(
+        "service",
+        "Have systemd run the plant: from the start of the machine on, and again where it breaks down.",
+    ),
+    "record": Command(
+        "record", "The flight record of a plant: what went into its core and what came out, of every start."
+    ),
+    "virtual": Command(
+        "virtual", "Play the controller of another maker over its own protocol, with motion and with faults."
+    ),
+    "exercise": Command("exercise", "Exercises with a judge: cells that are not right yet, to be put right."),
+}
+
+
+class LoadedCommands(Mapping[str, Any]):
+    """Commands by name; the module of each is loaded when it is looked up."""
+
+    def __init__(self) -> None:
+        self._loaded: dict[str, Any] = {}
+
+    def __getitem__(self, name: str) -> Any:
+        if name not in self._loaded:
+            self._loaded |= _commands_of(COMMANDS[name].module)
+        return self._loaded[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(COMMANDS)
+
+    def __len__(self) -> int:
+        return len(COMMANDS)
+
+    def __contains__(self, name: object) -> bool:
+        return name in COMMANDS
+
+
+def _commands_of(module: str) -> Mapping[str, Any]:
+    """All commands that a module adds."""
+    cli = typer.Typer(add_completion=False, rich_markup_mode=None)
+    cli.callback()(_nothing)  # typer makes a group only of what has one, or several commands
+    with loading():
+        loaded = import_module(f".{module}", __package__)
+    loaded.add_to(cli)
+    group: Any = typer.main.get_command(cli)
+    commands: Mapping[str, Any] = group.commands
+    return commands
+
+
+def _nothing() -> None:
+    pass

@@ -1,0 +1,58 @@
+"""The command `arboleda status`: what the plant that runs is doing."""
+
+from __future__ import annotations
+
+import json
+from contextlib import suppress
+from typing import Annotated
+
+import typer
+from rich.console import Console
+from rich.live import Live
+
+from arboleda.client.errors import NoAnswer
+
+from .client import PlantClient, PlantGone
+from .plant_options import RunningPlant, StateFolder, StoreAddress, TokensFile, client
+from .screen import table
+
+
+def add_to(cli: typer.Typer) -> None:
+    """Add the command."""
+    cli.command()(status)
+
+
+def status(
+    plant: RunningPlant = None,
+    state: StateFolder = None,
+    as_json: Annotated[bool, typer.Option("--json", help="Print the whole snapshot as JSON.")] = False,
+    watch: Annotated[bool, typer.Option("--watch", help="Show what changes, until Ctrl-C.")] = False,
+    store: StoreAddress = "",
+    tokens: TokensFile = None,
+) -> None:
+    """Show what the plant is doing that runs on this machine, or that another host leads.
+
+    With --json and --watch each change is a line: its kind, and its row of the snapshot.
+    """
+    reached = client(plant, state, store, tokens)
+    if watch:
+        _watch(reached, as_json=as_json)
+        return
+    snapshot = reached.status()
+    if as_json:
+        print(json.dumps(snapshot, indent=2, ensure_ascii=False))
+        return
+    Console(highlight=False).print(table(snapshot))
+
+
+def _watch(reached: PlantClient, *, as_json: bool) -> None:
+    """Print the changes of the plant until it ends."""
+    with suppress(PlantGone):
+        if as_json:
+            for kind, row in reached.changes():
+                print(json.dumps({"kind": kind, "row": row}, ensure_ascii=False), flush=True)
+            return
+        with Live(console=Console(highlight=False), auto_refresh=False) as live:
+            for _ in reached.changes():
+                with suppress(NoAnswer):  # it may end between a change and the table of it
+                    live.update(table(reached.status()), refresh=True)
