@@ -266,6 +266,7 @@ def test_nobody_has_heard_of_what_is_to_come(driven: Driven) -> None:
         (Report(at=0.0, robot="station", state=1), "state of station is 1; it must be a MotionState"),  # type: ignore[arg-type]
         (Report(at=0.0, robot="station", done=7), "done of station is 7; it must be a word or an id"),  # type: ignore[arg-type]
         (Report(at=float("nan"), robot="station"), "at of station is nan; it must be what the clock said"),
+        (Report(at=10**400, robot="station"), "it must be what the clock said"),
         (Report(at=0.0, robot="station", rejected="9-1"), "rejected and refusal of station go together"),
         (Report(at=0.0, robot="station", facts={"at": "left"}), "it must be a tuple of pairs"),  # type: ignore[arg-type]
         (

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import math
+import sys
 from collections.abc import Callable, Mapping
 from typing import Any
 
@@ -12,6 +12,7 @@ from arboleda.model.plant_model import MotionState, Robot
 from arboleda.model.sentence import Sentence
 
 LONGEST = 200  # characters of a word
+LARGEST = sys.float_info.max
 PAIRS = (("rejected", "refusal"), ("failed", "failure"), ("answered", "answer"))
 
 
@@ -35,7 +36,8 @@ def objection(report: object, devices: Mapping[str, Robot]) -> str | None:
 
 
 def is_number(value: object) -> bool:
-    return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
+    """True if it is a number that a float can be; a whole number may have any number of digits."""
+    return isinstance(value, int | float) and not isinstance(value, bool) and abs(value) <= LARGEST
 
 
 def _is_count(value: object) -> bool:
