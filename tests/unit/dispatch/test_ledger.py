@@ -1,6 +1,8 @@
 from __future__ import annotations
 
 import itertools
+import math
+import random
 
 import pytest
 
@@ -64,3 +66,21 @@ def test_an_unlisted_pair_raises_and_changes_nothing(monkeypatch: pytest.MonkeyP
     with pytest.raises(IllegalTransition, match="1-1 is sent: no halted there"):
         ledger.feed("1-1", Feed.HALTED, 1.0)
     assert entry.state is State.SENT and "1-1" in ledger.entries
+
+
+def test_the_next_deadline_is_the_earliest_of_all_that_are_open_whatever_is_planned_anew_and_ends() -> None:
+    chance, ledger = random.Random(1), Ledger()
+    for number in range(400):
+        open_ones = list(ledger.entries.values())
+        if len(open_ones) < 5:
+            move = MoveJoints(id=f"1-{number}", robot="ra1", q=(0.0, 0.0, 0.0))
+            due = float(chance.randrange(9))
+            ledger.open(Entry(move, cell="sis_a", doing="moving", sent_at=0.0, deadline=due))
+        elif number % 2:
+            entry = chance.choice(open_ones)
+            entry.deadline = float(chance.randrange(9))
+            ledger.plan(entry)
+        else:
+            ledger.feed(chance.choice(open_ones).command.id, Feed.FAILED, 1.0, LOST)
+        deadlines = [entry.next_deadline for entry in ledger.entries.values()]
+        assert ledger.next_deadline == min(deadlines, default=math.inf)

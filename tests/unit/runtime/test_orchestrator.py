@@ -620,6 +620,7 @@ def test_a_plant_that_another_process_leads_sends_nothing_not_even_a_stop(
         raise Superseded("Another process leads.")
 
     monkeypatch.setattr(store, "confirm", superseded)
+    monkeypatch.setattr(type(store), "leads_for_certain", False)
     turn(plant, message, message)
     turn(plant, Heartbeat(epoch=7), Stop(id="", robot="ra1", mode=StopMode.HALT))
     assert plant.robots.messages == []
@@ -636,6 +637,7 @@ def test_a_plant_that_cannot_find_out_whether_it_leads_stops_robots_and_nothing_
         raise ArboledaError("The server is away.")
 
     monkeypatch.setattr(store, "confirm", away)
+    monkeypatch.setattr(type(store), "leads_for_certain", False)
     stop = Stop(id="", robot="ra1", mode=StopMode.HALT)
     turn(plant, ON, stop, Heartbeat(epoch=7))
     assert plant.robots.messages == [stop, Heartbeat(epoch=7)]
@@ -643,6 +645,13 @@ def test_a_plant_that_cannot_find_out_whether_it_leads_stops_robots_and_nothing_
     assert asked == [1]  # who waits for a server that is away for each message stops late
     heard = turn(plant)
     assert [type(event) for event in heard] == [Undelivered]
+
+
+def test_a_stop_of_a_plant_that_leads_looks_at_no_file(plant, store, monkeypatch):
+    monkeypatch.setattr(store, "confirm", lambda: pytest.fail("the memory was asked"))
+    stops = [Stop(id="", robot=name, mode=StopMode.LATCH) for name in ("ra1", "rm1")]
+    turn(plant, *stops)
+    assert plant.robots.messages == stops
 
 
 def test_what_settles_and_leaves_late_is_told_to_the_plant(plant, monkeypatch):

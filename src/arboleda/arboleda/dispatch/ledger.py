@@ -127,6 +127,7 @@ class Ledger:
     def __init__(self) -> None:
         self.entries: dict[str, Entry] = {}
         self.by_robot: defaultdict[str, list[Entry]] = defaultdict(list)  # new lists: readers feed meanwhile
+        self.by_cell: defaultdict[str, list[Entry]] = defaultdict(list)  # the same
         self._due: dict[str, float] = {}
         self.next_deadline = math.inf  # when a command is due, s of the plant's clock; inf where none is
         self.changed: set[str] = set()
@@ -135,13 +136,18 @@ class Ledger:
     def open(self, entry: Entry) -> None:
         robot = entry.command.robot
         self.entries[entry.command.id] = entry
-        self.by_robot[robot] = [*self.of_robot(robot), entry]
+        self.by_robot[robot] = [*self.by_robot[robot], entry]
+        self.by_cell[entry.cell] = [*self.by_cell[entry.cell], entry]
         self.plan(entry)
 
     def plan(self, entry: Entry) -> None:
         """Take over an open command's deadline."""
-        self._due[entry.command.id] = entry.next_deadline
-        self.next_deadline = min(self._due.values())
+        id, due = entry.command.id, entry.next_deadline
+        before, self._due[id] = self._due.get(id), due
+        if due <= self.next_deadline:
+            self.next_deadline = due
+        elif before == self.next_deadline:
+            self.next_deadline = min(self._due.values())
 
     def of_robot(self, robot: str) -> list[Entry]:
         """The open commands of a robot, oldest first."""
@@ -149,7 +155,7 @@ class Ledger:
 
     def of_cell(self, cell: str) -> list[Entry]:
         """The open commands of a cell, oldest first."""
-        return [entry for entry in self.entries.values() if entry.cell == cell]
+        return self.by_cell[cell]
 
     def feed(self, id: str, feed: Feed, now: float, failure: Failure | None = None) -> None:
         """Apply one feed; an unknown or finished id is counted and ignored."""
@@ -164,10 +170,12 @@ class Ledger:
             self._close(entry)
 
     def _close(self, entry: Entry) -> None:
-        id, robot = entry.command.id, entry.command.robot
-        del self.entries[id], self._due[id]
-        self.by_robot[robot] = [each for each in self.of_robot(robot) if each is not entry]
-        self.next_deadline = min(self._due.values(), default=math.inf)
+        id, robot, cell = entry.command.id, entry.command.robot, entry.cell
+        del self.entries[id]
+        self.by_robot[robot] = [each for each in self.by_robot[robot] if each is not entry]
+        self.by_cell[cell] = [each for each in self.by_cell[cell] if each is not entry]
+        if self._due.pop(id) == self.next_deadline:
+            self.next_deadline = min(self._due.values(), default=math.inf)
 
     def _apply(self, entry: Entry, feed: Feed, now: float) -> None:
         after = TABLE.get((entry.state, feed))
