@@ -25,7 +25,7 @@ from arboleda.campaigns.request import Request
 from arboleda.core.plant import Plant
 from arboleda.kinds.joints import MoveJoints
 from arboleda.model.commands import Command
-from arboleda.model.messages import Report, TaskRequest
+from arboleda.model.messages import OperatorRequest, Report, TaskRequest, Verb
 from arboleda.model.plant_model import PlantModel
 from arboleda.plant_file.loader import load
 from arboleda.recorder.state import state_of
@@ -131,6 +131,14 @@ def views(cells: int) -> Iterator[Act]:
     while not is_over(out):
         out = go_on(yard, command_in(out))
         yield partial(view.snapshot, yard.plant, resting.part)
+
+
+def stops(cells: int) -> Iterator[Act]:
+    """Stops of all cells, of which one is at work, and the same said again."""
+    yard = Yard(_model(cells))
+    until_a_move(yard)
+    for _ in range(2):
+        yield partial(yard.step, OperatorRequest(at=yard.now, verb=Verb.STOP))
 
 
 def recorded_steps() -> Iterator[Act]:
@@ -270,6 +278,8 @@ SCENARIOS: dict[str, Scenario] = {
     "step: the report that ends a move": partial(ends_of_moves, 1),
     "step: the report that ends a move, 100 cells": partial(ends_of_moves, 100),
     "from a report that ends a command to the next command": from_reports,
+    "step: a stop of all cells": partial(stops, 1),
+    "step: a stop of all cells, 100 of them": partial(stops, 100),
     "waking of a tree that waits on": waking,
     "a plant from its making to its first command": first_task,
     "a task from HTTP to its first command": from_http,
