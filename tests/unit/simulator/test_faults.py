@@ -495,6 +495,14 @@ def test_an_orchestrator_is_superseded_only_by_a_start_that_the_bridge_has_heard
     assert world.bridge.counters["ra1"].refused == 1
 
 
+def test_an_orchestrator_whose_beat_a_new_bridge_takes_for_its_plant_is_superseded_by_it(world):
+    world.plant_process.stop()
+    world.crash(BRIDGE)
+    assert orders(world, fault("second_orchestrator", "ra1", word="beat"), 0.1) == []
+    assert orders(world, fault("second_orchestrator", "ra1", word="move"), 0.1) == []
+    assert world.bridge.counters["ra1"].refused == 1
+
+
 def test_a_frozen_plant_finds_that_a_day_has_passed_and_everything_else_comes_so_much_later(world):
     came = []
     world.at(world.now + 30.0, lambda _: came.append(world.now))

@@ -44,6 +44,10 @@ def second_orchestrator(world: World, fault: Fault) -> None:
     if fault.word != "beat":
         message = ORDERS[fault.word](world.model, fault.target, f"{epoch}-{1 + dice.below(10**9)}", dice)
     if world.is_on(BRIDGE):
+        if (
+            fault.word == "beat"
+        ):  # to a bridge that has heard no plant this is its plant: the next one is older
+            world.epoch_at_bridge = max(world.epoch_at_bridge, epoch)
         world.broker.clients[BRIDGE].inbox.append(FromPlant(at=world.now, message=message))
 
 
