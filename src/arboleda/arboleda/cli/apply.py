@@ -21,7 +21,7 @@ from arboleda.plant_file.versions import Version, Versions, version_of, whole
 from arboleda.runtime import at_work
 from arboleda.runtime.state import Running, default_state, find_running
 
-from .language import say
+from .language import finding, say
 from .plant_options import PlantFile, StateFolder, client
 
 LONGEST = 500  # characters of a line
@@ -141,11 +141,11 @@ def apply(
     compared = say(COMPARED(file=str(file), base=base.name))
     _print(compared if base.version else f"{file}: {base.name}")
     for line in lines:
-        _print(f"  {line}")
+        _print(f"  {finding(line)}")
     if base.running is not None and (needing := needing_restart(_told(base.version, wanted))):
         _print(say(A_RESTART()))
         for line in needing:
-            _print(f"  {line}")
+            _print(f"  {finding(line)}")
     _ask(say(PUT_TO_WORK()), yes=yes)
     if back is not None:
         kept.bring_back(wanted.version)
@@ -174,7 +174,7 @@ def versions(plant: PlantFile = None, state: StateFolder = None) -> None:
     for each in known:
         _print("  ".join(_heading(each, is_running=each.digest == runs)))
         for line in each.changes:
-            _print(f"  {line}")
+            _print(f"  {finding(line)}")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -201,7 +201,7 @@ def _on_disk(file: Path) -> _Wanted:
     """The files as they are now; ConfigError with every problem. Prints what `check` warns of."""
     model, files = loader.load_with_files(file)
     for warning in plant_check.warnings(model):
-        _print(say(WARNING(file=str(file), warning=warning)))
+        _print(say(WARNING(file=str(file), warning=finding(warning))))
     return _Wanted(version=version_of(files, at=_now()), plant_name=model.name)
 
 
@@ -211,7 +211,7 @@ def _checked(file: Path, kept: Versions, version: Version) -> _Wanted:
     if found.plant is None:
         raise ConfigError((say(NOT_BACK(number=version.number)), *found.problems))
     for warning in found.warnings:
-        _print(say(WARNING(file=str(file), warning=warning)))
+        _print(say(WARNING(file=str(file), warning=finding(warning))))
     for name in kept.others_now(version):
         _print(say(OTHER_FILE(file=str(name), number=version.number)))
     return _Wanted(version=version, plant_name=found.plant.name, comes_back=True)
@@ -257,7 +257,7 @@ def _put_to_work(number: int, plant: Path | None, state: Path | None, *, restart
         _print(say(NOT_TAKEN_NOW(why=error.sentence)))
         raise typer.Exit(NOT_TAKEN) from error
     for line in answer["restart"]:
-        _print(f"  {line}")
+        _print(f"  {finding(line)}")
     if answer["restart"]:
         _print(say(RESTARTS() if restarts else NEEDS_RESTART()))
         return

@@ -13,7 +13,7 @@ from arboleda.plant_file import advance_check, loader, plant_check, tree_file
 from arboleda.plant_file.user_file import check_writable
 
 from . import apply, nodes
-from .language import say
+from .language import finding, say
 from .plant_options import IN_FOLDER, plant_here
 
 MEND_S = 120.0  # a mend is looked for so long
@@ -80,7 +80,7 @@ def check(
         if json is not None or mend:
             raise typer.BadParameter(say(FOR_PLANTS()))
         known = None if plant is None else nodes.of_plant(loader.load(plant), cell)
-        print("\n".join(tree_file.report(file, known)))
+        print(finding("\n".join(tree_file.report(file, known))))
         return
     if plant is not None or cell is not None:
         raise typer.BadParameter(say(FOR_TREES()))
@@ -106,7 +106,7 @@ def _as_data(file: Path, json: Path | None, *, mend: bool) -> None:
     elif json is not None:
         json.write_text(f"{text}\n", "utf-8")
     if mend and answer.findings and not to_screen:
-        words = say(NO_MEND()) if answer.mend is None else answer.mend.words
+        words = say(NO_MEND()) if answer.mend is None else finding(answer.mend.words)
         print(say(MEND_IS(file=str(file), mend=words)))
     if to_screen and any(each.source is Source.PROBLEM for each in answer.findings):
         raise typer.Exit(PROBLEMS)
@@ -116,10 +116,10 @@ def _in_words(file: Path, *, ends: bool) -> None:
     """Print what the plant is, and what it is warned of; ConfigError with every problem."""
     model, missed = loader.load_with_offers(file)
     for note in loader.notes(model):
-        print(say(NOTE(file=str(file), note=note)))
+        print(say(NOTE(file=str(file), note=finding(note))))
     for warning in plant_check.warnings(model):
-        print(say(apply.WARNING(file=str(file), warning=warning)))
+        print(say(apply.WARNING(file=str(file), warning=finding(warning))))
     cells = tuple(cell.name for cell in model.cells)
     print(say(GOOD(file=str(file), plant=model.name, cells=cells)))
     for line in (*loader.offers(model, missed), *(advance_check.ends(model) if ends else ())):
-        print(f"  {line}")
+        print(f"  {finding(line)}")

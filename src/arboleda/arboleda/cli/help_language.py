@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping
 from functools import cache
 from typing import Any
 
 import typer
 from click import HelpFormatter
+
+from arboleda.web.languages.templates import Templates
 
 from .language import help_words
 
@@ -17,7 +19,6 @@ VERBATIM = "\b"  # typer keeps the lines of such a paragraph as they are
 BLANK_LINE = re.compile(r"\n[ \t]*\n")
 PLACEHOLDER = re.compile(r"[A-Z]{2,}")  # FILE, [OPTIONS], HOST:PORT
 NOTES = re.compile(r"(?P<text>.*?)(?:(?:^|  )\[(?P<notes>[^][]*)\])?", re.DOTALL)
-SLOT = re.compile(r"\\{(\w+)\\}")
 
 
 def units(text: str) -> Iterator[str]:
@@ -42,11 +43,7 @@ def first_sentence(text: str) -> str:
 
 def error_words(message: str) -> str:
     """A sentence of typer on a wrong argument, in the language of the terminal."""
-    for pattern, other in _errors():
-        found = pattern.fullmatch(message)
-        if found is not None:
-            return other.format(**{slot: _slot(slot, value) for slot, value in found.groupdict().items()})
-    return message
+    return _errors()(message)
 
 
 def _slot(name: str, value: str) -> str:
@@ -129,9 +126,6 @@ def _speaking(context: Any) -> Any:
 
 
 @cache
-def _errors() -> Sequence[tuple[re.Pattern[str], str]]:
-    """The errors of typer as patterns, and what they are in the language of the terminal."""
-    return [
-        (re.compile(SLOT.sub(r"(?P<\1>.+)", re.escape(english)), re.DOTALL), other)
-        for english, other in help_words("errors").items()
-    ]
+def _errors() -> Templates:
+    """The errors of typer, and what they are in the language of the terminal."""
+    return Templates(help_words("errors"), _slot)

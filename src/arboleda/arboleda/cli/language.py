@@ -10,6 +10,7 @@ from typing import Any
 from arboleda.model.errors import ArboledaError
 from arboleda.model.sentence import OWN, Phrase, Sentence, retold
 from arboleda.web.languages import FIRST, contents, spoken
+from arboleda.web.languages.templates import findings
 
 VARIABLES = ("ARBOLEDA_LANG", "LC_ALL", "LC_MESSAGES", "LANG")  # the first that is set says it
 
@@ -78,7 +79,12 @@ def say_row(row: Mapping[str, Any]) -> str:
 def say_error(error: ArboledaError) -> str:
     """The sentence of an error, whether it is of this process or of the plant that was asked."""
     key, values = getattr(error, "key", None), getattr(error, "values", None)
-    return say(_of_data(str(error), key, values)) if key else say(error.sentence)
+    return finding(say(_of_data(str(error), key, values) if key else error.sentence))
+
+
+def finding(text: str) -> str:
+    """What is found wrong in a file or in a run, in this language."""
+    return findings(language())(text)
 
 
 def _of_data(english: str, key: object, values: object) -> Sentence:
