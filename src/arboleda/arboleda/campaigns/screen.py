@@ -5,20 +5,51 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from typing import Any
 
 from rich.console import Console
 from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
-from rich.table import Column
+from rich.table import Column, Table
 from rich.text import Text
+
+from arboleda.web.languages import FIRST
+from arboleda.web.languages.templates import findings, heading
 
 EVERY_S = 5.0  # between plain lines
 WIDTH = 120  # columns where there is no terminal that has a width
 Show = Callable[[str, int], None]  # (what to say, how much is done)
 
 
-def console(*, quiet: bool = False) -> Console:
+class SpeakingConsole(Console):
+    """Standard output in a language: lines go through its templates, headings of tables through its own."""
+
+    def __init__(self, language: str, *, quiet: bool) -> None:
+        super().__init__(highlight=False, quiet=quiet)
+        self._language = language
+
+    def say(self, text: str) -> str:
+        """A line in the language."""
+        return findings(self._language)(text)
+
+    def print(self, *objects: Any, **how: Any) -> None:
+        super().print(*map(self._spoken, objects), **how)
+
+    def _spoken(self, shown: Any) -> Any:
+        if isinstance(shown, Text) and not shown.spans:
+            return Text(self.say(shown.plain), style=shown.style)
+        if isinstance(shown, Table):
+            for column in shown.columns:
+                if isinstance(column.header, str):
+                    column.header = heading(self._language, column.header)
+                for cell in column.cells:
+                    if isinstance(cell, Table):
+                        self._spoken(cell)
+        return shown
+
+
+def console(*, language: str = FIRST, quiet: bool = False) -> SpeakingConsole:
     """Standard output, wide enough for a table in a file too; `quiet`: nothing is printed there."""
-    made = Console(highlight=False, quiet=quiet)
+    made = SpeakingConsole(language, quiet=quiet)
     if not made.is_terminal:
         made.width = max(made.width, WIDTH)
     return made
@@ -27,8 +58,10 @@ def console(*, quiet: bool = False) -> Console:
 @contextmanager
 def progress(console: Console, doing: str, total: int | None) -> Iterator[Show]:
     """The function that shows the progress towards `total`; None: the end is unknown."""
-    with _bar(console, doing, total) if console.is_terminal else _lines(console, doing) as show:
-        yield show
+    say = console.say if isinstance(console, SpeakingConsole) else str
+    shown = say(doing)
+    with _bar(console, shown, total) if console.is_terminal else _lines(console, shown) as show:
+        yield lambda said, done: show(say(said), done)
 
 
 @contextmanager

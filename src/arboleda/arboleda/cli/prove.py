@@ -13,7 +13,7 @@ import typer
 from arboleda.model.sentence import Phrase
 from arboleda.plant_file.user_file import check_writable
 
-from .language import say
+from .language import language, say
 from .plant_options import IN_FOLDER, StateFolder, folder, plant_here
 
 BUDGET = "10m"
@@ -153,7 +153,7 @@ def prove(
         badge=badge,
     )
     lines = ProofLines(sys.stdout if is_read_along else None)
-    console = screen.console(quiet=is_read_along)
+    console = screen.console(language=language(), quiet=is_read_along)
     raise typer.Exit(ProofCampaign(request, console, lines).run(jobs or processors()))
 
 

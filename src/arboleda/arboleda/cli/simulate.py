@@ -14,7 +14,7 @@ from arboleda.plant_file.user_file import check_new, check_writable
 from arboleda.runtime.stores import refuse_without_library
 from arboleda.simulator.levels import CRASHES, LEVELS
 
-from .language import say
+from .language import language, say
 from .plant_options import IN_FOLDER, StoreAddress, plant_here
 
 HELP = f"""Run whole plants under virtual time, with faults drawn from a seed, and judge every step.
@@ -198,7 +198,7 @@ def simulate(
         check_writable(json)
     if record is not None:
         (check_new if record.suffix == SUFFIX else check_writable)(record)
-    console = screen.console()
+    console = screen.console(language=language())
     for note in request.notes:
         console.print(Text(note, style="dim"), soft_wrap=True)
     if worker:

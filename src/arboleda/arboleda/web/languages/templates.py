@@ -6,6 +6,7 @@ import re
 from collections.abc import Callable, Iterator, Mapping
 from functools import cache, cached_property
 from string import Formatter
+from typing import Any
 
 from . import FIRST, contents
 
@@ -25,7 +26,7 @@ Part = Callable[[str, str], str]
 
 
 class Template:
-    """Template: an English text with {slots}, and the same text in another language.
+    """An English text with {slots}, and the same text in another language.
 
     One that begins with a blank, a comma or a semicolon may stand behind another text; one that ends with a
     blank, before another.
@@ -108,7 +109,12 @@ class Templates:
             yield letters, each.said({slot: words for slot, (_, words) in found.items()})
 
     def _joined(self, text: str, depth: int) -> Iterator[tuple[int, str]]:
-        """The text as two that stand beside each other: behind a place, a subject, or a sentence."""
+        """The text as two that stand beside each other: behind a place, a subject, or a sentence.
+
+        What is in the slots is the business of `part` where there is one, so nothing is looked for there.
+        """
+        if self._part is not None:
+            return
         for sign in JOINTS:
             first, between, rest = text.partition(sign)
             if not between or (sign == " " and not SUBJECT.fullmatch(first)):
@@ -123,7 +129,16 @@ class Templates:
 @cache
 def findings(language: str) -> Templates:
     """The templates of what is found wrong in files and runs; in English there are none."""
-    return Templates({} if language == FIRST else contents(language, "findings"))
+    return Templates(_words(language).get("sentences", {}))
+
+
+def heading(language: str, text: str) -> str:
+    """The heading of a column of what is found."""
+    return str(_words(language).get("headings", {}).get(text, text))
+
+
+def _words(language: str) -> dict[str, Any]:
+    return {} if language == FIRST else contents(language, "findings")
 
 
 def _pieces(text: str) -> list[tuple[str, str]]:
