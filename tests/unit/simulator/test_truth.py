@@ -330,7 +330,7 @@ def test_who_was_put_right_after_a_told_boot_may_have_booted_unseen_since():
     told = []
     for number, at in enumerate((1.0, 4.0, 6.0), start=1):
         heard = [Report(at=at, robot="ra1", epoch=1, plant=1000, boot_id=number)]
-        stage.truth.boots.look(heard, asked=False)
+        stage.truth.boots.look(heard, is_question=False)
         told.append(stage.truth.boots.is_known("ra1"))
     assert told == [False, False, True]
 

@@ -119,8 +119,8 @@ class Session:
         ids = [self._id(node) for node in nodes]
         return await self._in_time(self._client.uaclient.read_attributes(ids, ua.AttributeIds.Value))
 
-    async def _in_time(self, asked: Awaitable[T]) -> T:
-        return await asyncio.wait_for(asked, self._timeout_s)
+    async def _in_time(self, awaitable: Awaitable[T]) -> T:
+        return await asyncio.wait_for(awaitable, self._timeout_s)
 
     def _id(self, node: str) -> NodeId:
         """The id of a node, with the number that the namespace has in this session."""

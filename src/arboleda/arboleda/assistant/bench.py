@@ -74,7 +74,7 @@ class Bench:
                 env={**os.environ, "COLUMNS": "200", "NO_COLOR": "1", "TERM": "dumb"},
             )
             try:
-                said, _ = await asyncio.wait_for(process.communicate(), within_s)
+                output, _ = await asyncio.wait_for(process.communicate(), within_s)
             except asyncio.TimeoutError:
                 raise BenchBusy(f"It took longer than {within_s:g} s, and was ended.") from None
             finally:
@@ -85,7 +85,7 @@ class Bench:
         return {
             "status": status,
             "meaning": MEANING.get(status, "it broke down"),
-            "lines": said.decode("utf-8", "replace").splitlines(),
+            "lines": output.decode("utf-8", "replace").splitlines(),
         }
 
 

@@ -22,14 +22,16 @@ class NothingThere(ArboledaError):
 
 async def plant(reached: AsyncPlant) -> Row:
     """The plant with its cells, without their trees."""
-    seen = await reached.snapshot()
-    cells = [{name: value for name, value in asdict(each).items() if name != "tree"} for each in seen.cells]
+    snapshot = await reached.snapshot()
+    cells = [
+        {name: value for name, value in asdict(each).items() if name != "tree"} for each in snapshot.cells
+    ]
     return {
-        "plant": seen.plant,
-        "ending": seen.ending,
+        "plant": snapshot.plant,
+        "ending": snapshot.ending,
         "cells": cells,
-        "zones": seen.zones,
-        "acts": seen.acts,
+        "zones": snapshot.zones,
+        "acts": snapshot.acts,
     }
 
 

@@ -95,8 +95,8 @@ class _Play:
         answer = self._people[question.robot].pick(question.answers)
         self._world.at(self._world.now + THINKS_S, self._answer, (question.robot, answer))
 
-    def _answer(self, said: tuple[str, str]) -> None:
-        self._world.request_verb(Verb.ANSWER, said[0], arguments=(("answer", said[1]),))
+    def _answer(self, answer: tuple[str, str]) -> None:
+        self._world.request_verb(Verb.ANSWER, answer[0], arguments=(("answer", answer[1]),))
 
 
 def _words(command: Command) -> str:

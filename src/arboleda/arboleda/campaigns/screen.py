@@ -70,17 +70,17 @@ def _bar(console: Console, doing: str, total: int | None) -> Iterator[Show]:
     words = (TextColumn("{task.description}"), elapsed, TextColumn("{task.fields[said]}"))
     with Progress(SpinnerColumn(), BarColumn(bar_width=20), *words, console=console, transient=True) as bar:
         task = bar.add_task(doing, total=total, said="")
-        yield lambda said, done: bar.update(task, said=said, completed=done)
+        yield lambda text, done: bar.update(task, said=text, completed=done)
 
 
 @contextmanager
 def _lines(console: Console, doing: str) -> Iterator[Show]:
     last = time.monotonic()
 
-    def show(said: str, done: int) -> None:
+    def show(text: str, done: int) -> None:
         nonlocal last
         if time.monotonic() - last >= EVERY_S:
             last = time.monotonic()
-            console.print(Text(f"{doing}: {said}"), soft_wrap=True)
+            console.print(Text(f"{doing}: {text}"), soft_wrap=True)
 
     yield show

@@ -79,7 +79,7 @@ class SeedCampaign:
     def _so_far(self, minutes: int) -> str:
         tally, count = self._tally, self._request.count
         done = len(tally.rows)
-        said = [
+        parts = [
             f"{done:,} of {counted(count, 'seed')}" if count else counted(done, "seed"),
             f"{minutes:,} min",
             counted(tally.cycles, "cycle"),
@@ -88,7 +88,7 @@ class SeedCampaign:
             *([f"{short(tally.checks)} checks"] if tally.checks else []),
             *([f"{len(tally.broken)} BROKEN"] if tally.broken else []),
         ]
-        return ", ".join(said)
+        return ", ".join(parts)
 
     def _shrink(self) -> None:
         lowest = self._tally.lowest
@@ -119,15 +119,15 @@ class SeedCampaign:
         self._console.print(report.verdict(tally), soft_wrap=True)
 
     def _story(self, shrunk: ShrunkBreach, injected: int) -> None:
-        told = shrunk.result
+        result = shrunk.result
         self._say("")
-        breach_text.breach(self._console, told, shrunk.plant.name)
-        breach_text.faults(self._console, told, injected)
+        breach_text.breach(self._console, result, shrunk.plant.name)
+        breach_text.faults(self._console, result, injected)
         breach_text.plant(self._console, shrunk.plant)
-        breach_text.timeline(self._console, told)
-        self._say(f"  replay     {self._request.replay(told.seed)}", "bold")
+        breach_text.timeline(self._console, result)
+        self._say(f"  replay     {self._request.replay(result.seed)}", "bold")
         if self._file:
-            self._say(f"             {self._request.replay_shrunk(self._file, told.seed)}", "bold")
+            self._say(f"             {self._request.replay_shrunk(self._file, result.seed)}", "bold")
         breach_text.kept(self._console, shrunk.plant, self._keep)
         self._say("")
 

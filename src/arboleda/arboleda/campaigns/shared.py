@@ -28,13 +28,13 @@ LOOK_S = 1.0  # between two looks for a seed that a worker has given back
 
 def campaign_of(request: Request) -> str:
     """The name of a campaign, made of its options, so that workers with other options have another one."""
-    told = "" if request.faults in LEVELS else Path(request.faults).read_text(encoding="utf-8")
+    faults = "" if request.faults in LEVELS else Path(request.faults).read_text(encoding="utf-8")
     plants = request.plants.plants if isinstance(request.plants, PlantRotation) else ()
     contents = [{name: text.hex() for name, text in each.files.contents.items()} for each in plants]
-    asked = [__version__, request.first, request.count, request.cycles, request.faults, told, contents]
-    asked += [request.drawn_plants, request.any_of, request.two_hosts]
-    asked += [True] if request.changes_files else []  # else the same as before there were any
-    return hashlib.sha256(json.dumps(asked).encode()).hexdigest()[:16]
+    identity = [__version__, request.first, request.count, request.cycles, request.faults, faults, contents]
+    identity += [request.drawn_plants, request.any_of, request.two_hosts]
+    identity += [True] if request.changes_files else []  # else the same as before there were any
+    return hashlib.sha256(json.dumps(identity).encode()).hexdigest()[:16]
 
 
 def work(request: Request, console: Console, store: str, file: Path | None) -> int:

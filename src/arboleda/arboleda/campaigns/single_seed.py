@@ -55,12 +55,12 @@ def run(
     return BROKEN if result.broken or result.findings else HELD
 
 
-def _flown(request: Request, *, trace: bool, record: Path, said: list[str]) -> Result:
+def _flown(request: Request, *, trace: bool, record: Path, lines: list[str]) -> Result:
     """Run the seed with a flight record; `said` gets a line for each file."""
     tell = LineWriter(printed=True, file=None) if trace else None
     with flight.recorded(record, request.plants.of(request.first)) as flown:
         result = request.setting.run(request.first, tell=tell, make_plant=flown.make_plant)
-    said += flown.said
+    lines += flown.said
     return result
 
 

@@ -197,8 +197,8 @@ def _row(work: Work, verdict: Verdict) -> dict[str, Any]:
 
 def _line(work: Work, verdict: Verdict, language: str) -> str:
     word = say_in(language, PASSES() if verdict.passes else FAILS())
-    said = verdict.findings[0] if verdict.findings else None
-    why = "" if said is None else f"  {_in(said.says, language)}: {said.seen}"
+    finding = verdict.findings[0] if verdict.findings else None
+    why = "" if finding is None else f"  {_in(finding.says, language)}: {finding.seen}"
     return f"{work.student or str(work.where):24} {work.exercise:20} {word}{why}"
 
 
@@ -217,13 +217,13 @@ def _in(text: Text, language: str) -> str:
     return text.get(language, text["en"])
 
 
-def _language(asked: str) -> str:
+def _language(wish: str) -> str:
     """The language that was asked for, else that of the locale, else English; BadParameter for others."""
     from arboleda.campaigns.exercises.exercise import LANGUAGES
 
-    if asked and asked not in LANGUAGES:
-        raise typer.BadParameter(say(NO_LANGUAGE(asked=repr(asked), others=allowed(asked, LANGUAGES))))
-    return asked or language()
+    if wish and wish not in LANGUAGES:
+        raise typer.BadParameter(say(NO_LANGUAGE(asked=repr(wish), others=allowed(wish, LANGUAGES))))
+    return wish or language()
 
 
 def add_to(parent: typer.Typer) -> None:

@@ -89,8 +89,8 @@ class HelpWriter(HelpFormatter):
         super().write_text(translated(text))
 
     def write_dl(self, rows: Iterable[tuple[str, str]], col_max: int = 30, col_spacing: int = 2) -> None:
-        said = [(placeholders(name), _option_help(text)) for name, text in rows]
-        super().write_dl(said, col_max, col_spacing)
+        translated = [(placeholders(name), _option_help(text)) for name, text in rows]
+        super().write_dl(translated, col_max, col_spacing)
 
 
 def _paragraph(paragraph: str, known: Mapping[str, str]) -> str:

@@ -131,8 +131,10 @@ class FarLine(Line):
             )
         if answer.status in OWN or (answer.is_for_now and answer.status not in BY_STATUS):
             return super()._refusal(answer)
-        told = f"{self._name}, which refuses this at {self.place.url}: {answer.sentence}"
-        return ArboledaError(f"{told} {self._token_advice}" if answer.status == UNAUTHORIZED else told)
+        sentence = f"{self._name}, which refuses this at {self.place.url}: {answer.sentence}"
+        return ArboledaError(
+            f"{sentence} {self._token_advice}" if answer.status == UNAUTHORIZED else sentence
+        )
 
     def _silent(self, error: NoAnswer) -> str:
         return f"{self._name}{error.clause}"

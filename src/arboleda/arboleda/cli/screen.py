@@ -153,8 +153,8 @@ def logged(line: logging.LogRecord) -> Text:
     if change is None:
         style = "dim" if line.levelno < logging.WARNING else "yellow"
         sentence = getattr(line, "sentence", None)
-        said = line.getMessage() if sentence is None else plain(say(sentence), LONGEST)
-        return Text(said, style="red" if line.levelno >= logging.ERROR else style)
+        message = line.getMessage() if sentence is None else plain(say(sentence), LONGEST)
+        return Text(message, style="red" if line.levelno >= logging.ERROR else style)
     text = Text(_of_task(change))
     text.stylize(STYLES[change.state], 0, STATE_WIDTH)
     text.stylize("bold", STATE_WIDTH + 1, STATE_WIDTH + 1 + len(change.text))
@@ -398,8 +398,8 @@ def parting(snapshot: dict[str, Any]) -> list[str]:
     holds = {each["name"]: each["holds"] for cell in snapshot["cells"] for each in cell["devices"]}
     people = {each["name"] for _, each in view.devices_once(snapshot["cells"]) if each["asked"]}
     robots = [robot for robot in snapshot["robots"] if robot["name"] not in people]
-    heard = [robot for robot in robots if robot["age_s"] is not None]
-    left = [_left(robot, holds[robot["name"]]) for robot in heard]
+    reporting = [robot for robot in robots if robot["age_s"] is not None]
+    left = [_left(robot, holds[robot["name"]]) for robot in reporting]
     tasks = [cell for cell in snapshot["cells"] if cell["task"] is not None and snapshot["ending"]]
     return left + [say(LEFT_OVER(cell=cell["name"], task=cell["task"]["text"])) for cell in tasks]
 

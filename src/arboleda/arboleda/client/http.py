@@ -57,12 +57,12 @@ class Reply:
     def content(self) -> Any:
         """The JSON of it; NoAnswer for what no plant would say: no JSON, or a refusal without a sentence."""
         try:
-            said = json.loads(self.text)
+            content = json.loads(self.text)
         except ValueError:
             raise _no_plant("it sends no JSON") from None
-        if not self.is_good and not (isinstance(said, dict) and isinstance(said.get("sentence"), str)):
+        if not self.is_good and not (isinstance(content, dict) and isinstance(content.get("sentence"), str)):
             raise _no_plant(f"status {self.status}")
-        return said
+        return content
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -214,27 +214,27 @@ def _led(reply: Reply, url: str) -> _Led | None:
     is one."""
     if reply.is_good and '"standby"' not in reply.text:  # a text, or what only the leader says
         return None
-    said = reply.content()
-    if not stands_by(said):
+    content = reply.content()
+    if not stands_by(content):
         if not reply.is_good:
-            raise refusal(reply.status, said, reply.headers.get("retry-after"))
+            raise refusal(reply.status, content, reply.headers.get("retry-after"))
         return None
-    leader, sentence = str(said.get("leader", "")).rstrip("/"), str(said.get("sentence", ""))
+    leader, sentence = str(content.get("leader", "")).rstrip("/"), str(content.get("sentence", ""))
     at, to = urlsplit(url), urlsplit(leader)
     # What asks over TLS shows its token to nobody without; a loopback address is the other host's own.
     is_safe = to.scheme == "https" or (to.scheme == "http" and at.scheme == "http")
     is_near = not _is_loopback(to.hostname) or _is_loopback(at.hostname)
     way = leader if is_safe and is_near else ""
-    told = f"What answers at {url} stands by: it {sentence}" if sentence else f"{url} stands by"
+    clause = f"What answers at {url} stands by: it {sentence}" if sentence else f"{url} stands by"
     if leader and not way:
-        told = f"{told}; the leader's address {leader} cannot be used from here"
-    silence = NoAnswer(told, may_have_heard=False)
-    return _Led(plant=str(said.get("plant", "")), url=way, silence=silence)
+        clause = f"{clause}; the leader's address {leader} cannot be used from here"
+    silence = NoAnswer(clause, may_have_heard=False)
+    return _Led(plant=str(content.get("plant", "")), url=way, silence=silence)
 
 
-def stands_by(said: Any) -> bool:
+def stands_by(content: Any) -> bool:
     """True if the process that gives this answer only waits to lead the plant."""
-    return isinstance(said, dict) and said.get("standby") is True
+    return isinstance(content, dict) and content.get("standby") is True
 
 
 def _is_loopback(host: str | None) -> bool:

@@ -68,8 +68,8 @@ def in_words(advice: Advice) -> Sentence:
 
 def sentence(ways: Iterable[Advice]) -> Sentence:
     """All of it in one sentence; NOTHING where there is nothing to do."""
-    said = NOTHING
+    whole = NOTHING
     for each in ways:
         joined = OR if each.instead else THEN
-        said = joined(first=said, second=in_words(each)) if said else in_words(each)
-    return said
+        whole = joined(first=whole, second=in_words(each)) if whole else in_words(each)
+    return whole

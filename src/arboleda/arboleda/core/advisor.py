@@ -37,7 +37,7 @@ class Advisor:
         """The ways out of a cell, each with why it would be refused now."""
         return tuple(replace(each, refusal=self._refused(each)) for each in self.ways_out(cell))
 
-    def ways_out(self, cell: str, asked: frozenset[str] = frozenset()) -> tuple[Advice, ...]:
+    def ways_out(self, cell: str, visited: frozenset[str] = frozenset()) -> tuple[Advice, ...]:
         """The advice, in the order to follow it; none where the cell works or only time is needed.
 
         `asked`: the cells that wait for this one to give its zones back.
@@ -46,7 +46,7 @@ class Advisor:
         lead = LEADS.get(run.state)
         if lead is None or run.closed or run.manual.teaching is not None:
             return ()
-        found: dict[Advice, None] = dict.fromkeys(lead(self, run, asked | {cell}))
+        found: dict[Advice, None] = dict.fromkeys(lead(self, run, visited | {cell}))
         return tuple(found)
 
     def _refused(self, advice: Advice) -> Sentence | None:
@@ -54,19 +54,19 @@ class Advisor:
             return None
         return self._refusal(_request(advice.do, advice.scope, by_hand=advice.by_hand))
 
-    def _idle(self, run: CellRun, asked: frozenset[str]) -> Iterator[Advice]:
+    def _idle(self, run: CellRun, visited: frozenset[str]) -> Iterator[Advice]:
         if run.context.commands.open():
             return
-        readying = [*self._readying(run, asked)]
+        readying = [*self._readying(run, visited)]
         yield from readying
         if not (readying and readying[0].do is Verb.STOP):
             yield from _mending_books(run)
             yield from _running_again(run)
 
-    def _held(self, run: CellRun, asked: frozenset[str]) -> Iterator[Advice]:
+    def _held(self, run: CellRun, visited: frozenset[str]) -> Iterator[Advice]:
         if run.context.commands.open():
             return
-        readying = [*self._readying(run, asked)]
+        readying = [*self._readying(run, visited)]
         yield from readying
         if (readying and readying[0].do is Verb.STOP) or (run.awaits and not readying):
             return
@@ -79,7 +79,7 @@ class Advisor:
             and run.context.devices.has(each.scope)
         ]
         if run.task is None:
-            yield from self._recovering(run, asked)
+            yield from self._recovering(run, visited)
         elif homed:
             yield _abandon(run, WILL_BE_HOMED(arm=homed[0]))
         elif run.stranded:
@@ -89,9 +89,9 @@ class Advisor:
             yield Advice(do=verb, scope=run.cell.name, why=reasons.cause_of_hold(run), moves=_movers(run))
             yield replace(_abandon(run, reasons.cause_of_hold(run)), instead=True)
 
-    def _recovering(self, run: CellRun, asked: frozenset[str]) -> Iterator[Advice]:
+    def _recovering(self, run: CellRun, visited: frozenset[str]) -> Iterator[Advice]:
         name, holding, why = run.cell.name, run.context.parts.holding, reasons.cause_of_hold(run)
-        yield from self._freeing(run, run.context.zones.awaited_by_recovery(), asked)
+        yield from self._freeing(run, run.context.zones.awaited_by_recovery(), visited)
         retry = Advice(do=Verb.RETRY, scope=name, why=why, moves=_recovered(run))
         helps, failed = not holding or _can_bring_back(run), (Verb.RETRY, name) in run.in_vain
         if helps and not failed:
@@ -110,16 +110,16 @@ class Advisor:
         if helps and failed:
             yield replace(retry, instead=True)
 
-    def _aborted(self, run: CellRun, asked: frozenset[str]) -> Iterator[Advice]:
+    def _aborted(self, run: CellRun, visited: frozenset[str]) -> Iterator[Advice]:
         name = run.cell.name
-        readying = [*self._readying(run, asked)]
+        readying = [*self._readying(run, visited)]
         yield from (each for each in readying if each.do is Hand.REPAIR)  # what is in fault is not still
         yield Advice(do=Verb.CLEAR, scope=name, why=reasons.cause_of_stop(run))
-        yield from self._stopped(run, asked)
+        yield from self._stopped(run, visited)
 
-    def _stopped(self, run: CellRun, asked: frozenset[str]) -> Iterator[Advice]:
+    def _stopped(self, run: CellRun, visited: frozenset[str]) -> Iterator[Advice]:
         yield Advice(do=Verb.RESET, scope=run.cell.name, why=reasons.cause_of_stop(run))
-        yield from self._readying(run, asked)
+        yield from self._readying(run, visited)
         failed = (Verb.RETRY, run.cell.name) in run.in_vain
         if run.context.parts.holding and _can_bring_back(run) and not failed:
             yield Advice(
@@ -130,18 +130,18 @@ class Advisor:
                 yield from _releasing(run, robot, reasons.cause_of_stop(run))
         yield from _running_again(run)
 
-    def _readying(self, run: CellRun, asked: frozenset[str]) -> Iterator[Advice]:
+    def _readying(self, run: CellRun, visited: frozenset[str]) -> Iterator[Advice]:
         """Advice for robots that cannot work yet: a stop first, as it ends what is under way."""
         by_reason: list[Advice] = []
         robots = run.context.robots
-        seen = robots.obstacle if run.state in AT_HAND else robots.obstacle_besides_stop
+        obstacle_of = robots.obstacle if run.state in AT_HAND else robots.obstacle_besides_stop
         for robot in run.cell.reached:
-            obstacle = seen(robot.name)
+            obstacle = obstacle_of(robot.name)
             if obstacle is None:
                 continue
             if obstacle.reason is Reason.STOPPED and (others := self._stoppers(run, robot.name)):
                 for other in others:
-                    by_reason += _until_it_moves(self.ways_out(other, asked))
+                    by_reason += _until_it_moves(self.ways_out(other, visited))
                 continue
             if obstacle.reason is Reason.STOPPED:
                 yield from _stopping(run, obstacle.sentence)
@@ -151,10 +151,10 @@ class Advisor:
             elif obstacle.reason in HANDS:
                 by_reason.append(Advice(do=HANDS[obstacle.reason], scope=robot.name, why=obstacle.sentence))
             elif obstacle.reason is Reason.NOT_HOMED:
-                by_reason += self._homing(run, robot.name, obstacle.sentence, asked)
+                by_reason += self._homing(run, robot.name, obstacle.sentence, visited)
         astray = run.context.zones.astray() if run.state is CellState.IDLE else None
         if astray is not None and not any(each.scope == astray[0] for each in by_reason):
-            by_reason += self._homing(run, astray[0], astray[1].sentence, asked)
+            by_reason += self._homing(run, astray[0], astray[1].sentence, visited)
         yield from by_reason
 
     def _stoppers(self, run: CellRun, device: str) -> list[str]:
@@ -164,7 +164,7 @@ class Advisor:
             return []
         return [other.cell.name for other in runs if other.state in STOPPING]
 
-    def _homing(self, run: CellRun, robot: str, why: Sentence, asked: frozenset[str]) -> Iterator[Advice]:
+    def _homing(self, run: CellRun, robot: str, why: Sentence, visited: frozenset[str]) -> Iterator[Advice]:
         by_routine = run.context.robots.homes_by_routine(robot)
         if by_routine:
             yield from _letting_go(run, robot)
@@ -175,7 +175,7 @@ class Advisor:
                 machines = set(run.cell.interlocked).intersection(awaited.values())
                 if any(run.context.robots.belief(each).moves for each in machines):
                     return  # a machine at work comes to its end
-                yield from self._freeing(run, awaited, asked)
+                yield from self._freeing(run, awaited, visited)
             yield from _running_home(run, robot, why)
             return
         belief = run.context.robots.belief(robot)
@@ -185,7 +185,7 @@ class Advisor:
                 return
         yield Advice(do=Verb.HOME, scope=robot, why=why, by_hand=True)
 
-    def _freeing(self, run: CellRun, zones: Mapping[str, str], asked: frozenset[str]) -> Iterator[Advice]:
+    def _freeing(self, run: CellRun, zones: Mapping[str, str], visited: frozenset[str]) -> Iterator[Advice]:
         """Acts by which others give zones back, first those of their cells; of two that wait for each other,
         and for a robot that is not heard, somebody may answer for a zone being empty.
         """
@@ -208,8 +208,8 @@ class Advisor:
                 yield from _letting_go(run, holder)
                 yield from _running_home(run, holder, why)
                 continue
-            waits_too = other.cell.name in asked
-            leads = () if waits_too else self.ways_out(other.cell.name, asked)
+            waits_too = other.cell.name in visited
+            leads = () if waits_too else self.ways_out(other.cell.name, visited)
             by_hand = bool(leads) and leads[0].do in HANDS.values()
             yield from leads[:1] if by_hand else _until_it_moves(leads)
             if waits_too or by_hand:

@@ -262,13 +262,13 @@ class CellRun:
         """
         self.closed = True
         self.manual.end(ASKED_TO_END())
-        asked = Failure(reason=Reason.INTERRUPTED, sentence=ASKED_TO_END())
+        failure = Failure(reason=Reason.INTERRUPTED, sentence=ASKED_TO_END())
         if self.task is None or (drops_waiting and not self.task.is_kept):
-            self.interrupt(asked)
+            self.interrupt(failure)
         elif self.state is CellState.EXECUTE:
             self.halt(Cause.HOLD)
         for task in [each for each in self.queue if drops_waiting and not each.is_kept]:
-            self.drop(task, asked)
+            self.drop(task, failure)
         self.context.commands.cancel_all()
 
     def interrupt(self, failure: Failure) -> None:

@@ -38,9 +38,9 @@ class Lease:
     def __init__(self) -> None:
         self._until = -math.inf
 
-    def renewed(self, asked_at: float) -> None:
+    def renewed(self, sent_at: float) -> None:
         """The store took it; the time counts from before it was asked, since the answer may come late."""
-        self._until = asked_at + SURE_S
+        self._until = sent_at + SURE_S
 
     def lasts(self, now: float) -> bool:
         """True while nobody else can lead."""
@@ -54,12 +54,12 @@ class Silence:
         self._seen: object = None
         self._since = math.inf
 
-    def ends_lease(self, now: float, seen: object) -> bool:
+    def ends_lease(self, now: float, state: object) -> bool:
         """True once it has lasted as long as a lease; `seen` is what the store last heard of him, another
         thing whenever he says anything.
         """
-        if seen != self._seen:
-            self._seen, self._since = seen, now
+        if state != self._seen:
+            self._seen, self._since = state, now
         return now - self._since >= LEASE_S
 
 

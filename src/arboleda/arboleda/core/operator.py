@@ -429,8 +429,8 @@ class Operator:
         most = next(each.holds for each in cell.cell.counted if each.target == place)
         number = most if parts is None else parts
         if isinstance(number, str) or not 1 <= number <= most:
-            told = quoted(number) if isinstance(number, str) else number
-            raise VerbRefusal(PARTS_OF_PLACE(place=place, cell=cell.cell.name, most=most, parts=told))
+            amount = quoted(number) if isinstance(number, str) else number
+            raise VerbRefusal(PARTS_OF_PLACE(place=place, cell=cell.cell.name, most=most, parts=amount))
         return partial(self._set_parts, [(cell, {place: number})])
 
     def _with_books(self, scope: str) -> list[CellRun]:
@@ -439,8 +439,8 @@ class Operator:
         return [self._cells[scope]] if scope in self._cells else self._of_robots(robots)
 
     def _set_parts(self, parts: list[tuple[CellRun, dict[str, int]]]) -> None:
-        said = {cell.cell.name: numbers for cell, numbers in parts}
-        everywhere = with_common_places(said, [cell.cell for cell in self._cells.values()])
+        numbers_by_cell = {cell.cell.name: numbers for cell, numbers in parts}
+        everywhere = with_common_places(numbers_by_cell, [cell.cell for cell in self._cells.values()])
         for name, numbers in everywhere.items():
             self._cells[name].set_parts(numbers)
         self._dispatcher.wake([*everywhere])
@@ -490,8 +490,8 @@ class Operator:
         if not holding:
             raise VerbRefusal(_nothing_held(able))
         for cell, name in holding:
-            if (told := cell.context.commands.first_of(name)) is not None:
-                raise VerbRefusal(STILL_DOING(robot=name, doing=told.doing))
+            if (entry := cell.context.commands.first_of(name)) is not None:
+                raise VerbRefusal(STILL_DOING(robot=name, doing=entry.doing))
         return partial(self._empty, holding)
 
     def _holders(self, cell: CellRun, robots: set[str]) -> list[str]:
@@ -792,7 +792,7 @@ def _always(operator: Operator, cell: CellRun, robots: set[str]) -> Sentence | N
 
 def _in(*states: CellState) -> Callable[[Operator, CellRun, set[str]], Sentence | None]:
     first, *others = (state.said for state in states)
-    allowed = reduce(lambda said, other: OR(first=said, second=other), others, first)
+    allowed = reduce(lambda before, other: OR(first=before, second=other), others, first)
 
     def check(operator: Operator, cell: CellRun, robots: set[str]) -> Sentence | None:
         if cell.state in states:
@@ -865,8 +865,8 @@ def _release_first(holding: list[str]) -> Sentence:
     if len(holding) == 1:
         return RELEASE_FIRST(arm=holding[0])
     releases = [DO[Verb.RELEASE](scope=robot) for robot in holding]
-    said = reduce(lambda first, second: AND(first=first, second=second), releases)
-    return RELEASE_ALL_FIRST(devices=tuple(holding), releases=said)
+    all_releases = reduce(lambda first, second: AND(first=first, second=second), releases)
+    return RELEASE_ALL_FIRST(devices=tuple(holding), releases=all_releases)
 
 
 def _not_cancellable(operator: Operator, cell: CellRun, robots: set[str]) -> Sentence | None:

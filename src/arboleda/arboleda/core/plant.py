@@ -719,15 +719,15 @@ def _requests_last(events: Iterable[Event], now: float) -> list[Event]:
     """
     found = list(events)
     requests = [each for each in found if isinstance(each, Request)]
-    heard = [each for each in found if not isinstance(each, Request)]
-    return [*heard, *(replace(request, at=now) for request in requests)]
+    news = [each for each in found if not isinstance(each, Request)]
+    return [*news, *(replace(request, at=now) for request in requests)]
 
 
 def _put_to_work(event: Revision) -> Journal:
     """The entry of the journal about a version that is put to work."""
-    told = tuple(map(plain, event.changes[:CHANGES_TOLD]))
-    left = len(event.changes) - len(told)
-    changes = (*told, *((f"... ({left})",) if left else ())) or ("-",)
+    lines = tuple(map(plain, event.changes[:CHANGES_TOLD]))
+    left = len(event.changes) - len(lines)
+    changes = (*lines, *((f"... ({left})",) if left else ())) or ("-",)
     by = plain(event.by) or "-"
     sentence = PUT_TO_WORK(number=event.version.number, by=by, changes=changes)
     return Journal(verb=None, scope="", cell=None, sentence=sentence)

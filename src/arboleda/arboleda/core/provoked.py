@@ -31,5 +31,5 @@ class ProvokedFaults:
     def note(self, fault: FaultByHand) -> None:
         """Take one in."""
         self._count += 1
-        told = NumberedFault(number=self._count, at=fault.at, robot=fault.robot, sentence=fault.sentence)
-        self.last.append(told)
+        numbered = NumberedFault(number=self._count, at=fault.at, robot=fault.robot, sentence=fault.sentence)
+        self.last.append(numbered)

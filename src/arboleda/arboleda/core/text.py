@@ -165,10 +165,10 @@ def _order(cell: Cell, recipe: Recipe, words: Mapping[str, str], id: str | None)
 def _cell_and_recipe(words: list[str], plant: PlantModel) -> tuple[Cell, Recipe]:
     """The cell that the first word names, and the recipe of the second, or the cell's default."""
     second = words[1] if len(words) > 1 else ""
-    asked = [each for each in plant.recipes if not each.is_default]
-    name = known(second, [each.name for each in asked])
-    meant = [each for each in asked if each.name == name]
-    short = len(words) == 2 and any(each.alone and not each.parameters for each in asked)
+    by_name = [each for each in plant.recipes if not each.is_default]
+    name = known(second, [each.name for each in by_name])
+    meant = [each for each in by_name if each.name == name]
+    short = len(words) == 2 and any(each.alone and not each.parameters for each in by_name)
     cell = _cell(words[0], plant, robots=any(each.alone for each in meant) if meant else short)
     default = next((each for each in cell.recipes if each.is_default), None)
     named = next((each for each in meant if each in cell.recipes), None)

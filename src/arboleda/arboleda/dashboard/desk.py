@@ -110,8 +110,8 @@ class Desk(OpenPage):
                 self._tell(outcomes.of_outcome(self._words, Outcome(row["outcome"]), row["why"], act))
                 return
 
-    def _tell(self, said: Said) -> None:
-        sentence, good = said
+    def _tell(self, answer: Said) -> None:
+        sentence, good = answer
         self.say(sentence, good=good)
 
     async def _answered(self, future: Future[Answer]) -> Answer | None:

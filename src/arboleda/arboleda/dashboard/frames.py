@@ -67,22 +67,22 @@ class Frames:
         patch = changed(self._shown[language], face)
         self._shown[language] = face
         text, everything = json.dumps(patch), ""
-        for viewer, seen in self._viewers.items():
-            if viewer.language != language or not self._ready(viewer, seen):
+        for viewer, progress in self._viewers.items():
+            if viewer.language != language or not self._ready(viewer, progress):
                 continue
-            if seen.whole:
+            if progress.whole:
                 everything = everything or json.dumps(face)
             elif not patch and not beat:
                 continue
-            seen.sent += 1
-            viewer.show(seen.sent, everything if seen.whole else text)
-            seen.whole = False
+            progress.sent += 1
+            viewer.show(progress.sent, everything if progress.whole else text)
+            progress.whole = False
 
-    def _ready(self, viewer: Viewer, seen: ViewerProgress) -> bool:
+    def _ready(self, viewer: Viewer, progress: ViewerProgress) -> bool:
         """True if a viewer can take a frame; one that is away or behind gets everything later."""
-        if viewer.connected and seen.sent - seen.seen <= BEHIND:
+        if viewer.connected and progress.sent - progress.seen <= BEHIND:
             return True
-        seen.whole = True
+        progress.whole = True
         return False
 
 

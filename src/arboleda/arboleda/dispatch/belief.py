@@ -26,7 +26,7 @@ def _position_under(key: str | None) -> Callable[[Report | Belief], Position | N
     return attrgetter(key) if key else _nowhere
 
 
-def _nowhere(said: Report | Belief) -> None:
+def _nowhere(source: Report | Belief) -> None:
     """The position of a robot that has none."""
 
 
@@ -112,8 +112,8 @@ class Belief:
     @property
     def senses_pieces(self) -> bool:
         """True where it has a piece sensor, by its plant file or by its reports since it booted."""
-        said = self.piece is not None and self.piece_boot == self.boot_id
-        return said or self.robot.piece_on_change
+        reported = self.piece is not None and self.piece_boot == self.boot_id
+        return reported or self.robot.piece_on_change
 
     def fact(self, name: str) -> Value | None:
         """The last word on a fact; None where there was none."""
@@ -190,9 +190,9 @@ class Belief:
             still = report.state in STILL and self.state in STILL
             self._still_from = self.state_no if still else 0
             self.state_no, self.state_at = self.reports, report.at
-        said, before = self.position_in(report), self.position
-        if said is not None:
-            moved = said != before or not self._rested_from
+        position, before = self.position_in(report), self.position
+        if position is not None:
+            moved = position != before or not self._rested_from
             self._rested_from = self.reports if moved else self.position_no
             self._rested_at = report.at if moved else self.position_at
             self.position_no = self.reports
@@ -295,8 +295,8 @@ class Belief:
     def _failure(self, trouble: Trouble | None, *, was: bool) -> Failure | None:
         if trouble is None:
             return None
-        said = trouble.was if was else trouble.said
-        return Failure(reason=trouble.reason, sentence=said(robot=self.robot.name, **trouble.more))
+        sentence = trouble.was if was else trouble.said
+        return Failure(reason=trouble.reason, sentence=sentence(robot=self.robot.name, **trouble.more))
 
     def _unanswered(self) -> Trouble:
         """Why its bridge takes no command of this plant: it has not heard it yet, or obeys a later one."""

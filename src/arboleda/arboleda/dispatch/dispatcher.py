@@ -302,7 +302,7 @@ class Dispatcher:
         if belief.robot.objection(report) is not None:
             self.ledger.ignored["report"] += 1
             return
-        before, told = Before.of(belief), self._told(belief)
+        before, facts = Before.of(belief), self._told(belief)
         was_held, held_since_boot = belief.held_in(belief), belief.held_boot
         self._hear_of_others(report)
         was_online, latched = belief.online, report.robot in self.latched
@@ -323,7 +323,7 @@ class Dispatcher:
         self._prove(belief, report, now, before)
         if latched and (new_link or (belief.online and not was_online)):  # it may have forgotten its stop
             self._stop(report.robot, StopMode.LATCH)
-        if self._told(belief) != told:
+        if self._told(belief) != facts:
             self.version += 1
             self.ledger.changed |= self._cells_of[report.robot]
 
@@ -336,8 +336,8 @@ class Dispatcher:
 
     def question(self, robot: str) -> Entry | None:
         """The open question to a person; None where there is none, or this is no person."""
-        asked = (e for e in self.ledger.of_robot(robot) if isinstance(e.command, Question) and e.open)
-        return next(asked, None)
+        questions = (e for e in self.ledger.of_robot(robot) if isinstance(e.command, Question) and e.open)
+        return next(questions, None)
 
     def answer(self, robot: str, answer: str, now: float) -> None:
         """A person has answered what is being asked."""
@@ -442,9 +442,9 @@ class Dispatcher:
         link = self.model.robots[command.robot].link
         if link in UNSENT:
             return
-        heard = None if isinstance(command, Stop) else self.beliefs[command.robot].number
-        if heard is not None or (token is not None and link is Link.DRIVER):
-            command = replace(command, heard=heard, token=token)
+        number = None if isinstance(command, Stop) else self.beliefs[command.robot].number
+        if number is not None or (token is not None and link is Link.DRIVER):
+            command = replace(command, heard=number, token=token)
         self.outbox.append(command)
         self.under_way.left(command)
         self.unnamed.left(command)
@@ -505,14 +505,14 @@ class Dispatcher:
         """The need of a command that its robot does not report as met."""
         belief = self.beliefs[command.robot]
         for name, value in command.needs:
-            told = belief.fact(name)
-            if told != value:
+            reported = belief.fact(name)
+            if reported != value:
                 robot, wanted = command.robot, shown(value)
-                if told is None:
+                if reported is None:
                     sentence = NEEDS_UNSAID(robot=robot, fact=name, value=wanted)
                 else:
                     needs = NEEDED if was else NEEDS
-                    sentence = needs(robot=robot, fact=name, value=wanted, told=shown(told))
+                    sentence = needs(robot=robot, fact=name, value=wanted, told=shown(reported))
                 return Failure(reason=Reason.PRECONDITION, sentence=sentence)
         return None
 
@@ -569,8 +569,8 @@ class Dispatcher:
             return min(now + timing.stop_timeout_s, entry.deadline)
         if not isinstance(command, Switch) or evidence_level is Evidence.IDS:
             return None
-        told = command.sets and all(belief.fact(name) is not None for name, _ in command.sets)
-        if evidence_level is Evidence.JOINTS and told:
+        has_facts = command.sets and all(belief.fact(name) is not None for name, _ in command.sets)
+        if evidence_level is Evidence.JOINTS and has_facts:
             return None
         return now + timing.effector_settle_s + command.takes_s
 

@@ -72,8 +72,8 @@ class Effectors:
         if not command.grips:
             self.grips.open(command.robot, command.id)
         if not command.grips or self.grips[command.robot] is Grip.OFF:
-            told = Handling.TOLD_TO_TAKE if command.grips else Handling.TOLD_TO_LET_GO
-            self._tell(command.robot, told)
+            handling = Handling.TOLD_TO_TAKE if command.grips else Handling.TOLD_TO_LET_GO
+            self._tell(command.robot, handling)
         self.set(command.robot, Grip.SWITCHING)
 
     def declare_empty(self, belief: Belief) -> None:

@@ -356,8 +356,8 @@ def _set_as_told(entry: Entry, belief: Belief, report: Report) -> Verdict | None
     """UInt8 commands carry no id over ROS 2: what the robot reports of it confirms a switch."""
     if not entry.sets:
         return Verdict(feed=Feed.DONE) if report.done == entry.command.id else None
-    told = all(report.fact(name) == value for name, value in entry.sets)
-    return Verdict(feed=Feed.DONE) if told else None
+    is_set = all(report.fact(name) == value for name, value in entry.sets)
+    return Verdict(feed=Feed.DONE) if is_set else None
 
 
 def _answered(entry: Entry, belief: Belief, report: Report) -> Verdict | None:
@@ -379,10 +379,10 @@ def _off_target(entry: Entry, belief: Belief) -> Verdict:
     name = next((name for name, value in entry.sets if belief.fact(name) != value), None)
     if name is None:
         return _failed(entry, Reason.NOT_REACHED, OFF_TARGET)
-    told = belief.fact(name)
-    if told is None:
+    reported = belief.fact(name)
+    if reported is None:
         return _failed(entry, Reason.NOT_REACHED, FACT_UNSAID, fact=name)
-    return _failed(entry, Reason.NOT_REACHED, FACT_OTHER, fact=name, value=shown(told))
+    return _failed(entry, Reason.NOT_REACHED, FACT_OTHER, fact=name, value=shown(reported))
 
 
 def _short(entry: Entry) -> Verdict:

@@ -51,12 +51,12 @@ class Interferences:
 
     def rise(self, report: Report) -> tuple[bool, bool]:
         """True for newly refused, and for newly obeyed commands, by a report that tells of any."""
-        told = (report.epoch, report.foreign_refused or 0, report.foreign_obeyed or 0)
+        counts = (report.epoch, report.foreign_refused or 0, report.foreign_obeyed or 0)
         epoch, refused, obeyed = self._counts.get(report.robot, (report.epoch, 0, 0))
         if epoch != report.epoch:
             refused = obeyed = 0
-        self._counts[report.robot] = told
-        return told[1] > refused, told[2] > obeyed
+        self._counts[report.robot] = counts
+        return counts[1] > refused, counts[2] > obeyed
 
     def forged(self, report: Report, epoch: int, given: int) -> int | None:
         """The number of a command of `epoch` that a robot newly took, above the last that was given."""

@@ -19,9 +19,9 @@ def outline(rows: Sequence[dict[str, Any]], *, statuses: bool = False) -> str:
 
 
 def _line(row: dict[str, Any], statuses: bool) -> str:
-    said = f" {STATUSES[row['status']]}" if statuses else ""
-    said += f" -- {row['feedback']}" if statuses and row["feedback"] else ""
-    return f"{'    ' * depth(row['path'])}{KINDS.get(row['kind'], LEAF)} {row['name']}{said}\n"
+    status = f" {STATUSES[row['status']]}" if statuses else ""
+    status += f" -- {row['feedback']}" if statuses and row["feedback"] else ""
+    return f"{'    ' * depth(row['path'])}{KINDS.get(row['kind'], LEAF)} {row['name']}{status}\n"
 
 
 def dot(rows: Sequence[dict[str, Any]]) -> str:

@@ -371,8 +371,8 @@ class Device(Robot):
             held = verb.held[1]
             others = [name for name, _ in verb.parameters if not isinstance(held, Slot) or name != held.name]
             if others:
-                told = f"{verb.name}({', '.join(f'{name}=...' for name in others)})"
-                raise UseError(f"{self.name} is told more to take hold of a part: {told}")
+                signature = f"{verb.name}({', '.join(f'{name}=...' for name in others)})"
+                raise UseError(f"{self.name} is told more to take hold of a part: {signature}")
             values = dict.fromkeys(dict(verb.parameters), True)
             return self.kind.command(id=id, robot=self.name, verb=verb.name, values=values)
         raise UseError(f"a {self.kind.name} has no verb that takes hold of a part")

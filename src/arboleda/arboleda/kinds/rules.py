@@ -82,8 +82,8 @@ def holding_objection(verb: DeviceVerb) -> str | None:
     types = dict(verb.parameters)
     values = [types[value.name].first if isinstance(value, Slot) else value for _, value in verb.sets]
     if sum(isinstance(value, bool) for value in values) != 1:
-        told = "must set exactly one fact that is a bool: whether it holds a part"
-        return f"a verb that holds a part {told}"
+        rule = "must set exactly one fact that is a bool: whether it holds a part"
+        return f"a verb that holds a part {rule}"
     return None
 
 

@@ -146,13 +146,13 @@ def _longest_s(made: DeviceKind, verb: DeviceVerb) -> float:
     longest = verb.takes_s
     for values in _combinations(verb):
         try:
-            told = made.command(id="", robot="", verb=verb.name, values=values)
-            assert isinstance(told, VerbCall)
-            longest = max(longest, told.takes_s)
+            call = made.command(id="", robot="", verb=verb.name, values=values)
+            assert isinstance(call, VerbCall)
+            longest = max(longest, call.takes_s)
             if verb.effect is Effect.QUERY:
-                made.answer_of(told, tuple(first.items()))
+                made.answer_of(call, tuple(first.items()))
             else:
-                made.shown_by(told, tuple((first | dict(told.sets)).items()))
+                made.shown_by(call, tuple((first | dict(call.sets)).items()))
         except UseError as error:
             with_them = ", ".join(f"{name}={value!r}" for name, value in values.items())
             raise KindError(f"{error}, with {with_them}" if with_them else str(error)) from error.__cause__

@@ -51,10 +51,10 @@ class Grips:
 
     def will_not_open(self, holder: str, *ids: str | None) -> None:
         """It has not taken these commands, or has given them up."""
-        told = self.opening.get(holder, set())
-        if not told.isdisjoint(ids):
-            told.difference_update(ids)
-            if not told:
+        pending = self.opening.get(holder, set())
+        if not pending.isdisjoint(ids):
+            pending.difference_update(ids)
+            if not pending:
                 del self.opening[holder]
 
     def forget_opening(self, holder: str) -> None:

@@ -372,14 +372,14 @@ class Report:
 
     def again(self, at: float, **news: object) -> Report:
         """The same words, said once more, but for the news."""
-        said = vars(self).copy()  # several times as fast as `replace`, and most reports are repeats
-        said["at"] = at
+        fields = vars(self).copy()  # several times as fast as `replace`, and most reports are repeats
+        fields["at"] = at
         if news:
-            said.update(news)
+            fields.update(news)
             if news.keys() - WORDLESS:
-                said.pop("words", None)
+                fields.pop("words", None)
         report = object.__new__(Report)
-        object.__setattr__(report, "__dict__", said)
+        object.__setattr__(report, "__dict__", fields)
         return report
 
 

@@ -93,11 +93,11 @@ class Sentence:
         return bool(self.phrase.english)
 
 
-def as_sentence(said: Sentence | str | BaseException) -> Sentence:
+def as_sentence(value: Sentence | str | BaseException) -> Sentence:
     """A sentence of somebody's own words; that of an error where it has one."""
-    if isinstance(said, BaseException):
-        said = said.args[0] if len(said.args) == 1 and isinstance(said.args[0], Sentence) else str(said)
-    return said if isinstance(said, Sentence) else OWN(text=said)
+    if isinstance(value, BaseException):
+        value = value.args[0] if len(value.args) == 1 and isinstance(value.args[0], Sentence) else str(value)
+    return value if isinstance(value, Sentence) else OWN(text=value)
 
 
 def in_json(value: object) -> str:

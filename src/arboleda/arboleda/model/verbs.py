@@ -150,8 +150,8 @@ def as_text(verb: Verb, scope: str, arguments: Arguments) -> str:
     >>> as_text(Verb.ANSWER, "ana", (("question", "7-1"), ("answer", "yes")))
     'ana #7-1 yes'
     """
-    told = dict(arguments)
-    words = [f"{each.mark}{told[each.name]}" for each in verb.arguments if each.name in told]
+    values = dict(arguments)
+    words = [f"{each.mark}{values[each.name]}" for each in verb.arguments if each.name in values]
     return " ".join([scope, *words]) if words else scope
 
 

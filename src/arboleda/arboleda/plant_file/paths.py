@@ -27,10 +27,10 @@ def exit_of(path: Path) -> str:
 def paths(document: Document, place: Place, grid: Grid = GRID) -> tuple[Path, ...]:
     """Every path of the section; empty, with the problems kept, if one is wrong."""
     document.read_plain(MAPPING, place)
-    seen: dict[str, str] = {}
+    first_paths: dict[str, str] = {}
     found = []
     for key in document.keys(place):
-        first = seen.setdefault(key.upper(), key)
+        first = first_paths.setdefault(key.upper(), key)
         path = _path(document, (*place, key), grid)
         if not CODE.fullmatch(key):
             document.problem((*place, key), "a path code is two letters or digits", at=(*place, key))

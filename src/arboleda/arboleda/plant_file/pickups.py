@@ -27,10 +27,10 @@ def pickups(reader: PoseReader, cell: Place, paths: Sequence[Path]) -> Pickups |
     elif not document.has((*cell, "pickup")):
         document.problem(cell, 'the key "pickup" is missing')
     exits = sorted({exit_of(path) for path in paths})
-    seen: dict[str, str] = {}
+    first_pickups: dict[str, str] = {}
     found = []
     for key in document.keys(place):
-        first = seen.setdefault(key.upper(), key)
+        first = first_pickups.setdefault(key.upper(), key)
         if first != key:
             twice = f'is the same exit as "{first}", case does not matter'
             document.problem((*place, key), twice, at=(*place, key))
@@ -38,7 +38,7 @@ def pickups(reader: PoseReader, cell: Place, paths: Sequence[Path]) -> Pickups |
             rule = f"is no exit of a path here, the second character of its code; there is {choice(exits)}"
             document.problem((*place, key), rule, at=(*place, key))
         found.append((key.upper(), reader.pose((*place, key), PICKUP_AT(exit=key.upper()))))
-    _check_every_exit(document, cell, exits, seen)
+    _check_every_exit(document, cell, exits, first_pickups)
     whole = tuple((exit, pose) for exit, pose in found if pose)
     return whole if len(whole) == len(found) else None
 
@@ -48,8 +48,8 @@ def pickup_names(pickup: Pose, each: Pickups) -> dict[str, Pose]:
     return {"pickup": pickup} | {f"pickup {exit.lower()}": pose for exit, pose in each}
 
 
-def _check_every_exit(document: Document, cell: Place, exits: Sequence[str], seen: dict[str, str]) -> None:
-    left = [exit for exit in exits if exit not in seen]
-    if left and seen and not document.has((*cell, "pickup")):
+def _check_every_exit(document: Document, cell: Place, exits: Sequence[str], pickups: dict[str, str]) -> None:
+    left = [exit for exit in exits if exit not in pickups]
+    if left and pickups and not document.has((*cell, "pickup")):
         rule = 'add it, or a "pickup" for all exits that are not named here'
         document.problem((*cell, "pickups"), f"the exit {choice(left)} of the paths has no pick-up; {rule}")

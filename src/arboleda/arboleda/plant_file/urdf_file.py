@@ -162,13 +162,13 @@ class _Reader:
     def _check_circles(self) -> None:
         """Check that the way from each link upwards ends; a circle is named once."""
         for link in self._links:
-            above, seen = link, {link}
+            above, visited = link, {link}
             while above in self._above:
                 above = _end_of(self._above[above], "parent")
-                if above in seen:
+                if above in visited:
                     self._say(self._above[above], f"the joints go round in a circle, from {above} back to it")
                     return
-                seen.add(above)
+                visited.add(above)
 
     def _foot(self, wanted: str | None) -> str:
         """The link that stands on the floor."""
@@ -281,12 +281,12 @@ class _Reader:
     def _below(self, link: str) -> Iterator[str]:
         """The link and all links below it."""
         waiting = [link] if link in self._links else []
-        seen: set[str] = set()
+        visited: set[str] = set()
         while waiting:
             each = waiting.pop(0)
-            if each in seen:
+            if each in visited:
                 continue
-            seen.add(each)
+            visited.add(each)
             yield each
             waiting += self._children(each)
 

@@ -50,15 +50,15 @@ def read(name: str, raw: bytes) -> Chain:
 
 
 def _check_names(document: Document, places: Sequence[Place], joints: Sequence[Joint | None]) -> None:
-    seen: set[str] = set()
+    names: set[str] = set()
     for place, joint in zip(places, joints, strict=True):
         if joint is None:
             continue
         if not NAME.fullmatch(joint.name):
             document.problem((*place, "name"), f"must be {NAME_RULE}, is {shown(joint.name)}")
-        elif joint.name in seen:
+        elif joint.name in names:
             document.problem((*place, "name"), f"two joints have the name {joint.name}")
-        seen.add(joint.name)
+        names.add(joint.name)
 
 
 def _axis(file: JointFile, joint: Joint) -> Axis:

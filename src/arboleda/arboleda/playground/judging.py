@@ -19,24 +19,24 @@ def judged(
     name: str, texts: Texts, progress: Callable[[float], object]
 ) -> tuple[dict[str, Any], Film, PlantModel | None]:
     """The verdict on a work as plain data; a film of its first finding, and the plant of that, or None."""
-    asked, film, filmed = exercise(name), Film(), list[PlantModel]()
+    chosen, film, filmed = exercise(name), Film(), list[PlantModel]()
 
     def play(plant: Plant, again: Again) -> None:
         again(film.plant)
         filmed.append(plant.model)
 
     files = {each: text.encode() for each, text in texts.items()}
-    judge = Judge(asked, files, progress=lambda runs: progress(min(runs / asked.runs, 1.0)))
+    judge = Judge(chosen, files, progress=lambda runs: progress(min(runs / chosen.runs, 1.0)))
     verdict = judge.judge(play=play).plain
     return verdict, film, filmed[0] if filmed else None
 
 
 def record(name: str) -> tuple[Film, PlantModel | None]:
     """A film of the record that belongs to an exercise, and the plant of that; None if it has none."""
-    asked, film = exercise(name), Film()
-    if asked.record is None:
+    chosen, film = exercise(name), Film()
+    if chosen.record is None:
         return film, None
-    texts = {each: content.decode("utf-8") for each, content in asked.start.items()}
+    texts = {each: content.decode("utf-8") for each, content in chosen.start.items()}
     model, _ = built(texts, PLANT)
-    run_trial(model, asked.record, asked.record.faults, make_plant=film.plant)
+    run_trial(model, chosen.record, chosen.record.faults, make_plant=film.plant)
     return film, model

@@ -129,8 +129,8 @@ class Session:
         elif act in VERBS:
             verb = Verb(act)
             arguments = outcomes.arguments_of(verb, more)
-            asked = VerbAsked(tick=tick, verb=verb, scope=of, by_hand=more is True, arguments=arguments)
-            self._awaited[self._do(asked)] = asked
+            request = VerbAsked(tick=tick, verb=verb, scope=of, by_hand=more is True, arguments=arguments)
+            self._awaited[self._do(request)] = request
         elif act == HAND:
             do, _, scope = of.partition(" ")
             if do in HANDS:
@@ -236,8 +236,8 @@ class Session:
                 self._said.append(outcomes.of_outcome(self._words, outcome, row["why"], named))
 
     def _taken_lines(self) -> list[Said]:
-        said, self._said = self._said, []
-        return said
+        lines, self._said = self._said, []
+        return lines
 
     def _twin_patch(self) -> Row:
         if self._twin is None or not self._looks:

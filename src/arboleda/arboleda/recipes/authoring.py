@@ -189,12 +189,12 @@ def check_asked(step: Step, making: Making) -> None:
     if not making.chosen:
         return
     order = {id(node): number for number, node in enumerate(step.iterate())}  # children before their parents
-    for node, asked in making.chosen:
+    for node, question in making.chosen:
         first = order.get(id(next(node.iterate())), -1)  # a choice that stands nowhere is none
-        if first >= 0 and order.get(id(asked), first) >= first:
+        if first >= 0 and order.get(id(question), first) >= first:
             how = "let it stand before, as in work(seen, cell.choose(seen, ...))"
             raise RecipeError(
-                f"choose looks at the answer of {asked.name}, which is not asked by then; {how}"
+                f"choose looks at the answer of {question.name}, which is not asked by then; {how}"
             )
 
 
@@ -296,11 +296,13 @@ class Kit:
             other.function(type(self)(self._context, making), **values), f"{other.name} returns", RETURNS
         )
 
-    def choose(self, asked: Step, ways: Mapping[Value, Step | Sequence[Step]]) -> Step:
+    def choose(self, question_step: Step, ways: Mapping[Value, Step | Sequence[Step]]) -> Step:
         """A way for each answer to a step that asks a device or a person; another answer is a failure."""
-        question = question_of(asked)
+        question = question_of(question_step)
         if question is None:
-            raise RecipeError(f"choose looks at the answer of a device's step; {named(asked)} has none")
+            raise RecipeError(
+                f"choose looks at the answer of a device's step; {named(question_step)} has none"
+            )
         question.check(ways)
 
         def answers(value: Value) -> bool:
@@ -308,11 +310,11 @@ class Kit:
 
         def other() -> Failure | None:
             """A way that was taken and failed has named its cause."""
-            told = question.answer
-            if told in ways:
+            answer = question.answer
+            if answer in ways:
                 return self._context.failures.first
             known = tuple(map(shown, ways))
-            sentence = OTHER_ANSWER(robot=question.name, answer=said(told), known=known)
+            sentence = OTHER_ANSWER(robot=question.name, answer=said(answer), known=known)
             return Failure(reason=Reason.REJECTED, sentence=sentence)
 
         def branch(value: Value, way: Step | Sequence[Step]) -> Step:

@@ -215,8 +215,8 @@ def with_second(cause: Failure, second: Failure | None) -> Failure:
     """The first cause, with what a rescue failed for."""
     if second is None:
         return cause
-    told = RESCUE_FAILED(cause=cause.sentence, second=second.sentence)
-    return Failure(reason=cause.reason, sentence=told)
+    sentence = RESCUE_FAILED(cause=cause.sentence, second=second.sentence)
+    return Failure(reason=cause.reason, sentence=sentence)
 
 
 def first_cause(sentence: Sentence) -> Sentence:

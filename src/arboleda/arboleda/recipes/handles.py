@@ -99,9 +99,9 @@ class FactWait(Await):
 class AskInZones(composites.Sequence):
     """Question to a device that is in zones while it answers: it takes them before."""
 
-    def __init__(self, asked: Ask, zones: Sequence[Step]) -> None:
-        super().__init__(asked.name, memory=True, children=[*zones, asked])
-        self.asked = asked
+    def __init__(self, question: Ask, zones: Sequence[Step]) -> None:
+        super().__init__(question.name, memory=True, children=[*zones, question])
+        self.asked = question
 
 
 def question_of(step: object) -> Ask | None:
@@ -159,8 +159,8 @@ class Handle:
 
     def _objection(self, facts: Mapping[str, Value]) -> Failure | None:
         for name in self._unsaid(facts):
-            told, value = said(self._told(name)), shown(facts[name])
-            sentence = NOT_SO(robot=self._device.name, told=told, fact=name, value=value)
+            reported, value = said(self._told(name)), shown(facts[name])
+            sentence = NOT_SO(robot=self._device.name, told=reported, fact=name, value=value)
             return Failure(reason=Reason.PRECONDITION, sentence=sentence)
         return None
 
@@ -189,16 +189,16 @@ class DeviceHandle(Handle):
             def make(id: str) -> Any:
                 return kind.command(id=id, robot=name, verb=verb, values=given)
 
-            told = make("")  # wrong words are told at once
-            zones = steps.interlocked(self._context, told)
+            order = make("")  # wrong words are told at once
+            zones = steps.interlocked(self._context, order)
             words = " ".join([verb, *map(shown, given.values())])
-            if not isinstance(told, QueryCall):
+            if not isinstance(order, QueryCall):
                 act = self._of(Act(f"{name} {words}", self._context, make, DOING(order=words)))
                 return steps.sequence(act.title, *zones, act) if zones else act
-            asked = Ask(f"{name} {words}", self._context, make, DOING(order=words))
-            asked.answers, asked.by, asked.asked = told.told.answers, name, words
-            self._of(asked)
-            return titled(AskInZones(asked, zones), asked.title) if zones else asked
+            question = Ask(f"{name} {words}", self._context, make, DOING(order=words))
+            question.answers, question.by, question.asked = order.told.answers, name, words
+            self._of(question)
+            return titled(AskInZones(question, zones), question.title) if zones else question
 
         step.__name__, step.__qualname__ = verb, f"{self._device.name}.{verb}"
         return step
@@ -226,10 +226,10 @@ class PersonHandle(Handle):
             return self._device.ask(id=id, question=question, answers=answers, at_most_s=at_most_s)
 
         name = self._device.name
-        asked = Ask(ASK(person=name), self._context, make, ASKING(person=name))
-        asked.answers, asked.by, asked.asked = tuple(answers), name, question
-        self._of(asked)
-        return asked
+        step = Ask(ASK(person=name), self._context, make, ASKING(person=name))
+        step.answers, step.by, step.asked = tuple(answers), name, question
+        self._of(step)
+        return step
 
 
 @dataclass(frozen=True)
@@ -391,13 +391,13 @@ def is_list(part: object) -> TypeGuard[Iterable[Any]]:
     return isinstance(part, Iterable) and not isinstance(part, str | Behaviour)
 
 
-def usable(step: object, told: str, rule: str = "it takes steps, e.g. mill.open()") -> Step:
+def usable(step: object, context: str, rule: str = "it takes steps, e.g. mill.open()") -> Step:
     """The step, which nothing else has used; RecipeError for anything else, which begins with `told`."""
     if not isinstance(step, Behaviour):
         if callable(step):
             name = getattr(step, "__qualname__", type(step).__name__)
-            raise RecipeError(f"{told} {name} without its parentheses: write {name}()")
-        raise RecipeError(f"{told} {quoted(step)}; {rule}")
+            raise RecipeError(f"{context} {name} without its parentheses: write {name}()")
+        raise RecipeError(f"{context} {quoted(step)}; {rule}")
     if step.parent is not None or (isinstance(step, Chain) and step.is_taken):
         raise RecipeError(TWICE.format(step=step.name))
     return step

@@ -43,8 +43,8 @@ def held(context: Context, step: Behaviour) -> Behaviour:
     if not outside:
         return step
     if any(isinstance(node, TakeDevices) for node in step.iterate()):
-        told = f"{min(outside)} is told something outside of using(...)"
-        raise RecipeError(f"{told}; where a recipe has one, all that cells share is used in one")
+        problem = f"{min(outside)} is told something outside of using(...)"
+        raise RecipeError(f"{problem}; where a recipe has one, all that cells share is used in one")
     if _is_work(step):
         _hold_in(context, step)
         return step

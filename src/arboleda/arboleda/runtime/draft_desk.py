@@ -141,8 +141,8 @@ class DraftDesk(DraftApi):
             raise DraftRefused(NO_PLANT)
         found, version = self._checked_and_kept(editor, note)
         if version is None:
-            told: State = {"version": None, "cells": {}, "cancelled": (), "restart": ()}
-            return told | {"problems": found.problems, "warnings": found.warnings}
+            answer: State = {"version": None, "cells": {}, "cancelled": (), "restart": ()}
+            return answer | {"problems": found.problems, "warnings": found.warnings}
         return self._work_by(version, found, version.by)
 
     def trees(self, file: str) -> State:

@@ -86,8 +86,8 @@ def _owner(name: str) -> str:
         asker.setblocking(False)
         try:
             asker.connect(name)
-            told = asker.getsockopt(socket.SOL_SOCKET, socket.SO_PEERCRED, CREDENTIALS.size)
+            credentials = asker.getsockopt(socket.SOL_SOCKET, socket.SO_PEERCRED, CREDENTIALS.size)
         except OSError:
             return ""
-    process, _, _ = CREDENTIALS.unpack(told)
+    process, _, _ = CREDENTIALS.unpack(credentials)
     return f" (process {process})"

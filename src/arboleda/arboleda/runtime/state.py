@@ -133,15 +133,15 @@ class StateDir:
     def _last_epoch(self) -> int:
         file = self.path / EPOCH
         try:
-            said = read_bytes(file, EPOCH_BYTES) if os.path.lexists(file) else b"0"
+            content = read_bytes(file, EPOCH_BYTES) if os.path.lexists(file) else b"0"
         except ConfigError:
-            said = b""
-        if not EPOCH_SAID.fullmatch(said):
+            content = b""
+        if not EPOCH_SAID.fullmatch(content):
             raise StartError(
                 f"{file} does not say the number of the last start: delete it if this machine's clock is "
                 "right, or write a number into it that is higher than any before; robots obey no lower one."
             )
-        return int(said)
+        return int(content)
 
     def announce(
         self, port: int, *, host: str = "127.0.0.1", guarded: bool = False, certificate: str = ""

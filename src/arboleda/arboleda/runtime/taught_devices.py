@@ -32,8 +32,8 @@ def cell_of(plant: Plant, name: str) -> CellRun:
 def state(plant: Plant, name: str) -> Row:
     """The person who teaches a cell, why nobody may begin now, and its devices."""
     cell = cell_of(plant, name)
-    asked = OperatorRequest(at=plant.now, verb=Verb.TEACH, scope=name, arguments=(("teacher", "x"),))
-    refusal = plant.refusal(asked) if cell.manual.teaching is None else None
+    request = OperatorRequest(at=plant.now, verb=Verb.TEACH, scope=name, arguments=(("teacher", "x"),))
+    refusal = plant.refusal(request) if cell.manual.teaching is None else None
     devices = [_device(plant, role, robot) for role, robot in cell.cell.members if robot in cell.cell.reached]
     return {
         "cell": name,

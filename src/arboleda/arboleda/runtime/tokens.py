@@ -66,8 +66,10 @@ class TokenFile:
                 f"Others can read the tokens in {self._file}; chmod 600 {self._file}, then --new."
             )
         try:
-            said = json.loads(self._file.read_bytes())
-            tokens = {role: said[role.value] for role in Role if role in FROM_THE_FIRST or role.value in said}
+            content = json.loads(self._file.read_bytes())
+            tokens = {
+                role: content[role.value] for role in Role if role in FROM_THE_FIRST or role.value in content
+            }
             good = all(isinstance(token, str) and len(token) >= SHORTEST for token in tokens.values())
         except (ValueError, KeyError, TypeError):
             good = False

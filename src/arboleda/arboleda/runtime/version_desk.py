@@ -128,17 +128,17 @@ class VersionDesk(VersionsApi):
         """Keep as a version what was checked and is in its place, and put it to work."""
         started = self.at_work()
         fresh = version_of(read, at=_now(), by=by, note=note)
-        told = changes(whole(started), whole(fresh))
-        if not told:
+        differences = changes(whole(started), whole(fresh))
+        if not differences:
             raise DraftRefused(SAME)
         kept = Versions(self._folder.ours)
         if kept.last() is None:  # so that there is a way back to it
             kept.keep(replace(started, note="as the plant was started"))
-        fresh = replace(fresh, changes=tuple(each.words for each in told))
+        fresh = replace(fresh, changes=tuple(each.words for each in differences))
         last = kept.last()
         is_kept = last is not None and last.digest == fresh.digest  # by `arboleda apply`
         version = last if last is not None and is_kept else kept.keep(fresh)
-        return self._work_by(version, found, told, by)
+        return self._work_by(version, found, differences, by)
 
     def must_be_in_place(self, version: Version) -> None:
         """Raise DraftRefused where the plant's files are not those of a version: somebody edited them."""
@@ -161,14 +161,14 @@ class VersionDesk(VersionsApi):
                 return _refused(found)
             if version_of(found.read, at="").digest != proposal.content:
                 raise DraftRefused(BY_HAND)
-            told = changes(whole(base), whole(version_of(found.read, at="")))
+            differences = changes(whole(base), whole(version_of(found.read, at="")))
             with self.writing:
                 self._still(proposal)
                 approved()
-                if not told:
+                if not differences:
                     return {**_refused(found), "problems": ()}
-                version = self._written(base, proposal, told, person, note)
-            return self._work_by(version, found, told, journal)
+                version = self._written(base, proposal, differences, person, note)
+            return self._work_by(version, found, differences, journal)
 
     def _still(self, proposal: Proposal) -> Version:
         """The version at work; DraftRefused where it or the files are not what a proposal was made for."""
@@ -179,13 +179,13 @@ class VersionDesk(VersionsApi):
         return base
 
     def _written(
-        self, base: Version, proposal: Proposal, told: Sequence[Change], person: str, note: str
+        self, base: Version, proposal: Proposal, differences: Sequence[Change], person: str, note: str
     ) -> Version:
         """The version that was approved, kept and in its place."""
         kept = Versions(self._folder.ours)
         if kept.last() is None:  # so that there is a way back to it
             kept.keep(replace(base, note="as the plant was started"))
-        words = tuple(each.words for each in told)
+        words = tuple(each.words for each in differences)
         fresh = Version(
             number=0,
             at=_now(),
@@ -208,14 +208,14 @@ class VersionDesk(VersionsApi):
         with self._turns:
             return self._work_by(version, found, changes(whole(self.at_work()), whole(version)), by)
 
-    def _work_by(self, version: Version, found: CheckResult, told: Sequence[Change], by: str) -> State:
+    def _work_by(self, version: Version, found: CheckResult, differences: Sequence[Change], by: str) -> State:
         """Tell the plant of a version that is kept and whose files are in their place."""
         answer: State = {"version": version.number, "problems": (), "warnings": found.warnings, "cells": {}}
-        restart = needing_restart(told)
+        restart = needing_restart(differences)
         if not restart:
-            said = self._told(version, by)
-            restart = () if said.refusal is None else (str(said.refusal),)
-            answer |= {"cells": _when(self._plant(), said), "cancelled": said.cancelled}
+            outcome = self._told(version, by)
+            restart = () if outcome.refusal is None else (str(outcome.refusal),)
+            answer |= {"cells": _when(self._plant(), outcome), "cancelled": outcome.cancelled}
         if restart:
             LOG.warning("version %d is kept; the next start of the plant has it", version.number)
             return answer | {"restart": restart, "cells": {}, "cancelled": ()}
@@ -252,8 +252,8 @@ def _refused(found: CheckResult) -> State:
 
 
 def _row(version: Version, *, is_at_work: bool) -> State:
-    told = {"number": version.number, "at": version.at, "by": version.by, "note": version.note}
-    return told | {"changes": list(version.changes), "is_at_work": is_at_work}
+    row = {"number": version.number, "at": version.at, "by": version.by, "note": version.note}
+    return row | {"changes": list(version.changes), "is_at_work": is_at_work}
 
 
 def _cells(plant: Plant) -> list[State]:

@@ -146,10 +146,10 @@ class ArmBody(Robotic):
         self._drift = (0,) * len(self._joints)
 
     def tell(self) -> BodyReport:
-        seen = (self.position, self._drift, self.next_change_us, self.effector, self.holding, self.supplied)
-        if seen != self._seen:
-            self._seen = seen
-            q = tuple([steps * step for steps, step in zip(seen[0], self._step_deg, strict=True)])
+        state = (self.position, self._drift, self.next_change_us, self.effector, self.holding, self.supplied)
+        if state != self._seen:
+            self._seen = state
+            q = tuple([steps * step for steps, step in zip(state[0], self._step_deg, strict=True)])
             self._told = BodyReport(q, None, self.effector, self.holding or self._piece_lies_here())
         return self._told
 

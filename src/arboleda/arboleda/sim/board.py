@@ -51,8 +51,8 @@ class Board:
         self._tells_facts = robot.evidence is not Evidence.STATE
         self._assume_homed = robot.assume_homed or not body.homes
         self._knows = 1 if body.homes else KNOWN_ORDERS
-        heard = body.channels if robot.has_stop else body.channels - {Channel.STOP}
-        self._channels = {topic(robot.mqtt, channel): channel for channel in Channel if channel in heard}
+        channels = body.channels if robot.has_stop else body.channels - {Channel.STOP}
+        self._channels = {topic(robot.mqtt, channel): channel for channel in Channel if channel in channels}
         self._now_us = now_us
         self._uplink = Uplink(robot.mqtt)
         self._said: tuple[Any, ...] | None = None  # values of the last telemetry
@@ -305,17 +305,17 @@ class Board:
 
     def _tell(self) -> None:
         """Send telemetry; a message equal to the last one but for its number is not built anew."""
-        told = self.body.tell()
-        said = (told, self.state, self.boot_id, self.homed, self._receipts.told)
-        last, self._said = self._said, said
+        report = self.body.tell()
+        state = (report, self.state, self.boot_id, self.homed, self._receipts.told)
+        last, self._said = self._said, state
         if not self._uplink.connected:
             self._said = None
-        elif said == last:
+        elif state == last:
             self._uplink.tell_again()
-        elif last is not None and told.q is not None and _joints_apart(said) == _joints_apart(last):
-            self._uplink.tell_angles(told.q)
+        elif last is not None and report.q is not None and _joints_apart(state) == _joints_apart(last):
+            self._uplink.tell_angles(report.q)
         else:
-            self._uplink.tell(self._telemetry(told))
+            self._uplink.tell(self._telemetry(report))
         if self._uplink.connected:
             self._freshness.tell(self._now_us, self._uplink.sent)
 
@@ -348,9 +348,9 @@ class Board:
         )
 
 
-def _joints_apart(said: tuple[Any, ...]) -> tuple[object, ...]:
-    told, *rest = said
-    return (told[1:], *rest)
+def _joints_apart(state: tuple[Any, ...]) -> tuple[object, ...]:
+    report, *rest = state
+    return (report[1:], *rest)
 
 
 def _numbers_in(raw: bytes) -> tuple[int | None, int | None]:

@@ -32,5 +32,5 @@ class Freshness:
 
     def covers(self, now_us: int, number: int) -> bool:
         """True if telemetry of this number left within FRESH_US."""
-        first = next((told for at_us, told in self._marks if now_us - at_us <= FRESH_US), None)
+        first = next((report for at_us, report in self._marks if now_us - at_us <= FRESH_US), None)
         return first is not None and first <= number <= self._told

@@ -93,8 +93,8 @@ class MachineBody:
         if self.kind.held_fact is not None:
             self.set_by_hand(((self.kind.held_fact, False),))
 
-    def place(self, told: body.BodyReport, *, holds: bool) -> None:
-        self.facts.update(told.facts or ())
+    def place(self, report: body.BodyReport, *, holds: bool) -> None:
+        self.facts.update(report.facts or ())
 
     @property
     def true_place(self) -> None:

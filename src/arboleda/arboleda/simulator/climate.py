@@ -64,20 +64,20 @@ class Climate:
         listed = known.get("faults", [])
         if not isinstance(listed, list):
             raise BadFaults('faults is not a list, e.g. [{"kind": "reboot", "at": 12.5}]', "faults")
-        told: list[Fault] = []
+        from_list: list[Fault] = []
         for number, each in enumerate(listed):
             with within("faults", number):
-                told.append(_told(model, Dice(seed, "told", number), each))
-        for name in (*rates, *(fault.kind for fault in told)):
+                from_list.append(_told(model, Dice(seed, "told", number), each))
+        for name in (*rates, *(fault.kind for fault in from_list)):
             _refuse_hosts(name, standby=standby)
-        return cls(model=model, seed=seed, rates=rates, told=tuple(told))
+        return cls(model=model, seed=seed, rates=rates, told=tuple(from_list))
 
     def faults(self, minute: int) -> list[Fault]:
         """The faults that begin in a minute of the run, in the order of their times."""
         begin, dice = minute * MINUTE_S, Dice(self.seed, "faults", minute)
         drawn = [self._fault(dice, begin) for _ in range(_count(dice, sum(self.rates.values())))]
-        told = [fault for fault in self.told if begin <= fault.at < begin + MINUTE_S]
-        return sorted([*told, *drawn], key=lambda fault: fault.at)
+        listed = [fault for fault in self.told if begin <= fault.at < begin + MINUTE_S]
+        return sorted([*listed, *drawn], key=lambda fault: fault.at)
 
     def _fault(self, dice: Dice, begin: float) -> Fault:
         name = _one_of(dice, self.rates)
@@ -133,19 +133,19 @@ def _rates(data: Any) -> dict[str, float]:
 
 
 def _told(model: PlantModel, dice: Dice, data: Any) -> Fault:
-    told = only(data, FIELDS, "a fault")
-    for name in told:
-        _check(name, told[name])
-    kind = KINDS.get(told.get("kind", ""))
+    entry = only(data, FIELDS, "a fault")
+    for name in entry:
+        _check(name, entry[name])
+    kind = KINDS.get(entry.get("kind", ""))
     if kind is None:
-        raise BadFaults(f"{told.get('kind')!r} is not a kind of fault; there are {', '.join(KINDS)}")
-    if "at" not in told:
+        raise BadFaults(f"{entry.get('kind')!r} is not a kind of fault; there are {', '.join(KINDS)}")
+    if "at" not in entry:
         raise BadFaults(f"{kind.name}: at is missing; it is in s since the run began")
     targets = kind.targets(model)
-    if not targets or told.get("target", targets[0]) not in targets:
-        raise BadFaults(kind.objection(Fault(**told), model) or f"{kind.name} cannot happen in this plant")
-    drawn = {"seed": dice.below(2**32), **kind.draw(dice, model, told.get("target"))}
-    fault = Fault(**{**drawn, **told})
+    if not targets or entry.get("target", targets[0]) not in targets:
+        raise BadFaults(kind.objection(Fault(**entry), model) or f"{kind.name} cannot happen in this plant")
+    drawn = {"seed": dice.below(2**32), **kind.draw(dice, model, entry.get("target"))}
+    fault = Fault(**{**drawn, **entry})
     if (objection := kind.objection(fault, model)) is not None:
         raise BadFaults(objection)
     return fault

@@ -15,7 +15,7 @@ RECENT = 64  # each message is read by all who follow its board
 def goal(topic: str, payload: bytes, axes: int | None) -> Goal | None:
     """The command in a message to a board; None for a beat and for what nobody can read."""
     try:
-        said = decode(parse(topic)[1], payload, axes=axes)
+        message = decode(parse(topic)[1], payload, axes=axes)
     except PayloadError:
         return None
-    return said if isinstance(said, Goal) else None
+    return message if isinstance(message, Goal) else None

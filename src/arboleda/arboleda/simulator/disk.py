@@ -57,12 +57,12 @@ class Content:
     def copy(self) -> Content:
         return Content({fact: dict(rows) for fact, rows in self.facts.items()}, dict(self.tasks))
 
-    def _fact(self, said: Remember) -> None:
-        rows = self.facts.setdefault(said.fact, {})
-        if said.value is None:
-            rows.pop(said.name, None)
+    def _fact(self, order: Remember) -> None:
+        rows = self.facts.setdefault(order.fact, {})
+        if order.value is None:
+            rows.pop(order.name, None)
         else:
-            rows[said.name] = said.value
+            rows[order.name] = order.value
 
     def _task(self, change: TaskChanged, now: float) -> None:
         row = self.tasks.get(change.task)

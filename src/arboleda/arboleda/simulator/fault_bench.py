@@ -208,11 +208,11 @@ class FaultBench:
     def _take(self, event: ToBoard | Reboot | Alarm) -> None:
         """Have an event reach its board, through the line there."""
         client = self.broker.clients[event.board]
-        told = event.event if isinstance(event, ToBoard) else None
-        if isinstance(told, Connection):
-            client.connected = told.up
-        if isinstance(told, Delivery) and not client.down.is_clear(self.now):
-            self._delay(client, client.down, told, lambda: self._hand_on(_as_of(event, self.now)))
+        inner = event.event if isinstance(event, ToBoard) else None
+        if isinstance(inner, Connection):
+            client.connected = inner.up
+        if isinstance(inner, Delivery) and not client.down.is_clear(self.now):
+            self._delay(client, client.down, inner, lambda: self._hand_on(_as_of(event, self.now)))
         else:
             self._hand_on(event)
 
@@ -267,6 +267,6 @@ def _as_of(event: ToBoard | Reboot | Alarm, now: float) -> ToBoard | Reboot | Al
     """An event that waited, as if it happened now."""
     if not isinstance(event, ToBoard):
         return replace(event, at=now)
-    told = event.event
-    late = told._replace(at=now) if isinstance(told, Delivery) else replace(told, at=now)
+    inner = event.event
+    late = inner._replace(at=now) if isinstance(inner, Delivery) else replace(inner, at=now)
     return replace(event, event=late)

@@ -74,16 +74,16 @@ class Findings:
 
     def _take_in(self) -> None:
         changes = [change.said for change in self._record.tasks.changes if not change.answer]
-        for said in changes:
-            if said.state is TaskState.RUNNING and said.cell not in self._recipes:
-                self._began(said)
+        for task_change in changes:
+            if task_change.state is TaskState.RUNNING and task_change.cell not in self._recipes:
+                self._began(task_change)
         for entry in self._not_given():
             self._refuse(entry)
         for sent, _ in self._record.commands.moved:
             if sent.entry is not None and sent.entry.state is State.FAILED:
                 self._refuse(sent.entry)
-        for said in changes:
-            self._follow(said)
+        for task_change in changes:
+            self._follow(task_change)
 
     def _not_given(self) -> list[Entry]:
         """The commands that did not leave in this step."""
@@ -126,8 +126,8 @@ class Findings:
         failed = change.state is TaskState.FAILED and change.reason not in BY_PEOPLE
         if failed:
             self._failed(recipe, change)
-        told = str(change.sentence)
-        self.found.update(each for each in refused if not (failed and each.sentence == told))
+        sentence = str(change.sentence)
+        self.found.update(each for each in refused if not (failed and each.sentence == sentence))
 
     def _failed(self, recipe: str, change: TaskChanged) -> None:
         task = self._world.plant.intake.tasks[change.task]

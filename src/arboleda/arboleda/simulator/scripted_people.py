@@ -83,16 +83,16 @@ def _acts(model: PlantModel, data: Any) -> tuple[Act, ...]:
 
 
 def _act(model: PlantModel, data: Any) -> Act:
-    told = only(data, KEYS, "what somebody does")
-    if not is_number(told.get("at")) or told["at"] < 0:
+    entry = only(data, KEYS, "what somebody does")
+    if not is_number(entry.get("at")) or entry["at"] < 0:
         raise BadFaults("at is in s since the run began, 0 or more", "at")
-    if ("task" in told) == ("do" in told):
+    if ("task" in entry) == ("do" in entry):
         raise BadFaults("either a task or what an operator does is needed: task or do")
-    what = "task" if "task" in told else "do"
-    if not isinstance(told[what], str):
-        raise BadFaults(f"{what} is {told[what]!r}; a text is needed", what)
+    what = "task" if "task" in entry else "do"
+    if not isinstance(entry[what], str):
+        raise BadFaults(f"{what} is {entry[what]!r}; a text is needed", what)
     with within(what):
-        return _task(model, told["at"], told["task"]) if what == "task" else _verb(told["at"], told["do"])
+        return _task(model, entry["at"], entry["task"]) if what == "task" else _verb(entry["at"], entry["do"])
 
 
 def _task(model: PlantModel, at: float, text: str) -> Act:

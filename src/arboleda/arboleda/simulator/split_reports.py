@@ -87,29 +87,29 @@ class TwoTopics:
 def _two_instants(world: World, robot: Robot, dice: Dice) -> None:
     address = topic(robot.mqtt, Channel.TELEMETRY)
     mixed = partial(_mixed, state_s=dice.between(0.0, PERIOD_S), place_s=dice.between(0.0, PERIOD_S))
-    said: deque[tuple[float, bytes]] = deque()
+    reports: deque[tuple[float, bytes]] = deque()
 
     def mix(publication: Publication) -> Publication:
         if publication.topic != address:
             return publication
-        said.append((world.now, publication.payload))
-        while len(said) > 1 and said[1][0] <= world.now - PERIOD_S:
-            said.popleft()
-        return publication._replace(payload=mixed(said, world.now))
+        reports.append((world.now, publication.payload))
+        while len(reports) > 1 and reports[1][0] <= world.now - PERIOD_S:
+            reports.popleft()
+        return publication._replace(payload=mixed(reports, world.now))
 
     world.mixers[robot.mqtt] = mix
 
 
-def _mixed(said: Sequence[tuple[float, bytes]], now: float, *, state_s: float, place_s: float) -> bytes:
+def _mixed(reports: Sequence[tuple[float, bytes]], now: float, *, state_s: float, place_s: float) -> bytes:
     """The state of `state_s` ago with all else of `place_s` ago, as far back as is known."""
-    state, place = _as_of(said, now - state_s), _as_of(said, now - place_s)
+    state, place = _as_of(reports, now - state_s), _as_of(reports, now - place_s)
     if state == place:
         return place
     return json.dumps({**json.loads(place), STATE: json.loads(state)[STATE]}, separators=(",", ":")).encode()
 
 
-def _as_of(said: Sequence[tuple[float, bytes]], at: float) -> bytes:
-    for when, payload in reversed(said):
+def _as_of(reports: Sequence[tuple[float, bytes]], at: float) -> bytes:
+    for when, payload in reversed(reports):
         if when <= at:
             return payload
-    return said[0][1]
+    return reports[0][1]

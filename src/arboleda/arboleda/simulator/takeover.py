@@ -63,14 +63,14 @@ def _place(world: World, plant: Plant, robot: Robot, began: Position | None) -> 
     belief, board = plant.dispatcher.beliefs[robot.name], world.boards[robot.mqtt]
     q = began if isinstance(began, tuple) else belief.q
     node = began if isinstance(began, int) else belief.node
-    told = BodyReport(q, node, belief.effector, belief.piece, tuple(belief.facts.items()) or None)
+    report = BodyReport(q, node, belief.effector, belief.piece, tuple(belief.facts.items()) or None)
     holds = (
         robot.held_fact is not None
         and plant.dispatcher.effectors.grips.holding(robot.name)
         and belief.piece is not False
     )
     latched = belief.state is MotionState.STOP_LATCHED
-    board.place(told, holds=holds, homed=not belief.says_unhomed, latched=latched)
+    board.place(report, holds=holds, homed=not belief.says_unhomed, latched=latched)
     world.wake(robot.mqtt)
 
 
@@ -97,9 +97,9 @@ def _give(world: World, message: Command | Heartbeat) -> None:
     """Have the bridge send a command to a board, and drop the answers."""
     assert world.bridge is not None
     bridge = world.broker.clients[BRIDGE]
-    for said in world.bridge.step(world.now, [FromPlant(at=world.now, message=message)]):
-        if isinstance(said, Publication):
-            world.publish(said, bridge)
+    for order in world.bridge.step(world.now, [FromPlant(at=world.now, message=message)]):
+        if isinstance(order, Publication):
+            world.publish(order, bridge)
 
 
 def _is_astray(world: World, plant: Plant, name: str) -> bool:

@@ -48,8 +48,8 @@ class Trace:
         """Take in what happened in this step."""
         moment = self._world.moment
         words = [self._world.now.hex().encode()]
-        for client, said in moment.published:
-            words += (_head(client, said.topic, said.retain), said.payload)
+        for client, publication in moment.published:
+            words += (_head(client, publication.topic, publication.retain), publication.payload)
         if moment.last_words or moment.unkept:
             unheard = (*moment.last_words, *moment.unkept)
             words += [_hashed(message) for message in unheard if not is_step(message)]
@@ -70,11 +70,11 @@ class Trace:
 
     def _news(self) -> list[str]:
         moment = self._world.moment
-        said_last = (*moment.last_words, *moment.unkept)
-        last = [f"last words {_last(each)}" for each in said_last if not isinstance(each, Heartbeat)]
-        asked = [f"asked      {_asked(event)}" for event in moment.asked]
-        told = [each for each in moment.sent if not is_step(each) and not isinstance(each, Heartbeat)]
-        sent = [f"plant      {_sent(each)}" for each in told]
+        final = (*moment.last_words, *moment.unkept)
+        last = [f"last words {_last(each)}" for each in final if not isinstance(each, Heartbeat)]
+        requests = [f"asked      {_asked(event)}" for event in moment.asked]
+        messages = [each for each in moment.sent if not is_step(each) and not isinstance(each, Heartbeat)]
+        sent = [f"plant      {_sent(each)}" for each in messages]
         said = [
             f"{client or 'stranger':<10} {each.topic} {each.payload.decode(errors='replace')[:200]}"
             for client, each in moment.published
@@ -86,7 +86,7 @@ class Trace:
             if each.sender and not isinstance(each.message, Heartbeat)
         ]
         done = [f"{board:<10} carries out {_fields(goal)}" for board, goal in moment.executed]
-        return [*last, *asked, *sent, *others, *said, *done]
+        return [*last, *requests, *sent, *others, *said, *done]
 
 
 @cache
@@ -124,6 +124,6 @@ def _sent(message: Any) -> str:
 
 
 def _fields(message: Any) -> str:
-    said = ((each.name, getattr(message, each.name)) for each in fields(message))
-    shown = [f"{name}={getattr(value, 'value', value)}" for name, value in said if value not in (None, ())]
+    values = ((each.name, getattr(message, each.name)) for each in fields(message))
+    shown = [f"{name}={getattr(value, 'value', value)}" for name, value in values if value not in (None, ())]
     return " ".join([type(message).__name__, *shown])

@@ -394,15 +394,15 @@ class World:
             else:
                 self.at(at, call, message)
 
-    def _to_bridge(self, said: FromPlant) -> None:
+    def _to_bridge(self, message: FromPlant) -> None:
         if self.bridge is None:
             return
-        if isinstance(said.message, Heartbeat):
-            self.epoch_at_bridge = max(self.epoch_at_bridge, said.message.epoch)
-            if said.message.epoch == self.plant.epoch:
+        if isinstance(message.message, Heartbeat):
+            self.epoch_at_bridge = max(self.epoch_at_bridge, message.message.epoch)
+            if message.message.epoch == self.plant.epoch:
                 self.beat_reached_bridge_at = self.now
-        heard = said if said.at == self.now else replace(said, at=self.now)
-        self.broker.clients[BRIDGE].inbox.append(heard)
+        delivered = message if message.at == self.now else replace(message, at=self.now)
+        self.broker.clients[BRIDGE].inbox.append(delivered)
 
     def _to_plant(self, report: Report) -> None:
         self.plant_process.post(report if report.at == self.now else report.again(self.now))

@@ -55,7 +55,9 @@ def kept(db: Database, since_s: float, until_s: float) -> KeptFigures:
                 Work(cell=cell, order=text, state=state, accepted_s=0.0 + at, started_s=begin, ended_s=end)
                 for cell, text, state, at, begin, end in works
             ],
-            runs=[Run(since_s=0.0 + since, seen_s=0.0 + seen, ended=bool(end)) for since, seen, end in runs],
+            runs=[
+                Run(since_s=0.0 + since, seen_s=0.0 + end_s, ended=bool(end)) for since, end_s, end in runs
+            ],
             downs=[Downtime(cell=cell, since_s=0.0 + since, until_s=until) for cell, since, until in downs],
             shortest={
                 (cell, text): Shortest(times=times, seconds=best) for cell, text, times, best in shortest

@@ -94,8 +94,8 @@ class Desk:
 
     def _follow(self, change: TaskChanged) -> None:
         followers = self._by_id.setdefault(change.task, []) if change.task else []
-        asked = self._asked.get(change.request or "")
-        if asked is not None and asked not in followers:
-            followers.append(asked)
+        request = self._asked.get(change.request or "")
+        if request is not None and request not in followers:
+            followers.append(request)
         for handle in followers:
             handle.follow(change)

@@ -33,8 +33,8 @@ class Drawing:
         """The drawing of any tree of py_trees, as one of your own; or of its rows."""
         rows = tree_view.rows(tree, 0.0) if isinstance(tree, Behaviour) else tree
         say = words(language).say
-        said = [{**row, **{key: say(row[key] or "") for key in TOLD}} for row in rows]
-        return cls(svg(picture(said)), outline(said, statuses=True))
+        translated = [{**row, **{key: say(row[key] or "") for key in TOLD}} for row in rows]
+        return cls(svg(picture(translated)), outline(translated, statuses=True))
 
     @classmethod
     def of_words(cls, *lines: str) -> Drawing:
@@ -45,10 +45,10 @@ class Drawing:
     def of_scene(cls, scene: Scene) -> Drawing:
         """The drawing of where devices truly are, from above, and below it what is true of each."""
         lines = [f"{name}: {true}" if true else name for name, true in scene.facts.items()]
-        told, floor = _lines(lines), as_svg(scene)
+        text, floor = _lines(lines), as_svg(scene)
         top = HEIGHT if floor else 0
-        size = f'width="{max(told.width, WIDTH):g}" height="{told.height + top:g}"'
-        below = f'<g transform="translate(0 {top})">{svg(told)}</g>'
+        size = f'width="{max(text.width, WIDTH):g}" height="{text.height + top:g}"'
+        below = f'<g transform="translate(0 {top})">{svg(text)}</g>'
         drawn = f'<svg xmlns="http://www.w3.org/2000/svg" {size}>{PAPER}{floor}{below}</svg>'
         return cls(drawn, "\n".join(lines))
 
@@ -111,11 +111,15 @@ class Table(list[Happening]):
         return [heads, *([f"{row.at:.2f} s", row.cell, self._what(row), row.sentence] for row in self)]
 
     def _what(self, row: Happening) -> str:
-        said = words(self._language)
+        language = words(self._language)
         if row.kind in ("step", "fault"):
             return texts(self._language, "notebook")[row.kind if row.kind == "step" else f"fault_{row.what}"]
-        what = said(f"links.{row.what}") if row.kind == "robot" else said.of(f"{row.kind}_state", row.what)
-        return said(f"events.{row.kind}", subject=row.subject, what=what)
+        what = (
+            language(f"links.{row.what}")
+            if row.kind == "robot"
+            else language.of(f"{row.kind}_state", row.what)
+        )
+        return language(f"events.{row.kind}", subject=row.subject, what=what)
 
 
 def _lines(lines: Sequence[str]) -> Picture:

@@ -23,8 +23,8 @@ def from_board(board: str) -> Lost:
 
 def to_board(board: str) -> Lost:
     """True for commands and beats to a board."""
-    heard = from_board(board)
-    return lambda each: each.topic.startswith(f"{board}/") and not heard(each)
+    is_report = from_board(board)
+    return lambda each: each.topic.startswith(f"{board}/") and not is_report(each)
 
 
 def nth(topic: str, number: int, words: bytes = b"") -> Lost:
@@ -121,10 +121,10 @@ def hand(rig: Rig, board: str, *, tells_all: bool, slow_s: float = 0.15) -> Carr
         if effector[-1][1] is not body.effector:
             effector.append((rig.now, body.effector))
         settled = [on for at, on in effector if at <= rig.now - slow_s] or [effector[0][1]]
-        told = {"efector": int(settled[-1])} if tells_all else {}
+        fields = {"efector": int(settled[-1])} if tells_all else {}
         if rig.now < looked_at[-1] + slow_s:
-            return {key: value for key, value in {**row, **told}.items() if key != "pieza"}
+            return {key: value for key, value in {**row, **fields}.items() if key != "pieza"}
         looked_at[:] = [rig.now]
-        return {**row, **told, "pieza": int(bool(body.tell().piece))}
+        return {**row, **fields, "pieza": int(bool(body.tell().piece))}
 
     return altered(f"{board}/sensores", change)

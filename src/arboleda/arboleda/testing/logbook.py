@@ -40,11 +40,11 @@ class Logbook:
 
     def hear(self, line: str) -> None:
         """Take in a line of the timeline: of these, those of faults."""
-        _, word, said = line.split(maxsplit=2)
+        _, word, text = line.split(maxsplit=2)
         if word.lower() == FAULT and self._watched is not None:
-            what = OVER if said.startswith(OVER) else BEGINS
-            told = said.removeprefix(OVER).strip()
-            self.rows.append(Happening(self._watched.seconds, "", FAULT, "", what, told))
+            what = OVER if text.startswith(OVER) else BEGINS
+            fault = text.removeprefix(OVER).strip()
+            self.rows.append(Happening(self._watched.seconds, "", FAULT, "", what, fault))
 
     def _start(self, plant: Plant) -> None:
         """Begin with a plant that has just begun; one that died and began anew knows nothing of before."""

@@ -92,8 +92,8 @@ def robot(world: World, name: str) -> RobotLook:
     return look(facts=dict(body.true_facts), believed_facts=believed)
 
 
-def _text(said: object) -> str | None:
-    return None if said is None else str(said)
+def _text(value: object) -> str | None:
+    return None if value is None else str(value)
 
 
 def _shown(arm: Robot, q: Joints) -> Joints:

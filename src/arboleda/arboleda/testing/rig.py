@@ -114,5 +114,5 @@ class Rig(World):
                 self.answers.append(message)
         for client, delivery in self.moment.delivered:
             if client in self.boards and not delivery.topic.endswith("/latido"):
-                said = Publication(topic=delivery.topic, payload=delivery.payload)
-                self.to_boards.append((delivery.at, said))
+                publication = Publication(topic=delivery.topic, payload=delivery.payload)
+                self.to_boards.append((delivery.at, publication))

@@ -84,9 +84,9 @@ class Sim:
         them as an operator types them: `operate("unload", "sis_a 7")`.
         """
         word = Verb(known("a verb", verb, [each.value for each in Verb]))
-        told = tuple(arguments.items())
-        of, told = (scope, told) if told else from_text(word, scope)
-        return self._do(lambda: self._desk.operate(word, of, by_hand=by_hand, arguments=told))
+        values = tuple(arguments.items())
+        of, values = (scope, values) if values else from_text(word, scope)
+        return self._do(lambda: self._desk.operate(word, of, by_hand=by_hand, arguments=values))
 
     def answers(self, device: str, verb: str, *answers: Value) -> None:
         """Have a device answer the next questions of this verb so, one after the other; then as before.

@@ -93,14 +93,14 @@ class World(Sim):
         return Drawing.of_scene(plan.scene(self._watched))
 
     def _repr_html_(self) -> str:
-        said = words(self._language)
+        language = words(self._language)
         heads = [f"<p><b>{escape(self.world.model.name)}</b>, {self.now:.2f} s</p>"]
         for cell in self.snapshot()["cells"]:
             name, why = (
                 cell["name"],
                 cell["held_by"] or cell["waiting_for"] or cell["not_ready"] or cell["step"],
             )
-            state = ": ".join([said.cell(cell["state"]), *([said.say(why)] if why else [])])
+            state = ": ".join([language.cell(cell["state"]), *([language.say(why)] if why else [])])
             heads.append(f"<p><b>{escape(name)}</b>: {escape(state)}</p>")
             heads.append(f"<div>{self.tree(name).svg}</div><div>{self.twin(name).svg}</div>")
         return "".join(heads)

@@ -99,7 +99,7 @@ class CellDevices:
         held = self._zones.held_by(name) & devices
         quiet = frozenset(filter(self._may_change_hands, held))
         if quiet:
-            waiting = tuple(other for other, asked in self._zones.waiting if asked & quiet)
+            waiting = tuple(other for other, zones in self._zones.waiting if zones & quiet)
             granted += self._zones.give_back(quiet) + waiting  # who still waits names another holder now
             self._dispatcher.memory.vacate(quiet)
         self._dispatcher.wake(granted)
@@ -118,13 +118,13 @@ class CellDevices:
         """The first of the devices that another cell holds, or asked for before this one; that cell, and True
         where it holds the device.
         """
-        name, asked = self._cell.name, dict(self._zones.waiting)
+        name, requests = self._cell.name, dict(self._zones.waiting)
         for device in sorted(devices):
             holder = self._zones.holder(device)
             if holder not in (None, name):
                 return device, holder, True
-            ahead = self._zones.ahead_of(name) if name in asked else ()
-            if earlier := [other for other in ahead if device in asked[other]]:
+            ahead = self._zones.ahead_of(name) if name in requests else ()
+            if earlier := [other for other in ahead if device in requests[other]]:
                 return device, earlier[0], False
         return None
 

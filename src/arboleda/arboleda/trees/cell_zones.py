@@ -78,8 +78,8 @@ class CellZones:
         if not held:
             taken = self._zones.request(robot, zones)
         elif robot not in self._cell.workspaces and not zones <= held:
-            heard = not any(map(self._zones.is_quarantined, held))
-            taken = heard and self._zones.request(robot, zones, moves_over=True)
+            trusted = not any(map(self._zones.is_quarantined, held))
+            taken = trusted and self._zones.request(robot, zones, moves_over=True)
         else:
             taken = self._zones.regain(robot, zones) if inside else zones <= held
         if taken:
@@ -196,14 +196,14 @@ class CellZones:
 
         A holder that waits itself, for another arm of its cell, may wait for this one.
         """
-        asked = dict(self._zones.waiting)
-        zones = asked.get(robot)
+        requests = dict(self._zones.waiting)
+        zones = requests.get(robot)
         if zones is None or any(self._zones.is_quarantined(zone) for zone in zones):
             return False
         holders = self.awaited(robot, zones).values()
         cells_of = self._dispatcher.model.cells_of
         cells = [cell for holder in holders for cell in cells_of.get(holder, ())]
-        waits = any(user in asked for cell in cells for user in (cell.name, *cell.zone_users))
+        waits = any(user in requests for cell in cells for user in (cell.name, *cell.zone_users))
         return not waits and all(map(self._at_work, (*holders, *self._zones.ahead_of(robot))))
 
     def is_quarantined(self, zone: str) -> bool:

@@ -73,24 +73,24 @@ def joined(*words: str) -> str:
     return blake2b("\n".join(words).encode(), digest_size=16).hexdigest()
 
 
-def of_cell(cell: Cell, recipe: str, seen: Seen, *, by_code: bool = False) -> str:
+def of_cell(cell: Cell, recipe: str, known: Seen, *, by_code: bool = False) -> str:
     """The hash of what the tasks of a recipe go by: its source, the devices of its cell, where they go.
 
     `by_code` as it was made once, when the code of every function counted.
     """
     found = next((each for each in cell.recipes if each.name == recipe), None)
-    spelling = Spelling(seen, by_code=by_code, source="" if found is None else found.source)
+    spelling = Spelling(known, by_code=by_code, source="" if found is None else found.source)
     spelling.add(cell)
     spelling.add(None if found is None else found.build)
     return spelling.hash
 
 
-def of_tree(root: Behaviour, seen: Seen, *, by_code: bool = False, source: str = "") -> str:
+def of_tree(root: Behaviour, known: Seen, *, by_code: bool = False, source: str = "") -> str:
     """The hash of a tree that nobody has ticked yet: its nodes, with what they were made of.
 
     What was `seen` in its cell is only named. `source` is that of its recipe.
     """
-    spelling = Spelling(dict(seen), by_code=by_code, source=source)
+    spelling = Spelling(dict(known), by_code=by_code, source=source)
     for node in nodes_of(root):
         spelling.words += (type(node).__qualname__, node.name, str(len(node.children)))
         for key, value in vars(node).items():
@@ -103,9 +103,9 @@ def of_tree(root: Behaviour, seen: Seen, *, by_code: bool = False, source: str =
 class Spelling:
     """Words of values, one after the other; with `source` they say what names of functions mean."""
 
-    def __init__(self, seen: Seen, *, by_code: bool, source: str) -> None:
+    def __init__(self, known: Seen, *, by_code: bool, source: str) -> None:
         self.words = [source] if source and not by_code else []
-        self._seen = seen
+        self._seen = known
         self._by_code = by_code
         self._has_source = bool(source)
 

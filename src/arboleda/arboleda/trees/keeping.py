@@ -169,9 +169,9 @@ class Keeping:
 
     def _grown(self, order: Order, planned: Planned, envelope: Sequence[str]) -> Behaviour:
         """The tree of an order; what it was made of is noted."""
-        of_cell, seen, source = self._of_cell(order.recipe)
+        of_cell, known, source = self._of_cell(order.recipe)
         tree = self._build(order, self._context)
-        of_tree = fingerprint.of_tree(tree, seen, source=source)
+        of_tree = fingerprint.of_tree(tree, known, source=source)
         made = fingerprint.BY_SOURCE + fingerprint.joined(of_cell, order.text, of_tree)
         self._begun = Begun(made=made, planned=planned, envelope=envelope)
         return tree
@@ -180,10 +180,10 @@ class Keeping:
         """The hash of the cell for a recipe, what was met in it, and the recipe's source; made once."""
         if recipe not in self._cells:
             cell = self._context.cell
-            seen: fingerprint.Seen = {}
+            known: fingerprint.Seen = {}
             sources = (each.source for each in cell.recipes if each.name == recipe)
-            made = fingerprint.of_cell(cell, recipe, seen)
-            self._cells[recipe] = made, seen, next(sources, "")
+            made = fingerprint.of_cell(cell, recipe, known)
+            self._cells[recipe] = made, known, next(sources, "")
         return self._cells[recipe]
 
     def _is_alike(self, order: Order, tree: Behaviour, made: str) -> bool:
@@ -193,7 +193,7 @@ class Keeping:
         """
         if made.startswith(fingerprint.BY_SOURCE):
             return made == self._begun.made
-        seen: fingerprint.Seen = {}
-        of_cell = fingerprint.of_cell(self._context.cell, order.recipe, seen, by_code=True)
-        of_tree = fingerprint.of_tree(tree, seen, by_code=True)
+        known: fingerprint.Seen = {}
+        of_cell = fingerprint.of_cell(self._context.cell, order.recipe, known, by_code=True)
+        of_tree = fingerprint.of_tree(tree, known, by_code=True)
         return made == fingerprint.joined(of_cell, order.text, of_tree)

@@ -35,14 +35,14 @@ class CellNeeds:
         return None if sentence is None else Failure(reason=Reason.PRECONDITION, sentence=sentence)
 
     def _unmet(self, need: Need) -> Sentence | None:
-        told = self._dispatcher.beliefs[need.other].fact(need.fact)
+        reported = self._dispatcher.beliefs[need.other].fact(need.fact)
         robot, fact, other, value = need.device, need.fact, need.other, shown(need.value)
         if not self._dispatcher.beliefs[other].online:
             return SILENT(robot=robot, fact=fact, other=other, value=value)
-        if told is None:
+        if reported is None:
             return UNSAID(robot=robot, fact=fact, other=other, value=value)
-        if told != need.value:
-            return NEEDS(robot=robot, fact=fact, other=other, value=value, told=shown(told))
+        if reported != need.value:
+            return NEEDS(robot=robot, fact=fact, other=other, value=value, told=shown(reported))
         if self._is_changing(need):
             return CHANGING(robot=robot, fact=fact, other=other, value=value)
         return None

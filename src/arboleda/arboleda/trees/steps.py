@@ -418,9 +418,9 @@ def _attempt(context: Context, robot: str, pose: Pose, number: int, *, needed: b
     missed = Failure(reason=Reason.NOT_GRIPPED, sentence=NOT_GRIPPED(arm=robot, pose=pose.said))
     final = number == retry.times
     wait_s = context.timing.piece_wait_s
-    seen = Piece(PIECE_GRIPPED(), context, robot, wait_s, missed, needed=needed, final=final)
+    piece = Piece(PIECE_GRIPPED(), context, robot, wait_s, missed, needed=needed, final=final)
     again = _again(context, robot) if number else []
-    return sequence(TRY(number=number + 1), *again, effector(context, robot, on=True), seen)
+    return sequence(TRY(number=number + 1), *again, effector(context, robot, on=True), piece)
 
 
 def _again(context: Context, robot: str) -> list[Behaviour]:

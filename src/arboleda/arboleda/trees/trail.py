@@ -154,17 +154,17 @@ class Trail(NamedTuple):
         """It as it was kept; ValueError for what this version did not write."""
         try:
             begun, now = json.loads(text)
-            said = dict(zip(cls._fields[1:], now, strict=True))
-            failure, stranded = said["failure"], said["stranded"]
-            said |= {
-                "nodes": {int(number): each for number, each in said["nodes"].items()},
-                "known": {name: _known(*each) for name, each in said["known"].items()},
+            fields = dict(zip(cls._fields[1:], now, strict=True))
+            failure, stranded = fields["failure"], fields["stranded"]
+            fields |= {
+                "nodes": {int(number): each for number, each in fields["nodes"].items()},
+                "known": {name: _known(*each) for name, each in fields["known"].items()},
                 "failure": None if failure is None else read_failure(*failure),
                 "stranded": None if stranded is None else retold(*stranded),
-                "answers": [TaskAnswer(**each) for each in said["answers"]],
-                "unchecked": [Check(each) for each in said["unchecked"]],
+                "answers": [TaskAnswer(**each) for each in fields["answers"]],
+                "unchecked": [Check(each) for each in fields["unchecked"]],
             }
-            return cls(begun=Begun.read(*begun), **said)
+            return cls(begun=Begun.read(*begun), **fields)
         except (AttributeError, KeyError, TypeError) as error:
             raise ValueError(f"what was kept of a task is damaged ({error})") from error
 
@@ -233,12 +233,12 @@ def read_failure(reason: str, english: str, data: Any) -> Failure:
     return Failure(reason=Reason(reason), sentence=retold(english, data))
 
 
-def _plain(said: Failure | Sentence | TaskAnswer) -> Any:
-    if isinstance(said, TaskAnswer):
-        return vars(said)
-    if isinstance(said, Failure):
-        return failure_kept(said)
-    return [str(said), said.data()]
+def _plain(value: Failure | Sentence | TaskAnswer) -> Any:
+    if isinstance(value, TaskAnswer):
+        return vars(value)
+    if isinstance(value, Failure):
+        return failure_kept(value)
+    return [str(value), value.data()]
 
 
 # Nothing that is kept contains itself, so nobody need look for that.
@@ -248,9 +248,9 @@ ENCODE = json.JSONEncoder(check_circular=False, separators=(",", ":"), default=_
 def _known(
     boot: int | None, receipt: Sequence[int] | None, more: int, bridge: int | None = None
 ) -> Knowledge:
-    told = None if receipt is None else Receipt(*receipt)
-    return Knowledge(boot=boot, receipt=told, more=more, bridge=bridge)
+    last = None if receipt is None else Receipt(*receipt)
+    return Knowledge(boot=boot, receipt=last, more=more, bridge=bridge)
 
 
-def _position(said: Any) -> Position:
-    return tuple(said) if isinstance(said, list) else int(said)
+def _position(value: Any) -> Position:
+    return tuple(value) if isinstance(value, list) else int(value)

@@ -171,17 +171,17 @@ class WalkBack:
 
     def _echo(self, belief: Belief, task: str | None) -> Echo | None:
         """The one command that a device has taken beside the known ones, where it is the next step's."""
-        known, now, said = self.trail.known[belief.robot.name], belief.receipt, belief.tokens
-        if now is None or said is None or said.accepted is None or len(self.begun) != 1:
+        known, now, tokens = self.trail.known[belief.robot.name], belief.receipt, belief.tokens
+        if now is None or tokens is None or tokens.accepted is None or len(self.begun) != 1:
             return None
         if not self._is_numbered(belief) or belief.boot_id != known.boot:
             return None
         if known.explains(now) or not known.explains(now, others=1):
             return None
-        token = StepToken.read(said.accepted)
+        token = StepToken.read(tokens.accepted)
         if token is None or token.task != task or token.step >= len(self._nodes):
             return None
-        if now.done == now.accepted and said.done != said.accepted:
+        if now.done == now.accepted and tokens.done != tokens.accepted:
             return None
         step = self._nodes[token.step]
         return self._echo_of(step, token, belief.robot.name, now) if isinstance(step, Act) else None
@@ -278,8 +278,8 @@ def fate(last: Mapping[str, Any], belief: Belief) -> Fate:
     if last["done"]:
         return Fate.DONE
     now, before = belief.receipt, last["before"]
-    as_told = all(belief.fact(name) == value for name, value in last["sets"])
-    if last["effect"] == SWITCH and last["sets"] and as_told:
+    facts_hold = all(belief.fact(name) == value for name, value in last["sets"])
+    if last["effect"] == SWITCH and last["sets"] and facts_hold:
         return Fate.DONE
     if (None if now is None else now[:2]) == (None if before is None else tuple(before[:2])):
         return Fate.UNTAKEN
@@ -288,8 +288,8 @@ def fate(last: Mapping[str, Any], belief: Belief) -> Fate:
     number = None if last["number"] is None else tuple(last["number"])
     ended = now.done is not None and (now.epoch, now.done) == (number or (now.epoch, now.accepted))
     if last["effect"] == MOTION and (last["goal"] is not None or last["sets"]):
-        return Fate.DONE if ended and as_told and _at(last["goal"], belief) else Fate.CUT_SHORT
-    return Fate.DONE if ended and as_told and number is not None else Fate.UNPROVEN
+        return Fate.DONE if ended and facts_hold and _at(last["goal"], belief) else Fate.CUT_SHORT
+    return Fate.DONE if ended and facts_hold and number is not None else Fate.UNPROVEN
 
 
 def _at(goal: Any, belief: Belief) -> bool:

@@ -190,8 +190,8 @@ def _look(api: APIRouter, side: PlantApi) -> None:
     @api.get("/tasks", response_model=list[Task])
     async def tasks() -> JSONResponse:
         """The open tasks and those that ended last, in the order of their acceptance."""
-        seen = await run_in_threadpool(side.latest)
-        return PlainJson([explained(task) for task in seen["tasks"]])
+        latest = await run_in_threadpool(side.latest)
+        return PlainJson([explained(task) for task in latest["tasks"]])
 
     wanted: dict[str, Any] = {"responses": WRONG, "openapi_extra": described(TaskFilter)}
 

@@ -262,11 +262,11 @@ class SecondLoop:
 
         self._second.start()
         life = asyncio.create_task(self._run_there(scope, receive_noted, send_others))
-        asked_to_end = asyncio.create_task(ending.wait())
-        await asyncio.wait({life, asked_to_end}, return_when=asyncio.FIRST_COMPLETED)
+        end_request = asyncio.create_task(ending.wait())
+        await asyncio.wait({life, end_request}, return_when=asyncio.FIRST_COMPLETED)
         await asyncio.wait({life}, timeout=END_S)
         await self._second.end()
-        asked_to_end.cancel()
+        end_request.cancel()
         if life.done() and not life.cancelled():
             life.result()
         await send(OVER)

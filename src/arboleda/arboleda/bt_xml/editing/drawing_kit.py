@@ -77,10 +77,10 @@ class DrawingKit(Kit):
             raise refusal(f"using({', '.join(names)})", why)
         return work(*parts)
 
-    def choose(self, asked: Step, ways: Mapping[Value, Step | Sequence[Step]]) -> Step:
-        real = asked.real if isinstance(asked, DrawnStep) else None
-        super().choose(real or asked, dict.fromkeys(ways, ()))  # which refuses wrong choices
-        name = f"choose of {asked.name}"
+    def choose(self, question_step: Step, ways: Mapping[Value, Step | Sequence[Step]]) -> Step:
+        real = question_step.real if isinstance(question_step, DrawnStep) else None
+        super().choose(real or question_step, dict.fromkeys(ways, ()))  # which refuses wrong choices
+        name = f"choose of {question_step.name}"
         if len(ways) > MOST_WAYS:
             raise refusal(name, f"it has {len(ways)} ways, and a Switch at most {MOST_WAYS}")
         branches = [_one(way) for way in ways.values()]
@@ -88,8 +88,8 @@ class DrawingKit(Kit):
             return branches[0]
         cases = {f"case_{n}": text_of(name, "a case", value) for n, value in enumerate(ways, 1)}
         others = DrawnStep("AlwaysFailure")
-        assert isinstance(asked, DrawnStep)
-        return DrawnStep(f"Switch{len(ways)}", cases, [*branches, others], name=name, chosen_by=asked)
+        assert isinstance(question_step, DrawnStep)
+        return DrawnStep(f"Switch{len(ways)}", cases, [*branches, others], name=name, chosen_by=question_step)
 
     def fail(self, sentence: str) -> Step:
         return DrawnStep("AlwaysFailure", {"_description": text_of("fail", "_description", str(sentence))})

@@ -26,8 +26,8 @@ class WasEntryUpdated(Leaf):
         self.seen = 0
 
     def work(self) -> Result:
-        seen, self.seen = self.seen, self.scope.watch(self.variable)
-        return FAILURE if self.seen in (seen, 0) else SUCCESS
+        before, self.seen = self.seen, self.scope.watch(self.variable)
+        return FAILURE if self.seen in (before, 0) else SUCCESS
 
 
 class WhenUpdated(Decorator):
@@ -47,8 +47,8 @@ class WhenUpdated(Decorator):
 
     def work(self) -> Result:
         if not self.is_under_way:
-            seen, self.seen = self.seen, self.scope.watch(self.variable)
-            if self.seen in (seen, 0):
+            before, self.seen = self.seen, self.scope.watch(self.variable)
+            if self.seen in (before, 0):
                 return self.otherwise
         result = self.child.execute()
         self.is_under_way = result is RUNNING

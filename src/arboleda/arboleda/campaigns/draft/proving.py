@@ -57,7 +57,7 @@ class ProgressOnly(StringIO):
     """Reader of a proof's lines who passes on how far it is; the answer goes into files."""
 
     def write(self, line: str) -> int:
-        told = json.loads(line).get("progress")
-        if told is not None:
-            say(doing=told["phase"], done=told["done"], total=told["of"])
+        progress = json.loads(line).get("progress")
+        if progress is not None:
+            say(doing=progress["phase"], done=progress["done"], total=progress["of"])
         return len(line)

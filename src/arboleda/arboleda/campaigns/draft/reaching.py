@@ -56,17 +56,17 @@ def reached(device: Robot, at_work: Sequence[Mapping[str, Any]], seconds: float)
     for other in at_work:
         if there["address"] and {key: other[key] for key in there} == there:
             raise ArboledaError(AT_WORK.format(name=device.name, device=other["device"]))
-    heard = Heard()
-    made = _opened(use, device, heard)
+    reports = Heard()
+    made = _opened(use, device, reports)
     try:
-        return _listened(device, heard, clock.seconds() + seconds, seconds)
+        return _listened(device, reports, clock.seconds() + seconds, seconds)
     finally:
         ending = threading.Thread(target=_end, args=(made,), daemon=True)
         ending.start()
         ending.join(ENDS_S)
 
 
-def _opened(use: DriverUse, device: Robot, heard: Heard) -> SimpleQueue[Driver]:
+def _opened(use: DriverUse, device: Robot, reports: Heard) -> SimpleQueue[Driver]:
     """Open the driver in a thread of its own, which may hang; what it says, or its error, is in `heard`."""
     made: SimpleQueue[Driver] = SimpleQueue()
 
@@ -75,20 +75,20 @@ def _opened(use: DriverUse, device: Robot, heard: Heard) -> SimpleQueue[Driver]:
             driver = use.make()
             made.put(driver)
             begin = driver.listen if isinstance(driver, Listens) else driver.start
-            begin((device,), lambda report: heard.put(report), clock.seconds)
+            begin((device,), lambda report: reports.put(report), clock.seconds)
         except (Exception, SystemExit) as error:  # noqa: BLE001 - it is user code: whatever it raises is told
-            heard.put(error)
+            reports.put(error)
 
     threading.Thread(target=run, daemon=True).start()
     return made
 
 
-def _listened(device: Robot, heard: Heard, until: float, seconds: float) -> Row:
+def _listened(device: Robot, reports: Heard, until: float, seconds: float) -> Row:
     """The first report in which the device says how it is; else the last reason why there is none."""
     why = SILENT.format(seconds=seconds)
     with suppress(Empty):
         while True:
-            what = heard.get(timeout=max(0.0, until - clock.seconds()))
+            what = reports.get(timeout=max(0.0, until - clock.seconds()))
             if isinstance(what, BaseException):
                 return _unreached(error_text(what))
             wrong = objection(what, {device.name: device})

@@ -120,21 +120,21 @@ def catalog() -> Mapping[str, Exercise]:
 
 
 def _read(folder: Traversable) -> Exercise:
-    said = yaml.safe_load(folder.joinpath(SAID).read_text("utf-8"))
-    judge = said["judge"]
+    sheet = yaml.safe_load(folder.joinpath(SAID).read_text("utf-8"))
+    judge = sheet["judge"]
     return Exercise(
         name=folder.name,
-        number=said["number"],
-        title=said["title"],
-        task=said["task"],
-        hints=tuple(said["hints"]),
+        number=sheet["number"],
+        title=sheet["title"],
+        task=sheet["task"],
+        hints=tuple(sheet["hints"]),
         start={each.name: each.read_bytes() for each in folder.joinpath(START).iterdir() if each.is_file()},
-        yours=tuple(said["yours"]),
-        keeps=tuple(said.get("keeps", ())),
+        yours=tuple(sheet["yours"]),
+        keeps=tuple(sheet.get("keeps", ())),
         declares=judge.get("declares", {}),
         trials=tuple(_trial(each) for each in judge.get("trials", ())),
         proving=tuple(_proving(each) for each in judge.get("prove", ())),
-        record=_trial({"says": {}, **said["record"]}) if "record" in said else None,
+        record=_trial({"says": {}, **sheet["record"]}) if "record" in sheet else None,
     )
 
 

@@ -152,11 +152,13 @@ class Judge:
 
     def _declared(self, model: PlantModel, recipe: str, ends: Mapping[str, Any]) -> None:
         self.verdict.asked += 1
-        said = [dict(each.end_of({})) for cell in model.cells for each in cell.recipes if each.name == recipe]
+        declared_ends = [
+            dict(each.end_of({})) for cell in model.cells for each in cell.recipes if each.name == recipe
+        ]
         for what, value in ends.items():
-            if not any(each.get(what) == value for each in said):
-                seen = f"ends_with of {recipe} does not say that {what} is {shown(value)}"
-                self._find(Finding(says=DECLARES, seen=seen))
+            if not any(each.get(what) == value for each in declared_ends):
+                evidence = f"ends_with of {recipe} does not say that {what} is {shown(value)}"
+                self._find(Finding(says=DECLARES, seen=evidence))
 
     def _try(self, model: PlantModel, trial: Trial) -> None:
         self.verdict.asked += 1
@@ -172,8 +174,8 @@ class Judge:
             recorded = self._run(model, self._exercise.record, self._exercise.record.faults)
             course.objections += _others(recorded, course)
         if course.objections:
-            seen = plain("; ".join(course.objections[:MOST]), LONGEST)
-            finding = Finding(says=trial.says, seen=seen, story=tuple(course.story[-LAST:]))
+            evidence = plain("; ".join(course.objections[:MOST]), LONGEST)
+            finding = Finding(says=trial.says, seen=evidence, story=tuple(course.story[-LAST:]))
             self._find(finding, lambda make: run_trial(model, trial, faults, make_plant=make))
 
     def _run(self, model: PlantModel, trial: Trial, faults: Sequence[TimedFault]) -> Course:
@@ -205,16 +207,16 @@ class Judge:
         tally = _tally(proof, proving.runs, lambda: self._count(1))
         for breach in breaches_of(tally)[:1]:
             name, sentence = breach.run.outcome.broken or ("", "")
-            seen = f"{breach.scenario.name}: {breach.befell}, {breach.instant.name}: {name}: {sentence}"
+            evidence = f"{breach.scenario.name}: {breach.befell}, {breach.instant.name}: {name}: {sentence}"
             finding = Finding(
-                says=HOLDS, seen=plain(seen, LONGEST), story=tuple(_short(breach.result.lines)[-LAST:])
+                says=HOLDS, seen=plain(evidence, LONGEST), story=tuple(_short(breach.result.lines)[-LAST:])
             )
             at = next(each for each in calm if each.scenario == breach.scenario)
             self._find(finding, partial(_recorded, boards, at, breach.fault))
         wrong = next(_wrong_ends(tally, proving), None)
         if wrong is not None and not self.verdict.findings:
-            case, seen = wrong
-            finding = Finding(says=HOLDS, seen=plain(seen, LONGEST))
+            case, evidence = wrong
+            finding = Finding(says=HOLDS, seen=plain(evidence, LONGEST))
             self._find(finding, partial(_recorded, boards, calm[case.row], case.fault))
 
 

@@ -39,9 +39,9 @@ def judged(work: Work, *, story: Path | None = None) -> Verdict:
         "files": {name: each.decode("utf-8", "surrogateescape") for name, each in work.files.items()},
         "story": None if story is None else str(story.absolute()),
     }
-    said = _said(json.dumps(request).encode())
+    output = _said(json.dumps(request).encode())
     try:
-        found = json.loads(said.splitlines()[-1])
+        found = json.loads(output.splitlines()[-1])
         findings = [
             Finding(says=each["says"], seen=each["seen"], story=tuple(each["story"]))
             for each in found["findings"]

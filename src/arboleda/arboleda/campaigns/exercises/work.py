@@ -60,10 +60,10 @@ def packed(work: Work, file: Path) -> None:
     """Write a work as a zip, whole or not at all; ConfigError where it cannot be handed in."""
     if work.trouble:
         raise ConfigError((f"{work.where}: {work.trouble}",))
-    said = yaml.safe_dump({"exercise": work.exercise, "student": work.student}, allow_unicode=True)
+    sheet = yaml.safe_dump({"exercise": work.exercise, "student": work.student}, allow_unicode=True)
     half = file.with_name(f"{file.name}.half")
     with zipfile.ZipFile(half, "w", zipfile.ZIP_DEFLATED) as pack:
-        for name, content in {SHEET: said.encode(), **work.files}.items():
+        for name, content in {SHEET: sheet.encode(), **work.files}.items():
             pack.writestr(f"{work.exercise}/{name}", content)
     half.replace(file)
 
@@ -107,8 +107,8 @@ def _zipped(file: Path) -> Iterator[Work]:
 
 def _read(where: Path, held: Mapping[str, bytes]) -> Work:
     try:
-        said: Any = yaml.safe_load(held.get(SHEET, b"").decode("utf-8"))
-        name, student = str(said["exercise"]), str(said.get("student") or "")
+        sheet: Any = yaml.safe_load(held.get(SHEET, b"").decode("utf-8"))
+        name, student = str(sheet["exercise"]), str(sheet.get("student") or "")
     except (yaml.YAMLError, UnicodeDecodeError, KeyError, TypeError, AttributeError, RecursionError):
         return Work(where=where, trouble=f"{SHEET} does not say which exercise it is: exercise: NAME")
     student = plain(student, LONGEST)

@@ -95,10 +95,10 @@ class Search:
         model = checked(self.file, apart=False).model
         clues = clues_of(self.found, model)
         every = [*self._likely(model, clues)]
-        seen: set[object] = set()
+        known: set[object] = set()
         for each in sorted(every, key=lambda candidate: -candidate.score):
-            if each.cuts not in seen:
-                seen.add(each.cuts)
+            if each.cuts not in known:
+                known.add(each.cuts)
                 yield each
 
     def _likely(self, model: PlantModel | None, clues: Clues) -> Iterator[Candidate]:

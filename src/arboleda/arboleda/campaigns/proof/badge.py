@@ -24,15 +24,15 @@ def badge(tally: ProofTally, total: int, *, broken: bool) -> str:
     """The content of the file; never more than a sample where not all was run."""
     runs = tally.runs
     share = "all" if runs == total else f"{runs:,} of"
-    said = "broken" if broken else f"held: {share} {total:,}" if runs else "nothing was run"
+    text = "broken" if broken else f"held: {share} {total:,}" if runs else "nothing was run"
     color = BROKEN if broken else HELD if 0 < runs == total else SAMPLE
     middle = round(len(LABEL) * LETTER + 2 * MARGIN)
-    rest = round(len(said) * LETTER + 2 * MARGIN)
+    rest = round(len(text) * LETTER + 2 * MARGIN)
     return SVG.format(
         width=middle + rest,
         height=HEIGHT,
         label=escape(LABEL),
-        said=escape(said),
+        said=escape(text),
         middle=middle,
         rest=rest,
         color=color,

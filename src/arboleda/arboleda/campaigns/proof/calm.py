@@ -77,8 +77,8 @@ class _Marks:
             begins = True
             self._ask(entry)
         ended = [each for each in truth.books.ended if each.entry.cell == self._stage.cell.name]
-        told = any(isinstance(each, TaskChanged | OperatorAnswer) for each in moment.sent)
-        if begins or ended or told or moment.asked or moment.executed or commits:
+        reports = any(isinstance(each, TaskChanged | OperatorAnswer) for each in moment.sent)
+        if begins or ended or reports or moment.asked or moment.executed or commits:
             what = f"the end of {entry_name(ended[0].entry)}" if ended and not begins else self._what
             at = self._stage.watched.seconds
             self.rows.append(Mark(at=at, what=what, begins=begins, commits=commits))
@@ -108,7 +108,7 @@ def calm_run(model: PlantModel, scenario: Scenario) -> Calm:
     finding = next((f"{each.step}: {each.sentence}" for each in stage.watched.findings.found), "")
     rows = [Mark(at=ASKED_AT_S, what="the request", begins=True, commits=0), *marks.rows]
     given = dict(scenario.answers)
-    asked = {
+    questions = {
         who: tuple(each for each in words if each != given.get(who, words[0]))
         for who, words in marks.asked.items()
     }
@@ -121,7 +121,7 @@ def calm_run(model: PlantModel, scenario: Scenario) -> Calm:
         commands=tuple(stage.commands),
         state=stage.state,
         lasts_s=rows[-1].at - ASKED_AT_S,
-        asked=tuple(asked.items()),
+        asked=tuple(questions.items()),
     )
     return replace(calm, again=stage.again(calm.lasts_s)) if run.outcome.end is End.DONE else calm
 

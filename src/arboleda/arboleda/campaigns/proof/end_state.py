@@ -46,13 +46,13 @@ def facts_by_report(watched: JudgedWorld, cell: Cell) -> dict[str, object]:
     }
 
 
-def differences(expected: EndState, found: EndState, heard: EndState) -> tuple[str, ...]:
+def differences(expected: EndState, found: EndState, reported: EndState) -> tuple[str, ...]:
     """Sentences on what is expected and is not so, and on whether the plant has heard of it.
 
     What nobody could know is passed over.
     """
     return tuple(
-        f"{what} is {_shown(found[what])}, not {_shown(value)}{_known(what, found[what], heard)}"
+        f"{what} is {_shown(found[what])}, not {_shown(value)}{_known(what, found[what], reported)}"
         for what, value in expected.items()
         if what in found and not _alike(value, found[what])
     )
@@ -68,11 +68,11 @@ def _parts(watched: JudgedWorld, cell: Cell) -> Iterator[tuple[str, object]]:
             yield f"parts put down in {cell.name}", ended.places
 
 
-def _known(what: str, value: object, heard: EndState) -> str:
+def _known(what: str, value: object, reported: EndState) -> str:
     """Words for whether the plant had been told of a fact as it is; none for what is no fact."""
-    if what not in heard:
+    if what not in reported:
         return ""
-    return KNOWN if _alike(value, heard[what]) else UNKNOWN
+    return KNOWN if _alike(value, reported[what]) else UNKNOWN
 
 
 def _alike(one: object, other: object) -> bool:

@@ -132,10 +132,10 @@ class _Forks:
 
 def _awaited(read: int, child: int) -> Run:
     with os.fdopen(read, "rb") as pipe:
-        said = pipe.read()
+        data = pipe.read()
     os.waitpid(child, 0)
-    if not said:
+    if not data:
         raise ArboledaError("a run was killed; fewer --jobs need less memory")
-    run: Any = pickle.loads(said)
+    run: Any = pickle.loads(data)
     assert isinstance(run, Run)
     return run

@@ -54,9 +54,9 @@ def _fault_case(suite: Xml.Element, key: RecipeKey, kind: str, row: Row, breache
         )
         failure.text = _clean("\n".join(map(_told, breaches)))
     ends = ", ".join(f"{count} {end}" for end, count in row.ends.most_common())
-    said = f"{row.runs} runs: {ends}; {row.alone} ready again without a person"
+    summary = f"{row.runs} runs: {ends}; {row.alone} ready again without a person"
     unnoticed = f"; {row.unnoticed} done, and nobody notices that not all is so" if row.unnoticed else ""
-    Xml.SubElement(case, "system-out").text = said + unnoticed
+    Xml.SubElement(case, "system-out").text = summary + unnoticed
 
 
 def _told(breach: Breach) -> str:

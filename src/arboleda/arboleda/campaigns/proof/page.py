@@ -96,11 +96,11 @@ def _parts(proof: ProofPage) -> Iterator[str]:
 def _amount(proof: ProofPage) -> Iterator[str]:
     done, share = proof.tally.runs, f"{proof.tally.runs / max(proof.total, 1):.0%}"
     is_whole = done == proof.total and done > 0
-    said = _each("all" if is_whole else "some", done=f"{done:,}", total=f"{proof.total:,}", share=share)
+    amount = _each("all" if is_whole else "some", done=f"{done:,}", total=f"{proof.total:,}", share=share)
     kinds = proof.tally.proof.kinds
     only = f" {_each('kinds', kinds=', '.join(kinds))}" if kinds else ""
     alone = _each("alone", share=f"{proof.tally.alone:.1%}") if done else ""
-    yield f"<p>{said}{only} {alone}</p>"
+    yield f"<p>{amount}{only} {alone}</p>"
     if proof.pairs is not None:
         counts = {"done": f"{proof.pairs.runs:,}", "total": f"{proof.pairs.pairs.total:,}"}
         yield f"<p>{_each('pairs', **counts)}</p>"

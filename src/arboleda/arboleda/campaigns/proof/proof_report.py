@@ -148,8 +148,8 @@ def verdict(tally: ProofTally, total: int, *, bad_calm: int) -> Text:
         return Text(f"nothing was run{over}", "bold yellow")
     if runs < total:
         share = f"{runs / total:.0%}"
-        said = f"HELD in {of} ({share}): a sample, beginnings of steps first; nothing is proven"
-        return Text(said, "bold yellow")
+        sentence = f"HELD in {of} ({share}): a sample, beginnings of steps first; nothing is proven"
+        return Text(sentence, "bold yellow")
     kinds = f" of {counted(len(tally.proof.kinds), 'kind')}" if tally.proof.kinds else ""
     held = f"HELD: all {counted(total, 'run')}, every single fault{kinds} at every instant"
     return Text(held, "bold green")

@@ -43,8 +43,8 @@ def _digest(words: Iterator[str]) -> str:
     return digest.hexdigest()
 
 
-def _visible(files: PlantFiles, seen: PlantModel, recipe: str) -> Iterator[str]:
-    cells = {cell.name for cell in seen.cells}
+def _visible(files: PlantFiles, visible: PlantModel, recipe: str) -> Iterator[str]:
+    cells = {cell.name for cell in visible.cells}
     for name, content in sorted(files.contents.items()):
         yield name
         if name == files.plant:
@@ -59,7 +59,9 @@ def _of_cells(content: bytes, cells: set[str]) -> str:
     declared = data.get("cells") if isinstance(data, Mapping) else None
     if not isinstance(declared, Mapping):
         return content.decode("latin-1")
-    return repr({**data, "cells": {name: said for name, said in declared.items() if name in cells}})
+    return repr(
+        {**data, "cells": {name: declaration for name, declaration in declared.items() if name in cells}}
+    )
 
 
 def _of_python(content: bytes, recipe: str) -> str:

@@ -34,8 +34,8 @@ class Scenario:
     @property
     def name(self) -> str:
         """The task as it is typed, with the answers."""
-        said = ", ".join(f"{who} says {shown(word)}" for who, word in self.answers)
-        return f"{self.task} ({said})" if said else self.task
+        answers = ", ".join(f"{who} says {shown(word)}" for who, word in self.answers)
+        return f"{self.task} ({answers})" if answers else self.task
 
     def with_answer(self, who: str, word: Value) -> Scenario:
         """The same task where somebody answers otherwise."""

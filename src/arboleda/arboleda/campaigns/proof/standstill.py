@@ -43,9 +43,9 @@ class Standstill:
 
     def _look(self) -> None:
         plant = self._world.plant
-        seen = (plant, plant.version)
-        if seen != self._seen or self._watched.truth.changed or self._has_news:
-            self._seen, self._since = seen, self._world.now
+        state = (plant, plant.version)
+        if state != self._seen or self._watched.truth.changed or self._has_news:
+            self._seen, self._since = state, self._world.now
 
     @property
     def _has_news(self) -> bool:

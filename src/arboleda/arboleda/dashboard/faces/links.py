@@ -147,13 +147,13 @@ def value_words(words: Words, value: Any) -> str:
 
 def command(moment: Moment, robot: Row) -> str:
     """The last command to a robot with its state and, if it was a question, its answer."""
-    told = robot["command"]
-    if told is None:
+    row = robot["command"]
+    if row is None:
         return ""
     words = moment.words
-    state = words.of("command_state", told["state"])
+    state = words.of("command_state", row["state"])
     answer = "" if robot["answer"] is None else f" ({value_words(words, robot['answer'])})"
-    return f"{words.say(told['what'])}: {state}{answer}, {words('links.ago', time=seconds(told['age_s']))}"
+    return f"{words.say(row['what'])}: {state}{answer}, {words('links.ago', time=seconds(row['age_s']))}"
 
 
 def _refused(moment: Moment, robot: Row) -> str:

@@ -27,9 +27,9 @@ def _restart(restart: dict[str, Any], words: Words) -> dict[str, Any] | None:
     if not restart["can"]:
         return None
     by = restart["by"]
-    said = words("versions.restarts", by=by) if by else words("versions.restart_how")
+    hint = words("versions.restarts", by=by) if by else words("versions.restart_how")
     return {
-        "said": said,
+        "said": hint,
         "wanted": bool(by),
         "button": words(f"versions.{'no_restart' if by else 'restart'}"),
     }

@@ -189,9 +189,9 @@ class Handshake:
         if sequence.busy is not None and sequence.write is not None:
             self._busy = yes(sequence.busy, read[sequence.busy])
             self._was_busy = self._was_busy and self._busy
-            asked = count(sequence.write, read[sequence.write], floats=floats)
-            is_taken = (self._busy and not self._was_busy) or asked == echo.get("failed")
-            echo["accepted"] = asked if is_taken else ended
+            written = count(sequence.write, read[sequence.write], floats=floats)
+            is_taken = (self._busy and not self._was_busy) or written == echo.get("failed")
+            echo["accepted"] = written if is_taken else ended
         return echo
 
     def _shown(self, echo: Mapping[str, int], read: Read) -> set[int]:

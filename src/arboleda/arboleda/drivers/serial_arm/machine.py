@@ -174,8 +174,8 @@ class Machine:
         self._out.append(Write(data=read(self._maker, id, address, length)))
 
     def _hear(self, now: float, packet: Packet) -> None:
-        asked = self._question
-        if asked is None or packet.id != asked.id or len(packet.data) != asked.length:
+        question = self._question
+        if question is None or packet.id != question.id or len(packet.data) != question.length:
             return  # the echo of a question, or an answer that came too late
         self._question, self._heard[packet.id] = None, now
         if self._modes is None:

@@ -38,12 +38,12 @@ class Groot2Part(ViewerProcess):
     def start(self) -> None:
         """Start the process; StartError if a named port is taken, or a library is missing."""
         process = self.spawn(self._options.host, list(self._cells), self._options.port)
-        said = self.answer(process, START_S)
-        if "ports" not in said:
+        answer = self.answer(process, START_S)
+        if "ports" not in answer:
             self.stop()
-            why = said.get("error", "its process did not start; is pyzmq installed, and msgpack?")
+            why = answer.get("error", "its process did not start; is pyzmq installed, and msgpack?")
             raise StartError(f"Groot2: {why}")
-        self.notes = self._notes(said["ports"])
+        self.notes = self._notes(answer["ports"])
         self.begin(process)
 
     def _notes(self, ports: Mapping[str, int]) -> list[str]:

@@ -110,18 +110,18 @@ class LinuxBoards:
         return {"ARBOLEDA_MQTT_USER": login.user, "ARBOLEDA_MQTT_PASSWORD": login.password} if login else {}
 
     def _listen(self, robot: Arm, process: subprocess.Popen[str]) -> None:
-        said = ""
+        last_line = ""
         assert process.stderr is not None
         for line in process.stderr:
-            said = line.strip()
-            LOG.debug("%s says: %s", robot.mqtt, plain(said))
+            last_line = line.strip()
+            LOG.debug("%s says: %s", robot.mqtt, plain(last_line))
         process.stderr.close()
         with self._lock:
             stopping = self._stopping
         if not stopping:
             self._crash(
                 "linux boards",
-                StartError(f"the board of {robot.name} has ended; it said last: {quoted(said, 200)}"),
+                StartError(f"the board of {robot.name} has ended; it said last: {quoted(last_line, 200)}"),
             )
 
 

@@ -58,11 +58,13 @@ class OpcUaViewPart(ViewerProcess):
             self._ended[task.cell or ""] += 1
 
     def tell(self, process: subprocess.Popen[bytes]) -> None:
-        said = self.answer(process, START_S)
-        if "port" in said:
+        answer = self.answer(process, START_S)
+        if "port" in answer:
             super().tell(process)
         else:
-            self.lost(said.get("error", "its process did not start; is asyncua installed, arboleda[opcua]?"))
+            self.lost(
+                answer.get("error", "its process did not start; is asyncua installed, arboleda[opcua]?")
+            )
 
     def lines(self, at_us: int, snapshot: Snapshot) -> Iterator[bytes]:
         """A line for each cell with news: the values of its variables, by their paths."""

@@ -516,10 +516,10 @@ class Orchestrator:
         if isinstance(message, Durable):
             self._answer(message, amnesia)
         if isinstance(message, OperatorAnswer):
-            said = self._unkept(message, amnesia)
-            _log(said)
+            refusal = self._unkept(message, amnesia)
+            _log(refusal)
             if self._port is not None:
-                self._port.send(said)
+                self._port.send(refusal)
 
     def _unkept(self, answer: OperatorAnswer, why: Exception) -> OperatorAnswer:
         """The answer to an act that is not kept: only a stop has left all the same."""
@@ -611,9 +611,9 @@ class Orchestrator:
         if unkept is None:
             waiting.set_result(answer)
             return
-        said = self._unkept(answer, unkept) if isinstance(answer, OperatorAnswer) else answer
-        if isinstance(said, StopLeft):
-            waiting.set_result(said)
+        reply = self._unkept(answer, unkept) if isinstance(answer, OperatorAnswer) else answer
+        if isinstance(reply, StopLeft):
+            waiting.set_result(reply)
         else:
             waiting.set_exception(unkept)
 

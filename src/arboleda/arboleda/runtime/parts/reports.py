@@ -166,12 +166,12 @@ class ReportsPart:
                 text=True,
                 umask=0o077,
             )
-        said = _said(run)
+        output = _said(run)
         if run.returncode != 0:
             made.unlink(missing_ok=True)
-            return plain(said.strip().rpartition("\n")[2].removeprefix("arboleda: "), 300)
+            return plain(output.strip().rpartition("\n")[2].removeprefix("arboleda: "), 300)
         made.replace(self._file(task))
-        LOG.info("why %s failed: %s (%s)", task, plain(said.partition("\n")[0], 200), self._file(task))
+        LOG.info("why %s failed: %s (%s)", task, plain(output.partition("\n")[0], 200), self._file(task))
         return None
 
 

@@ -58,8 +58,8 @@ class Urgency:
 
     def _is_news(self, report: Report) -> bool:
         """True if a report says more than the robot's position, and something else than the one before."""
-        said = _words(report)
-        if said == _NOTHING or said == self._said.get(report.robot):
+        words = _words(report)
+        if words == _NOTHING or words == self._said.get(report.robot):
             return False
-        self._said[report.robot] = said
+        self._said[report.robot] = words
         return True

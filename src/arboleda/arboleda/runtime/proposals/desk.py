@@ -185,13 +185,13 @@ class ProposalDesk(ProposalsApi):
         """The proposal of these changes to what is at work; DraftRefused where there can be none."""
         draft = draft_of(base.files)
         files = {name: self._folder.tree_name(draft, name) for name in wanted["trees"]}
-        asked = ProposedChanges(
+        request = ProposedChanges(
             trees={files[name]: text for name, text in wanted["trees"].items()},
             values=[(tuple(place), value) for place, value in wanted["values"]],
             removed=[tuple(place) for place in wanted["removed"]],
         )
         try:
-            draft = proposed(draft, asked)
+            draft = proposed(draft, request)
         except EditRefused as error:
             raise DraftRefused(error.sentence) from error
         recipes = tuple(sorted(set(wanted["recipes"])))

@@ -60,14 +60,14 @@ def leader_row(led: LeaderInfo | None) -> dict[str, Any]:
     return {"leader": led.url, "host": led.host, "process": led.process, "epoch": led.epoch}
 
 
-def of_standby(said: Mapping[str, Any]) -> LeaderInfo:
+def of_standby(answer: Mapping[str, Any]) -> LeaderInfo:
     """The leader as a process that stands by names it."""
     return LeaderInfo(
-        plant=plain(str(said.get("plant", ""))),
-        host=plain(str(said.get("host", ""))),
-        process=_number(said.get("process")),
-        url=_origin(str(said.get("leader", ""))),
-        epoch=_number(said.get("epoch")),
+        plant=plain(str(answer.get("plant", ""))),
+        host=plain(str(answer.get("host", ""))),
+        process=_number(answer.get("process")),
+        url=_origin(str(answer.get("leader", ""))),
+        epoch=_number(answer.get("epoch")),
     )
 
 
@@ -81,8 +81,8 @@ def _is_here(host: str) -> bool:
     return host == plain(socket.gethostname())
 
 
-def _number(said: object) -> int:
-    return said if isinstance(said, int) else 0
+def _number(value: object) -> int:
+    return value if isinstance(value, int) else 0
 
 
 def _origin(url: str) -> str:

@@ -113,23 +113,23 @@ class _StandbyNotices:
             self._said = sentence
 
 
-def _until_free(others: Leadership, plant: str, own: Callable[[], str], told: _StandbyNotices) -> None:
+def _until_free(others: Leadership, plant: str, own: Callable[[], str], notices: _StandbyNotices) -> None:
     """Look for a leader again and again until there is none; a database that is away says nothing of it.
     `own()` is the address of the page of this process."""
-    said_at = 0.0
+    notice_at = 0.0
     while True:
         try:
             leader = others.leader()
             if others.is_free():
                 others.wait_no_more()
-                told.waits("leads the plant from now on", OK)
+                notices.waits("leads the plant from now on", OK)
                 return
-            if time.monotonic() - said_at > SAY_S:
+            if time.monotonic() - notice_at > SAY_S:
                 others.wait_here(own())
-                said_at = time.monotonic()
-            told.waits(_led_by(leader), OK, of_leader(plant, leader))
+                notice_at = time.monotonic()
+            notices.waits(_led_by(leader), OK, of_leader(plant, leader))
         except ArboledaError as error:
-            told.waits(f"waits for the database: {error}", WARN)
+            notices.waits(f"waits for the database: {error}", WARN)
         time.sleep(LOOK_S)
         heed()
 

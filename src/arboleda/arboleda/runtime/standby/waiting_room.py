@@ -60,11 +60,11 @@ look();
 
 def waiting_page(plant: str, sentence: str, led: LeaderInfo | None) -> str:
     """The page of a process that waits to lead a plant, in every language."""
-    said, stands_by = escape(sentence), _each("stands_by")
+    escaped, stands_by = escape(sentence), _each("stands_by")
     return PAGE.format(
         plant=escape(plant),
-        sentence=said,
-        stands_by="\n".join(_of(each, "p", text.format(sentence=said)) for each, text in stands_by),
+        sentence=escaped,
+        stands_by="\n".join(_of(each, "p", text.format(sentence=escaped)) for each, text in stands_by),
         way=_way(led),
         lost="\n".join(_of(each, "span", text) for each, text in _each("lost")),
     )
@@ -139,12 +139,12 @@ class WaitingRoom:
         """The answer to a request: a redirect to the leader for one of the API; 503 for any other one, or if
         the leader has no other address: it may be repeated."""
         sentence = f"this process stands by and does nothing itself: it {self._sentence}"
-        said = self._known | {"sentence": sentence}
+        answer = self._known | {"sentence": sentence}
         way = self._led.way if self._led else ""
         # Behind a name that both hosts share the proxy asks the other one, where this one is unavailable.
         if not way or way in (self._options.public_url, self.url) or not request.url.path.startswith(API):
-            return JSONResponse(said, status_code=503, headers={"retry-after": SOON_S})
-        return JSONResponse(said, status_code=307, headers={"location": f"{way}{_target(request)}"})
+            return JSONResponse(answer, status_code=503, headers={"retry-after": SOON_S})
+        return JSONResponse(answer, status_code=307, headers={"location": f"{way}{_target(request)}"})
 
 
 def _target(request: Request) -> str:

@@ -112,9 +112,9 @@ def _another(type: FactType, now: Value, dice: Dice) -> Value:
 
 
 def _lie(world: World, fault: Fault, value: Value) -> End:
-    def lie(said: Fields) -> Fields:
-        told = said.get("datos") or {}
-        return {**said, "datos": {**told, fault.word: value}} if fault.word in told else said
+    def lie(fields: Fields) -> Fields:
+        data = fields.get("datos") or {}
+        return {**fields, "datos": {**data, fault.word: value}} if fault.word in data else fields
 
     return deceive(world, fault.target, ("facts",), lie)
 

@@ -46,11 +46,11 @@ def deceive(world: World, board: str, whats: Sequence[str], change: Change) -> E
 def retold(payload: bytes, change: Change) -> bytes:
     """The message with other fields; a payload that is no JSON object stays as it is."""
     try:
-        said = json.loads(payload)
+        fields = json.loads(payload)
     except ValueError:
         return payload
-    return written(change(said)) if isinstance(said, dict) else payload
+    return written(change(fields)) if isinstance(fields, dict) else payload
 
 
-def written(said: Fields) -> bytes:
-    return json.dumps(said, separators=(",", ":")).encode()
+def written(fields: Fields) -> bytes:
+    return json.dumps(fields, separators=(",", ":")).encode()

@@ -80,8 +80,8 @@ def foreign_report(world: World, fault: Fault) -> None:
     robot = targets.robot_of(world.model, fault.target)
     own = {f"q{number + 1}_mov": 0.0 for number in range(len(robot.joints))}
     foreign = {**FOREIGN_TO_ARMS, **FOREIGN_TO_MOBILES}[fault.word]
-    said = {**(own or {"nodo": 6}), "estado": 0, "seq": NEWEST, "arranque": 1, fault.word: foreign}
-    payload = json.dumps(said, separators=(",", ":")).encode()
+    fields = {**(own or {"nodo": 6}), "estado": 0, "seq": NEWEST, "arranque": 1, fault.word: foreign}
+    payload = json.dumps(fields, separators=(",", ":")).encode()
     world.publish(Publication(topic=topic(fault.target, Channel.TELEMETRY), payload=payload))
 
 

@@ -217,12 +217,12 @@ def bad_task(world: World, fault: Fault) -> None:
 def _beyond(cell: Cell, dice: Dice, *, is_high: bool) -> str:
     """The text of a task with a number that lies beyond its limits."""
     recipe = dice.pick(_counting(cell))
-    said: list[str] = []
+    words: list[str] = []
     for each in recipe.parameters:
         limits = each.limits(cell)
         end = None if limits is None else limits.upper + 1 if is_high else limits.lower - 1
-        said.append(dice.pick(list(each.words(cell))) if end is None else shown(end))
-    return " ".join([cell.name, recipe.name, *said])
+        words.append(dice.pick(list(each.words(cell))) if end is None else shown(end))
+    return " ".join([cell.name, recipe.name, *words])
 
 
 @kind(targets=_storing, weight=0.0)

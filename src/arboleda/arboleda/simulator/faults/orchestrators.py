@@ -85,8 +85,8 @@ def foreign_command(world: World, fault: Fault) -> None:
     if not world.is_on(BRIDGE) or world.now >= world.beat_reached_bridge_at + PLANT_GONE_S:
         return
     order = ORDERS[fault.word](world.model, fault.target, "", Dice(fault.seed, "foreign"))
-    said = FromPlant(at=world.now, message=order, sender="/stranger")
-    world.broker.clients[BRIDGE].inbox.append(said)
+    message = FromPlant(at=world.now, message=order, sender="/stranger")
+    world.broker.clients[BRIDGE].inbox.append(message)
 
 
 def _move(model: PlantModel, robot: str, id: str, dice: Dice) -> Command:

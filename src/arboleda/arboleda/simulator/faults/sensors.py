@@ -16,7 +16,7 @@ SEES = {"a piece": 1, "nothing": 0}
 @kind(targets=targets.feelers, words=words(*SEES), seconds=(0.5, 15.0))
 def piece_false(world: World, fault: Fault) -> End:
     """A piece sensor sees the same whatever is there."""
-    return deceive(world, fault.target, ("piece",), lambda said: {**said, "pieza": SEES[fault.word]})
+    return deceive(world, fault.target, ("piece",), lambda fields: {**fields, "pieza": SEES[fault.word]})
 
 
 @kind(targets=targets.feelers, seconds=(0.5, 15.0), amount=(0.1, 0.9))

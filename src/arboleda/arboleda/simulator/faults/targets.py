@@ -57,8 +57,8 @@ def goers(model: PlantModel) -> tuple[str, ...]:
 
 def feelers(model: PlantModel) -> tuple[str, ...]:
     """The boards of arms that report what their piece sensor sees."""
-    heard = (robot for robot in _reached(model) if robot.evidence is Evidence.IDS)
-    return tuple(robot.mqtt for robot in heard if _is_hand(robot))
+    candidates = (robot for robot in _reached(model) if robot.evidence is Evidence.IDS)
+    return tuple(robot.mqtt for robot in candidates if _is_hand(robot))
 
 
 def clients(model: PlantModel) -> tuple[str, ...]:

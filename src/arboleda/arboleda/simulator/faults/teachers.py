@@ -52,8 +52,8 @@ class Teacher:
         if self._teaching is not None:
             self._go_on(None)
         elif times < MOST_TIMES:
-            verb, told = (Verb.CANCEL, ()) if times == 1 else (Verb.TEACH, (("teacher", self.name),))
-            self.world.request_verb(verb, self.cell, arguments=told)
+            verb, arguments = (Verb.CANCEL, ()) if times == 1 else (Verb.TEACH, (("teacher", self.name),))
+            self.world.request_verb(verb, self.cell, arguments=arguments)
             self.world.at(self.world.now + ASKS_AGAIN_S, self._ask, times + 1)
 
     @property

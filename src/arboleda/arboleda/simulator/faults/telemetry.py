@@ -49,10 +49,10 @@ def stuck_bit(world: World, fault: Fault) -> End:
     """A field of a board's telemetry keeps the value it has."""
     kept: Fields = {}
 
-    def stick(said: Fields) -> Fields:
-        if fault.word in said:
-            kept.setdefault(fault.word, said[fault.word])
-        return {**said, **kept}
+    def stick(fields: Fields) -> Fields:
+        if fault.word in fields:
+            kept.setdefault(fault.word, fields[fault.word])
+        return {**fields, **kept}
 
     return deceive(world, fault.target, _about(fault.word), stick)
 
@@ -71,7 +71,7 @@ def lying_telemetry(world: World, fault: Fault) -> End:
         world,
         fault.target,
         _about(word),
-        lambda said: {**said, word: lie(said)} if tells & said.keys() else said,
+        lambda fields: {**fields, word: lie(fields)} if tells & fields.keys() else fields,
     )
 
 
@@ -104,12 +104,12 @@ def _off(world: World, fault: Fault) -> Lie:
     joint, tolerance = _keys(arm)[fault.word]
     sign = Dice(fault.seed, "sign").pick((-1.0, 1.0))
     off = sign * fault.amount * to_wire(joint, tolerance)
-    return lambda said: round(said[fault.word] + off, 4)
+    return lambda fields: round(fields[fault.word] + off, 4)
 
 
 def _another(fault: Fault, now: int, choices: Sequence[int]) -> Lie:
     other = Dice(fault.seed, "other").pick([each for each in choices if each != now])
-    return lambda said: other
+    return lambda fields: other
 
 
 def _other_code(world: World, fault: Fault) -> Lie:
@@ -121,26 +121,26 @@ def _other_code(world: World, fault: Fault) -> Lie:
 def _other_node(world: World, fault: Fault) -> Lie:
     robot = targets.robot_of(world.model, fault.target)
     assert robot.floor_grid
-    told = world.boards[fault.target].body.tell().node
-    return _another(fault, -1 if told is None else told, range(robot.floor_grid.size))
+    node = world.boards[fault.target].body.tell().node
+    return _another(fault, -1 if node is None else node, range(robot.floor_grid.size))
 
 
 def _other_number(world: World, fault: Fault) -> Lie:
     """A number near that of the last command, or that number itself: `hecho` then says done too early."""
     own = fault.word == "ack"
     beside = Dice(fault.seed, "beside").pick((-1, 1, 1000) if own else (-1, 0, 0, 1, 1000))
-    return lambda said: max(0, said.get("ack", 0) + beside)
+    return lambda fields: max(0, fields.get("ack", 0) + beside)
 
 
 def _other_boot(world: World, fault: Fault) -> Lie:
     beside = 1000 + Dice(fault.seed, "boot").below(1000)
-    return lambda said: said["arranque"] + beside
+    return lambda fields: fields["arranque"] + beside
 
 
 def _old_seq(world: World, fault: Fault) -> Lie:
     """The same number several times over."""
     times = 2 + Dice(fault.seed, "seq").below(30)
-    return lambda said: said["seq"] - said["seq"] % times
+    return lambda fields: fields["seq"] - fields["seq"] % times
 
 
 LIES: dict[str, Callable[[World, Fault], Lie]] = {
@@ -148,18 +148,18 @@ LIES: dict[str, Callable[[World, Fault], Lie]] = {
     "nodo": _other_node,
     "hecho": _other_number,
     "ack": _other_number,
-    "ref": lambda world, fault: lambda said: 0,
+    "ref": lambda world, fault: lambda fields: 0,
     "arranque": _other_boot,
     "seq": _old_seq,
-    "efector": lambda world, fault: lambda said: 1 - said["efector"],
+    "efector": lambda world, fault: lambda fields: 1 - fields["efector"],
 }
 
 GARBLES: dict[str, Callable[[bytes], bytes]] = {
     "half": lambda raw: raw[: len(raw) // 2],
-    "no number": lambda raw: retold(raw, lambda said: {**said, next(iter(said)): math.nan}),
-    "a truth value": lambda raw: retold(raw, lambda said: {**said, "estado": True}),
-    "too long": lambda raw: retold(raw, lambda said: {**said, "x": "x" * 600}),
-    "incomplete": lambda raw: retold(raw, lambda said: {key: said[key] for key in list(said)[1:]}),
+    "no number": lambda raw: retold(raw, lambda fields: {**fields, next(iter(fields)): math.nan}),
+    "a truth value": lambda raw: retold(raw, lambda fields: {**fields, "estado": True}),
+    "too long": lambda raw: retold(raw, lambda fields: {**fields, "x": "x" * 600}),
+    "incomplete": lambda raw: retold(raw, lambda fields: {key: fields[key] for key in list(fields)[1:]}),
 }
 
 KINDS = (stuck_bit, lying_telemetry, garbled_telemetry)

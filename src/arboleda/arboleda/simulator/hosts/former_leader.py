@@ -100,11 +100,11 @@ class FormerLeader:
 
     def _step_bridge(self, events: list[FromPlant]) -> None:
         world, left = self._world, self._left
-        heard, left.client.inbox = left.client.inbox, []
-        for message in left.bridge.step(world.now, [*heard, *events]):
+        inbox, left.client.inbox = left.client.inbox, []
+        for message in left.bridge.step(world.now, [*inbox, *events]):
             if isinstance(message, Report):
                 left.inbox.append(message)
             elif isinstance(message, Publication):
-                said = LateMessage(epoch=self.process.epoch, standing=self.process.standing, message=message)
-                world.moment.former.append(said)
+                late = LateMessage(epoch=self.process.epoch, standing=self.process.standing, message=message)
+                world.moment.former.append(late)
                 world.publish(message, left.client)

@@ -84,17 +84,17 @@ class Hosts:
         world, host = self.world, process.host
         frozen = world.is_stalled(PLANT) and world.is_stalled(BRIDGE)
         if not frozen and not world.plant_process.is_ending and host.reaches:
-            asked_at = host.clock(world.now)
-            world.at(world.now + host.delay_s / 2, lambda _: self._renewed(process, asked_at))
+            sent_at = host.clock(world.now)
+            world.at(world.now + host.delay_s / 2, lambda _: self._renewed(process, sent_at))
 
-    def _renewed(self, process: Process, asked_at: float) -> None:
+    def _renewed(self, process: Process, sent_at: float) -> None:
         """Take in that a lease was renewed; it counts from the time before the statement was sent."""
         if process is not self.leader or not self.world.is_on(PLANT):
             return
         wanted = self.disk.row.renew(process.epoch, self.world.now)
         if wanted is None or not process.host.hears:
             return
-        process.lease.renewed(asked_at)
+        process.lease.renewed(sent_at)
         if wanted and not self._handing:
             self._handing = True
             self._hold_all()
@@ -102,17 +102,17 @@ class Hosts:
     def _look(self, host: Host) -> None:
         if not host.hears:
             return
-        asked_at, seen = host.clock(self.world.now), self.disk.row.last_seen
-        if host.silence.ends_lease(asked_at, seen) or seen[1] is None:
-            self.world.at(self.world.now + host.delay_s, lambda _: self._lead(host, asked_at, seen))
+        looked_at, lease = host.clock(self.world.now), self.disk.row.last_seen
+        if host.silence.ends_lease(looked_at, lease) or lease[1] is None:
+            self.world.at(self.world.now + host.delay_s, lambda _: self._lead(host, looked_at, lease))
 
     # --- a change of leaders ---
 
-    def _lead(self, host: Host, asked_at: float, seen: tuple[int, float | None]) -> None:
+    def _lead(self, host: Host, looked_at: float, lease: tuple[int, float | None]) -> None:
         row, now = self.disk.row, self.world.now
         if host.name not in self._waits or not host.reaches:
             return
-        row.end_lease(seen)
+        row.end_lease(lease)
         proposed = max(0, round(now + host.wall_s))
         if (got := row.lead(proposed, now)) is None or not host.hears:
             return
@@ -120,7 +120,7 @@ class Hosts:
         before, left = self.leader, change_leaders(self.world, epoch)
         if left is not None:
             self.formers.append(FormerLeader(self.world, self.disk, before, left))
-        self.leader = self._new_leader(host, epoch, asked_at)
+        self.leader = self._new_leader(host, epoch, looked_at)
         self.numbers.append((epoch, host.name))
         self._waits.discard(host.name)
         self._handing = False

@@ -41,8 +41,8 @@ class Acts:
             if cell.name not in self.of:
                 self._had[cell.name] = cell.run.task
             of = as_text(request.verb, request.scope, request.arguments)
-            said = f"{request.verb.value} {of}{' --by-hand' if request.by_hand else ''}"
-            self.of.setdefault(cell.name, []).append(said)
+            line = f"{request.verb.value} {of}{' --by-hand' if request.by_hand else ''}"
+            self.of.setdefault(cell.name, []).append(line)
 
     def _works(self, cell: KnownCell) -> bool:
         """True if a cell would start a task, or works on another one than at the first noted act."""

@@ -87,8 +87,8 @@ class KnownBoard:
         if number is None:
             return None
         wanted = b"%d" % number
-        for told, at in reversed(self.published):
-            if parts(told)[1] == wanted:
+        for report, at in reversed(self.published):
+            if parts(report)[1] == wanted:
                 return at
         return None
 
@@ -206,8 +206,8 @@ def _angle(value: float, degrees: float) -> str:
 
 
 def _commands(board: str) -> list[str]:
-    said = (Channel.TELEMETRY, Channel.PRESENCE)
-    return [topic(board, channel) for channel in Channel if channel not in said]
+    reports = (Channel.TELEMETRY, Channel.PRESENCE)
+    return [topic(board, channel) for channel in Channel if channel not in reports]
 
 
 def on_wire(joint: Joint, value: float) -> float:
@@ -240,4 +240,4 @@ def fields(raw: bytes) -> Mapping[str, Any]:
 def _says(raw: bytes, there: dict[str, Any]) -> bool:
     body = fields(raw)
     rows: Iterator[tuple[Any, Any]] = ((body.get(key), value) for key, value in there.items())
-    return all(is_number(said) and abs(said - value) <= EXACT for said, value in rows)
+    return all(is_number(reported) and abs(reported - value) <= EXACT for reported, value in rows)

@@ -52,12 +52,12 @@ class Choices:
     def look(self, world: World) -> None:
         """Take down the promises of all cells before the plant hears the request."""
         self.promises = {}
-        plant, asked = world.plant, world.moment.asked
-        alone = len(asked) == 1 and not world.moment.heard and world.now < plant.next_deadline
-        if not alone or not isinstance(asked[0], TaskRequest):
+        plant, requests = world.plant, world.moment.asked
+        alone = len(requests) == 1 and not world.moment.heard and world.now < plant.next_deadline
+        if not alone or not isinstance(requests[0], TaskRequest):
             return
         try:
-            orders = text.alternatives(asked[0].text, world.offers)
+            orders = text.alternatives(requests[0].text, world.offers)
         except TextError:
             return
         if len(orders) > 1 and orders[0].id not in plant.intake.tasks:
@@ -80,17 +80,17 @@ class Choices:
 
     def _left(self, run: CellRun, past: list[Task], since_step_s: float) -> float | None:
         """The seconds left in past tasks like the running one, from its present step; None if unknown."""
-        seen = self._courses.at_work.get(run.cell.name)
-        if run.task is None or seen is None or seen.recovers:
+        progress = self._courses.at_work.get(run.cell.name)
+        if run.task is None or progress is None or progress.recovers:
             return None
         now = run.context.time.now + (0.0 if run.state in STANDS else since_step_s)
         for alike in _alike(run.task.order, past)[:-1]:
             courses = [task.course for task in alike[-LAST:] if task.course]
-            known = [step for step in seen.steps if any(step in course.begun for course in courses)]
+            known = [step for step in progress.steps if any(step in course.begun for course in courses)]
             if known:
                 step = known[-1]
                 with_it = [course for course in courses if step in course.begun]
-                return median(_rest(course, step, now - seen.steps[step]) for course in with_it)
+                return median(_rest(course, step, now - progress.steps[step]) for course in with_it)
         return None
 
     def _is_hindered(self, run: CellRun, world: World) -> bool:

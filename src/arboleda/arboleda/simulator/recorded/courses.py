@@ -84,28 +84,28 @@ class TaskInProgress:
 
     def _last_beginning(self, step: Behaviour) -> float | None:
         """The time at which a step began last; None if it did not."""
-        seen = self.begun.get(step)
-        if not isinstance(step, TAKES_TIME) or step.began in (-math.inf, seen):
-            return seen
+        known = self.begun.get(step)
+        if not isinstance(step, TAKES_TIME) or step.began in (-math.inf, known):
+            return known
         after_s = step.began - self.began
-        may_be = self._may_be_left(after_s) if seen is None else self._began(step, after_s)
-        return step.began if may_be else seen
+        may_be = self._may_be_left(after_s) if known is None else self._began(step, after_s)
+        return step.began if may_be else known
 
     @property
     def recovers(self) -> bool:
         """True while its recovery runs, as its work has failed."""
         return any(node.name == RECOVERY and node.status is Status.RUNNING for node in self.nodes)
 
-    def differs(self, told: Course | None) -> bool:
+    def differs(self, course: Course | None) -> bool:
         """True if the course that is told of the done task is not the one that was seen."""
-        if told is None or not self.whole:
-            return (told is None) is self.whole
+        if course is None or not self.whole:
+            return (course is None) is self.whole
         named, took = self._named(), self.ended_at - self.began
-        unseen = [after_s for name, after_s in told.begun.items() if name not in named]
-        known = told.begun.keys() <= self._names.keys()
-        if abs(told.seconds - took) > ROUNDING_S or not known or not all(map(self._may_be_left, unseen)):
+        unseen = [after_s for name, after_s in course.begun.items() if name not in named]
+        known = course.begun.keys() <= self._names.keys()
+        if abs(course.seconds - took) > ROUNDING_S or not known or not all(map(self._may_be_left, unseen)):
             return True
-        return not all(self._began(step, told.begun.get(name, took)) for name, step in named.items())
+        return not all(self._began(step, course.begun.get(name, took)) for name, step in named.items())
 
     def _named(self) -> dict[str, Behaviour]:
         """The steps that began, by their names as courses have them."""
@@ -164,15 +164,15 @@ class Courses:
         if born:
             self._at_work.clear()
         for name, run in plant.cells.items():
-            seen = self._at_work.get(name)
-            if seen is not None and seen.nodes is not run.run.nodes:
-                self.ended[seen.task], seen.ended_at = self._at_work.pop(name), run.context.time.now
-                seen = None
-            if seen is None and run.task is not None and run.run.nodes:
-                seen = TaskInProgress(run.task.id, run.run.nodes, run.context.time.now, whole=not born)
-                self._at_work[name] = seen
-            if seen is not None and seen.rested is not run.run.rested:
-                seen.look(run.run.rested, run.context.time.now)
+            progress = self._at_work.get(name)
+            if progress is not None and progress.nodes is not run.run.nodes:
+                self.ended[progress.task], progress.ended_at = self._at_work.pop(name), run.context.time.now
+                progress = None
+            if progress is None and run.task is not None and run.run.nodes:
+                progress = TaskInProgress(run.task.id, run.run.nodes, run.context.time.now, whole=not born)
+                self._at_work[name] = progress
+            if progress is not None and progress.rested is not run.run.rested:
+                progress.look(run.run.rested, run.context.time.now)
 
 
 def _waits(step: Behaviour) -> bool:

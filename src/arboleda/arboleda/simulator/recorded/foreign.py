@@ -38,8 +38,8 @@ class ForeignCommands:
                 self._tell(each)
 
     def _tell(self, passed: BridgeStep) -> None:
-        for told in (each for each in passed.out if isinstance(each, Rejection | ForeignCommand)):
-            first = next((each for each in self._waiting if each[1].robot == told.robot), None)
+        for report in (each for each in passed.out if isinstance(each, Rejection | ForeignCommand)):
+            first = next((each for each in self._waiting if each[1].robot == report.robot), None)
             if first is not None:
                 self._waiting.remove(first)
         self.untold += [command for due, command in self._waiting if due <= passed.now]

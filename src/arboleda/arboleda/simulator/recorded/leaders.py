@@ -79,10 +79,10 @@ class Leaders:
             self._boots[board] = boot
             self._heard.pop(board, None)
         of_boot, beat = self._beats.get(board, (boot, 0))
-        heard = max(self._heard.get(board, 0), beat if of_boot == boot else 0)
-        if goal.epoch < heard:
-            self.old.append(f"{board} was led under number {heard}, and carries out {goal}")
-        self._heard[board] = max(heard, goal.epoch)
+        epoch = max(self._heard.get(board, 0), beat if of_boot == boot else 0)
+        if goal.epoch < epoch:
+            self.old.append(f"{board} was led under number {epoch}, and carries out {goal}")
+        self._heard[board] = max(epoch, goal.epoch)
 
     def _wrote(self, write: Write) -> None:
         if write.epoch != write.leads:
@@ -115,11 +115,11 @@ class Leaders:
                 self.wrong.append(f"the store took task {id} as {state.value}, and knows of it {now}")
 
 
-def may_follow(said: LateMessage) -> bool:
+def may_follow(late: LateMessage) -> bool:
     """True for what may leave a superseded process: a stop, if it cannot find out that it is superseded, and
     the beat without which a stop does not count; what its bridge makes of these, or stops by itself.
     """
-    if isinstance(said.message, Publication):
-        return parse(said.message.topic)[1] in NO_ORDERS
-    is_stop = isinstance(said.message, Stop) and said.message.mode is not StopMode.CLEAR
-    return said.standing is Standing.UNSURE and (is_stop or isinstance(said.message, Heartbeat))
+    if isinstance(late.message, Publication):
+        return parse(late.message.topic)[1] in NO_ORDERS
+    is_stop = isinstance(late.message, Stop) and late.message.mode is not StopMode.CLEAR
+    return late.standing is Standing.UNSURE and (is_stop or isinstance(late.message, Heartbeat))

@@ -181,8 +181,8 @@ def _moved(
     """Note that it is under way or done; `off` is how far beyond its tolerance the robot stands."""
     command, stopped = sent.command, _rests(sent, report)
     if isinstance(command, Switch):
-        told = all(report.fact(name) == value for name, value in sent.sets)
-        proof.done |= told if sent.sets else report.done == command.id
+        holds = all(report.fact(name) == value for name, value in sent.sets)
+        proof.done |= holds if sent.sets else report.done == command.id
         return
     if isinstance(command, Query):
         proof.named |= report.accepted == command.id
@@ -205,8 +205,8 @@ def _moved(
         proof.named |= shown.moving
         # at `joints` state and place come in separate messages, so the truth judges the distance
         goal = shown.position or shown.facts
-        seen = goal if robot.evidence is Evidence.JOINTS and (sent.way or sent.sets) else shown.moving
-        proof.done |= seen and (stopped or report.state is None)
+        has_moved = goal if robot.evidence is Evidence.JOINTS and (sent.way or sent.sets) else shown.moving
+        proof.done |= has_moved and (stopped or report.state is None)
     if (stopped or report.state is None) and not _surely_at(off):
         proof.causes.add(Reason.STOPPED_SHORT)
 
@@ -242,9 +242,9 @@ def _off(sent: SentCommand, robot: Robot, q: tuple[float, ...] | None, node: int
 
 def _off_facts(sent: SentCommand, report: Report, known: KnownRobot) -> float:
     """The distance from a switch's goal: -1 if all facts that it sets are so by their last report, else 1."""
-    said = {name: report.fact(name) for name, _ in sent.sets}
-    told = {name: known.fact(name) if value is None else value for name, value in said.items()}
-    return -1.0 if all(told[name] == value for name, value in sent.sets) else 1.0
+    reported = {name: report.fact(name) for name, _ in sent.sets}
+    latest = {name: known.fact(name) if value is None else value for name, value in reported.items()}
+    return -1.0 if all(latest[name] == value for name, value in sent.sets) else 1.0
 
 
 def _off_path(nodes: tuple[int, ...], node: int) -> float:

@@ -71,10 +71,10 @@ class KnownRobot:
         self.barred = False  # a command was refused because of a stop that it does not tell
         self.unnamed: str | None = None  # the last command that it was sent, until a report names it
 
-    def take_over(self, heard_at: float | None) -> None:
+    def take_over(self, reported_at: float | None) -> None:
         """Take over when it was heard last, before this record began."""
-        self.heard_at = heard_at
-        self.stale_at = math.inf if heard_at is None else heard_at + self._patience_s
+        self.heard_at = reported_at
+        self.stale_at = math.inf if reported_at is None else reported_at + self._patience_s
 
     def as_it_is(self) -> KnownRobot:
         """A copy that later reports do not change."""

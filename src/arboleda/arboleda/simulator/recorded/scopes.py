@@ -37,18 +37,18 @@ class Scopes:
         names = [name] if name in self._cells else self.robots(scope)
         return tuple(dict.fromkeys(cell for each in names for cell in self._cells[each]))
 
-    def parts(self, said: OperatorRequest | OperatorAnswer) -> dict[str, dict[str, int]]:
+    def parts(self, message: OperatorRequest | OperatorAnswer) -> dict[str, dict[str, int]]:
         """The parts that are at places, by cell, as somebody says with `load` or `unload`; for any scope."""
-        told, found = dict(said.arguments), dict[str, dict[str, int]]()
-        robots = set(self.robots(said.scope))
-        for cell in map(self._model.cell, self.cells(said.scope)):
-            places = _named(cell, told)
-            if not places or (said.verb is Verb.UNLOAD and robots.isdisjoint(cell.holders)):
+        arguments, found = dict(message.arguments), dict[str, dict[str, int]]()
+        robots = set(self.robots(message.scope))
+        for cell in map(self._model.cell, self.cells(message.scope)):
+            places = _named(cell, arguments)
+            if not places or (message.verb is Verb.UNLOAD and robots.isdisjoint(cell.holders)):
                 continue
-            full, parts = said.verb is Verb.LOAD, told.get("parts")
+            full, parts = message.verb is Verb.LOAD, arguments.get("parts")
             numbers = {each.target: each.holds if parts is None else int(parts) for each in places}
             found[cell.name] = numbers if full else dict.fromkeys(numbers, 0)
-            if "place" in told:
+            if "place" in arguments:
                 break
         return found
 
@@ -56,11 +56,11 @@ class Scopes:
         return word.strip().lower() in self._robots
 
 
-def _named(cell: Cell, told: Mapping[str, int | str]) -> list[Place]:
+def _named(cell: Cell, arguments: Mapping[str, int | str]) -> list[Place]:
     """The places of a cell that the arguments of a verb name: one, a station, or all."""
-    if "place" in told:
-        return [each for each in cell.counted if each.target == str(told["place"]).lower()]
-    if "station" not in told:
+    if "place" in arguments:
+        return [each for each in cell.counted if each.target == str(arguments["place"]).lower()]
+    if "station" not in arguments:
         return [*cell.counted]
     stations: dict[object, str] = dict(enumerate(cell.station_targets))
-    return [each for each in cell.counted if each.target == stations.get(told["station"])]
+    return [each for each in cell.counted if each.target == stations.get(arguments["station"])]

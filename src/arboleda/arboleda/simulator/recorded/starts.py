@@ -66,9 +66,9 @@ class Starts:
 
     def hear(self, messages: Iterable[object]) -> None:
         """Take in what the plant says, its last words too."""
-        for said in messages:
-            if isinstance(said, TaskChanged) and said.state is not TaskState.REFUSED:
-                self._hear(said)
+        for message in messages:
+            if isinstance(message, TaskChanged) and message.state is not TaskState.REFUSED:
+                self._hear(message)
 
     def gave(self, step: Step) -> None:
         """Note a command that a step of a task gave."""

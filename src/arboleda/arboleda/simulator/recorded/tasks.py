@@ -63,14 +63,14 @@ class Tasks:
 
     def restart(self, kept: Iterable[KeptTask], now: float) -> None:
         """Begin a start of the plant with these tasks; of some of them nobody may have been told."""
-        told = self.open
+        before = self.open
         self.open = {}
         self.running.clear()
         for queue in self.queues.values():
             queue.clear()
         for row in kept:
             if row.id not in self.ended:
-                self._take_back(row, told.get(row.id), now)
+                self._take_back(row, before.get(row.id), now)
 
     def _take_back(self, row: KeptTask, task: KnownTask | None, now: float) -> None:
         if task is None:

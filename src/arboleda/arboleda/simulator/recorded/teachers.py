@@ -24,10 +24,10 @@ class Teachers:
         self.was.clear()
         self._over.clear()
 
-    def look(self, asked: Sequence[Any], sent: Sequence[Any]) -> None:
+    def look(self, requests: Sequence[Any], sent: Sequence[Any]) -> None:
         """Take in a step of the plant."""
         self.was = dict(self.taught)
-        for event in asked:
+        for event in requests:
             if isinstance(event, Jog):
                 self._hear(event)
         for message in sent:

@@ -39,8 +39,8 @@ class Times:
     def runs(self, now: float, *, ended: bool) -> list[Run]:
         """All starts; `ended`: the last one ends now, and was not killed."""
         return [
-            Run(since_s=since, seen_s=seen, ended=ended and number == len(self._ends))
-            for number, (since, seen) in enumerate(zip(self._starts, [*self._ends, now], strict=True))
+            Run(since_s=since, seen_s=end, ended=ended and number == len(self._ends))
+            for number, (since, end) in enumerate(zip(self._starts, [*self._ends, now], strict=True))
         ]
 
     @property

@@ -53,11 +53,11 @@ class Trails:
             booted = [robot for robot in self._devices(cell) if self._has_booted(trail, robot)]
             self.wrong += (f"{cell.name} goes on with its task, and {robot} has booted" for robot in booted)
 
-    def keep(self, said: Iterable[object], cells: Mapping[str, KnownCell], commands: Commands) -> None:
+    def keep(self, messages: Iterable[object], cells: Mapping[str, KnownCell], commands: Commands) -> None:
         """Take in what is kept of tasks in this step, in which somebody holds a cell or gets one going: the
         commands of steps that wait for that may be done.
         """
-        kept = [each for each in said if isinstance(each, Remember) and each.fact is Fact.STEP]
+        kept = [each for each in messages if isinstance(each, Remember) and each.fact is Fact.STEP]
         last = {each.name: each for each in kept}
         at_work = {cell.run.task.id: cell for cell in cells.values() if cell.run.task is not None}
         for each in kept:
@@ -73,13 +73,13 @@ class Trails:
     def _more_commands(self, cell: KnownCell) -> Iterator[str]:
         """Sentences on a device that has booted, of which it is said now that it was told more."""
         trouble = cell.run.trouble
-        said, before = trouble.sentence if trouble else None, self._said.get(cell.name)
-        self._said[cell.name] = said
-        if said is None or before is not None or said.phrase is not MORE:
+        sentence, before = trouble.sentence if trouble else None, self._said.get(cell.name)
+        self._said[cell.name] = sentence
+        if sentence is None or before is not None or sentence.phrase is not MORE:
             return
-        robot = str(said.values["robot"])
+        robot = str(sentence.values["robot"])
         if self._has_booted(self.found[cell.name], robot):
-            yield f"{cell.name} is held as {said}, and {robot} has booted"
+            yield f"{cell.name} is held as {sentence}, and {robot} has booted"
 
     def _has_booted(self, trail: Trail, robot: str) -> bool:
         """True for a device that numbers its commands, and has told of another boot than it had then."""

@@ -44,9 +44,9 @@ class EarlierState:
 
     def look(self, cells: Iterable[KnownCell], tasks: Tasks, world: World) -> None:
         """Take all down before the plant hears the request."""
-        plant, asked = world.plant, world.moment.asked
-        alone = len(asked) == 1 and not world.moment.heard and world.now < plant.next_deadline
-        verbs = [each for each in asked if isinstance(each, OperatorRequest)] if alone else []
+        plant, requests = world.plant, world.moment.asked
+        alone = len(requests) == 1 and not world.moment.heard and world.now < plant.next_deadline
+        verbs = [each for each in requests if isinstance(each, OperatorRequest)] if alone else []
         self.foretold = [(each, plant.refusal(each)) for each in verbs]
         self.tasks = {id: task.state for id, task in tasks.open.items()}
         self.ids = frozenset(tasks.open) | frozenset(tasks.ended)

@@ -205,8 +205,8 @@ class CellTruth:
         done = [(each.on, each.taken_away or bool(each.poses & poses)) for each, poses in rows]
         last = self.cell.home if station_of(self.cell, self.order) else self.place
         if not done or done != [(True, True), (False, True)] * (len(done) // 2):
-            told = ", ".join(f"{'on' if s.on else 'off'} at {named(s.poses)}" for s in self._switches)
-            return f"the effector was switched {told or 'not at all'}"
+            switched = ", ".join(f"{'on' if s.on else 'off'} at {named(s.poses)}" for s in self._switches)
+            return f"the effector was switched {switched or 'not at all'}"
         ends = [q for q in (last.q, last.above) if q is not None]
         if not (self.arm.taken_away or any(self.arm.stands_at(q) for q in ends)):
             return f"the arm does not stand at {last.name}"

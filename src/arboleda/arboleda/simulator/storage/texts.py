@@ -20,17 +20,17 @@ ID = re.compile(r"#(?!t-)[A-Za-z0-9_.-]{1,64}", re.ASCII)
 @invariant(Trigger.ASKED)
 def texts_mean_what_they_say(look: Look) -> Iterator[str]:
     """A task text is taken where it names what the plant has and its cell has room, and only there."""
-    asked, record = look.moment.asked, look.record
-    if len(asked) != 1 or not isinstance(asked[0], TaskRequest) or asked[0].trigger:
+    requests, record = look.moment.asked, look.record
+    if len(requests) != 1 or not isinstance(requests[0], TaskRequest) or requests[0].trigger:
         return
     changes = [change.said for change in record.tasks.changes if change.before is None or change.answer]
     refused = record.tasks.refused > 0
-    meant = _all_meant(look.world.offers, asked[0].text)
+    meant = _all_meant(look.world.offers, requests[0].text)
     if not meant and not all(map(only_stores, look.world.offers.cells)):
         return  # it may be a task of another recipe
     if not meant:
         if not refused:
-            yield f"{asked[0].text[:60]!r} means nothing, and was taken"
+            yield f"{requests[0].text[:60]!r} means nothing, and was taken"
         yield from _unhelpful(look)
         return
     queued = {each.name: each.queued for each in record.asked.cells}
@@ -39,27 +39,31 @@ def texts_mean_what_they_say(look: Look) -> Iterator[str]:
     known = id is not None and id in record.asked.ids
     if not known and refused is not (len(full) == len(meant)):
         word = "refused" if refused else "taken"
-        yield f"{asked[0].text!r} was {word}, so many tasks wait: {queued}"
+        yield f"{requests[0].text!r} was {word}, so many tasks wait: {queued}"
     allowed = {(cell, words) for cell, words, _ in meant}
-    if not refused and not any((said.cell, said.text) in allowed for said in changes):
-        yield f"{asked[0].text!r} was taken as {[said.text for said in changes]}"
-    if id is not None and not refused and not any(said.task == id for said in changes):
-        yield f"{asked[0].text!r} has another id: {[said.task for said in changes]}"
-    if not known and not refused and not any(said.state is TaskState.QUEUED for said in changes):
-        yield f"{asked[0].text!r} was taken, and nobody says that it waits"
+    if not refused and not any((task_change.cell, task_change.text) in allowed for task_change in changes):
+        yield f"{requests[0].text!r} was taken as {[task_change.text for task_change in changes]}"
+    if id is not None and not refused and not any(task_change.task == id for task_change in changes):
+        yield f"{requests[0].text!r} has another id: {[task_change.task for task_change in changes]}"
+    if (
+        not known
+        and not refused
+        and not any(task_change.state is TaskState.QUEUED for task_change in changes)
+    ):
+        yield f"{requests[0].text!r} was taken, and nobody says that it waits"
 
 
 def _unhelpful(look: Look) -> Iterator[str]:
     """Sentences on refusals whose example is no task for a rack's last place, or whose hint is not there."""
-    for said in look.moment.sent:
-        if not isinstance(said, TaskChanged) or said.state is not TaskState.REFUSED:
+    for message in look.moment.sent:
+        if not isinstance(message, TaskChanged) or message.state is not TaskState.REFUSED:
             continue
-        for part in said.sentence.parts():
+        for part in message.sentence.parts():
             example = str(part.values["example"]) if part.phrase is FORM else None
             if example is not None and not _is_last_place(look.world.offers, example):
                 yield f"{example!r} is given as an example, and is no task"
             if part.phrase is UNKNOWN_BUT_NEAR and part.values["near"] not in _list(part.values["there"]):
-                yield f"{said.sentence!r} hints at what there is not"
+                yield f"{message.sentence!r} hints at what there is not"
 
 
 def _list(value: Value) -> tuple[Value, ...]:

@@ -67,24 +67,24 @@ class Works:
     def follow(self, tasks: Tasks, new: list[SentCommand], now: float) -> None:
         """Take over what this step began, commanded and ended."""
         for change in tasks.changes:
-            said = change.said
-            if said.state is TaskState.RUNNING and not change.answer and said.cell in self._cells:
-                cell = self._cells[said.cell].layout
-                if not is_storage_task(cell.cell, said.text):
+            report = change.said
+            if report.state is TaskState.RUNNING and not change.answer and report.cell in self._cells:
+                cell = self._cells[report.cell].layout
+                if not is_storage_task(cell.cell, report.text):
                     continue
-                steps = list(_steps(cell, said.text.split()))
-                self._works[said.cell] = Work(said.task, steps, now)
+                steps = list(_steps(cell, report.text.split()))
+                self._works[report.cell] = Work(report.task, steps, now)
         for sent in new:
             if sent.entry is not None and sent.entry.cell in self._works and not _by_operator(sent):
                 self._take(sent.entry.cell, sent)
         for change in tasks.changes:
-            said = change.said
-            if said.cell is not None and not change.answer and said.state in ENDED:
-                work = self._works.get(said.cell)
-                if work is not None and work.task == said.task:
-                    del self._works[said.cell]
-                    if said.state is TaskState.DONE and not self._is_anywhere(said.cell, work):
-                        self._finished(said.cell, work)
+            report = change.said
+            if report.cell is not None and not change.answer and report.state in ENDED:
+                work = self._works.get(report.cell)
+                if work is not None and work.task == report.task:
+                    del self._works[report.cell]
+                    if report.state is TaskState.DONE and not self._is_anywhere(report.cell, work):
+                        self._finished(report.cell, work)
 
     def _take(self, name: str, sent: SentCommand) -> None:
         cell, work = self._cells[name], self._works[name]

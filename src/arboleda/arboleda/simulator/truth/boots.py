@@ -21,9 +21,9 @@ class Boots:
         self._told: set[str] = set()
         self._known: set[str] = set()  # those told before any command of this step
 
-    def look(self, reports: Iterable[Report], *, asked: bool) -> None:
+    def look(self, reports: Iterable[Report], *, is_question: bool) -> None:
         """Take in what the plant heard in this step; what was `asked` in it may have come before that."""
-        before = self._told.copy() if asked else None
+        before = self._told.copy() if is_question else None
         for report in reports:
             if report.robot in self.mute and report.boot_id is not None:
                 self._hear(report)
@@ -32,12 +32,12 @@ class Boots:
         self._known = self._told if before is None else self._told & before
 
     def _hear(self, report: Report) -> None:
-        said, last = (report.epoch, report.boot_id), self._last.get(report.robot, NEVER)
-        if said != last:
-            self._last[report.robot] = said
+        boot, last = (report.epoch, report.boot_id), self._last.get(report.robot, NEVER)
+        if boot != last:
+            self._last[report.robot] = boot
             known = last is not NEVER and self.mute[report.robot].robot.evidence is Evidence.IDS
             put_right = report.at < self.mute[report.robot].put_right_at  # it booted before it was put right
-            if not put_right and (said[0] == last[0] or (known and said[1] != last[1])):
+            if not put_right and (boot[0] == last[0] or (known and boot[1] != last[1])):
                 self._told.add(report.robot)
 
     def restart(self) -> None:

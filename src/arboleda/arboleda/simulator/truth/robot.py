@@ -152,7 +152,7 @@ class RobotTruth:
         turned = due != self._due
         if self.board.boot_id != self.boot:
             self._boot_up(now_us)
-        told = self.stopping
+        was_stopping = self.stopping
         if self._homing and due is not None and due <= now_us:
             self._end_homing()
         if self._ahead or self._executed:
@@ -160,10 +160,10 @@ class RobotTruth:
         was_moving, self.moving = self.moving, self.body.moving
         self._arrived = not was_moving or (due is not None and due <= now_us)
         self.stopping = self.stopping and self.moving
-        asked, soon = any(act.moves for act in self.acts), self._ends_soon(now_us)
-        self.started = self.moving and not was_moving and not asked
-        self.swerved = self.moving and was_moving and turned and not asked and not soon
-        self.runs_on = self.stopping and (self._goes_on() if told else not soon)
+        commanded, soon = any(act.moves for act in self.acts), self._ends_soon(now_us)
+        self.started = self.moving and not was_moving and not commanded
+        self.swerved = self.moving and was_moving and turned and not commanded and not soon
+        self.runs_on = self.stopping and (self._goes_on() if was_stopping else not soon)
         self._follow(was_moving)
         self.jumped = self.jumped and not self._put_right
         self._put_right = False
@@ -216,14 +216,14 @@ class RobotTruth:
         """Go through what the board heard and did, in order."""
         executed, self._executed = self._executed, []
         waiting = sum(map(_is_command, self._client.inbox)) if self._ahead else 0
-        heard = len(self._ahead) - waiting
-        for delivery in self._ahead[:heard]:
+        count = len(self._ahead) - waiting
+        for delivery in self._ahead[:count]:
             goal = None if delivery.retain else goal_of(delivery.topic, delivery.payload, self.body.axes)
             if goal is not None:
                 self._obeyed(goal)
             if executed and goal == executed[0]:
                 self._did(executed.pop(0), ours=(delivery.topic, delivery.payload) in self._ours)
-        del self._ahead[:heard]
+        del self._ahead[:count]
         self._left = waiting
         for goal in executed:  # nobody sent it: the board acts on its own
             self._did(goal, ours=False)

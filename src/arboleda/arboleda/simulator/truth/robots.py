@@ -167,7 +167,7 @@ class RobotsTruth:
     def _listen(self, reports: list[Report]) -> None:
         """Take in what the plant hears."""
         if self.boots.mute:
-            self.boots.look(reports, asked=bool(self.world.moment.asked))
+            self.boots.look(reports, is_question=bool(self.world.moment.asked))
 
     def _revise(self) -> None:
         """Know the places of what cells work by now."""

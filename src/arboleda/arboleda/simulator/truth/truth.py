@@ -131,24 +131,24 @@ class Truth(RobotsTruth):
     def _follow_questions(self, events: list[object], out: list[object]) -> None:
         """Take in the questions that the bridge sent on, each under a number."""
         messages = [each.message for each in events if isinstance(each, FromPlant)]
-        asked = [each for each in messages if isinstance(each, Query) and each.id]
-        for each in out if asked else ():
+        questions = [each for each in messages if isinstance(each, Query) and each.id]
+        for each in out if questions else ():
             name = self._orders.get(each.topic) if isinstance(each, Publication) else None
             if name is None or not isinstance(each, Publication):
                 continue
             goal = goal_of(each.topic, each.payload, self.robots[name].body.axes)
-            for question in [each for each in asked if each.robot == name]:
+            for question in [each for each in questions if each.robot == name]:
                 if isinstance(goal, OrderGoal) and is_order_of(goal, self.robots[name].robot, question):
-                    asked.remove(question)
+                    questions.remove(question)
                     self._asked[name, goal.epoch or 0, goal.seq or 0] = question.id
                     break
 
     def _hear_answer(self, robot: str, payload: bytes) -> None:
         """Take in the answer in a board's telemetry; it belongs to the question with this number."""
-        said = json.loads(payload)
-        question = self._asked.get((robot, said.get("epoca_ack"), said.get("respuesta_seq")))
+        fields = json.loads(payload)
+        question = self._asked.get((robot, fields.get("epoca_ack"), fields.get("respuesta_seq")))
         if question is not None:
-            self._answers.setdefault(question, set()).add(said["respuesta"])
+            self._answers.setdefault(question, set()).add(fields["respuesta"])
 
     def _take_in(self, message: object) -> None:
         if isinstance(message, TaskChanged):

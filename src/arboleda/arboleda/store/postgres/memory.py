@@ -86,20 +86,20 @@ class PostgresMemory(PlantMemory):
         """Take the lead, as in every memory; a killed leader is waited for as long as its lease lasts."""
         silence, first = Silence(), self._last_seen()
         while True:
-            asked_at = clock.seconds()
+            sent_at = clock.seconds()
             me = plain(socket.gethostname()), os.getpid()
             row = self._query(LEAD, epoch, *me, WANTED_S)
             if row is not None:
                 self._epoch = int(row[0])
-                self._lease.renewed(asked_at)
+                self._lease.renewed(sent_at)
                 self.going = tuple(json.loads(row[1]))
                 self._query("UPDATE leader SET going = '[]' WHERE epoch = %s RETURNING epoch", self._epoch)
                 return self._epoch
-            seen = self._last_seen()
-            if seen != first and seen[1] is not None:
+            lease = self._last_seen()
+            if lease != first and lease[1] is not None:
                 self._refuse_second()
-            if silence.ends_lease(clock.seconds(), seen):
-                self._query(END_LEASE, *seen)
+            if silence.ends_lease(clock.seconds(), lease):
+                self._query(END_LEASE, *lease)
             else:
                 time.sleep(PAUSE_S)
 
@@ -134,12 +134,12 @@ class PostgresMemory(PlantMemory):
 
     def _renew(self, db: Impatient) -> bool:
         """Renew the lease; True if another process is wanted as the leader."""
-        asked_at = clock.seconds()
+        sent_at = clock.seconds()
         with explained(self.name, ArboledaError, "cannot be reached"):
             row = db.execute(RENEW, (self._epoch, WANTED_S, LEASE_S)).fetchone()
         if row is None:
             raise self._superseded(db)
-        self._lease.renewed(asked_at)
+        self._lease.renewed(sent_at)
         self.standbys = tuple(Standby(host=plain(host), url=plain(url)) for host, url in row[1])
         return bool(row[0])
 

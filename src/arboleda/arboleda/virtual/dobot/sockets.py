@@ -39,8 +39,8 @@ class Server(TcpServer):
         return []
 
     def _heard(self, client: int, port: str, data: bytes) -> list[ClientText]:
-        said = bool(data) and port == DASHBOARD
-        return [ClientText(client=client, text=data.decode("utf-8", "replace"))] if said else []
+        is_text = bool(data) and port == DASHBOARD
+        return [ClientText(client=client, text=data.decode("utf-8", "replace"))] if is_text else []
 
     def _do(self, message: Message) -> None:
         if isinstance(message, Disconnect):

@@ -258,8 +258,8 @@ class VirtualServos:
 
     def _addressed(self, packet: Packet) -> list[int]:
         if packet.code == Instruction.SYNC_READ:
-            asked = packet.data[2 * self._framing.word :]
-            return [id for id in asked if id in self.servos]
+            ids = packet.data[2 * self._framing.word :]
+            return [id for id in ids if id in self.servos]
         if packet.id == BROADCAST:
             if packet.code == Instruction.SYNC_WRITE:
                 self._sync_write(packet.data)

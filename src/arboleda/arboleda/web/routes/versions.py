@@ -97,8 +97,10 @@ def routes(side: PlantApi) -> APIRouter:
         task begins.
         """
         require(request.scope["arboleda.role"], MAY)
-        desk, told = _versions(side), read_body(await request.body(), RestartWish)
-        return PlainJson(await run_in_threadpool(lambda: desk.restart(told.name, wanted=told.wanted)))
+        desk, request_body = _versions(side), read_body(await request.body(), RestartWish)
+        return PlainJson(
+            await run_in_threadpool(lambda: desk.restart(request_body.name, wanted=request_body.wanted))
+        )
 
     return api
 
