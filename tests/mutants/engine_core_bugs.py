@@ -100,7 +100,7 @@ CORE_BUGS = (
     bug(
         "core/leading.py",
         "A leader is sure of itself for too long.",
-        "self._until = asked_at + SURE_S",
-        "self._until = asked_at + 1.2 * SURE_S",
+        "self._until = sent_at + SURE_S",
+        "self._until = sent_at + 1.2 * SURE_S",
     ),
 )

@@ -60,8 +60,9 @@ OF_EVIDENCE = (
     bug(
         EVIDENCE,
         "Whoever says nothing of a fact has reached it.",
-        "    if told is None:\n        return _failed(entry, Reason.NOT_REACHED, FACT_UNSAID, fact=name)\n",
-        "    if told is None:\n        return Verdict(feed=Feed.DONE)\n",
+        "    if reported is None:\n"
+        "        return _failed(entry, Reason.NOT_REACHED, FACT_UNSAID, fact=name)\n",
+        "    if reported is None:\n        return Verdict(feed=Feed.DONE)\n",
     ),
     bug(
         EVIDENCE,
@@ -90,8 +91,8 @@ OF_EVIDENCE = (
     bug(
         EVIDENCE,
         "A switch is confirmed by any of its facts.",
-        "    told = all(report.fact(name) == value for name, value in entry.sets)\n",
-        "    told = any(report.fact(name) == value for name, value in entry.sets)\n",
+        "    is_set = all(report.fact(name) == value for name, value in entry.sets)\n",
+        "    is_set = any(report.fact(name) == value for name, value in entry.sets)\n",
     ),
     bug(
         EVIDENCE,
@@ -184,7 +185,7 @@ OF_BELIEF = (
     bug(
         BELIEF,
         "A robot that moves slowly rests.",
-        "moved = said != before or not self._rested_from",
+        "moved = position != before or not self._rested_from",
         "moved = not self._rested_from",
     ),
     bug(
@@ -228,14 +229,14 @@ OF_DISPATCHER = (
     bug(
         DISPATCHER,
         "A need that was never said is met.",
-        "            told = belief.fact(name)\n            if told != value:",
-        "            told = belief.fact(name)\n            if told not in (None, value):",
+        "            reported = belief.fact(name)\n            if reported != value:",
+        "            reported = belief.fact(name)\n            if reported not in (None, value):",
     ),
     bug(
         DISPATCHER,
         "Only the first need is looked at.",
-        "        for name, value in command.needs:\n            told",
-        "        for name, value in command.needs[:1]:\n            told",
+        "        for name, value in command.needs:\n            reported",
+        "        for name, value in command.needs[:1]:\n            reported",
     ),
     bug(
         DISPATCHER,

@@ -117,8 +117,8 @@ RECIPE_BUGS = (
     bug(
         HANDLES,
         "A check of several facts is met by the last one.",
-        "        for name in self._unsaid(facts):\n            told, value",
-        "        for name in self._unsaid(facts)[1:]:\n            told, value",
+        "        for name in self._unsaid(facts):\n            reported, value",
+        "        for name in self._unsaid(facts)[1:]:\n            reported, value",
     ),
     bug(
         HANDLES,

@@ -327,19 +327,20 @@ OF_CELLS = (
         "trees/needs.py",
         "What another device is about to change counts as it is.",
         "        if self._is_changing(need):\n",
-        "        if told is None and self._is_changing(need):\n",
+        "        if reported is None and self._is_changing(need):\n",
     ),
     bug(
         "trees/needs.py",
         "Who is not heard meets what another device needs.",
         "        if not self._dispatcher.beliefs[other].online:\n            return SILENT",
-        "        if not self._dispatcher.beliefs[other].online and told is None:\n            return SILENT",
+        "        if not self._dispatcher.beliefs[other].online and reported is None:\n"
+        "            return SILENT",
     ),
     bug(
         "trees/needs.py",
         "Needs of other devices are not asked.",
-        "        if told != need.value:\n            return NEEDS",
-        "        if told == need.value and told is None:\n            return NEEDS",
+        "        if reported != need.value:\n            return NEEDS",
+        "        if reported == need.value and reported is None:\n            return NEEDS",
     ),
     bug(
         "trees/failures.py",
@@ -376,13 +377,13 @@ OF_WALK_BACK = (
     bug(
         WALK,
         "A command that was taken counts as done.",
-        "    return Fate.DONE if ended and as_told and number is not None else Fate.UNPROVEN",
+        "    return Fate.DONE if ended and facts_hold and number is not None else Fate.UNPROVEN",
         "    return Fate.DONE",
     ),
     bug(
         WALK,
         "A move that ended anywhere is done.",
-        'return Fate.DONE if ended and as_told and _at(last["goal"], belief) else Fate.CUT_SHORT',
+        'return Fate.DONE if ended and facts_hold and _at(last["goal"], belief) else Fate.CUT_SHORT',
         "return Fate.DONE if ended else Fate.CUT_SHORT",
     ),
     bug(

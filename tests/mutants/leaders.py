@@ -22,7 +22,7 @@ LEADERS = (
     mutant(
         "a_lead_is_over_before_the_next_begins",
         "A leader is sure of itself for a fifth longer than it may.",
-        edit(Lease.renewed, "asked_at + SURE_S", "asked_at + 1.2 * SURE_S"),
+        edit(Lease.renewed, "sent_at + SURE_S", "sent_at + 1.2 * SURE_S"),
         weather=CHANGES,
         standby=True,
     ),

@@ -32,7 +32,7 @@ def run(
     flown: list[str] = []
     try:
         if record is not None and record.suffix == flight.SUFFIX:
-            result = _flown(request, trace=trace, record=record, said=flown)
+            result = _flown(request, trace=trace, record=record, lines=flown)
         else:
             result = _told(request, trace=trace, record=record)
     except KeyboardInterrupt:
@@ -56,7 +56,7 @@ def run(
 
 
 def _flown(request: Request, *, trace: bool, record: Path, lines: list[str]) -> Result:
-    """Run the seed with a flight record; `said` gets a line for each file."""
+    """Run the seed with a flight record; `lines` gets a line for each file."""
     tell = LineWriter(printed=True, file=None) if trace else None
     with flight.recorded(record, request.plants.of(request.first)) as flown:
         result = request.setting.run(request.first, tell=tell, make_plant=flown.make_plant)
