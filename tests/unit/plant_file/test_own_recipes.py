@@ -448,6 +448,11 @@ def test_check_says_which_cell_offers_what_and_why_not_the_rest(tmp_path: Path) 
     ]
 
 
+def test_a_recipe_without_targets_to_choose_from_is_told_which_group_its_cell_lacks(tmp_path: Path) -> None:
+    (found,) = problems(tmp_path, PALLET)
+    assert 'slot of lay has no value to choose; bench has no targets "slots"' in found
+
+
 @pytest.mark.parametrize(
     ("plant", "recipes"),
     [

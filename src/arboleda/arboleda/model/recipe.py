@@ -68,7 +68,8 @@ class Parameter:
     """One word of a task: what it is called, what it can be in a cell, and what it means there.
 
     `words`: all that it can be; of a number, whose `limits` in a cell say that, only examples. `called`: its
-    name in sentences, where they exist in several languages.
+    name in sentences, where they exist in several languages. `group`: the group of targets that it names one
+    of, or the one target.
     """
 
     name: str
@@ -76,6 +77,7 @@ class Parameter:
     value: Callable[[Cell, str], object] = same_word
     called: Phrase | None = None
     limits: Callable[[Cell], Limits | None] = no_limits
+    group: str | None = None
 
     def reads(self, cell: Cell, word: str) -> str | None:
         """The word as the cell has it, whatever its case; None where it is none of this parameter's."""

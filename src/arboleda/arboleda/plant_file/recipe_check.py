@@ -247,10 +247,10 @@ def _without_value(cell: Cell, recipe: Recipe) -> str | None:
 
 
 def _how_to_choose(cell: Cell, recipe: Recipe, parameter: Parameter) -> str:
-    if not isinstance(recipe, TreeRecipe):
-        return ""
-    group = recipe.groups.get(parameter.name)
-    return HOW_TO_CHOOSE if group is None else f"; {cell.name} has no targets {shown(group)}"
+    group = recipe.groups.get(parameter.name) if isinstance(recipe, TreeRecipe) else parameter.group
+    if group is not None:
+        return f"; {cell.name} has no targets {shown(group)}"
+    return HOW_TO_CHOOSE if isinstance(recipe, TreeRecipe) else ""
 
 
 def _unspellable(cell: Cell, recipe: Recipe) -> str | None:

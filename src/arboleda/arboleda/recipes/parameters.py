@@ -76,7 +76,9 @@ class Slot:
         self.called = called
 
     def parameter(self, name: str) -> Parameter:
-        return Parameter(name=name, words=self._numbers, value=self._target, called=self.called)
+        return Parameter(
+            name=name, words=self._numbers, value=self._target, called=self.called, group=self.group
+        )
 
     def _numbers(self, cell: Cell) -> Sequence[str]:
         return [str(number) for number in range(len(cell.groups.get(self.group, ())))]
@@ -97,7 +99,7 @@ class Target:
         return cls(group if isinstance(group, str) else None)
 
     def parameter(self, name: str) -> Parameter:
-        return Parameter(name=name, words=self._names)
+        return Parameter(name=name, words=self._names, group=self.group)
 
     def _names(self, cell: Cell) -> Sequence[str]:
         if self.group is None:
