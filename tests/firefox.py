@@ -18,6 +18,8 @@ from websockets.sync.client import ClientConnection, connect
 
 from .patience import PATIENCE_S
 
+LONG_S = 4 * PATIENCE_S  # a page with Python in it computes for a minute where all processors are busy
+
 LISTENING = re.compile(r"WebDriver BiDi listening on (ws://\S+)")
 OPTIONS = "--headless", "--no-remote", "--remote-debugging-port", "0"
 # A first start shows pages of its own, and asks its maker for news.
@@ -87,7 +89,7 @@ class Page:
         self._number += 1
         self._link.send(json.dumps({"id": self._number, "method": method, "params": parameters}))
         while True:
-            said = json.loads(self._link.recv(timeout=PATIENCE_S))
+            said = json.loads(self._link.recv(timeout=LONG_S))
             if said.get("method") == "network.beforeRequestSent":
                 self.asked.append(said["params"]["request"]["url"])
             if said.get("id") == self._number:

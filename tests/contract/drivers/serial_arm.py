@@ -34,6 +34,7 @@ cells:
         driver:
           serial_arm:
             serial: {line}
+            reply_s: 0.2  # servos in a thread of a busy process are slow to answer
             joints: [{{id: 1}}, {{id: 2}}, {{id: 3}}, {{id: 4}}, {{id: 5}}, {{id: 6}}]
     targets:
       home: {{arm: {{deg: [0, 0, 0, 0, 0, 0]}}}}
