@@ -291,7 +291,7 @@ async def follow(path: str, start: object) -> object:
 
 
 def labware(machine: Any, text: str) -> object:
-    """What lies on a machine by that name, or its wells or tips in brackets."""
+    """The resource of that name on a machine, or its wells or tips in brackets."""
     found = LABWARE.match(text)
     assert found is not None
     name, items = found.groups()
@@ -307,7 +307,7 @@ class _nothing:
 
 
 def _named(place: str) -> Any:
-    """What stands at `module:name`."""
+    """The object that `module:name` names."""
     module, _, name = place.partition(":")
     return getattr(import_module(module), name)
 

@@ -83,7 +83,7 @@ def say_error(error: ArboledaError) -> str:
 
 
 def finding(text: str) -> str:
-    """What is found wrong in a file or in a run, in this language."""
+    """A finding in a file or in a run, in this language."""
     return findings(language())(text)
 
 

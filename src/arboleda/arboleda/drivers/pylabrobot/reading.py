@@ -69,7 +69,7 @@ class Reading:
         return ""
 
     def _meanings(self, raw: object, of: FactType) -> Iterator[object]:
-        """What the value may mean, the likeliest first."""
+        """The meanings that the value may have, the likeliest first."""
         if self.words:
             yield from (word for word, meant in self.words.items() if _is_meant(raw, meant))
         elif of.type is bool and not isinstance(raw, SCALARS):

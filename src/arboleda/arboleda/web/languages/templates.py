@@ -49,7 +49,7 @@ class Template:
         return re.compile("".join(found))
 
     def slots(self, text: str) -> dict[str, str] | None:
-        """What stands in the slots of a text of this template; None: it is of another."""
+        """The words in the slots of a text of this template; None: it is of another."""
         if not all(each in text for each in self._literals):
             return None
         found = self._pattern.fullmatch(text)
@@ -83,7 +83,7 @@ class Templates:
         return "\n".join(self._best(each)[1] if len(each) <= LONGEST else each for each in text.split("\n"))
 
     def _best(self, text: str, depth: int = 0) -> tuple[int, str]:
-        """How many letters of a text are of templates, and the text in the language."""
+        """The number of letters of a text that are of templates, and the text in the language."""
         if depth > DEEPEST or not LETTER.search(text):
             return 0, text
         if text not in self._known:
