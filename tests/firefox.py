@@ -16,9 +16,7 @@ from typing import Any
 
 from websockets.sync.client import ClientConnection, connect
 
-from .patience import PATIENCE_S
-
-LONG_S = 4 * PATIENCE_S  # a page with Python in it computes for a minute where all processors are busy
+from .patience import LONG_S, PATIENCE_S
 
 LISTENING = re.compile(r"WebDriver BiDi listening on (ws://\S+)")
 OPTIONS = "--headless", "--no-remote", "--remote-debugging-port", "0"

@@ -8,4 +8,6 @@ import os
 
 PATIENCE_S = float(os.environ.get("ARBOLEDA_PATIENCE_S", "60"))
 PATIENCE_MS = 1000 * PATIENCE_S
+LONG_S = 4 * PATIENCE_S  # a page with Python in it computes for a minute where all processors are busy
+LONG_MS = 1000 * LONG_S
 SOON_S = PATIENCE_S / 2  # what waits for nothing takes no longer, however busy the machine is

@@ -12,7 +12,7 @@ from arboleda.board_kit.conformance.judge import CHECKS, DEVICE_CHECKS
 from arboleda.runtime.build import Options, build
 from arboleda.testing import shipped
 
-pytestmark = [pytest.mark.system, pytest.mark.timeout(150)]
+pytestmark = pytest.mark.system
 
 PRESS = Path(__file__).parents[2] / "examples/press_board/plant.yaml"
 

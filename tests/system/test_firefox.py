@@ -17,7 +17,7 @@ from ..firefox import Page, firefox
 pytestmark = [
     pytest.mark.system,
     pytest.mark.requires("firefox-esr", "websockets"),
-    pytest.mark.timeout(600),
+    pytest.mark.timeout(900),
 ]
 SEEDS = range(1, 4)
 PHONE = 390, 844

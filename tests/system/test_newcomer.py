@@ -18,7 +18,7 @@ from .page import running, until
 from .test_make import LONG_MS, Person
 from .test_teach_page import NOTE, device, hold
 
-pytestmark = [pytest.mark.system, pytest.mark.requires("chromium", "playwright"), pytest.mark.timeout(600)]
+pytestmark = [pytest.mark.system, pytest.mark.requires("chromium", "playwright"), pytest.mark.timeout(900)]
 
 LAPTOP = {"viewport": {"width": 1280, "height": 800}, "locale": "en"}
 ARM, DOWN = "#teach-devices [aria-label='brazo {sign}']", "#teach-devices [aria-label='efector +']"

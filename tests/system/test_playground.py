@@ -15,7 +15,7 @@ from arboleda.playground.tab import Tab
 from arboleda.web.languages import contents
 
 from ..chromium import FEW_FRAMES, leave
-from ..patience import PATIENCE_MS
+from ..patience import LONG_MS
 from .conftest import ROOT
 from .page import show
 from .test_accessible import SCREENS, Eye
@@ -23,7 +23,7 @@ from .test_accessible import SCREENS, Eye
 pytestmark = [
     pytest.mark.system,
     pytest.mark.requires("chromium", "playwright"),
-    pytest.mark.timeout(600),
+    pytest.mark.timeout(900),
 ]
 SEEDS, CYCLES = range(1, 11), 1
 Open = Callable[..., Any]
@@ -40,7 +40,7 @@ def opened(playground: str, browser: Any) -> Iterator[Open]:
         context = browser.new_context(**{"locale": "en", "color_scheme": "light", **options})
         contexts.append(context)
         page = context.new_page()
-        page.set_default_timeout(PATIENCE_MS)
+        page.set_default_timeout(LONG_MS)
         page.add_init_script(FEW_FRAMES)
         page.on("request", lambda each: each.url.startswith(playground) or troubles.append(each.url))
         page.on("response", lambda each: troubles.append(each.url) if each.status >= 400 else None)
@@ -133,7 +133,7 @@ def test_an_address_opens_a_plant_whose_time_runs_and_a_choice_opens_another(ope
 def test_a_plant_that_is_not_there_is_refused_in_a_sentence(playground: str, browser: Any) -> None:
     context = browser.new_context()
     page = context.new_page()
-    page.set_default_timeout(PATIENCE_MS)
+    page.set_default_timeout(LONG_MS)
     page.goto(f"{playground}?plant=nowhere")
     page.wait_for_function("document.getElementById('play-loading').textContent.includes('kitting')")
     leave(context)

@@ -18,13 +18,13 @@ from arboleda.web.languages import contents
 
 from ..chromium import leave
 from ..exercises.works import Sample, samples
-from ..patience import PATIENCE_MS
+from ..patience import LONG_MS
 from .test_accessible import SCREENS, Eye
 
 pytestmark = [
     pytest.mark.system,
     pytest.mark.requires("chromium", "playwright"),
-    pytest.mark.timeout(600),
+    pytest.mark.timeout(900),
 ]
 WORDS = {language: contents(language, "workbook") for language in ("en", "es")}
 LOOP = "while True:\n    pass\n"
@@ -43,7 +43,7 @@ def opened(playground: str, browser: Any) -> Iterator[Open]:
         context = browser.new_context(**{"locale": "en", "color_scheme": "light", **options})
         contexts.append(context)
         page = context.new_page()
-        page.set_default_timeout(PATIENCE_MS)
+        page.set_default_timeout(LONG_MS)
         local = (playground, "data:")
         page.on("request", lambda each: each.url.startswith(local) or troubles.append(each.url))
         page.on("response", lambda each: troubles.append(each.url) if each.status >= 400 else None)
