@@ -24,10 +24,10 @@ EPOCH = 1_000
 class Bench:
     """Drives a bridge and remembers what came out of it; `now` only moves where a test says so."""
 
-    def __init__(self, *, epoch: int = EPOCH, **declared: Any) -> None:
+    def __init__(self, *, epoch: int = EPOCH, has_lease: bool = False, **declared: Any) -> None:
         self.model = shipped("sis_a", **declared)
         self.now = 100.0
-        self.bridge = Bridge(self.model, epoch=epoch, now=self.now)
+        self.bridge = Bridge(self.model, epoch=epoch, now=self.now, has_lease=has_lease)
         self._beaten = False
         self._told: dict[str, Telemetry] = {}
         self.start = self.step()

@@ -175,6 +175,14 @@ def test_the_bridge_that_came_later_yields_to_the_one_that_rose_above_it(bench, 
     assert [address for address, _ in sent(halted)] == ["ra_1/paro"]
 
 
+def test_a_bridge_whose_plant_has_a_lease_rises_above_one_that_was_there_before(make_bench, sent) -> None:
+    bench = make_bench(has_lease=True)
+    bench.connect()
+    bench.heartbeat()
+    bench.tell(least_epoch=EPOCH + 1)
+    assert sent(bench.heartbeat()) == [("ra_1/latido", Beat(epoch=EPOCH + 2))]
+
+
 def test_a_bridge_that_has_long_been_there_does_not_yield(bench, sent) -> None:
     bench.connect()
     bench.tell(least_epoch=EPOCH)

@@ -424,7 +424,12 @@ class App:
         if "bridge" in parts:
             waits = virtual and scout
             bridge = self._bridge = BridgePart(
-                self.model, max(now, epoch), self._broker, self._crash, waits=waits
+                self.model,
+                max(now, epoch),
+                self._broker,
+                self._crash,
+                waits=waits,
+                has_lease="orchestrator" in parts and self._store.renew_s is not None,
             )
             self._parts.append(bridge)
         if virtual:

@@ -249,7 +249,12 @@ class World:
 
     def start_bridge(self, epoch: int | None = None) -> None:
         """Start a new bridge; it connects, and the broker delivers what it retained."""
-        self.bridge = Bridge(self.model, epoch=next(self._epochs) if epoch is None else epoch, now=self.now)
+        self.bridge = Bridge(
+            self.model,
+            epoch=next(self._epochs) if epoch is None else epoch,
+            now=self.now,
+            has_lease=self.hosts is not None,
+        )
         self.epoch_at_bridge = 0
         self.processes.off.discard(BRIDGE)
         if BRIDGE not in self.broker.clients:

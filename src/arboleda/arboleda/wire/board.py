@@ -55,12 +55,12 @@ class Board:
     """State machine of one board: commands in, reports out; a command needs a link, and no latch against
     it."""
 
-    def __init__(self, robot: Robot, *, epoch: int, stale_after_s: float) -> None:
+    def __init__(self, robot: Robot, *, epoch: int, stale_after_s: float, has_lease: bool = False) -> None:
         supervised = robot.evidence is not Evidence.STATE
         self.robot = robot
         self.labels = Labels(epoch)
         self.link = BoardLink(stale_after_s if supervised else None)
-        self.rivals = Rivals()
+        self.rivals = Rivals(has_lease=has_lease)
         self.copies = Copies()
         self.counters = Counters()
         self._foreign = ForeignCommandCount()

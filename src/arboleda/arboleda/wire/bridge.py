@@ -59,14 +59,15 @@ class Bridge:
     """`epoch` is Unix seconds at this start; a board that has heard a higher one raises its own.
 
     `subscriptions` are the topics to subscribe to, of every robot that speaks MQTT; `now` is the time of its
-    last step.
+    last step. `has_lease`: its plant leads by a lease in a shared store, so that it never yields a board.
     """
 
-    def __init__(self, model: PlantModel, *, epoch: int, now: float) -> None:
+    def __init__(self, model: PlantModel, *, epoch: int, now: float, has_lease: bool = False) -> None:
         stale_after_s = model.timing.stale_after_s
         robots = [robot for robot in model.robots.values() if robot.link is Link.MQTT]
         self._boards = {
-            robot.name: Board(robot, epoch=epoch, stale_after_s=stale_after_s) for robot in robots
+            robot.name: Board(robot, epoch=epoch, stale_after_s=stale_after_s, has_lease=has_lease)
+            for robot in robots
         }
         self._stale_at = dict.fromkeys(self._boards, math.inf)  # deadline for the next message of each board
         self._routes = {

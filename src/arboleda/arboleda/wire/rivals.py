@@ -1,7 +1,8 @@
 """Others who command one board beside this bridge, and which of two bridges goes on.
 
 MQTT carries no sender: another one shows only in the numbers that the board says it has taken. The bridge
-that was there first rises above them, the one that came later yields.
+that was there first rises above them, the one that came later yields. A bridge whose plant has a lease to lead
+yields to nobody: another process of the plant, whose lease has ended, may rise once more before it ends.
 """
 
 from __future__ import annotations
@@ -25,11 +26,12 @@ class News(Enum):
 
 class Rivals:
     """Detector of others; `noticed_at`: when some came, until they are answered; `yielded`: this bridge
-    leaves the board to another one until it restarts.
+    leaves the board to another one until it restarts; `has_lease`: it never does.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, *, has_lease: bool = False) -> None:
         self.yielded = False
+        self._has_lease = has_lease
         self._led_since: float | None = None
         self.noticed_at: float | None = None
         self._beaten_by: int | None = None
@@ -71,4 +73,4 @@ class Rivals:
         return moves
 
     def _is_new(self, at: float) -> bool:
-        return self._led_since is None or at < self._led_since + NEW_S
+        return not self._has_lease and (self._led_since is None or at < self._led_since + NEW_S)

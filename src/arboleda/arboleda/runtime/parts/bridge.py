@@ -29,15 +29,22 @@ LOG = logging.getLogger("arboleda.bridge")
 class BridgePart:
     """The bridge in its loop, with its MQTT client; `connect` its plant side before `start`.
 
-    With `waits` it goes to the broker at `join`, not at `start`.
+    With `waits` it goes to the broker at `join`, not at `start`; with `has_lease` it yields no board.
     """
 
     def __init__(
-        self, model: PlantModel, epoch: int, broker: BrokerAddress, crash: Crash, *, waits: bool = False
+        self,
+        model: PlantModel,
+        epoch: int,
+        broker: BrokerAddress,
+        crash: Crash,
+        *,
+        waits: bool = False,
+        has_lease: bool = False,
     ) -> None:
         self._broker = broker
         self._waits = waits
-        self._bridge = Bridge(model, epoch=epoch, now=clock.seconds())
+        self._bridge = Bridge(model, epoch=epoch, now=clock.seconds(), has_lease=has_lease)
         self._version = model.mqtt_version
         self._client: MqttClient | None = None
         self._lock = threading.Lock()
