@@ -128,6 +128,11 @@ class CellDevices:
                 return device, earlier[0], False
         return None
 
+    def part_in_free(self, devices: Iterable[str]) -> str | None:
+        """The first of the devices that no cell holds, that does nothing, and in which a part may be."""
+        free = [each for each in sorted(devices) if self._zones.holder(each) is None]
+        return next((each for each in free if self._may_hold(each) and not self._works(each)), None)
+
     def is_stopped(self, device: str) -> bool:
         """True while a stop is not over: it is not cleared, or a cell of the device is not reset."""
         return self._dispatcher.memory.value(Fact.LATCH, device) is not None
@@ -179,6 +184,9 @@ class CellDevices:
         return all(self._does_nothing(each) and self.is_as_left(each) for each in together)
 
     def _does_nothing(self, device: str) -> bool:
-        belief = self._dispatcher.beliefs[device]
-        works = belief.moves or bool(self._dispatcher.ledger.of_robot(device))
-        return belief.online and not works and device not in self._dispatcher.latched
+        online = self._dispatcher.beliefs[device].online
+        return online and not self._works(device) and device not in self._dispatcher.latched
+
+    def _works(self, device: str) -> bool:
+        moves = self._dispatcher.beliefs[device].moves
+        return moves or bool(self._dispatcher.ledger.of_robot(device))

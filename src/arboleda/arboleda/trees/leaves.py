@@ -35,6 +35,13 @@ DEVICE_NOT_FREE = Phrase("device.not_free", "{cell}: {devices} was not free with
 DEVICE_STILL_HELD = Phrase(
     "device.still_held", "{cell}: {device}, which {holder} holds, was not free within {seconds:g} s"
 )
+PART_IN_FREE = Phrase(
+    "device.part_in_free",
+    "{cell}: {device}, which no cell holds, may hold a part; release {device} first, or take the part out by hand",
+)
+NOT_AT_HOME = Phrase(
+    "device.not_at_home", "waits for {device}, which no cell holds and which is not seen at its home"
+)
 NOT_AT_REST = Phrase("device.not_at_rest", "{cell}: {devices} did not come to rest")
 NOT_OUTSIDE = Phrase("zone.not_outside", "{arm} was not seen outside its zones")
 Guard = Callable[[], "Failure | None"]
@@ -501,7 +508,10 @@ class LeaveZones(Await):
 
 
 class TakeDevices(Await):
-    """Wait until a cell has the devices that it shares, all at once; left early, it waits no longer."""
+    """Wait until a cell has the devices that it shares, all at once; left early, it waits no longer.
+
+    It fails at once where one that no cell holds may hold a part: nothing takes that out but a person.
+    """
 
     def __init__(self, name: Sentence | str, context: Context, devices: frozenset[str]) -> None:
         super().__init__(name, context, self._taken, context.cell.zone_wait_s, self._not_free)
@@ -510,11 +520,22 @@ class TakeDevices(Await):
         self.devices = devices
 
     def update(self) -> Status:
+        if (device := self.shared.part_in_free(self.devices)) is not None:
+            sentence = PART_IN_FREE(cell=self.cell, device=device)
+            failure = Failure(reason=Reason.ZONE_UNAVAILABLE, sentence=sentence)
+            self.failures.add(failure, self)
+            return self.failed(failure)
         status = super().update()
-        if status is Status.RUNNING and (awaited := self.shared.awaited(self.devices)):
-            device, holder, holds = awaited
-            self.feedback = (WAITS_FOR_DEVICE if holds else WAITS_FOR_TURN)(device=device, cell=holder)
+        if status is Status.RUNNING:
+            self.feedback = self._awaited()
         return status
+
+    def _awaited(self) -> Sentence:
+        if awaited := self.shared.awaited(self.devices):
+            device, holder, holds = awaited
+            return (WAITS_FOR_DEVICE if holds else WAITS_FOR_TURN)(device=device, cell=holder)
+        away = next((each for each in sorted(self.devices) if not self.shared.is_home(each)), None)
+        return NOTHING if away is None else NOT_AT_HOME(device=away)
 
     def _taken(self) -> bool:
         return self.shared.take(self.devices)

@@ -1,7 +1,7 @@
 """Others who command one board beside this bridge, and which of two bridges goes on.
 
 MQTT carries no sender: another one shows only in the numbers that the board says it has taken. The bridge
-that was there first rises above them, the one that came later yields. A bridge whose plant has a lease to lead
+that was there first rises above them, the one that came later yields. A bridge whose plant leads by a lease
 yields to nobody: another process of the plant, whose lease has ended, may rise once more before it ends.
 """
 

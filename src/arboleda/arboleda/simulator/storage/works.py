@@ -32,6 +32,7 @@ class Work:
 
     `walked_back`: an earlier start gave `last`, and the plant judges what became of it. `undone`: a power cut
     may have undone the task's step in memory; `retries` counts operators' retries up to that record.
+    `doubtful`: `last` was either of two steps in a row that command this, so it may come once more.
     """
 
     task: str
@@ -41,6 +42,7 @@ class Work:
     last: SentCommand | None = None
     recovering: bool = False
     walked_back: bool = False
+    doubtful: Step | None = None
     undone: bool = False
     retries: int = 0
 
@@ -104,6 +106,12 @@ class Works:
             return
         if again and not walked_back:
             self.wrong.append(f"{name}: {sent} leaves, and {last} before it was not done")
+        doubtful, work.doubtful = work.doubtful, None
+        if step == doubtful and not (work.at < len(work.steps) and _fits(step, work.steps[work.at])):
+            work.last = sent
+            return
+        if again and step is not None and _fits(step, work.steps[work.at - 1]):
+            work.doubtful = step
         if self._stands_at_start(name, work, step):
             work.at += 1
         while work.at < len(work.steps) and not _fits(step, work.steps[work.at]):
