@@ -56,3 +56,17 @@ def test_a_step_that_was_reset_may_have_begun_anew_at_a_rest(
     seen: TaskInProgress, begun: dict[str, float], differs: bool
 ) -> None:
     assert seen.differs(Course(seconds=3.0, begun=begun)) is differs
+
+
+def test_a_step_that_began_twice_in_one_turn_and_was_reset_each_time_may_have_begun_at_a_rest() -> None:
+    step = Leaving()
+    turns = Turns(step)
+    turns.done = 1
+    task = TaskInProgress("t", [turns, step], 0.0, whole=True)
+    for now, status in enumerate((Status.SUCCESS, Status.INVALID, Status.SUCCESS, Status.INVALID), 1):
+        step.status = status
+        task.look(float(now), float(now))
+    task.look(5.0, 5.0)  # it began, ended and was reset between two looks
+    task.ended_at = 6.0
+    assert not task.differs(Course(seconds=6.0, begun={"leave #1": 5.0}))
+    assert task.differs(Course(seconds=6.0, begun={"leave #1": 5.5}))

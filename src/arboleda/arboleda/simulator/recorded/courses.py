@@ -42,6 +42,7 @@ class TaskInProgress:
         self._repeats = False  # whether a step began more than once
         self._rests: list[float] = []  # when it came to rest
         self._over: dict[Behaviour, float] = {}  # since when steps have rested as done or failed
+        self._reset: dict[Behaviour, float] = {}  # since when steps that began have rested as never begun
 
     def look(self, rested: object, now: float) -> None:
         """Take in the steps that have begun; called if the tree came to rest otherwise than before."""
@@ -52,10 +53,8 @@ class TaskInProgress:
             is_noted = step in self._over or step.status not in OVER
             if step.status is was and is_noted and step not in self._turns:
                 continue
-            if step.status in OVER:
-                self._over.setdefault(step, now)
-            else:
-                self._over.pop(step, None)
+            _note_since(self._over, step, now, step.status in OVER)
+            _note_since(self._reset, step, now, step.status is Status.INVALID and step in self.begun)
             self._was[step] = step.status
             begins = was is not step.status and (was is Status.INVALID or step.status is Status.RUNNING)
             if begins and step in self._turns and step.status is not Status.RUNNING:
@@ -135,7 +134,7 @@ class TaskInProgress:
             return True
         if not self._repeats and not self._is_in_a_later_turn(step):
             return False
-        since = self._over.get(step, math.inf)
+        since = min(self._over.get(step, math.inf), self._reset.get(step, math.inf))
         if self._is_in_a_later_turn(step):  # one that a reset made neither done nor failed began since then
             since = self._over.get(step, self.begun[step]) - ROUNDING_S
         return at > since and any(abs(each - at) <= ROUNDING_S for each in (*self._rests, self.ended_at))
@@ -173,6 +172,14 @@ class Courses:
                 self._at_work[name] = progress
             if progress is not None and progress.rested is not run.run.rested:
                 progress.look(run.run.rested, run.context.time.now)
+
+
+def _note_since(since: dict[Behaviour, float], step: Behaviour, now: float, is_so: bool) -> None:
+    """Note since when something is so of a step, or that it is not."""
+    if is_so:
+        since.setdefault(step, now)
+    else:
+        since.pop(step, None)
 
 
 def _waits(step: Behaviour) -> bool:
