@@ -37,7 +37,8 @@ DEVICE_STILL_HELD = Phrase(
 )
 PART_IN_FREE = Phrase(
     "device.part_in_free",
-    "{cell}: {device}, which no cell holds, may hold a part; release {device} first, or take the part out by hand",
+    "{cell}: {device}, which no cell holds, may hold a part; "
+    "release {device} first, or take the part out by hand",
 )
 NOT_AT_HOME = Phrase(
     "device.not_at_home", "waits for {device}, which no cell holds and which is not seen at its home"
