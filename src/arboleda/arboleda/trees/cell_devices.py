@@ -99,8 +99,8 @@ class CellDevices:
         held = self._zones.held_by(name) & devices
         quiet = frozenset(filter(self._may_change_hands, held))
         if quiet:
-            waiting = tuple(other for other, zones in self._zones.waiting if zones & quiet)
-            granted += self._zones.give_back(quiet) + waiting  # who still waits names another holder now
+            waiting = self._zones.waiting_for(quiet)  # who still waits names another holder now
+            granted += self._zones.give_back(quiet) + waiting
             self._dispatcher.memory.vacate(quiet)
         self._dispatcher.wake(granted)
         return held == quiet

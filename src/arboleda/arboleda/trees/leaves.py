@@ -29,6 +29,11 @@ KEPT_BY_MACHINE = Phrase(
     "{arm}: zone {zones} was not free within {seconds:g} s: "
     "{device} keeps it as long as it does not report {facts}",
 )
+WAITS_FOR_ZONE = Phrase("zone.waits_for", "waits for zone {zone}, which {other} holds")
+WAITS_FOR_ZONE_TURN = Phrase("zone.waits_for_turn", "waits for zone {zone}, which {other} asked for before")
+WAITS_FOR_MACHINE = Phrase(
+    "zone.waits_for_machine", "waits for {device}, which keeps its zone as long as it does not report {facts}"
+)
 WAITS_FOR_DEVICE = Phrase("device.waits", "waits for {device}, which {cell} holds")
 WAITS_FOR_TURN = Phrase("device.waits_for_turn", "waits for {device}, which {cell} asked for before")
 DEVICE_NOT_FREE = Phrase("device.not_free", "{cell}: {devices} was not free within {seconds:g} s")
@@ -471,10 +476,26 @@ class TakeZones(Await):
         due = self.time.now >= self.until
         if due and self.recovers and self.access.will_come_free(self.robot):
             super().initialise()
-        return super().update()
+        status = super().update()
+        if status is Status.RUNNING:
+            self.feedback = self._awaited()
+        return status
 
     def _taken(self) -> bool:
         return self.access.take(self.robot, self.zones, inside=self.recovers)
+
+    def _awaited(self) -> Sentence:
+        """What it waits for; NOTHING where that is not known."""
+        if (kept := self.access.kept_by_machine(self.robot, self.zones)) is not None:
+            machine, facts = kept
+            return WAITS_FOR_MACHINE(device=machine, facts=facts)
+        if held := self.access.awaited(self.robot, self.zones):
+            zone = min(held)
+            return WAITS_FOR_ZONE(zone=zone, other=held[zone])
+        if ahead := self.access.asked_before(self.robot):
+            zone, other = ahead
+            return WAITS_FOR_ZONE_TURN(zone=zone, other=other)
+        return NOTHING
 
     def _not_free(self) -> Failure:
         zones = tuple(sorted(self.zones))
