@@ -57,13 +57,16 @@ class CellDevices:
         """True while the cell holds a device that it shares."""
         return self._zones.holder(device) == self._cell.name
 
+    def held(self) -> frozenset[str]:
+        """The shared devices that the cell holds."""
+        return self._zones.held_by(self._cell.name)
+
     def take(self, devices: frozenset[str]) -> bool:
         """Ask for shared devices, all at once; True once the cell has them.
 
         What a step that failed has left it goes back before: no cell waits for one while it holds another.
         """
-        name = self._cell.name
-        held = self._zones.held_by(name)
+        name, held = self._cell.name, self.held()
         if devices <= held:
             self._note_taken(devices)  # it may have got them while it waited
             return True

@@ -48,6 +48,7 @@ PART_IN_FREE = Phrase(
 NOT_AT_HOME = Phrase(
     "device.not_at_home", "waits for {device}, which no cell holds and which is not seen at its home"
 )
+WAITS_TO_GIVE_BACK = Phrase("device.waits_to_give_back", "waits until {devices} can be given back")
 NOT_AT_REST = Phrase("device.not_at_rest", "{cell}: {devices} did not come to rest")
 NOT_OUTSIDE = Phrase("zone.not_outside", "{arm} was not seen outside its zones")
 Guard = Callable[[], "Failure | None"]
@@ -556,6 +557,8 @@ class TakeDevices(Await):
         if awaited := self.shared.awaited(self.devices):
             device, holder, holds = awaited
             return (WAITS_FOR_DEVICE if holds else WAITS_FOR_TURN)(device=device, cell=holder)
+        if held := self.shared.held():
+            return WAITS_TO_GIVE_BACK(devices=tuple(sorted(held)))
         away = next((each for each in sorted(self.devices) if not self.shared.is_home(each)), None)
         return NOTHING if away is None else NOT_AT_HOME(device=away)
 
