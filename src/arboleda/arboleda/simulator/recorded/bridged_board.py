@@ -40,7 +40,7 @@ class BridgedBoard:
     def take_over(self, now: float, belief: Belief) -> None:
         """Begin with what the plant believes."""
         self.link.take_over(now, belief)
-        self._telemetry.plant = self._telemetry.plant_before = belief.plant
+        self._telemetry.plant, self._telemetry.plants = belief.plant, {belief.plant}
         self._telemetry.is_taken_over = True
 
     def connect(self, up: bool) -> None:
@@ -70,6 +70,7 @@ class BridgedBoard:
     def hear_plant(self, epoch: int) -> None:
         self._telemetry.is_new_plant |= epoch != self._telemetry.plant
         self._telemetry.plant = epoch
+        self._telemetry.plants.add(epoch)
         self._beats.heard = True
         self.touched |= self._motion.number is not None
 
@@ -141,7 +142,7 @@ class BridgedBoard:
         if link.up and link.heard_at + link.patience_s <= now:
             link.lose()  # what counted only in hindsight may be too old by now
         link.was_down, link.fell, link.rose, link.least_before = not link.up, False, False, link.least
-        telemetry.counted, telemetry.maybe, telemetry.plant_before = [], [], telemetry.plant
+        telemetry.counted, telemetry.maybe, telemetry.plants = [], [], {telemetry.plant}
         if commands.copies.early:
             commands.copies.end_step(now)
         self.touched = bool(commands.copies.early)

@@ -40,7 +40,7 @@ class ReportedTelemetry:
         self.counted: list[tuple[Delivery, int]] = []
         self.maybe: list[tuple[Delivery, int]] = []
         self.plant: int | None = None
-        self.plant_before: int | None = None  # after the step before; beats may come between reports
+        self.plants: set[int | None] = {None}  # of this step: beats of several may come between reports
         self.is_new_plant = False
         self.is_taken_over = False  # the first reports are not known
         self.foreign = (0, 0)
@@ -115,7 +115,7 @@ class ReportedTelemetry:
 
     def _repeats(self, report: Report, delivery: Delivery, place: int) -> bool:
         """True if a report repeats this telemetry."""
-        if report.at != delivery.at or report.plant not in (self.plant, self.plant_before):
+        if report.at != delivery.at or report.plant not in self.plants:
             return False
         before, _, after = parts(delivery.payload)
         alike = self.last and not self._numbers.given and (before, after) == self.last[:2]
