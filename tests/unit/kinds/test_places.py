@@ -10,6 +10,7 @@ from rich.console import Console
 
 from arboleda.cli import screen
 from arboleda.core.advice import in_words
+from arboleda.dispatch.belief import Belief
 from arboleda.model.errors import ConfigError
 from arboleda.model.messages import Reason, TaskState
 from arboleda.model.verbs import Verb
@@ -72,8 +73,8 @@ def attempt(cell):
 class Lab:
     """Bench with a recipe whose steps a test writes."""
 
-    def __init__(self, folder: Path, body: str) -> None:
-        self.bench = Bench(load(written(folder, PLANT, body)))
+    def __init__(self, folder: Path, body: str, plant: str = PLANT) -> None:
+        self.bench = Bench(load(written(folder, plant, body)))
         self.bench.wait(1.0)
         self.places = self.bench.plant.cells["lab"].context.places
 
@@ -89,6 +90,16 @@ def test_parts_are_where_grips_have_put_them(tmp_path: Path) -> None:
     lab = Lab(tmp_path, 'take("rack_1"), put("nest"), take("rack_2"), put("bin")')
     assert lab.run() is None
     assert lab.places.counts == {"rack_1": 0, "rack_2": 0, "nest": 1, "inside": 0, "bin": 1}
+
+
+def test_an_arm_that_tells_no_position_is_where_its_last_move_ended(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(Belief, "known_position", None)
+    plant = PLANT.replace("model: scara}", "model: scara, evidence: state}")
+    lab = Lab(tmp_path, 'take("rack_1"), put("inside"), oven.bake(), take("inside"), put("nest")', plant)
+    assert lab.run() is None
+    assert lab.places.counts == {"rack_1": 0, "rack_2": 1, "nest": 1, "inside": 0, "bin": 0}
 
 
 def test_people_fill_supplies_and_empty_outputs_before_a_task(tmp_path: Path) -> None:

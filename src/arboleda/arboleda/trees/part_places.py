@@ -10,7 +10,7 @@ from arboleda.dispatch.effectors import Handling
 from arboleda.model.commands import Command, Motion, Position, Switch
 from arboleda.model.grips import Grip
 from arboleda.model.messages import Fact, Failure, Reason
-from arboleda.model.plant_model import Cell, Workspace
+from arboleda.model.plant_model import Cell, Evidence, Workspace
 from arboleda.model.sentence import Phrase, Sentence
 
 from .cell_devices import CellDevices
@@ -217,11 +217,16 @@ class Places:
         return NO_PART(robot=device, places=tuple(targets))
 
     def _target(self, space: Workspace) -> str | None:
-        """The target at which a robot stands, as far as that is known; of several, one that is a place."""
+        """The target at which a robot stands, as far as that is known; of several, one that is a place.
+
+        Of a robot at `state`, which owes no position, it is where its last move has ended.
+        """
+        reached = self._dispatcher.reached.get(space.robot.name)
         here = self._robots.position(space.robot.name)
+        if space.robot.evidence is Evidence.STATE and self._robots.as_planned is None:
+            here = reached
         if here is None:
             return None
-        reached = self._dispatcher.reached.get(space.robot.name)
         found = [target for target, pose in space.targets.items() if pose.q == reached]
         if not found or (
             (self._places or not self._rack.isdisjoint(found)) and not _stands(space, here, reached)
