@@ -18,7 +18,7 @@ from pathlib import Path
 from arboleda.plant_file.loader import load
 
 from .dobot import DobotRig
-from .gcode import GantryRig
+from .gcode import GantryRig, MarlinRig
 from .gripper import CarryRig
 from .modbus import ModbusRig
 from .nav2 import RoundRig, WaypointsRig
@@ -40,7 +40,8 @@ RIGS: dict[str, tuple[Path | None, Callable[..., Rig]]] = {
     "ros2_control": (EXAMPLES / "ros2_control/plant.yaml", CarryRig),
     "navigate_to_pose": (EXAMPLES / "nav2/plant.yaml", RoundRig),
     "follow_waypoints": (EXAMPLES / "nav2/plant.yaml", WaypointsRig),
-    "gcode": (EXAMPLES / "gantry/bench.yaml", GantryRig),
+    "gcode-grbl": (EXAMPLES / "gantry/bench.yaml", GantryRig),
+    "gcode-marlin": (EXAMPLES / "gantry/marlin.yaml", MarlinRig),
     "pylabrobot": (EXAMPLES / "plate_bench/bench.yaml", ShakerRig),
     "pylabrobot-side_by_side": (EXAMPLES / "plate_bench/bench.yaml", SIDE_BY_SIDE),
     "serial_arm-dynamixel": (EXAMPLES / "serial_arm/desk.yaml", partial(ServoRig, maker="dynamixel")),

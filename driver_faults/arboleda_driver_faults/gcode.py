@@ -1,26 +1,27 @@
-"""Campaign of the example's gantry with GRBL under faults: it goes to two spots, and home."""
+"""Campaigns of the example's gantries with GRBL and with Marlin under faults: two spots, and home."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
-from arboleda.drivers.gcode.machine import Machine
+from arboleda.drivers.gcode.dialects import machine
 from arboleda.drivers.gcode.settings import Settings
 from arboleda.model.messages import Reason
 from arboleda.model.plant_model import PlantModel, Robot
-from arboleda.virtual.gcode.faults import FAULTS
-from arboleda.virtual.gcode.machine import VirtualGrbl
+from arboleda.virtual.gcode.faults import GRBL_FAULTS, MARLIN_FAULTS
+from arboleda.virtual.gcode.grbl import VirtualGrbl
+from arboleda.virtual.gcode.marlin import VirtualMarlin
 
 from .rig import Causes, Hear, Rig
 from .stream_loopback import Loopback
 
 NEAR_MM = 0.05
-MOVE = re.compile(rb"G53G1")
+MOVE = re.compile(rb"G1X")
 
 NO_WORK = {Reason.DEVICE_FAULT, Reason.REJECTED, Reason.NOT_HOMED}
 NO_LINK = {Reason.LINK_LOST}
-CAUSES: Causes = {
+GRBL_CAUSES: Causes = {
     "hard_limit": NO_WORK,
     "door": {Reason.STOP_UNCONFIRMED, *NO_WORK},
     "hold_pressed": NO_WORK,
@@ -46,25 +47,56 @@ CAUSES: Causes = {
 }
 
 
+MARLIN_CAUSES: Causes = {
+    "endstop_hit": NO_WORK,
+    "boot": {Reason.REBOOTED, *NO_LINK, *NO_WORK},
+    "killed": {*NO_LINK, *NO_WORK},
+    "stopped": NO_WORK,
+    "unplugged": {*NO_LINK, *NO_WORK},
+    "mute": {*NO_LINK, *NO_WORK},
+    "no_ok": {*NO_LINK, *NO_WORK},
+    "unknown": NO_WORK,
+    "motors_off": NO_WORK,
+    "torn": {*NO_LINK, *NO_WORK},
+    "noise": set(),
+    "garbled": {*NO_LINK, *NO_WORK},
+    "mistaken": {*NO_LINK, *NO_WORK},
+    "lie": {Reason.NOT_REACHED},
+    "short": {Reason.NOT_REACHED},
+    "stall": {Reason.DEADLINE, *NO_WORK},
+    "deaf": {Reason.STOP_UNCONFIRMED, *NO_WORK},
+    "no_parser": {*NO_LINK, *NO_WORK},
+    "no_keepalive": {*NO_LINK, *NO_WORK},
+    "slips": set(),
+    "slow": {Reason.DEADLINE, *NO_WORK},
+    "homing_fails": NO_WORK,
+    "second_client": {Reason.NOT_REACHED, *NO_WORK},
+}
+
+
 class GantryRig(Rig):
     """Test with a gantry that goes round; it sees where the machine truly is."""
 
     driver = "gcode"
-    causes = CAUSES
+    causes = GRBL_CAUSES
+    known: Mapping[str, str] = GRBL_FAULTS
     work = ("rack", "drill", "home")
     between_s = 40.0
     after_s = 40.0
 
     def __init__(self, example: PlantModel) -> None:
-        super().__init__(FAULTS)
+        super().__init__(self.known)
         self.model = example
         (self._gantry,) = example.robots.values()
         assert self._gantry.driver is not None and isinstance(self._gantry.driver.settings, Settings)
         self._settings = self._gantry.driver.settings
-        self._grbl = VirtualGrbl(self.faults, homed=True)
+        self._virtual = self._played()
         self._driver: Loopback | None = None
         (cell,) = example.cells
         self._spots = {name: pose.joints for name, pose in cell.reach[self._gantry.name].targets.items()}
+
+    def _played(self) -> VirtualGrbl | VirtualMarlin:
+        return VirtualGrbl(self.faults, homed=True)
 
     @property
     def robots(self) -> Sequence[Robot]:
@@ -74,11 +106,11 @@ class GantryRig(Rig):
         return f"bench visit rack drill #{number}"
 
     def join(self, hear: Hear, now: float) -> Loopback:
-        self._driver = Loopback(Machine([self._gantry], self._settings), self._grbl, hear, now)
+        self._driver = Loopback(machine([self._gantry], self._settings), self._virtual, hear, now)
         return self._driver
 
     def seen(self) -> str | None:
-        here = self._settings.joints(self._grbl.place)
+        here = self._settings.joints(self._virtual.place)
         for name, spot in self._spots.items():
             if all(abs(a - b) * 1000 < NEAR_MM for a, b in zip(here, spot, strict=True)):
                 return name
@@ -88,3 +120,20 @@ class GantryRig(Rig):
         if self._driver is None:
             return (0, 0)
         return (len(MOVE.findall(b"".join(self._driver.written))), self._driver.given)
+
+
+class MarlinRig(GantryRig):
+    """Test with a gantry that counts its steps, and is elsewhere once it has lost some."""
+
+    causes = MARLIN_CAUSES
+    known = MARLIN_FAULTS
+    tells_homing = False
+
+    def _played(self) -> VirtualMarlin:
+        self._marlin = VirtualMarlin(self.faults)
+        return self._marlin
+
+    def by_hand(self) -> None:
+        """Press the button on its board, where that is what it waits for."""
+        if self._marlin.needs_reset:
+            self._marlin.press_reset()

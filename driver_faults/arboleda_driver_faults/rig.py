@@ -79,6 +79,7 @@ class Rig(ABC):
     causes: Causes
     work: Sequence[Hashable]
     between_s = 8.0  # two tasks
+    tells_homing = True  # the driver hears of a homing at the device's own controls
     after_s = 20.0  # a fault may cause failures for so long: longer than any command of the task
 
     def __init__(self, faults: Mapping[str, str]) -> None:
@@ -282,6 +283,8 @@ class World:
                 continue
             if isinstance(advice.do, Hand):
                 self.rig.by_hand()
+                if advice.do is Hand.REFERENCE and not self.rig.tells_homing:
+                    continue  # the plant has to home it, which is the next advice
             else:
                 request = OperatorRequest(
                     at=self.now, verb=advice.do, scope=advice.scope, by_hand=advice.by_hand

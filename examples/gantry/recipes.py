@@ -8,18 +8,22 @@ from arboleda.recipes import Target, recipe, work
 
 @dataclass(frozen=True, kw_only=True)
 class Gantry:
-    """What the plant file may say of a gantry: its fastest move."""
+    """What the plant file may say of a gantry: its fastest move, and in which corner it is homed."""
 
     mm_s: float = 60.0
+    far: bool = True
 
 
 @moving_kind("gantry")
 def gantry(settings: Gantry) -> Axes:
-    """Goes over a bench; GRBL counts from its home in the far corner, so its places are below 0."""
-    x = Axis("x", unit="mm", lower=-300, upper=5, speed=settings.mm_s, step=0.02)
-    y = Axis("y", unit="mm", lower=-300, upper=5, speed=settings.mm_s, step=0.02)
-    z = Axis("z", unit="mm", lower=-60, upper=5, speed=settings.mm_s / 2, step=0.02)
-    return Axes(x, y, z)
+    """Goes over a bench; one that counts from its home in the far corner has places below 0."""
+
+    def axis(name, length, speed):
+        lower, upper = (-length, 5) if settings.far else (-5, length)
+        return Axis(name, unit="mm", lower=lower, upper=upper, speed=speed, step=0.02)
+
+    fast = settings.mm_s
+    return Axes(axis("x", 300, fast), axis("y", 300, fast), axis("z", 60, fast / 2))
 
 
 @recipe("visit")

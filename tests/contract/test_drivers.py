@@ -206,7 +206,8 @@ MESSAGES = {
     "modbus": "arboleda.drivers.modbus.machine.ModbusDevice.report",
     "opcua": "arboleda.drivers.opcua.machine.OpcUaDevice.report",
     "s7": "arboleda.drivers.s7.machine.S7Device.report",
-    "gcode": "arboleda.drivers.gcode.machine.LineReader.feed",
+    "gcode": "arboleda.drivers.gcode.lines.LineReader.feed",
+    "gcode_marlin": "arboleda.drivers.gcode.lines.LineReader.feed",
     "serial_arm": "arboleda.drivers.serial_arm.servos.Feetech.reading",
 }
 """Where each driver takes what its device says."""

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from types import ModuleType
 from typing import Any
 
 import pytest
 
-from arboleda.drivers.gcode import lines, machine
+from arboleda.drivers.gcode import grbl, grbl_lines, lines, marlin, marlin_lines
 
 from ..scripts import load
 
@@ -26,13 +27,14 @@ def test_nothing_is_raised_and_nothing_refused_counts(fuzz: Any) -> None:
     ), seen
 
 
+@pytest.mark.parametrize(("dialect", "ok"), [(grbl, grbl_lines.Answer()), (marlin, marlin_lines.Ok())])
 def test_a_driver_that_takes_ok_from_anything_would_be_found(
-    fuzz: Any, monkeypatch: pytest.MonkeyPatch
+    fuzz: Any, monkeypatch: pytest.MonkeyPatch, dialect: ModuleType, ok: object
 ) -> None:
-    class Lenient(lines.LineReader):
-        def feed(self, data: bytes) -> list[lines.Line]:
-            return [*super().feed(data), *([lines.Answer()] if b"o" in data else [])]
+    class Lenient(lines.LineReader[object]):
+        def feed(self, data: bytes) -> list[object]:
+            return [*super().feed(data), *([ok] if b"o" in data else [])]
 
-    monkeypatch.setattr(machine, "LineReader", Lenient)
+    monkeypatch.setattr(dialect, "LineReader", Lenient)
     with pytest.raises(AssertionError, match="of seed 1"):
         fuzz.run(RUNS, 1)

@@ -1,38 +1,51 @@
-"""A plant with a gantry behind GRBL under its faults; `scripts/driver-faults gcode` runs more seeds."""
+"""Plants with a gantry behind GRBL and behind Marlin under their faults.
+
+`scripts/driver-faults gcode-grbl` and `gcode-marlin` run more seeds.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
 import pytest
 
-from arboleda.drivers.gcode import machine
-from arboleda.drivers.gcode.lines import Status
+from arboleda.drivers.gcode import grbl, marlin
+from arboleda.drivers.gcode.grbl_lines import Status
 from arboleda.kinds.joints.motion import JointMotion
 from arboleda.plant_file.loader import load
-from arboleda.virtual.gcode.faults import FAULTS
-from arboleda_driver_faults.gcode import CAUSES, GantryRig
-from arboleda_driver_faults.rig import TASKS, run
+from arboleda.virtual.gcode.faults import GRBL_FAULTS, MARLIN_FAULTS
+from arboleda_driver_faults.gcode import GRBL_CAUSES, MARLIN_CAUSES, GantryRig, MarlinRig
+from arboleda_driver_faults.rig import TASKS, Rig, run
 
 from ..lengths import sample
 
-EXAMPLE = load(Path(__file__).parents[2] / "examples/gantry/bench.yaml")
+EXAMPLES = Path(__file__).parents[2] / "examples/gantry"
+GRBL = partial(GantryRig, load(EXAMPLES / "bench.yaml"))
+MARLIN = partial(MarlinRig, load(EXAMPLES / "marlin.yaml"))
 SEEDS = 8
 FEW = 1  # task, in which a fault comes by itself
 
 
-def breaches(seed: int, *names: str, tasks: int = TASKS) -> list[str]:
-    return run(GantryRig(EXAMPLE), seed, names, tasks).breaches
+def breaches(seed: int, *names: str, tasks: int = TASKS, rig: Callable[[], Rig] = GRBL) -> list[str]:
+    return run(rig(), seed, names, tasks).breaches
 
 
+@pytest.mark.parametrize("rig", [GRBL, MARLIN])
 @pytest.mark.parametrize("seed", sample(range(SEEDS), every=4))
-def test_no_false_success_no_hang_and_the_right_cause(seed: int) -> None:
-    assert breaches(seed) == []
+def test_no_false_success_no_hang_and_the_right_cause(seed: int, rig: Callable[[], Rig]) -> None:
+    assert breaches(seed, rig=rig) == []
 
 
-@pytest.mark.parametrize("fault", sample(FAULTS, every=3))
+@pytest.mark.parametrize("fault", sample(GRBL_FAULTS, every=3))
 def test_every_fault_by_itself(fault: str) -> None:
     assert breaches(1, fault, tasks=FEW) == []
+
+
+@pytest.mark.parametrize("fault", sample(MARLIN_FAULTS, every=3))
+def test_every_fault_of_marlin_by_itself(fault: str) -> None:
+    assert breaches(1, fault, tasks=FEW, rig=MARLIN) == []
 
 
 def test_a_machine_that_is_believed_anywhere_would_be_found(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -41,14 +54,22 @@ def test_a_machine_that_is_believed_anywhere_would_be_found(monkeypatch: pytest.
 
 
 def test_an_ok_that_is_an_end_would_be_found(monkeypatch: pytest.MonkeyPatch) -> None:
-    def done(self: machine.Machine, now: float, move: machine.Move, status: Status) -> None:
+    def done(self: grbl.GrblMachine, now: float, move: grbl.Move, status: Status) -> None:
         if now > move.taken_at:
             self._work = None
             self._tell(done=move.id)
 
-    monkeypatch.setattr(machine.Machine, "_go_on", done)
+    monkeypatch.setattr(grbl.GrblMachine, "_go_on", done)
     assert any("wrong cause" in each for each in breaches(3, "late_start", tasks=2))
 
 
+def test_a_switch_at_an_end_that_is_not_heard_would_be_found(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(marlin.MarlinMachine, "_fails", lambda self, now, word: None)
+    assert any(
+        "false success" in each for seed in range(3) for each in breaches(seed, "endstop_hit", rig=MARLIN)
+    )
+
+
 def test_every_fault_has_the_reasons_that_it_may_give() -> None:
-    assert set(CAUSES) == set(FAULTS)
+    assert set(GRBL_CAUSES) == set(GRBL_FAULTS)
+    assert set(MARLIN_CAUSES) == set(MARLIN_FAULTS)

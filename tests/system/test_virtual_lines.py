@@ -34,6 +34,7 @@ def example(folder: Path, plant: str, line: Path) -> str:
     [
         ("serial_arm", "--torque", "serial_arm/desk.yaml", "desk carry left right"),
         ("gcode", "--homed", "gantry/bench.yaml", "bench visit rack drill"),
+        ("gcode", "--dialect=marlin", "gantry/marlin.yaml", "bench visit rack drill"),
     ],
 )
 def test_a_task_is_done_at_a_serial_line(

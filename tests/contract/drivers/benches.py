@@ -35,6 +35,7 @@ BENCHES: dict[str, Bench] = {
     "serial_arm": serial_arm.BENCH,
     "dobot": dobot.BENCH,
     "gcode": gcode.BENCH,
+    "gcode_marlin": gcode.MARLIN_BENCH,
     "ur": ur.BENCH,
     "vda5050": vda5050.BENCH,
 }

@@ -1,35 +1,39 @@
-"""A gantry behind the driver `gcode`: its controller is played by hand on a pseudo terminal."""
+"""Gantries behind the driver `gcode`: a controller is played by hand on a pseudo terminal."""
 
 from __future__ import annotations
 
 import queue
 import threading
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
 from arboleda.plant_file.loader import load
 from arboleda.runtime.build import App, Options, build
 from arboleda.virtual.faults import Faults
-from arboleda.virtual.gcode.faults import FAULTS
-from arboleda.virtual.gcode.machine import BANNER, BEYOND, HARD_LIMIT, HOLD_BYTE, WORD, Place, VirtualGrbl
+from arboleda.virtual.gcode.faults import GRBL_FAULTS, MARLIN_FAULTS
+from arboleda.virtual.gcode.grbl import BANNER, BEYOND, HARD_LIMIT, HOLD_BYTE, VirtualGrbl
+from arboleda.virtual.gcode.machine import Place, words_of
+from arboleda.virtual.gcode.marlin import VirtualMarlin
 from arboleda.virtual.pty_line import PtyLine
 
 from ...patience import PATIENCE_S
 from .bench import HALT, LATCH, OTHER, WORK, Bench, Device, Ref
 
+Opened = tuple[App, Callable[[App], Device]]
 HOME = "home"
-POSES: dict[Place, str] = {(0.0, 0.0, 0.0): HOME, (-30.0, -20.0, -5.0): WORK, (-5.0, 0.0, 0.0): OTHER}
+POSES: dict[Place, str] = {(0.0, 0.0, 0.0): HOME, (30.0, 20.0, 5.0): WORK, (5.0, 0.0, 0.0): OTHER}
 PLANT = """
-name: grbl
+name: shop
 uses: [recipes.py]
 cells:
   shop:
     devices:
-      gantry: {{kind: gantry, driver: {{gcode: {{serial: {line}}}}}}}
+      gantry: {{kind: gantry, home_at_start: true, driver: {{gcode: {{serial: {line}, {keys}}}}}}}
     targets:
       home: {{gantry: {{mm: [0, 0, 0]}}}}
-      a: {{gantry: {{mm: [-30, -20, -5]}}}}
-      b: {{gantry: {{mm: [-5, 0, 0]}}}}
+      a: {{gantry: {{mm: [30, 20, 5]}}}}
+      b: {{gantry: {{mm: [5, 0, 0]}}}}
 """
 RECIPES = """
 from arboleda.kinds import Axes, Axis, moving_kind
@@ -37,7 +41,7 @@ from arboleda.recipes import recipe
 
 @moving_kind("gantry")
 def gantry():
-    return Axes(*(Axis(name, unit="mm", lower=-300, upper=5, speed=60, step=0.02) for name in "xyz"))
+    return Axes(*(Axis(name, unit="mm", lower=-5, upper=300, speed=60, step=0.02) for name in "xyz"))
 
 @recipe("work")
 def work_(cell):
@@ -53,7 +57,7 @@ class PlayedGrbl(VirtualGrbl):
     """Controller that answers no move by itself, and goes nowhere; a feed hold has it stand at once."""
 
     def __init__(self, told: Callable[[Place | None], bool]) -> None:
-        self.switched = Faults(FAULTS)
+        self.switched = Faults(GRBL_FAULTS)
         super().__init__(self.switched, homed=True)
         self._told = told
         self._due = b""
@@ -86,7 +90,7 @@ class PlayedGrbl(VirtualGrbl):
         return super()._take(now, byte)
 
     def _line(self, now: float, line: str) -> list[str]:
-        words = {letter: float(value) for letter, value in WORD.findall(line)}
+        words = words_of(line)
         if "X" not in words or self._locked:
             return super()._line(now, line)
         goal = (words["X"], words["Y"], words["Z"])
@@ -96,25 +100,119 @@ class PlayedGrbl(VirtualGrbl):
         return ["ok"]
 
 
+class PlayedMarlin(VirtualMarlin):
+    """Controller that answers no move by itself, and goes nowhere; it stands at once where it is stopped."""
+
+    def __init__(self, told: Callable[[Place | None], bool]) -> None:
+        self.switched = Faults(MARLIN_FAULTS)
+        super().__init__(self.switched)
+        self._told = told
+        self._due: list[str] = []
+        self.runs = self.holds = self._stands = False
+        self.lock = threading.RLock()
+
+    def step(self, now: float, data: bytes = b"") -> bytes:
+        with self.lock:
+            due, self._due = self._due, []
+            return self._sent(due) + super().step(now, data)
+
+    def says(self, *lines: str) -> None:
+        """Say lines at the next opportunity, and go on with those that wait."""
+        self._due += lines
+        self.holds = False
+
+    def rest(self, place: Place | None) -> None:
+        """Stand, at this place if there is one."""
+        self.runs = self.holds = False
+        self._goal = place or self._goal
+
+    @property
+    def _is_busy(self) -> bool:
+        return self.holds or (self._waits and self.runs) or super()._is_busy
+
+    def _quick_stop(self, now: float) -> None:
+        self.runs = False
+        if not self._stands:  # or it is the same order, said again after the ok of its move
+            self._told(None)
+        self._stands = True
+
+    def _shown(self) -> str:
+        self._stands = False
+        return super()._shown()
+
+    def _move(self, now: float, line: str) -> list[str]:
+        words = words_of(line)
+        goal = (words["X"], words["Y"], words["Z"])
+        if self._told(goal):
+            self._goal = goal
+            return ["ok"]
+        self.holds = True
+        return []
+
+
 class PlayedGantry:
     """It answers what it is asked; moves wait for the test, but those home, which it does at once."""
 
-    def __init__(self, line: Path) -> None:
+    def __init__(self) -> None:
         self._orders: queue.Queue[tuple[str, Ref]] = queue.Queue()
         self._goals: list[Place] = []
-        self._homes, self._stop_word = True, HALT  # one byte is both
-        self._grbl = PlayedGrbl(self._hear)
+        self._homes, self._stop_word = True, HALT  # one word of G-code is both
+        self._controller: PlayedGrbl | PlayedMarlin
+
+    def begin(self, line: Path) -> None:
         # By name: once it was pulled, its number may be that of another test's line.
-        self.line = PtyLine(self._grbl, link=str(line))
-        self.line.start()
+        self._line = PtyLine(self._controller, link=str(line))
+        self._line.start()
 
     def told(self) -> tuple[str, Ref]:
         return self._orders.get(timeout=PATIENCE_S)
 
     def accepts(self, ref: Ref) -> None:
-        with self._grbl.lock:
-            self._grbl.runs = True
-            self._grbl.says("ok")
+        with self._controller.lock:
+            self._controller.runs = True
+            self._controller.says("ok")
+
+    def rests(self) -> None:
+        pass  # after a stop it stands
+
+    def answers(self, ref: Ref, word: str) -> None:
+        raise AssertionError("a gantry is asked nothing")
+
+    def hush(self) -> None:
+        self._controller.switched.switch("mute", on=True)
+
+    def vanish(self) -> None:
+        self._controller.switched.switch("unplugged", on=True)
+
+    def come_back(self) -> None:
+        self._homes = False  # whatever it is told to do from now on is an order
+        self._controller.switched.switch("unplugged", on=False)
+
+    def latches(self) -> None:
+        pass
+
+    def close(self) -> None:
+        self._line.stop()
+
+    def _hear(self, goal: Place | None) -> bool:
+        """Note an order: a stop, or a move; True for a move that is made at once."""
+        if goal is None:
+            self._orders.put((self._stop_word, None))
+            self._stop_word = HALT if self._homes else LATCH
+            return False
+        if POSES[goal] == HOME and self._homes:
+            return True
+        self._goals.append(goal)
+        self._orders.put((POSES[goal], len(self._goals)))
+        return False
+
+
+class GrblGantry(PlayedGantry):
+    """Gantry whose controller runs GRBL."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._controller = self._grbl = PlayedGrbl(self._hear)
 
     def finishes(self, ref: Ref, *, there: bool = True) -> None:
         assert isinstance(ref, int)
@@ -132,53 +230,49 @@ class PlayedGantry:
             self._grbl.lock_up()
         return "gave up (hard_limit"
 
-    def rests(self) -> None:
-        pass  # after a feed hold it stands
-
-    def answers(self, ref: Ref, word: str) -> None:
-        raise AssertionError("a gantry is asked nothing")
-
-    def hush(self) -> None:
-        self._grbl.switched.switch("mute", on=True)
-
     def boots(self) -> None:
         with self._grbl.lock:
             self._grbl.says(BANNER)
             self._grbl.lock_up()
 
-    def vanish(self) -> None:
-        self._grbl.switched.switch("unplugged", on=True)
 
-    def come_back(self) -> None:
-        self._homes = False  # whatever it is told to do from now on is an order
-        self._grbl.switched.switch("unplugged", on=False)
+class MarlinGantry(PlayedGantry):
+    """Gantry whose controller runs Marlin."""
 
-    def latches(self) -> None:
-        pass
+    def __init__(self) -> None:
+        super().__init__()
+        self._controller = self._marlin = PlayedMarlin(self._hear)
 
-    def close(self) -> None:
-        self.line.stop()
+    def finishes(self, ref: Ref, *, there: bool = True) -> None:
+        assert isinstance(ref, int)
+        with self._marlin.lock:
+            self._marlin.rest(self._goals[ref - 1] if there else None)
 
-    def _hear(self, goal: Place | None) -> bool:
-        """Note an order: a feed hold, or a move; True for a move that is made at once."""
-        if goal is None:
-            self._orders.put((self._stop_word, None))
-            self._stop_word = HALT if self._homes else LATCH
-            return False
-        if POSES[goal] == HOME and self._homes:
-            return True
-        self._goals.append(goal)
-        self._orders.put((POSES[goal], len(self._goals)))
-        return False
+    def rejects(self, ref: Ref) -> str:
+        with self._marlin.lock:
+            self._marlin.says('echo:Unknown command: "G1"', "ok")
+        return "(unknown_command"
+
+    def gives_up(self, ref: Ref) -> str:
+        with self._marlin.lock:
+            self._marlin.says("echo:endstops hit:  X:1.00")
+        return "gave up (endstop_hit"
+
+    def boots(self) -> None:
+        with self._marlin.lock:
+            self._marlin.rest(None)
+            self._marlin.press_reset()
 
 
-def _open(folder: Path, state: Path) -> tuple[App, Callable[[App], Device]]:
+def _open(folder: Path, state: Path, *, gantry: type[GrblGantry | MarlinGantry], keys: str) -> Opened:
     folder.mkdir()
-    gantry = PlayedGantry(folder / "line")
-    (folder / "plant.yaml").write_text(PLANT.format(line=gantry.line.path), "utf-8")
+    played = gantry()
+    played.begin(folder / "line")
+    (folder / "plant.yaml").write_text(PLANT.format(line=folder / "line", keys=keys), "utf-8")
     (folder / "recipes.py").write_text(RECIPES, "utf-8")
     app = build(load(folder / "plant.yaml"), ("orchestrator",), Options(state_dir=state))
-    return app, lambda app: gantry
+    return app, lambda app: played
 
 
-BENCH = Bench(open=_open)
+BENCH = Bench(open=partial(_open, gantry=GrblGantry, keys="dialect: grbl"))
+MARLIN_BENCH = Bench(open=partial(_open, gantry=MarlinGantry, keys="dialect: marlin, stop_keeps_place: true"))

@@ -1,39 +1,54 @@
-"""The driver of a machine with GRBL and a virtual one, under a clock that tests move."""
+"""The driver of machines of axes and virtual ones, under a clock that tests move."""
 
 from __future__ import annotations
 
 import itertools
+from abc import ABC, abstractmethod
+from collections.abc import Mapping
 from pathlib import Path
 
-from arboleda.drivers.gcode.machine import Machine
+from arboleda.drivers.gcode.dialects import machine
 from arboleda.drivers.gcode.settings import Settings
 from arboleda.kinds.joints import MoveJoints
 from arboleda.model.commands import Command, Home, Stop, StopMode
 from arboleda.model.messages import Report
+from arboleda.model.plant_model import Robot
 from arboleda.plant_file.loader import load
 from arboleda.virtual.faults import Faults
-from arboleda.virtual.gcode.faults import FAULTS
-from arboleda.virtual.gcode.machine import VirtualGrbl
+from arboleda.virtual.gcode.faults import GRBL_FAULTS, MARLIN_FAULTS
+from arboleda.virtual.gcode.grbl import VirtualGrbl
+from arboleda.virtual.gcode.marlin import VirtualMarlin
 from arboleda_driver_faults.stream_loopback import Loopback
 
-EXAMPLE = Path(__file__).parents[3] / "examples/gantry/bench.yaml"
-MODEL = load(EXAMPLE)
-(GANTRY,) = MODEL.robots.values()
-assert GANTRY.driver is not None and isinstance(GANTRY.driver.settings, Settings)
-SETTINGS = GANTRY.driver.settings
+EXAMPLES = Path(__file__).parents[3] / "examples/gantry"
 
 
-class GrblRig:
+def gantry(file: str) -> tuple[Robot, Settings]:
+    """The gantry of an example, and the settings of its driver."""
+    (robot,) = load(EXAMPLES / file).robots.values()
+    assert robot.driver is not None and isinstance(robot.driver.settings, Settings)
+    return robot, robot.driver.settings
+
+
+class GcodeRig(ABC):
     """Machine and controller, connected; `report` is the last that the plant would have."""
 
-    def __init__(self, *on: str, homed: bool = True, **changes: object) -> None:
-        self.faults = Faults(FAULTS, on)
-        self.grbl = VirtualGrbl(self.faults, homed=homed)
+    example = "bench.yaml"
+    known: Mapping[str, str] = GRBL_FAULTS
+
+    def __init__(self, *on: str, **changes: object) -> None:
+        self.faults = Faults(self.known, on)
+        self.robot, settings = gantry(self.example)
+        settings = Settings(**{**vars(settings), **changes})  # type: ignore[arg-type]
         self.reports: list[Report] = []
-        settings = Settings(**{**vars(SETTINGS), **changes})  # type: ignore[arg-type]
-        self.line = Loopback(Machine([GANTRY], settings), self.grbl, self.reports.append, 100.0)
+        driver = machine([self.robot], settings)
+        self.line = Loopback(driver, self.played(), self.reports.append, 100.0)
         self._numbers = itertools.count(1)
         self.wait(0.5)
+
+    @abstractmethod
+    def played(self) -> VirtualGrbl | VirtualMarlin:
+        """The virtual machine at the other end."""
 
     @property
     def report(self) -> Report:
@@ -68,13 +83,13 @@ class GrblRig:
         raise AssertionError(f"no {name}; the last report is {self.report}")
 
     def move(self, *mm: float) -> str:
-        return self.ask(MoveJoints(id=self._id(), robot=GANTRY.name, q=tuple(each / 1000 for each in mm)))
+        return self.ask(MoveJoints(id=self._id(), robot=self.robot.name, q=tuple(each / 1000 for each in mm)))
 
     def home(self) -> str:
-        return self.ask(Home(id=self._id(), robot=GANTRY.name))
+        return self.ask(Home(id=self._id(), robot=self.robot.name))
 
     def stop(self, mode: StopMode = StopMode.HALT) -> str:
-        return self.ask(Stop(id=self._id(), robot=GANTRY.name, mode=mode))
+        return self.ask(Stop(id=self._id(), robot=self.robot.name, mode=mode))
 
     def ask(self, command: Command) -> str:
         assert self.line.ask(command) is None
@@ -85,3 +100,31 @@ class GrblRig:
 
     def _go_on(self, end: float) -> None:
         self.line.pass_time(min(max(self.line.next_deadline, self.line.now + 0.001), end))
+
+
+class GrblRig(GcodeRig):
+    """Machine with GRBL."""
+
+    def __init__(self, *on: str, homed: bool = True, **changes: object) -> None:
+        self._homed = homed
+        super().__init__(*on, **changes)
+
+    def played(self) -> VirtualGrbl:
+        self.grbl = VirtualGrbl(self.faults, homed=self._homed)
+        return self.grbl
+
+
+class MarlinRig(GcodeRig):
+    """Machine with Marlin; `homed`: the plant has homed it."""
+
+    example = "marlin.yaml"
+    known = MARLIN_FAULTS
+
+    def __init__(self, *on: str, homed: bool = True, **changes: object) -> None:
+        super().__init__(*on, **changes)
+        if homed:
+            self.until(done=self.home(), homed=True)
+
+    def played(self) -> VirtualMarlin:
+        self.marlin = VirtualMarlin(self.faults)
+        return self.marlin

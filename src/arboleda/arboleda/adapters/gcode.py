@@ -1,10 +1,11 @@
-"""The driver `gcode`: machines of axes with GRBL on a serial line, or at a TCP port."""
+"""The driver `gcode`: machines of axes with GRBL or Marlin on a serial line, or at a TCP port."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 
 from arboleda.adapters.stream import StreamDriver
+from arboleda.drivers.gcode.dialects import machine
 from arboleda.drivers.gcode.machine import Machine
 from arboleda.drivers.gcode.settings import Settings
 from arboleda.drivers.port import driver
@@ -20,4 +21,4 @@ class Gcode(StreamDriver):
         self._settings = settings
 
     def machine(self, devices: Sequence[Robot]) -> Machine:
-        return Machine(devices, self._settings)
+        return machine(devices, self._settings)

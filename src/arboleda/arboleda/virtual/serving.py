@@ -35,10 +35,10 @@ class Controller(Protocol):
     def stop(self) -> None: ...
 
 
-def with_faults(text: str, known: Mapping[str, str]) -> str:
+def with_faults(text: str, known: Mapping[str, str], title: str = "Faults") -> str:
     """The help of a command, with its faults listed."""
     rows = "\n".join(f"  {name}: {what}" for name, what in known.items())
-    return f"{text}\n\n\b\nFaults:\n{rows}"
+    return f"{text}\n\n\b\n{title}:\n{rows}"
 
 
 def serve(

@@ -1,5 +1,5 @@
-"""The driver `gcode` without its line: machines of axes whose controller runs GRBL 1.1.
+"""The driver `gcode` without its line: machines of axes whose controller runs GRBL 1.1 or Marlin.
 
-`lines.py` is what is on the wire, `machine.py` what the driver makes of it, `settings.py` has the keys of the
-plant file.
+`machine.py` is what both dialects have in common, `grbl.py` and `marlin.py` what the driver makes of either,
+`grbl_lines.py` and `marlin_lines.py` what is on the wire; `settings.py` has the keys of the plant file.
 """

@@ -1,69 +1,30 @@
-"""State machine of the driver `gcode`: one machine with GRBL, its work and its stops, without a line."""
+"""State machine of the driver `gcode`, without a line: the connection, the commands, what the plant hears.
+
+What a firmware says and hears is its dialect's: `grbl.py`, `marlin.py`.
+"""
 
 from __future__ import annotations
 
 import math
+from abc import ABC, abstractmethod
 from collections.abc import Sequence
-from dataclasses import dataclass
-from enum import Enum, auto
 
 from arboleda.kinds.joints import Jointed, MoveJoints
 from arboleda.model.commands import Command, Home, Stop, StopMode
-from arboleda.model.facts import HEALTH, WELL
 from arboleda.model.messages import Report
-from arboleda.model.plant_model import MotionState, Robot
+from arboleda.model.plant_model import Robot
 
 from ..link import Close, Closed, CommandNotSent, CommandRequest, Open, Opened
 from ..port import lost
 from ..stream import Event, Message, Write
-from .lines import HOLD, QUERY, RESET, Alarm, Answer, Banner, Line, LineReader, State, Status
 from .settings import MM, Settings
 
 AGAIN_S = 0.5  # between two tries to open the line
-SILENT_S = 1.0  # a controller answers a query in milliseconds
-BOOT_S = 3.0  # an Arduino boots when its line is opened
 ANSWER_S = 3.0  # to a line, while nothing else is under way
-SETTLE_S = 0.5  # one that idles for so long away from its goal has ended there
 HOMING_S = 120.0
-MOVES = {State.RUN, State.JOG, State.HOME, State.HOLD}
-RESETTABLE = {State.HOLD: (0,), State.DOOR: (0, 1)}  # there nothing moves any more, and the place is kept
-TROUBLES = {
-    State.DOOR: "door",
-    State.CHECK: "check_mode",
-    State.SLEEP: "asleep",
-    State.HOLD: "hold",
-}
 
 
-class Step(Enum):
-    """Step of a stop, or of the way to readiness."""
-
-    HOLDING = auto()  # until the machine has come to rest
-    RESETTING = auto()  # until the controller has begun anew
-
-
-@dataclass(kw_only=True)
-class Move:
-    """Line of a move: taken when it is answered, over when the controller idles after that."""
-
-    id: str
-    q: tuple[float, ...]
-    sent_at: float
-    taken_at: float = math.inf
-    idle_since: float | None = None
-
-
-@dataclass(kw_only=True)
-class Homing:
-    """Homing cycle: a reset where one is needed, the cycle, and its answer."""
-
-    id: str
-    began_at: float
-    sent: bool = False
-    answered: bool = False
-
-
-class Machine:
+class Machine(ABC):
     """State machine of one machine of axes; `step` takes events and returns actions and reports."""
 
     def __init__(self, devices: Sequence[Robot], settings: Settings) -> None:
@@ -77,7 +38,6 @@ class Machine:
         self._open, self._open_at = False, -math.inf
         self._boot = 1
         self._latched = self._left_at_work = self._news = False
-        self._known = False  # it has told a status before, on this line or an earlier one
         self._reported_at = -math.inf
         self._told: dict[str, str] = {}
         self._forget_link(0.0)
@@ -93,22 +53,54 @@ class Machine:
             self._take(now, event)
         self._pass_time(now)
         due = self._news or now >= self._reported_at + self._settings.poll_s
-        if self._open and self._status is not None and due:
-            self._out.append(self._report(now, self._status))
+        if self._open and self._is_heard and due:
+            self._news, self._reported_at = False, now
+            self._out.append(self._report(now).again(now, **self._told))
         out, self._out = self._out, []
         return out
 
+    # What is the dialect's.
+
+    @abstractmethod
     def _forget_link(self, now: float) -> None:
-        self._lines = LineReader()
-        self._status: Status | None = None
+        """Begin with a new line, of which nothing is known."""
         self._heard_at, self._query_at = now, now
-        self._patience_s = BOOT_S
-        self._work: Move | Homing | None = None
-        self._alarm: str | None = None  # the last one thrown, until the state is another one
-        self._step: Step | None = None
-        self._step_at = now
-        self._resets = False  # a reset from here has not ended yet
+        self._is_heard = False  # has told a position on this line
         self._stop_id = ""
+
+    def _greet(self, now: float) -> None:  # noqa: B027 - a controller that answers queries needs none
+        """Begin to speak on a line that was opened just now."""
+
+    @property
+    @abstractmethod
+    def _at_work(self) -> bool:
+        """True while it moves, homes or is being stopped."""
+
+    @abstractmethod
+    def _listen(self, now: float, data: bytes) -> None:
+        """Take what it says."""
+
+    @abstractmethod
+    def _wait(self, now: float) -> None:
+        """Do what is due while the line is open."""
+
+    @abstractmethod
+    def _move(self, now: float, command: MoveJoints) -> None:
+        """Begin a move, or refuse it."""
+
+    @abstractmethod
+    def _home(self, now: float, command: Home) -> None:
+        """Begin to home, or refuse it."""
+
+    @abstractmethod
+    def _halt(self, now: float) -> None:
+        """Bring it to a stop, and have nothing go on after that."""
+
+    @abstractmethod
+    def _report(self, now: float) -> Report:
+        """What it is like now, without the ends of commands."""
+
+    # The connection.
 
     def _take(self, now: float, event: Event) -> None:
         if isinstance(event, CommandRequest):
@@ -116,71 +108,48 @@ class Machine:
         elif isinstance(event, Opened):
             self._forget_link(now)
             self._open = True
+            self._greet(now)
         elif isinstance(event, Closed):
             if self._open or self._open_at == math.inf:  # else it was closed from here
                 self._lose(now, event.why)
         elif self._open:
-            for line in self._lines.feed(event.data):
-                if self._open:
-                    self._hear(now, line)
+            self._listen(now, event.data)
 
     def _pass_time(self, now: float) -> None:
-        if not self._open:
-            if self._open_at <= now:
-                self._open_at = math.inf
-                self._out.append(Open())
-            return
-        if now - self._heard_at > self._patience_s:
-            self._close(
-                now, f"it has told no status for {self._patience_s:g} s; is it GRBL 1.1, at this baud?"
-            )
-        elif isinstance(self._work, Move) and min(self._work.taken_at, now) - self._work.sent_at > ANSWER_S:
-            self._close(now, f"it has not answered a move for {ANSWER_S:g} s")
-        elif now >= self._query_at:
-            self._query_at = now + self._settings.poll_s
-            self._out.append(Write(data=QUERY))
+        if self._open:
+            self._wait(now)
+        elif self._open_at <= now:
+            self._open_at = math.inf
+            self._out.append(Open())
 
     def _close(self, now: float, why: str) -> None:
         self._out.append(Close())
         self._lose(now, why)
 
     def _lose(self, now: float, why: str) -> None:
-        self._left_at_work = self._left_at_work or self._work is not None or self._step is not None
+        self._left_at_work = self._left_at_work or self._at_work
         self._open, self._open_at = False, now + AGAIN_S
         self._forget_link(now)
         self._out.append(lost(self._robot.name, at=now, why=f"{self._settings.peer}: {why}"))
 
+    def _write(self, line: str) -> None:
+        self._out.append(Write(data=line.encode("ascii") + b"\n"))
+
     # Commands.
 
     def _command(self, now: float, command: Command) -> None:
-        if self._status is None:
+        if not self._is_heard:
             self._out.append(CommandNotSent(why=f"{self._settings.peer} is not connected"))
         elif isinstance(command, Stop):
             self._stop(now, command)
-        elif self._work is not None or self._step is not None:
+        elif self._at_work:
             self._reject(command.id, "busy")
         elif isinstance(command, MoveJoints):
-            self._move(now, command, self._status)
+            self._move(now, command)
         elif isinstance(command, Home):
-            self._work = Homing(id=command.id, began_at=now)  # goes on once it was reported as not homed
-            self._tell(accepted=command.id)
+            self._home(now, command)
         else:
             self._out.append(CommandNotSent(why=f"G-code has no word for {type(command).__name__} here"))
-
-    def _move(self, now: float, command: MoveJoints, status: Status) -> None:
-        if status.state is not State.IDLE:
-            self._reject(command.id, self._trouble(status) or "not_idle")
-            return
-        start = self._settings.joints(status.position)
-        ways = [abs(there - here) for here, there in zip(start, command.q, strict=True)]
-        share = self._settings.model_speed_share
-        time_s = max(way / (joint.speed * share) for way, joint in zip(ways, self._robot.joints, strict=True))
-        feed = math.hypot(*ways) * MM / time_s * 60 if time_s > 0 else 60.0
-        self._work = Move(id=command.id, q=command.q, sent_at=now)
-        self._write(self._settings.move(command.q, max(feed, 1.0)))
-
-    def _write(self, line: str) -> None:
-        self._out.append(Write(data=line.encode("ascii") + b"\n"))
 
     def _stop(self, now: float, command: Stop) -> None:
         if command.mode is not StopMode.HALT:
@@ -192,151 +161,14 @@ class Machine:
         self._stop_id = command.id
         self._halt(now)
 
-    def _halt(self, now: float) -> None:
-        """Hold the feed; once all stands, a reset empties the queue. Homing hears nothing but a reset."""
-        homes = isinstance(self._work, Homing) or (
-            self._status is not None and self._status.state is State.HOME
-        )
-        self._work, self._news = None, True
-        if homes:
-            self._reset(now)
-        else:
-            self._step, self._step_at = Step.HOLDING, now
-            self._out.append(Write(data=HOLD))
-
-    def _reset(self, now: float) -> None:
-        self._step, self._step_at = Step.RESETTING, now
-        self._resets = True
-        self._out.append(Write(data=RESET))
-
-    # What it says.
-
-    def _hear(self, now: float, line: Line) -> None:
-        if isinstance(line, Status):
-            if not line.position or len(line.position) < len(self._settings.axes):
-                self._close(now, "its status has no position of the machine; set $10=1")
-                return
-            self._look(now, line)
-        elif isinstance(line, Answer):
-            self._answered(now, line)
-        elif isinstance(line, Alarm):
-            self._alarm, self._news = line.word, True
-            if self._work is not None:
-                self._fail(self._work.id, line.word)
-        elif isinstance(line, Banner):
-            self._begun(now)
-
-    def _begun(self, now: float) -> None:
-        """Take the banner: the end of a reset from here, or a boot."""
-        self._heard_at = now
-        resets, self._resets = self._resets, False
-        if self._step is Step.RESETTING:
-            self._step, self._news = None, True
-            self._tell(accepted=self._stop_id)
-            self._stop_id = ""
-        elif resets:
-            return  # the end of a reset, after which another stop was given
-        elif self._known:
-            self._boot += 1
-            self._told, self._work, self._step, self._alarm = {}, None, None, None
-            self._left_at_work, self._news = False, True
-
-    def _answered(self, now: float, answer: Answer) -> None:
-        work = self._work
-        if isinstance(work, Move) and work.taken_at == math.inf:
-            if answer.error:
-                self._work = None
-                self._reject(work.id, answer.word)
-            else:
-                work.taken_at = now
-                self._tell(accepted=work.id)
-        elif isinstance(work, Homing) and work.sent and not work.answered:
-            work.answered = True
-            if answer.error:
-                self._fail(work.id, answer.word)
-
-    def _look(self, now: float, status: Status) -> None:
-        before, self._status = self._status, status
-        self._heard_at, self._patience_s, self._known = now, SILENT_S, True
-        if status.state is not State.ALARM:
-            self._alarm = None
-        if self._left_at_work:  # nobody waits for that work any more
-            self._left_at_work = False
-            self._halt(now)
-        if self._step is not None:
-            self._go_on_stopping(now, status)
-        elif isinstance(self._work, Homing):
-            self._go_home(now, self._work, status)
-        elif self._work is not None:
-            self._go_on(now, self._work, status)
-        changes = before is None or (before.state, before.part, before.door) != (
-            status.state,
-            status.part,
-            status.door,
-        )
-        self._news = self._news or changes
-
-    def _go_on_stopping(self, now: float, status: Status) -> None:
-        if self._step is Step.RESETTING:
-            if now - self._step_at > SILENT_S:
-                self._reset(now)  # what it asks for is the same however often it is said
-            return
-        stands = status.part in RESETTABLE.get(status.state, ())
-        late = now - self._step_at > SETTLE_S
-        if (
-            stands
-            or status.state in (State.ALARM, State.CHECK, State.SLEEP)
-            or (late and status.state is State.IDLE)
-        ):
-            self._reset(now)
-        elif late:
-            self._step_at = now
-            self._out.append(Write(data=HOLD))
-
-    def _go_on(self, now: float, move: Move, status: Status) -> None:
-        trouble = self._trouble(status)
-        if trouble is not None:
-            self._fail(move.id, trouble)
-            if status.state in RESETTABLE:
-                self._halt(now)  # or it would go on once the door is closed, or somebody says so
-            return
-        if now <= move.taken_at or status.state is not State.IDLE:
-            move.idle_since = None
-            return
-        move.idle_since = now if move.idle_since is None else move.idle_since
-        there = self._robot.motion.stands_at(self._settings.joints(status.position), move.q)
-        # Idle away from the goal may be the moment before the begin: only one that stays so has ended.
-        if there or now - move.idle_since > SETTLE_S:
-            self._work = None
-            self._tell(done=move.id)
-
-    def _go_home(self, now: float, homing: Homing, status: Status) -> None:
-        ready = status.state is State.IDLE and (homing.answered or not self._settings.homing)
-        if ready:
-            self._work = None
-            self._tell(done=homing.id)
-        elif now - homing.began_at > HOMING_S:
-            self._fail(homing.id, "homing_has_no_end")
-            self._halt(now)
-        elif homing.sent or status.state is State.RUN:
-            return
-        elif status.state in (State.IDLE, State.ALARM):
-            homing.sent, homing.answered = True, False
-            self._write("$H" if self._settings.homing else "$X")
-        elif status.part in RESETTABLE.get(status.state, ()) or status.state in (State.CHECK, State.SLEEP):
-            self._reset(now)
-
-    def _fail(self, id: str, word: str) -> None:
-        self._work = None
-        self._tell(failed=id, failure=word)
+    def _feed(self, start: Sequence[float], goal: Sequence[float]) -> float:
+        """The speed of a straight move, mm/min, at which no axis is faster than it may be."""
+        ways = [abs(there - here) for here, there in zip(start, goal, strict=True)]
+        share = self._settings.model_speed_share
+        time_s = max(way / (joint.speed * share) for way, joint in zip(ways, self._robot.joints, strict=True))
+        return max(math.hypot(*ways) * MM / time_s * 60 if time_s > 0 else 60.0, 1.0)
 
     # What the plant hears.
-
-    def _trouble(self, status: Status) -> str | None:
-        """The word for what keeps the machine from moving; None if nothing does."""
-        if status.state is State.ALARM:
-            return self._alarm or "locked"
-        return TROUBLES.get(status.state)
 
     def _tell(self, **ids: str) -> None:
         self._told |= {name: id for name, id in ids.items() if id}
@@ -345,31 +177,3 @@ class Machine:
     def _reject(self, id: str, word: str) -> None:
         if id:
             self._tell(rejected=id, refusal=word)
-
-    def _state(self, status: Status) -> MotionState:
-        if isinstance(self._work, Homing):
-            return MotionState.NOT_HOMED
-        if self._work is not None or self._step is not None or status.state in MOVES:
-            return MotionState.MOVING
-        if status.state is State.ALARM and self._alarm is None:
-            return MotionState.NOT_HOMED
-        if self._latched:
-            return MotionState.STOP_LATCHED
-        return MotionState.STOPPED if status.state is State.IDLE else MotionState.FAULT
-
-    def _report(self, now: float, status: Status) -> Report:
-        self._news, self._reported_at = False, now
-        report = Report(
-            at=now,
-            robot=self._robot.name,
-            boot_id=self._boot,
-            state=self._state(status),
-            homed=status.state not in (State.ALARM, State.HOME) and not isinstance(self._work, Homing),
-            q=self._settings.joints(status.position),
-            facts=(
-                (HEALTH, self._trouble(status) or WELL),
-                ("door", "open" if status.door or status.state is State.DOOR else "closed"),
-                ("mode", status.state.value.lower()),
-            ),
-        )
-        return report.again(now, **self._told)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import ClassVar, Literal
+from typing import Literal
 
 from arboleda.kinds.joints import Jointed
 from arboleda.model.facts import HEALTH
@@ -21,18 +21,18 @@ MM = 1000.0
 class Settings(StreamAddress):
     """Settings of the driver `gcode`: the line, and the letter of each axis with its zero.
 
-    `zeros` are the positions of the machine, mm, at which the axes of the model are at 0.
+    `zeros_mm` are the positions of the machine at which the axes of the model are at 0; `stop_keeps_place`
+    declares that a machine with Marlin loses no step where it stops without braking.
     """
 
     baud: int = 115200
-    dialect: Literal["grbl"] = "grbl"
+    dialect: Literal["grbl", "marlin"] = "grbl"
     axes: tuple[Literal["X", "Y", "Z"], ...] = ("X", "Y", "Z")
     zeros_mm: tuple[float, ...] = ()
     homing: bool = True
+    stop_keeps_place: bool = False
     speed_percent: int = 50
     poll_s: float = 0.1
-    reported_facts: ClassVar[tuple[str, ...]] = (HEALTH, "door", "mode")
-    home_clears_faults: ClassVar[bool] = True  # homing begins with a reset where that is needed
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -44,6 +44,18 @@ class Settings(StreamAddress):
             raise DriverError(f"speed_percent is {self.speed_percent}; allowed: 1 to 100")
         if not 0.05 <= self.poll_s <= 0.5:
             raise DriverError(f"poll_s is {self.poll_s:g}; allowed: 0.05 to 0.5")
+        if self.stop_keeps_place and self.dialect == "grbl":
+            raise DriverError("stop_keeps_place is for dialect: marlin; GRBL keeps its place by itself")
+
+    @property
+    def reported_facts(self) -> tuple[str, ...]:
+        """The facts that the machine tells; Marlin knows of no door."""
+        return (HEALTH, "door", "mode") if self.dialect == "grbl" else (HEALTH, "mode")
+
+    @property
+    def home_clears_faults(self) -> bool:
+        """True for GRBL, where homing begins with a reset where that is needed; Marlin needs one by hand."""
+        return self.dialect == "grbl"
 
     @property
     def model_speed_share(self) -> float:
@@ -60,11 +72,10 @@ class Settings(StreamAddress):
         rows = zip(self.axes, self.zeros, strict=True)
         return tuple((position[LETTERS.index(letter)] - zero) / MM for letter, zero in rows)
 
-    def move(self, q: tuple[float, ...], mm_per_min: float) -> str:
-        """The line that moves the axes to `q`, m, in the machine's own coordinates."""
+    def words(self, q: tuple[float, ...]) -> str:
+        """The words of G-code for the axes at `q`, m."""
         rows = zip(self.axes, q, self.zeros, strict=True)
-        words = "".join(f"{letter}{at * MM + zero:.3f}" for letter, at, zero in rows)
-        return f"G90G21G53G1{words}F{mm_per_min:.1f}"
+        return "".join(f"{letter}{at * MM + zero:.3f}" for letter, at, zero in rows)
 
     def problems(self, device: Robot) -> Iterable[tuple[tuple[str | int, ...], str]]:
         """Settings that do not fit a device, each as its keys and a sentence."""

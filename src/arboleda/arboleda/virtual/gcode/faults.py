@@ -1,8 +1,8 @@
-"""Faults of a virtual machine with GRBL, with a sentence on each."""
+"""Faults of virtual machines of axes, with a sentence on each, by what their controllers run."""
 
 from __future__ import annotations
 
-FAULTS = {
+GRBL_FAULTS = {
     "hard_limit": "whenever it moves a limit switch is hit: alarm 1, and it is locked until it is homed",
     "door": "its door is open while this is on; it stands, and goes on only when it is told to",
     "hold_pressed": "whenever it moves somebody presses feed hold at it",
@@ -25,4 +25,29 @@ FAULTS = {
     "homing_fails": "the homing cycle finds no switch: alarm 9",
     "second_client": "whenever it moves another program sends it elsewhere",
     "asleep": "it was sent to sleep",
+}
+MARLIN_FAULTS = {
+    "endstop_hit": "whenever it moves a switch at the end of an axis is hit: it stands, and counts on",
+    "boot": "its controller is reset while this is on, and its place is lost",
+    "killed": "its own protection halts it: it says nothing more until it is reset",
+    "stopped": "its own protection stops it: it answers, and makes no move until it is reset",
+    "unplugged": "the cable is pulled while this is on",
+    "mute": "it answers nothing",
+    "no_ok": "moves are made and not answered",
+    "unknown": "moves are answered as an unknown command",
+    "motors_off": "somebody switches its motors off at its screen: it asks to be homed first",
+    "torn": "every third line lacks its end",
+    "noise": "stray lines come between the others",
+    "garbled": "the positions of every second M114 are no numbers",
+    "mistaken": "every seventh line comes to it with a mistake: it asks for it again",
+    "lie": "moves are answered, and never made",
+    "short": "moves end two millimetres before their goal",
+    "stall": "a move stands still half way, and the controller says that it is busy",
+    "deaf": "M410 and M112 wait behind the lines before them",
+    "no_parser": "it is built without EMERGENCY_PARSER",
+    "no_keepalive": "it is built without HOST_KEEPALIVE_FEATURE",
+    "slips": "a stop without braking loses steps: it is three millimetres from where it counts",
+    "slow": "it moves at a tenth of its speed",
+    "homing_fails": "homing finds no switch: it is halted",
+    "second_client": "whenever it moves another program sends it elsewhere",
 }

@@ -1,21 +1,15 @@
-"""Virtual machine with GRBL: lines, single bytes, motion and status reports. No line of its own, no clock."""
+"""Virtual machine of three axes: motion, and what comes of its lines. No line of its own, no clock."""
 
 from __future__ import annotations
 
 import math
 import re
-from collections.abc import Collection
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 
-BANNER = "Grbl 1.1h ['$' for help]"
-STATUS_BYTE, HOLD_BYTE, RESUME_BYTE, RESET_BYTE = b"?", b"!", b"~", b"\x18"
 WORD = re.compile(r"([XYZF])(-?\d+(?:\.\d+)?)")
-MODALS = re.compile(r"(G\d+(?:\.\d)?|[XYZF]-?\d+(?:\.\d+)?)*")
-HOLD_S, HOMING_S, LATE_S = 0.1, 1.0, 0.3
 SHORT_MM = 2.0
 FASTEST_MM_S = 100.0
-HARD_LIMIT, NO_SWITCH, ABORT = 1, 9, 3
-UNKNOWN, LOCKED, NOT_IDLE, BEYOND = 20, 9, 8, 15
 Place = tuple[float, ...]
 
 
@@ -36,202 +30,53 @@ class Path:
     def ends_at(self) -> float:
         return self.began_at + self.length / self.mm_s
 
+    @property
+    def half_way_at(self) -> float:
+        return (self.began_at + self.ends_at) / 2
+
     def at(self, now: float) -> Place:
         part = 1.0 if now >= self.ends_at else max(0.0, now - self.began_at) * self.mm_s / self.length
         return tuple(a + (b - a) * part for a, b in zip(self.start, self.goal, strict=True))
 
 
-class VirtualGrbl:
+class VirtualMachine:
     """Virtual machine; `faults` are looked up when they matter. Times in s of any clock, places in mm."""
 
-    def __init__(self, faults: Collection[str] = (), *, homed: bool = False) -> None:
+    def __init__(self, faults: Collection[str]) -> None:
         self.faults = faults
         self.place: Place = (0.0, 0.0, 0.0)
         self._now = 0.0
-        self._locked = not homed
-        self._rest = b""
         self._lines = 0
-        self._statuses = 0
-        self._was_off = self._was_asleep = False
-        self._disturbed: Path | None = None
-        self._stop_all()
-
-    @property
-    def next_deadline(self) -> float:
-        """The time at which something becomes so by itself."""
-        ends = [self._path.ends_at] if self._path is not None and not self._held else []
-        return min([*ends, self._homes_at, self._hold_at if self._hold_at > self._now else math.inf])
 
     @property
     def is_unplugged(self) -> bool:
         """True while there is no line."""
         return "unplugged" in self.faults
 
-    def step(self, now: float, data: bytes = b"") -> bytes:
-        """Let time pass, take bytes from the line, and return those that come back."""
-        self._now = now
-        out = self._pass_time(now)
-        if self.is_unplugged or "boot" in self.faults:
-            return b""
-        for at in range(len(data)):
-            out += self._take(now, data[at : at + 1])
-        return b"" if "mute" in self.faults else b"".join(map(self._sent, out))
-
-    # How time passes.
-
-    def _stop_all(self) -> None:
-        self._path: Path | None = None
-        self._hold_at = math.inf  # when it stands after a feed hold
-        self._homes_at = math.inf
-
-    @property
-    def _held(self) -> bool:
-        return self._hold_at < math.inf
-
-    def _pass_time(self, now: float) -> list[str]:
-        off = "boot" in self.faults
-        if self._was_off and not off:
-            self._stop_all()
-            self._locked, self.place, self._rest = True, (0.0, 0.0, 0.0), b""
-            self._was_off = False
-            return ["", BANNER]
-        self._was_off = off
-        self._was_asleep = self._was_asleep or "asleep" in self.faults
-        if self._path is not None:
-            return self._travel(now, self._path)
-        if self._homes_at <= now:
-            self._homes_at = math.inf
-            if "homing_fails" in self.faults:
-                return self._alarm(NO_SWITCH)
-            self._locked, self.place = False, (0.0, 0.0, 0.0)
-            return ["ok"]
-        return []
-
-    def _travel(self, now: float, path: Path) -> list[str]:
-        half = self._half_way(now, path)
-        if "stall" in self.faults and half:
-            return []
-        if self._held:
-            self.place = path.at(min(now, self._hold_at))
-            return []
-        self.place = path.at(now)
-        if half and "hard_limit" in self.faults:
-            return self._alarm(HARD_LIMIT)
-        if ("door" in self.faults) or (half and "hold_pressed" in self.faults):
-            self._hold_at = now + HOLD_S
-        elif half and "second_client" in self.faults and path is not self._disturbed:
-            goal = (path.goal[0] + 10.0, *path.goal[1:])
-            self._path = self._disturbed = Path(start=self.place, goal=goal, began_at=now, mm_s=path.mm_s)
-        elif path.ends_at <= now:
-            self._path = None
-        return []
-
-    @staticmethod
-    def _half_way(now: float, path: Path) -> bool:
-        return now >= (path.began_at + path.ends_at) / 2
-
-    def _alarm(self, code: int) -> list[str]:
-        self._stop_all()
-        self._locked = True
-        return [f"ALARM:{code}", "[MSG:Reset to continue]"]
-
-    # Bytes and lines.
-
-    def _take(self, now: float, byte: bytes) -> list[str]:
-        if byte == STATUS_BYTE:
-            return self._status(now)
-        if byte == HOLD_BYTE:
-            if "deaf" not in self.faults and not self._held and self._homes_at == math.inf:
-                self._hold_at = now + (HOLD_S if self._path is not None else 0.0)
-        elif byte == RESUME_BYTE:
-            self._resume(now)
-        elif byte == RESET_BYTE:
-            return [] if "no_reset" in self.faults else self._reset(now)
-        elif byte == b"\n":
-            line, self._rest = self._rest, b""
-            return self._line(now, line.decode("ascii", "replace").replace(" ", "").strip().upper())
-        else:
-            self._rest += byte
-        return []
-
-    def _resume(self, now: float) -> None:
-        if self._held and "door" not in self.faults:
-            if self._path is not None:
-                path = self._path
-                self._path = Path(start=self.place, goal=path.goal, began_at=now, mm_s=path.mm_s)
-            self._hold_at = math.inf
-
-    def _reset(self, now: float) -> list[str]:
-        moves = (
-            self._path is not None and not (self._held and self._hold_at <= now)
-        ) or self._homes_at < math.inf
-        self._stop_all()
-        self._rest, self._was_asleep = b"", "asleep" in self.faults
-        if moves:
-            self._locked = True
-            return [f"ALARM:{ABORT}", "", BANNER]
-        return ["", BANNER]
-
-    def _line(self, now: float, line: str) -> list[str]:
-        if not line:
-            return ["ok"]
-        if line == "$H":
-            if self._path is not None or self._held:
-                return [f"error:{NOT_IDLE}"]
-            self._homes_at = now + HOMING_S
-            return []
-        if line == "$X":
-            self._locked = False
-            return ["ok"]
-        if line.startswith("$") or MODALS.fullmatch(line) is None:
-            return [f"error:{UNKNOWN}"]
-        if self._locked:
-            return [f"error:{LOCKED}"]
-        if "error" in self.faults:
-            return [f"error:{BEYOND}"]
-        self._move(now, {letter: float(value) for letter, value in WORD.findall(line)})
-        return [] if "no_ok" in self.faults else ["ok"]
-
-    def _move(self, now: float, words: dict[str, float]) -> None:
-        start = self.place
+    def _path_to(self, begins_at: float, start: Place, words: Mapping[str, float]) -> Path | None:
+        """The way that the words of a move lead from `start`; None if it leads nowhere."""
         goal = tuple(words.get(letter, here) for letter, here in zip("XYZ", start, strict=True))
         length = math.dist(start, goal)
         if "short" in self.faults and length > SHORT_MM:
             part = 1 - SHORT_MM / length
             goal = tuple(a + (b - a) * part for a, b in zip(start, goal, strict=True))
         if length == 0 or "lie" in self.faults:
-            return
+            return None
         speed = min(words.get("F", 600.0) / 60, FASTEST_MM_S) * (0.1 if "slow" in self.faults else 1.0)
-        late = LATE_S if "late_start" in self.faults else 0.0
-        self._path = Path(start=start, goal=goal, began_at=now + late, mm_s=speed)
+        return Path(start=start, goal=goal, began_at=begins_at, mm_s=speed)
 
-    @property
-    def state(self) -> str:
-        """The word, and the number, of its state."""
-        if self._homes_at < math.inf:
-            return "Home"
-        if self._locked:
-            return "Alarm"
-        if self._was_asleep:
-            return "Sleep"
-        if "door" in self.faults:
-            return "Door:1" if not self._held or self._hold_at <= self._now else "Door:2"
-        if self._held:
-            return "Hold:0" if self._hold_at <= self._now else "Hold:1"
-        return "Run" if self._path is not None and self._path.began_at <= self._now else "Idle"
+    def _sent(self, lines: Sequence[str]) -> bytes:
+        """The bytes of these lines, as they come out of the line."""
+        return b"" if "mute" in self.faults else b"".join(map(self._bytes, lines))
 
-    def _status(self, now: float) -> list[str]:
-        self._statuses += 1
-        place = ",".join(f"{each:.3f}" for each in self.place)
-        if "garbled" in self.faults and self._statuses % 2:
-            place = place.replace(".", "?")
-        name = "WPos" if "no_position" in self.faults else "MPos"
-        pins = "|Pn:D" if "door" in self.faults else ""
-        return [f"<{self.state}|{name}:{place}|FS:0,0{pins}>"]
-
-    def _sent(self, line: str) -> bytes:
+    def _bytes(self, line: str) -> bytes:
         self._lines += 1
         data = line.encode("ascii") + b"\r\n"
         if "torn" in self.faults and self._lines % 3 == 0:
             data = data[:-3]
         return b"\x00~~<|\r\n" + data if "noise" in self.faults else data
+
+
+def words_of(line: str) -> dict[str, float]:
+    """The letters of a line of G-code with their numbers."""
+    return {letter: float(value) for letter, value in WORD.findall(line)}

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from arboleda.drivers.gcode.lines import Alarm, Answer, Banner, LineReader, State, Status, parsed
+from arboleda.drivers.gcode.grbl_lines import Alarm, Answer, Banner, State, Status, parsed
+from arboleda.drivers.gcode.lines import LineReader
 from arboleda.drivers.gcode.settings import Settings
 from arboleda.drivers.port import DriverError
 from arboleda.model.commands import StopMode
@@ -216,7 +217,7 @@ def test_lines(text: str, line: object) -> None:
 
 
 def test_lines_come_in_pieces_and_never_grow_without_end() -> None:
-    reader = LineReader()
+    reader = LineReader(parsed)
     assert [each for byte in b"ok\r\nerror:9\r\nok" for each in reader.feed(bytes([byte]))] == [
         Answer(),
         Answer(error=9),

@@ -1,0 +1,184 @@
+"""Virtual machine with GRBL: lines, single bytes, motion and status reports."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Collection
+
+from .machine import Path, VirtualMachine, words_of
+
+BANNER = "Grbl 1.1h ['$' for help]"
+STATUS_BYTE, HOLD_BYTE, RESUME_BYTE, RESET_BYTE = b"?", b"!", b"~", b"\x18"
+MODALS = re.compile(r"(G\d+(?:\.\d)?|[XYZF]-?\d+(?:\.\d+)?)*")
+HOLD_S, HOMING_S, LATE_S = 0.1, 1.0, 0.3
+HARD_LIMIT, NO_SWITCH, ABORT = 1, 9, 3
+UNKNOWN, LOCKED, NOT_IDLE, BEYOND = 20, 9, 8, 15
+
+
+class VirtualGrbl(VirtualMachine):
+    """Virtual machine with GRBL."""
+
+    def __init__(self, faults: Collection[str] = (), *, homed: bool = False) -> None:
+        super().__init__(faults)
+        self._locked = not homed
+        self._rest = b""
+        self._statuses = 0
+        self._was_off = self._was_asleep = False
+        self._disturbed: Path | None = None
+        self._stop_all()
+
+    @property
+    def next_deadline(self) -> float:
+        """The time at which something becomes so by itself."""
+        ends = [self._path.ends_at] if self._path is not None and not self._held else []
+        return min([*ends, self._homes_at, self._hold_at if self._hold_at > self._now else math.inf])
+
+    def step(self, now: float, data: bytes = b"") -> bytes:
+        """Let time pass, take bytes from the line, and return those that come back."""
+        self._now = now
+        out = self._pass_time(now)
+        if self.is_unplugged or "boot" in self.faults:
+            return b""
+        for at in range(len(data)):
+            out += self._take(now, data[at : at + 1])
+        return self._sent(out)
+
+    # How time passes.
+
+    def _stop_all(self) -> None:
+        self._path: Path | None = None
+        self._hold_at = math.inf  # when it stands after a feed hold
+        self._homes_at = math.inf
+
+    @property
+    def _held(self) -> bool:
+        return self._hold_at < math.inf
+
+    def _pass_time(self, now: float) -> list[str]:
+        off = "boot" in self.faults
+        if self._was_off and not off:
+            self._stop_all()
+            self._locked, self.place, self._rest = True, (0.0, 0.0, 0.0), b""
+            self._was_off = False
+            return ["", BANNER]
+        self._was_off = off
+        self._was_asleep = self._was_asleep or "asleep" in self.faults
+        if self._path is not None:
+            return self._travel(now, self._path)
+        if self._homes_at <= now:
+            self._homes_at = math.inf
+            if "homing_fails" in self.faults:
+                return self._alarm(NO_SWITCH)
+            self._locked, self.place = False, (0.0, 0.0, 0.0)
+            return ["ok"]
+        return []
+
+    def _travel(self, now: float, path: Path) -> list[str]:
+        half = now >= path.half_way_at
+        if "stall" in self.faults and half:
+            return []
+        if self._held:
+            self.place = path.at(min(now, self._hold_at))
+            return []
+        self.place = path.at(now)
+        if half and "hard_limit" in self.faults:
+            return self._alarm(HARD_LIMIT)
+        if ("door" in self.faults) or (half and "hold_pressed" in self.faults):
+            self._hold_at = now + HOLD_S
+        elif half and "second_client" in self.faults and path is not self._disturbed:
+            goal = (path.goal[0] + 10.0, *path.goal[1:])
+            self._path = self._disturbed = Path(start=self.place, goal=goal, began_at=now, mm_s=path.mm_s)
+        elif path.ends_at <= now:
+            self._path = None
+        return []
+
+    def _alarm(self, code: int) -> list[str]:
+        self._stop_all()
+        self._locked = True
+        return [f"ALARM:{code}", "[MSG:Reset to continue]"]
+
+    # Bytes and lines.
+
+    def _take(self, now: float, byte: bytes) -> list[str]:
+        if byte == STATUS_BYTE:
+            return self._status(now)
+        if byte == HOLD_BYTE:
+            if "deaf" not in self.faults and not self._held and self._homes_at == math.inf:
+                self._hold_at = now + (HOLD_S if self._path is not None else 0.0)
+        elif byte == RESUME_BYTE:
+            self._resume(now)
+        elif byte == RESET_BYTE:
+            return [] if "no_reset" in self.faults else self._reset(now)
+        elif byte == b"\n":
+            line, self._rest = self._rest, b""
+            return self._line(now, line.decode("ascii", "replace").replace(" ", "").strip().upper())
+        else:
+            self._rest += byte
+        return []
+
+    def _resume(self, now: float) -> None:
+        if self._held and "door" not in self.faults:
+            if self._path is not None:
+                path = self._path
+                self._path = Path(start=self.place, goal=path.goal, began_at=now, mm_s=path.mm_s)
+            self._hold_at = math.inf
+
+    def _reset(self, now: float) -> list[str]:
+        moves = (
+            self._path is not None and not (self._held and self._hold_at <= now)
+        ) or self._homes_at < math.inf
+        self._stop_all()
+        self._rest, self._was_asleep = b"", "asleep" in self.faults
+        if moves:
+            self._locked = True
+            return [f"ALARM:{ABORT}", "", BANNER]
+        return ["", BANNER]
+
+    def _line(self, now: float, line: str) -> list[str]:
+        if not line:
+            return ["ok"]
+        if line == "$H":
+            if self._path is not None or self._held:
+                return [f"error:{NOT_IDLE}"]
+            self._homes_at = now + HOMING_S
+            return []
+        if line == "$X":
+            self._locked = False
+            return ["ok"]
+        if line.startswith("$") or MODALS.fullmatch(line) is None:
+            return [f"error:{UNKNOWN}"]
+        if self._locked:
+            return [f"error:{LOCKED}"]
+        if "error" in self.faults:
+            return [f"error:{BEYOND}"]
+        self._move(now, words_of(line))
+        return [] if "no_ok" in self.faults else ["ok"]
+
+    def _move(self, now: float, words: dict[str, float]) -> None:
+        late = LATE_S if "late_start" in self.faults else 0.0
+        self._path = self._path_to(now + late, self.place, words)
+
+    @property
+    def state(self) -> str:
+        """The word, and the number, of its state."""
+        if self._homes_at < math.inf:
+            return "Home"
+        if self._locked:
+            return "Alarm"
+        if self._was_asleep:
+            return "Sleep"
+        if "door" in self.faults:
+            return "Door:1" if not self._held or self._hold_at <= self._now else "Door:2"
+        if self._held:
+            return "Hold:0" if self._hold_at <= self._now else "Hold:1"
+        return "Run" if self._path is not None and self._path.began_at <= self._now else "Idle"
+
+    def _status(self, now: float) -> list[str]:
+        self._statuses += 1
+        place = ",".join(f"{each:.3f}" for each in self.place)
+        if "garbled" in self.faults and self._statuses % 2:
+            place = place.replace(".", "?")
+        name = "WPos" if "no_position" in self.faults else "MPos"
+        pins = "|Pn:D" if "door" in self.faults else ""
+        return [f"<{self.state}|{name}:{place}|FS:0,0{pins}>"]
