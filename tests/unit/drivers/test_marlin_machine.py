@@ -183,6 +183,19 @@ def test_a_stop_that_comes_before_the_move_is_read_is_said_again_after_it() -> N
     assert talk.report.accepted == "1-3"
 
 
+def test_a_stop_after_a_boot_leaves_the_motors_on() -> None:
+    """What has them stay on is still said."""
+    talk = Talk()
+    talk.greet()
+    talk.hear("start")
+    assert talk.hear(*HELLO) == ["M113 S1"]
+    assert talk.ask(Stop(id="1-1", robot=GANTRY.name, mode=StopMode.HALT)) == ["M410"]
+    assert talk.hear("ok", "ok") == ["M84 S0"]
+    assert talk.hear("ok") == ["M114"]
+    talk.hear(AT_ZERO, "ok")
+    assert talk.report.accepted == "1-1"
+
+
 def test_homing_is_stopped_by_a_shutdown() -> None:
     """M410 would end one leg of it only, and Marlin would believe where that ended."""
     rig = MarlinRig()

@@ -161,7 +161,7 @@ class MarlinMachine(Machine):
         if self._work is not None:
             self._is_homed = self._is_homed and self._settings.stop_keeps_place
         self._work, self._news = None, True
-        self._due.clear()
+        self._due = deque(each for each in self._due if each in SETTINGS)
         self._say_halt(now, Halt.KILL if FIND in self._asked else Halt.QUICK)
 
     def _say_halt(self, now: float, halt: Halt) -> None:
