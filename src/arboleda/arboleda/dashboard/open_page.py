@@ -24,7 +24,7 @@ class OpenPage:
         self.language = words.language
         self._client = client
         self._words = words
-        self._seen = seen
+        self._note_shown = seen
 
     @property
     def connected(self) -> bool:
@@ -45,7 +45,7 @@ class OpenPage:
         args = event.args if isinstance(event.args, list) else [event.args]
         act, of, more = [*args, None, None, None][:3]
         if act == SEEN and isinstance(of, int):
-            self._seen(self, of)
+            self._note_shown(self, of)
         elif isinstance(act, str) and isinstance(of, str) and len(of) <= LONGEST:
             await self.asked(act, of, more)
 

@@ -72,7 +72,7 @@ def _card(layout: dict[str, Any], devices: list[dict[str, Any]], words: Words) -
         live("span", f"{cell}.act", classes="act-line")
     for device in devices:
         if device["asked"]:
-            _asked(device["name"])
+            _question(device["name"])
     rows(f"ways.{cell}", ["", ""], classes="ways")
     if layout["places"] or layout["stations"]:
         columns = [words(f"column.{each}") for each in ("place", "parts", "note", "acts")]
@@ -82,7 +82,7 @@ def _card(layout: dict[str, Any], devices: list[dict[str, Any]], words: Words) -
         heard(f"heard.{cell}", words)
 
 
-def _asked(person: str) -> None:
+def _question(person: str) -> None:
     """Draw the question to a person, announced once; the time that is left is not announced."""
     with tag("div", classes="asked"):
         with tag("div", role="status", aria_live="polite"):

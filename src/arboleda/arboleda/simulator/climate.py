@@ -67,7 +67,7 @@ class Climate:
         from_list: list[Fault] = []
         for number, each in enumerate(listed):
             with within("faults", number):
-                from_list.append(_told(model, Dice(seed, "told", number), each))
+                from_list.append(_fault_from(model, Dice(seed, "told", number), each))
         for name in (*rates, *(fault.kind for fault in from_list)):
             _refuse_hosts(name, standby=standby)
         return cls(model=model, seed=seed, rates=rates, told=tuple(from_list))
@@ -132,7 +132,7 @@ def _rates(data: Any) -> dict[str, float]:
     return rates
 
 
-def _told(model: PlantModel, dice: Dice, data: Any) -> Fault:
+def _fault_from(model: PlantModel, dice: Dice, data: Any) -> Fault:
     entry = only(data, FIELDS, "a fault")
     for name in entry:
         _check(name, entry[name])

@@ -72,7 +72,7 @@ class Trace:
         moment = self._world.moment
         final = (*moment.last_words, *moment.unkept)
         last = [f"last words {_last(each)}" for each in final if not isinstance(each, Heartbeat)]
-        requests = [f"asked      {_asked(event)}" for event in moment.asked]
+        requests = [f"asked      {_request_text(event)}" for event in moment.asked]
         messages = [each for each in moment.sent if not is_step(each) and not isinstance(each, Heartbeat)]
         sent = [f"plant      {_sent(each)}" for each in messages]
         said = [
@@ -101,7 +101,7 @@ def _hashed(message: Any) -> bytes:
     return repr(message).encode()
 
 
-def _asked(event: Any) -> str:
+def _request_text(event: Any) -> str:
     if isinstance(event, TaskRequest):
         return repr(event.text)
     if isinstance(event, OperatorRequest):
@@ -112,7 +112,7 @@ def _asked(event: Any) -> str:
 
 def _last(message: Any) -> str:
     if isinstance(message, TaskRequest | OperatorRequest):
-        return f"asked {_asked(message)}"
+        return f"asked {_request_text(message)}"
     return _sent(message)
 
 

@@ -39,7 +39,7 @@ def judged(work: Work, *, story: Path | None = None) -> Verdict:
         "files": {name: each.decode("utf-8", "surrogateescape") for name, each in work.files.items()},
         "story": None if story is None else str(story.absolute()),
     }
-    output = _said(json.dumps(request).encode())
+    output = _output(json.dumps(request).encode())
     try:
         found = json.loads(output.splitlines()[-1])
         findings = [
@@ -75,7 +75,7 @@ def _cannot(why: str) -> Verdict:
     return Verdict(findings=[Finding(says=CAN_BE_JUDGED, seen=why)])
 
 
-def _said(request: bytes) -> bytes:
+def _output(request: bytes) -> bytes:
     """Answer of the process; nothing, and it is ended with all that it has started, if it takes too long."""
     command = [sys.executable, "-I", "-c", START, json.dumps(sys.path)]
     pipe = subprocess.PIPE

@@ -14,12 +14,12 @@ Row = dict[str, Any]
 
 def without_acts(face: Face) -> Face:
     """The same face without buttons; a button's label stands in its row if nothing else would."""
-    found = {key: _told(each) if key.startswith("row/") else each for key, each in face.items()}
+    found = {key: _without_acts(each) if key.startswith("row/") else each for key, each in face.items()}
     none: Face = {"rows/for_all": []} if "rows/for_all" in found else {}
     return found | none | {key: ["", ""] for key in found if key.endswith(".offer")}
 
 
-def _told(row: Row) -> Row:
+def _without_acts(row: Row) -> Row:
     acts = row.get("acts", ())
     rest = {key: each for key, each in row.items() if key != "acts"}
     labels = " / ".join(act["label"] for act in acts)

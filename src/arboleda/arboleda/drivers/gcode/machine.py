@@ -79,7 +79,7 @@ class Machine:
         self._latched = self._left_at_work = self._news = False
         self._known = False  # it has told a status before, on this line or an earlier one
         self._reported_at = -math.inf
-        self._told: dict[str, str] = {}
+        self._receipts: dict[str, str] = {}
         self._forget_link(0.0)
 
     @property
@@ -238,7 +238,7 @@ class Machine:
             return  # the end of a reset, after which another stop was given
         elif self._known:
             self._boot += 1
-            self._told, self._work, self._step, self._alarm = {}, None, None, None
+            self._receipts, self._work, self._step, self._alarm = {}, None, None, None
             self._left_at_work, self._news = False, True
 
     def _answered(self, now: float, answer: Answer) -> None:
@@ -339,7 +339,7 @@ class Machine:
         return TROUBLES.get(status.state)
 
     def _tell(self, **ids: str) -> None:
-        self._told |= {name: id for name, id in ids.items() if id}
+        self._receipts |= {name: id for name, id in ids.items() if id}
         self._news = True
 
     def _reject(self, id: str, word: str) -> None:
@@ -372,4 +372,4 @@ class Machine:
                 ("mode", status.state.value.lower()),
             ),
         )
-        return report.again(now, **self._told)
+        return report.again(now, **self._receipts)

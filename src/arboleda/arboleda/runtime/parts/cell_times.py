@@ -32,12 +32,12 @@ class CellTimes:
         self._history_days = history_days
         self._clock = clock
         self._version = -1
-        self._seen_s = 0.0
+        self._noted_s = 0.0
         self._down: dict[str, CellState] = {}
         self._keeps = False
 
     def start(self) -> None:
-        self._seen_s = now_s = self._clock()
+        self._noted_s = now_s = self._clock()
         self._keeps = True
         self._kept(lambda store: store.began(now_s, now_s - self._history_days * DAY_S))
 
@@ -46,8 +46,8 @@ class CellTimes:
         if not self._keeps:
             return
         now_s = self._clock()
-        if not 0 <= now_s - self._seen_s < SEEN_S:
-            self._seen_s = now_s
+        if not 0 <= now_s - self._noted_s < SEEN_S:
+            self._noted_s = now_s
             self._kept(lambda store: store.seen(now_s))
         if plant.version == self._version:
             return

@@ -75,7 +75,7 @@ class DrawnTasks:
             yield f"{change.task} of {task.order.recipe} is called done, and was drawn to fail"
         tools = {space.tool.name for space in cell.spaces if space.tool is not None}  # told by grips
         roles = [role for role, robot in cell.roles.items() if robot.name not in tools]
-        yield from _differences(change.task, roles, _told(cell, sent), drawn.orders)
+        yield from _differences(change.task, roles, _calls(cell, sent), drawn.orders)
         took_s = (task.ended_at or 0.0) - (task.started_at or 0.0)
         if took_s < drawn.seconds - JITTER_S:
             least = f"was drawn to wait {drawn.seconds:g} s"
@@ -99,7 +99,7 @@ def _meaning(
     return Meaning(recipes, answers, takes_s, pauses=pauses)
 
 
-def _told(cell: Cell, sent: Sequence[SentCommand]) -> dict[str, list[Told]]:
+def _calls(cell: Cell, sent: Sequence[SentCommand]) -> dict[str, list[Told]]:
     """The calls to each role, in that order."""
     roles = {robot.name: role for role, robot in cell.roles.items()}
     found: dict[str, list[Told]] = {}

@@ -158,11 +158,11 @@ def nothing_is_dropped(look: Look) -> Iterator[str]:
                 continue
             places = carrier.here | carrier.stood if carrier in truth.changed else carrier.here
             excused = carrier.taken_away or truth.released(space.hand.name) or truth.mistaken(carrier)
-            if not places and not excused and not _is_said_too_early(truth, hand):
+            if not places and not excused and not _is_done_by_a_lie(truth, hand):
                 yield f"{space.hand.name} lets go, and {space.robot.name} stands at no target"
 
 
-def _is_said_too_early(truth: Truth, hand: RobotTruth) -> bool:
+def _is_done_by_a_lie(truth: Truth, hand: RobotTruth) -> bool:
     """True if the last command of a tool is called done because of a lie about what it holds."""
     booked = truth.last_done(hand.robot.name)
     return booked is not None and truth.deceived_since(hand.robot.mqtt, hand.PLACE, booked.sent_at)

@@ -39,7 +39,7 @@ def ends_are_proven(look: Look) -> Iterator[str]:
     for sent, before in record.commands.moved:
         proof = record.proofs.of.get(sent.command.id, NOTHING_SAID)
         if sent in record.commands.new:
-            if sent.state in ANSWERED and not _said_since(look, sent):
+            if sent.state in ANSWERED and not _has_reported_since(look, sent):
                 yield f"{sent} is {_word(sent)} in the step that sent it, and nobody has said so"
         elif sent.state is State.RUNNING and before is State.SENT and not proof.named:
             yield f"{sent} is taken for accepted, which nobody has said"
@@ -56,7 +56,7 @@ def _is_forgotten(sent: SentCommand) -> bool:
     return isinstance(sent.command, Query)
 
 
-def _said_since(look: Look, sent: SentCommand) -> bool:
+def _has_reported_since(look: Look, sent: SentCommand) -> bool:
     return any(each.robot == sent.robot and each.at >= sent.at for each in look.moment.heard)
 
 

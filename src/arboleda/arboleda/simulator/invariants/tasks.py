@@ -163,7 +163,7 @@ def cancelled_tasks_end_cancelled(look: Look) -> Iterable[str]:
         if change.said.state not in ENDED or change.answer:
             continue
         cancelled = change.said.state is TaskState.CANCELLED
-        known = change.cancelled is not None and not (cancelled and _asked_to_cancel(look))
+        known = change.cancelled is not None and not (cancelled and _cancel_is_requested(look))
         if cancelled and look.world.versions and not is_offered(look.world.offers, change.said.text):
             continue  # another version was put to work, which has no such task
         if known and cancelled is not change.cancelled:
@@ -173,7 +173,7 @@ def cancelled_tasks_end_cancelled(look: Look) -> Iterable[str]:
             yield f"task {change.said.task} ended as {change.said.state.value} for {change.said.reason}"
 
 
-def _asked_to_cancel(look: Look) -> bool:
+def _cancel_is_requested(look: Look) -> bool:
     """True if somebody asks for a cancel in this step: the plant reports the task before it answers."""
     asked = (each for each in look.moment.asked if isinstance(each, OperatorRequest))
     return any(each.verb is Verb.CANCEL for each in asked)

@@ -190,10 +190,10 @@ def nothing_shown_before_heard(look: Look) -> Iterable[str]:
     """A plant that starts shows no position of a robot that it has not heard."""
     beliefs, robots = look.world.plant.dispatcher.beliefs, look.record.robots
     wrong = (name for name, belief in beliefs.items() if belief.position is not None)
-    return [f"{name} is shown without a word of it" for name in wrong if not _heard(robots[name])]
+    return [f"{name} is shown without a word of it" for name in wrong if not _has_place(robots[name])]
 
 
-def _heard(known: Any) -> bool:
+def _has_place(known: Any) -> bool:
     return known.q is not None or known.node is not None
 
 

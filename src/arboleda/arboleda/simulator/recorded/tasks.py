@@ -75,9 +75,9 @@ class Tasks:
     def _take_back(self, row: KeptTask, task: KnownTask | None, now: float) -> None:
         if task is None:
             self._accepted += 1
-            task = KnownTask(row.id, row.cell, self._accepted, row.state, now, _said(row), now)
+            task = KnownTask(row.id, row.cell, self._accepted, row.state, now, _last_change(row), now)
         if task.state is not row.state:
-            task.said = _said(row)
+            task.said = _last_change(row)
         task.state, task.began = row.state, row.started_at
         if row.state is TaskState.RUNNING and task.cancelled:
             task.cancelled = None  # the plant that was to halt it is gone
@@ -149,7 +149,7 @@ class Tasks:
             self.ended.popitem(last=False)
 
 
-def _said(row: KeptTask) -> TaskChanged:
+def _last_change(row: KeptTask) -> TaskChanged:
     """The last word on a task that would have been told, from its row on the disk."""
     remark = UNCHECKED[row.unchecked]() if row.unchecked else NOTHING
     return TaskChanged(
