@@ -100,7 +100,7 @@ class _Play:
 
 
 def _words(command: Command) -> str:
-    given = {name: _number(value) for name, value in command.given.items() if name != "told"}
+    given = {name: _number(value) for name, value in command.given.items() if name != "definition"}
     return f"{type(command).__name__}{given}"
 
 

@@ -47,7 +47,7 @@ class Words:
         if text is None:
             if len(self._known) > 2000:
                 self._known.clear()
-            text = self._known[sentence] = sentence.told(self._template)
+            text = self._known[sentence] = sentence.text_by(self._template)
         return text
 
     def _template(self, phrase: Phrase) -> str:

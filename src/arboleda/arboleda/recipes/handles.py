@@ -196,7 +196,7 @@ class DeviceHandle(Handle):
                 act = self._of(Act(f"{name} {words}", self._context, make, DOING(order=words)))
                 return steps.sequence(act.title, *zones, act) if zones else act
             question = Ask(f"{name} {words}", self._context, make, DOING(order=words))
-            question.answers, question.by, question.asked = order.told.answers, name, words
+            question.answers, question.by, question.asked = order.definition.answers, name, words
             self._of(question)
             return titled(AskInZones(question, zones), question.title) if zones else question
 

@@ -97,7 +97,7 @@ class _Marks:
         if isinstance(command, Question):
             self.asked[command.robot] = tuple(command.answers)
         elif isinstance(command, QueryCall):
-            self.asked[command.robot] = command.told.answers
+            self.asked[command.robot] = command.definition.answers
 
 
 def calm_run(model: PlantModel, scenario: Scenario) -> Calm:

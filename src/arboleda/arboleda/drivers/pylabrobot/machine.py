@@ -333,13 +333,13 @@ class Machine:
             return
         self._receipts["accepted"] = command.id
         answer = self._settings.verbs[command.verb].answer
-        if command.told.effect is not Effect.QUERY or answer is None:
+        if command.definition.effect is not Effect.QUERY or answer is None:
             self._receipts["done"] = command.id
             return
         try:
             self._receipts |= {
                 "answered": command.id,
-                "answer": answer.value(event.result, answers(command.told)),
+                "answer": answer.value(event.result, answers(command.definition)),
             }
         except UnreadableValue as error:
             self._receipts |= {"failed": command.id, "failure": plain(str(error), LONGEST)}
