@@ -60,7 +60,7 @@ def _flown(request: Request, *, trace: bool, record: Path, lines: list[str]) -> 
     tell = LineWriter(printed=True, file=None) if trace else None
     with flight.recorded(record, request.plants.of(request.first)) as flown:
         result = request.setting.run(request.first, tell=tell, make_plant=flown.make_plant)
-    lines += flown.said
+    lines += flown.lines
     return result
 
 

@@ -251,7 +251,7 @@ class PlantClient:
     def _beyond(self, answer: Answer) -> FarLine:
         """The line to the process that leads the plant, as a process that stands by names it."""
         sentence = answer.sentence if answer.status >= 300 else say(STANDS_BY(it=answer.sentence))
-        led = of_standby(answer.said)
+        led = of_standby(answer.body)
         if not led.url:
             raise ArboledaError(sentence)
         try:

@@ -295,7 +295,7 @@ class Belief:
     def _failure(self, trouble: Trouble | None, *, was: bool) -> Failure | None:
         if trouble is None:
             return None
-        sentence = trouble.was if was else trouble.said
+        sentence = trouble.was if was else trouble.phrase
         return Failure(reason=trouble.reason, sentence=sentence(robot=self.robot.name, **trouble.more))
 
     def _unanswered(self) -> Trouble:
@@ -345,7 +345,7 @@ class Trouble(NamedTuple):
     """Trouble of a robot: its sentence while it lasts, and another one that stays true afterwards."""
 
     reason: Reason
-    said: Phrase
+    phrase: Phrase
     was: Phrase
     more: Mapping[str, int | Sentence] = {}
 

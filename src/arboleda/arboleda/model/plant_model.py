@@ -270,7 +270,7 @@ class Pose:
         return self.q
 
     @property
-    def said(self) -> Sentence:
+    def sentence(self) -> Sentence:
         """Its name as sentences have it."""
         return self.title or OWN(text=self.name)
 

@@ -265,7 +265,7 @@ class RobotHandle(Handle):
         there = flat(work, "visit")
         check_holds_none("a visit", there)
         parts = steps.visit_from_anywhere(self._context, self._device.name, pose, there)
-        return self._of(steps.sequence(VISIT(pose=pose.said), *parts))
+        return self._of(steps.sequence(VISIT(pose=pose.sentence), *parts))
 
     def tour(self, *stops: str | Pick | Place) -> Step:
         """Go from target to target, take hold and let go there, and stay at the last one.

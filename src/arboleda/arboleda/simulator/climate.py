@@ -26,7 +26,7 @@ KEYS = ("plant", "seconds", "people", "rates", "faults")  # the first three are 
 
 @dataclass(frozen=True, kw_only=True)
 class Climate:
-    """The faults of one run: `rates` of each kind per minute are drawn from, `fixed_faults` have a fixed time.
+    """The faults of one run: `rates` of each kind per minute are drawn from; `fixed_faults` have their time.
 
     The same climate gives the same faults for a minute, whichever minutes were asked for before.
     """

@@ -77,7 +77,7 @@ class Findings:
             self._take_in()
 
     def _take_in(self) -> None:
-        changes = [change.said for change in self._record.tasks.changes if not change.answer]
+        changes = [change.message for change in self._record.tasks.changes if not change.answer]
         for task_change in changes:
             if task_change.state is TaskState.RUNNING and task_change.cell not in self._recipes:
                 self._began(task_change)

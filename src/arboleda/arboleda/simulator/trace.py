@@ -53,8 +53,10 @@ class Trace:
         if moment.last_words or moment.unkept:
             unheard = (*moment.last_words, *moment.unkept)
             words += [_hashed(message) for message in unheard if not is_step(message)]
-        if moment.sent or moment.asked:
-            words += [_hashed(message) for message in (*moment.sent, *moment.asked) if not is_step(message)]
+        if moment.sent or moment.requests:
+            words += [
+                _hashed(message) for message in (*moment.sent, *moment.requests) if not is_step(message)
+            ]
         self._hash.update(b"".join(words))
         if self._lines is not None or self._tell is not None:
             for line in self._news():
@@ -72,7 +74,7 @@ class Trace:
         moment = self._world.moment
         final = (*moment.last_words, *moment.unkept)
         last = [f"last words {_last(each)}" for each in final if not isinstance(each, Heartbeat)]
-        requests = [f"asked      {_request_text(event)}" for event in moment.asked]
+        requests = [f"asked      {_request_text(event)}" for event in moment.requests]
         messages = [each for each in moment.sent if not is_step(each) and not isinstance(each, Heartbeat)]
         sent = [f"plant      {_sent(each)}" for each in messages]
         said = [

@@ -78,7 +78,7 @@ class _Marks:
             self._ask(entry)
         ended = [each for each in truth.books.ended if each.entry.cell == self._stage.cell.name]
         reports = any(isinstance(each, TaskChanged | OperatorAnswer) for each in moment.sent)
-        if begins or ended or reports or moment.asked or moment.executed or commits:
+        if begins or ended or reports or moment.requests or moment.executed or commits:
             what = f"the end of {entry_name(ended[0].entry)}" if ended and not begins else self._what
             at = self._stage.watched.seconds
             self.rows.append(Mark(at=at, what=what, begins=begins, commits=commits))

@@ -51,7 +51,7 @@ class Standstill:
     def _has_news(self) -> bool:
         """True if anybody asked, was told or did anything in this step but say that they are there."""
         moment = self._world.moment
-        done = moment.asked or moment.executed or moment.opened or moment.put_right
+        done = moment.requests or moment.executed or moment.opened or moment.put_right
         lost = moment.last_words or moment.unkept or moment.undelivered or moment.late
         return bool(done or lost) or any(not isinstance(each, Heartbeat) for each in moment.sent)
 

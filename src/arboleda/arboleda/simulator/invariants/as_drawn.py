@@ -42,7 +42,7 @@ class DrawnTasks:
 
     def look(self, look: Look) -> Iterator[str]:
         """Take in a step: each breach in a sentence."""
-        asked = [each for each in look.moment.asked if isinstance(each, OperatorRequest)]
+        asked = [each for each in look.moment.requests if isinstance(each, OperatorRequest)]
         self._is_disturbed |= any(each.verb not in HARMLESS for each in asked)
         if self._is_disturbed or look.world.last_fault_at > -math.inf:
             return
@@ -50,8 +50,8 @@ class DrawnTasks:
             if sent.entry is not None and isinstance(sent.command, VerbCall):
                 self._sent.setdefault(sent.entry.cell, []).append(sent)
         for change in look.record.tasks.changes:
-            if not change.answer and change.said.state in ENDS:
-                yield from self._ended(look, change.said)
+            if not change.answer and change.message.state in ENDS:
+                yield from self._ended(look, change.message)
 
     def _ended(self, look: Look, change: TaskChanged) -> Iterator[str]:
         cell, task = look.world.model.cell(change.cell or ""), look.world.plant.intake.tasks.get(change.task)

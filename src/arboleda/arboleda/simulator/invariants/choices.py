@@ -18,7 +18,7 @@ def tasks_go_to_the_best_cell(look: Look) -> Iterator[str]:
     """
     promises = look.record.choices.promises
     for change in look.record.tasks.changes if promises else ():
-        said = change.said
+        said = change.message
         if said.request is None or said.state is not TaskState.QUEUED or change.answer:
             continue
         if said.cell not in promises:
@@ -37,9 +37,10 @@ def tasks_go_to_the_best_cell(look: Look) -> Iterator[str]:
 def tasks_stay_in_their_cell(look: Look) -> Iterator[str]:
     """A task that was taken in by a cell begins and ends in that cell."""
     for change in look.record.tasks.changes:
-        known = look.record.tasks.known(change.said.task)
-        if known is not None and change.said.cell != known.cell:
-            yield f"task {known.id} was in {known.cell}, and {change.said.state.value} in {change.said.cell}"
+        known = look.record.tasks.known(change.message.task)
+        state, cell = change.message.state, change.message.cell
+        if known is not None and cell != known.cell:
+            yield f"task {known.id} was in {known.cell}, and {state.value} in {cell}"
 
 
 @invariant(Trigger.TOLD)
@@ -48,7 +49,7 @@ def courses_are_as_seen(look: Look) -> Iterator[str]:
     seen; of a task that an earlier start has begun nothing is learned.
     """
     for change in look.record.tasks.changes:
-        said, seen = change.said, look.record.courses.ended.get(change.said.task)
+        said, seen = change.message, look.record.courses.ended.get(change.message.task)
         if said.state is not TaskState.DONE or change.answer or seen is None:
             continue
         if seen.differs(said.course):

@@ -239,7 +239,7 @@ def _known_still(look: Look, sent: SentCommand) -> bool:
     failure = sent.entry.failure if sent.entry else None
     if failure is None or failure.reason not in KNOWN_STILL:
         return False
-    codes = [report.state for report in look.moment.heard if report.robot == sent.robot]
+    codes = [report.state for report in look.moment.reports if report.robot == sent.robot]
     return any(code is not MotionState.MOVING for code in (*codes, look.record.robots[sent.robot].state))
 
 

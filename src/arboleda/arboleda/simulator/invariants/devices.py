@@ -187,7 +187,7 @@ def an_answer_is_to_its_question(look: Look) -> Iterator[str]:
 def offered_answers_are_accepted(look: Look) -> Iterator[str]:
     """An answer that a question offers is accepted from whoever gives it while that question is open."""
     refused = {each.scope for each in look.record.answers if each.verb is Verb.ANSWER and each.refusal}
-    for request in look.moment.asked if refused else ():
+    for request in look.moment.requests if refused else ():
         if not isinstance(request, OperatorRequest) or request.verb is not Verb.ANSWER:
             continue
         entry = look.world.plant.dispatcher.question(request.scope)
@@ -260,8 +260,8 @@ def _gives_back(said: Remember) -> bool:
 def numbers_lie_within_their_limits(look: Look) -> Iterator[str]:
     """A task is accepted only with numbers within the limits of its recipe."""
     for change in look.record.tasks.changes:
-        known = look.world.plant.intake.tasks.get(change.said.task)
-        if change.said.state is not TaskState.QUEUED or change.answer or known is None:
+        known = look.world.plant.intake.tasks.get(change.message.task)
+        if change.message.state is not TaskState.QUEUED or change.answer or known is None:
             continue
         cell = look.world.model.cell(known.order.cell)
         found = [each for each in cell.recipes if each.name == known.order.recipe]

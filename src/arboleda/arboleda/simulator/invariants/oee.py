@@ -37,7 +37,7 @@ def oee_is_as_seen(look: Look) -> Iterator[str]:
 def _work(task: KnownTask) -> Work:
     return Work(
         cell=task.cell,
-        order=task.said.text.partition(" #")[0],
+        order=task.message.text.partition(" #")[0],
         state=task.state.value,
         accepted_s=task.accepted,
         started_s=task.began,

@@ -57,7 +57,7 @@ def _is_forgotten(sent: SentCommand) -> bool:
 
 
 def _has_reported_since(look: Look, sent: SentCommand) -> bool:
-    return any(each.robot == sent.robot and each.at >= sent.at for each in look.moment.heard)
+    return any(each.robot == sent.robot and each.at >= sent.at for each in look.moment.reports)
 
 
 def _word(sent: SentCommand) -> str:

@@ -55,7 +55,7 @@ def line(change: TaskChanged) -> Row:
 
 def task(known: KnownTask) -> Row:
     """The row of a task as it was told, without its times."""
-    said = known.said
+    said = known.message
     expected: Row = {"text": said.text, "cell": known.cell, "state": known.state.value}
     if known.state in ENDED:  # a recovering task has its reason before that is told
         expected |= {"reason": said.reason.value if said.reason else None, "sentence": said.sentence}
@@ -191,20 +191,20 @@ def stands(row: Row) -> str:
 def obstacle(known: KnownRobot, now: float, plant: int) -> tuple[Phrase, ...] | None:
     """The phrases for why a robot takes no command; empty if nothing is in its way, None if unsure."""
     if known.stop is StopProgress.LATCHED:
-        return (STOPPED.said,)
+        return (STOPPED.phrase,)
     if known.offline(now):
-        return (OFFLINE.said,) if known.heard_at is not None else (UNHEARD.said,)
+        return (OFFLINE.phrase,) if known.heard_at is not None else (UNHEARD.phrase,)
     if known.robot.link.value == "mqtt" and known.epoch is not None and known.plant != plant:
-        return (UNANSWERED.said, FENCED.said)
+        return (UNANSWERED.phrase, FENCED.phrase)
     if known.state in (MotionState.FAULT, MotionState.STOP_LATCHED):
-        return (FAULTY.said,) if known.state is MotionState.FAULT else (STOPPED.said,)
+        return (FAULTY.phrase,) if known.state is MotionState.FAULT else (STOPPED.phrase,)
     if known.barred and known.state is not MotionState.MOVING:
-        return (STOPPED.said,)
+        return (STOPPED.phrase,)
     if known.unhomed:
-        return (UNHOMED.said,)
+        return (UNHOMED.phrase,)
     if not known.robot.says_homed:
         return None  # it may have lost its place as only its joints show
-    return (MOVING.said,) if known.state is MotionState.MOVING else ()
+    return (MOVING.phrase,) if known.state is MotionState.MOVING else ()
 
 
 def of_robot(row: Row, values: dict[str, str]) -> Iterator[str]:

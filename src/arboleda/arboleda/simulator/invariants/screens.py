@@ -67,7 +67,9 @@ def _is_own(look: Look, cell: KnownCell) -> bool:
 
 def _lines(look: Look) -> Iterator[str]:
     for change in look.record.tasks.changes:
-        yield from _unlike(f"task {change.said.task}", view.change(change.said), rows.line(change.said))
+        yield from _unlike(
+            f"task {change.message.task}", view.change(change.message), rows.line(change.message)
+        )
 
 
 def _shown(look: Look) -> Iterator[str]:
@@ -357,7 +359,7 @@ def _drawn(look: Look, drawn: Row) -> Iterator[str]:
         running = look.record.tasks.open.get(look.record.tasks.running.get(name, ""))
         own = _is_own(look, look.record.cells[name])
         if not own and kept == "off" and running is not None and look.record.cells[name].run.tree is not None:
-            yield from rows.waits_at(look.record.cells[name], running.said.text, part)
+            yield from rows.waits_at(look.record.cells[name], running.message.text, part)
 
 
 def _in_hands(name: str, part: Row | None, carriers: dict[str, bool], kept: str) -> Iterator[str]:

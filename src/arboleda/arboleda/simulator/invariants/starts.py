@@ -34,7 +34,7 @@ def accepted_is_found_again(look: Look) -> Iterator[str]:
 def asked_again_is_the_same_task(look: Look) -> Iterator[str]:
     """Whoever asks again for an id that was accepted gets that task, in whichever start."""
     answers = {each.request: each for each in look.moment.sent if isinstance(each, TaskChanged)}
-    for request in look.moment.asked:
+    for request in look.moment.requests:
         if not isinstance(request, TaskRequest) or "#" not in request.text or request.request not in answers:
             continue
         id, answer = request.text.rpartition("#")[2], answers[request.request]

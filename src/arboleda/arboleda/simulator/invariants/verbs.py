@@ -68,8 +68,8 @@ def _alone(look: Look) -> Iterator[tuple[OperatorRequest, OperatorAnswer]]:
     """The verb of a step and its answer, if nothing but an absence came before it in that step. A plant's
     first step has none, as the plant looks there first what became of the tasks that it found.
     """
-    asked, answers = look.moment.asked, look.record.answers
-    alone = len(asked) == len(answers) == 1 and not look.moment.heard and not look.record.begins
+    asked, answers = look.moment.requests, look.record.answers
+    alone = len(asked) == len(answers) == 1 and not look.moment.reports and not look.record.begins
     if alone and isinstance(asked[0], OperatorRequest) and not _is_shared(look, asked[0]):
         yield asked[0], answers[0]
 
@@ -81,7 +81,7 @@ def _is_shared(look: Look, request: OperatorRequest) -> bool:
 
 def _found(look: Look) -> list[CellSnapshot]:
     """The cells as the verb found them: a plant that was away first holds those at work."""
-    cells = look.record.asked.cells
+    cells = look.record.before_requests.cells
     return [_held_after_absence(cell) for cell in cells] if look.record.away else cells
 
 
@@ -98,11 +98,13 @@ def _refused(look: Look, request: OperatorRequest) -> bool | None:
         return None
     if verb is Verb.UNLOAD:
         named = record.scopes.parts(request)
-        return not any(cell.parts[place] for cell in record.asked.cells for place in named.get(cell.name, ()))
+        return not any(
+            cell.parts[place] for cell in record.before_requests.cells for place in named.get(cell.name, ())
+        )
     if verb is Verb.OVERRIDE:
-        quarantined = record.asked.quarantined.get(scope.strip().lower())
+        quarantined = record.before_requests.quarantined.get(scope.strip().lower())
         return True if quarantined is None else None
-    task = record.asked.tasks.get(scope.strip().lstrip("#")) if verb is Verb.CANCEL else None
+    task = record.before_requests.tasks.get(scope.strip().lstrip("#")) if verb is Verb.CANCEL else None
     if task is not None:
         return None if task is TaskState.RUNNING else False
     if scope not in record.scopes:
@@ -282,7 +284,7 @@ def _homed(look: Look, request: OperatorRequest) -> Iterator[str]:
 
 def _booked(look: Look, request: OperatorRequest) -> Iterator[str]:
     named = with_common_places(look.record.scopes.parts(request), look.world.model.cells)
-    for before in look.record.asked.cells:
+    for before in look.record.before_requests.cells:
         wanted = before.parts | named.get(before.name, {})
         booked = look.record.cells[before.name].context.places.counts
         if booked != wanted:
