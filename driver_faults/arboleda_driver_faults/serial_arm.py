@@ -89,7 +89,7 @@ class ServoRig(Rig):
     def seen(self) -> tuple[str, bool] | None:
         gripper = self._settings.gripper
         assert gripper is not None
-        *joints, jaw = self._servos.seen().values()
+        *joints, jaw = self._servos.positions().values()
         if gripper.near < abs(jaw - gripper.open) < 500:
             return None
         for name, spot in self._spots.items():

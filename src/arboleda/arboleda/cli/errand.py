@@ -71,7 +71,7 @@ class Errand:
             self._note(change)
         self._finish_if_over()
 
-    def seen(self, snapshot: dict[str, Any]) -> None:
+    def note_snapshot(self, snapshot: dict[str, Any]) -> None:
         """Note which cells of a snapshot start no task before an operator acts or a device is back."""
         blocked = [cell["name"] for cell in snapshot["cells"] if cell["paused"] and not cell["task"]]
         absent = _absent(snapshot)

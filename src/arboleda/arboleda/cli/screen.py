@@ -339,10 +339,10 @@ def _question(robot: dict[str, Any]) -> list[str]:
 def _answers(cell: dict[str, Any]) -> list[str]:
     """The last answers to the task of a cell."""
     answers = (cell["task"] or {}).get("answers", [])[-MOST_ANSWERS:]
-    return [say(HEARD(cell=cell["name"], answers=heard(answers)))] if answers else []
+    return [say(HEARD(cell=cell["name"], answers=answers_line(answers)))] if answers else []
 
 
-def heard(answers: Iterable[Mapping[str, Any]]) -> str:
+def answers_line(answers: Iterable[Mapping[str, Any]]) -> str:
     """The answers in one line: for each the one who gave it, the question and the answer."""
     return "; ".join(f"{each['by']}, {each['asked']}: {answered(each['answer'])}" for each in answers)
 

@@ -24,7 +24,7 @@ from arboleda.store.task_rows import History, TaskQuery, TaskRow, answers_of, ch
 from . import plant_options
 from .language import say, word
 from .plant_options import RunningPlant, StateFolder, StoreAddress
-from .screen import STYLES, heard
+from .screen import STYLES, answers_line
 
 AGO = re.compile(r"(\d{1,6})\s*([smhdw])")
 SECONDS = {"s": 1.0, "m": 60.0, "h": 3600.0, "d": 86_400.0, "w": 604_800.0}
@@ -187,5 +187,5 @@ def _columns(row: TaskRow) -> tuple[str, ...]:
         word("task_state", row.state),
         took,
         plain(why),
-        plain(heard(map(vars, answers_of(row)))),
+        plain(answers_line(map(vars, answers_of(row)))),
     )

@@ -55,7 +55,7 @@ class Silence:
         self._since = math.inf
 
     def ends_lease(self, now: float, state: object) -> bool:
-        """True once it has lasted as long as a lease; `seen` is what the store last heard of him, another
+        """True once it has lasted as long as a lease; `state` is what the store last heard of him, another
         thing whenever he says anything.
         """
         if state != self._last_state:

@@ -54,9 +54,9 @@ class Feed:
     def remove(self, viewer: Viewer) -> None:
         self._frames.remove(viewer)
 
-    def seen(self, viewer: Viewer, number: int) -> None:
+    def note_shown(self, viewer: Viewer, number: int) -> None:
         """Note the frame that a page says it has shown."""
-        self._frames.seen(viewer, number)
+        self._frames.note_shown(viewer, number)
 
     def start(self) -> None:
         """Listen to the plant; in the event loop that will `run`."""

@@ -79,7 +79,7 @@ def _card(layout: dict[str, Any], devices: list[dict[str, Any]], words: Words) -
         rows(f"places.{cell}", columns, classes="places")
     if any(device["position"] is None for device in devices):
         rows(f"devices.{cell}", ["", "", ""], classes="devices")
-        heard(f"heard.{cell}", words)
+        answers_table(f"heard.{cell}", words)
 
 
 def _question(person: str) -> None:
@@ -92,7 +92,7 @@ def _question(person: str) -> None:
         live("p", f"asked_left.{person}", classes="asked-left")
 
 
-def heard(name: str, words: Words) -> None:
+def answers_table(name: str, words: Words) -> None:
     """Draw the table of answers to a task: the one who answered, the question and the answer."""
     rows(name, [words(f"column.{each}") for each in ("by", "question", "answer")], classes="heard")
 

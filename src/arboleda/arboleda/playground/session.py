@@ -118,7 +118,7 @@ class Session:
         now = self._run.tick
         self.go(max((tick for tick in map(self._shown_at, self._happened()) if tick < now), default=0))
 
-    def asked(self, act: str, of: str, more: object = None) -> None:
+    def take(self, act: str, of: str, more: object = None) -> None:
         """Take a request of the page, in the form of its buttons; anything else is ignored."""
         if self._refused():
             return
@@ -157,7 +157,7 @@ class Session:
         follows), marks (ticks of mishaps)}."""
         run = self._run
         face = run.state.face(self._words.language, run.links)
-        face |= self._hands(run.seen)
+        face |= self._hands(run.snapshot)
         patch, self._shown = changed(self._shown, face), face
         return {
             "face": patch,

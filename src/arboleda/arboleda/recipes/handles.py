@@ -152,14 +152,14 @@ class Handle:
 
     def _unsaid(self, facts: Mapping[str, Value]) -> list[str]:
         """Those of the facts that the device does not say."""
-        return [name for name, value in facts.items() if self._told(name) != value]
+        return [name for name, value in facts.items() if self._reported(name) != value]
 
-    def _told(self, fact: str) -> Value | None:
+    def _reported(self, fact: str) -> Value | None:
         return self._context.robots.fact(self._device.name, fact)
 
     def _objection(self, facts: Mapping[str, Value]) -> Failure | None:
         for name in self._unsaid(facts):
-            reported, value = said(self._told(name)), shown(facts[name])
+            reported, value = value_text(self._reported(name)), shown(facts[name])
             sentence = NOT_SO(robot=self._device.name, told=reported, fact=name, value=value)
             return Failure(reason=Reason.PRECONDITION, sentence=sentence)
         return None
@@ -341,7 +341,7 @@ def named(step: object) -> str:
     return step.name if isinstance(step, Behaviour) else quoted(step)
 
 
-def said(value: Value | None) -> str:
+def value_text(value: Value | None) -> str:
     return "nothing" if value is None else shown(value)
 
 

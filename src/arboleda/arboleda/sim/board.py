@@ -306,7 +306,7 @@ class Board:
     def _tell(self) -> None:
         """Send telemetry; a message equal to the last one but for its number is not built anew."""
         report = self.body.tell()
-        state = (report, self.state, self.boot_id, self.homed, self._receipts.told)
+        state = (report, self.state, self.boot_id, self.homed, self._receipts.words)
         last, self._last_state = self._last_state, state
         if not self._uplink.connected:
             self._last_state = None

@@ -56,7 +56,7 @@ class JudgedWorld:
         make_plant: Callable[..., Plant] | None = None,
         standby: bool = False,
     ) -> None:
-        disk = SharedDisk(LeaderRow(epoch=FIRST_EPOCH + 1, seen=START_S)) if standby else None
+        disk = SharedDisk(LeaderRow(epoch=FIRST_EPOCH + 1, renewed_at=START_S)) if standby else None
         self.world = World(model, recipes=recipes, make_plant=make_plant, disk=disk)
         hosts = None if disk is None else Hosts(self.world, disk)
         self._start = self.world.now

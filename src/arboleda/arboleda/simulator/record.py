@@ -521,7 +521,7 @@ class Record:
         for cell in self._cells:
             cell.looked, run = False, cell.run
             cell.wakes = cell.context.time.wakes
-            if cell.signs(run) == cell.seen and len(run.queue) == cell.queued:
+            if cell.signs(run) == cell.last_signs and len(run.queue) == cell.queued:
                 continue
             before, changed = cell.state, True
             cell.follow()

@@ -43,10 +43,10 @@ def judged(work: Work, *, story: Path | None = None) -> Verdict:
     try:
         found = json.loads(output.splitlines()[-1])
         findings = [
-            Finding(says=each["says"], seen=each["seen"], story=tuple(each["story"]))
+            Finding(says=each["says"], evidence=each["seen"], story=tuple(each["story"]))
             for each in found["findings"]
         ]
-        return Verdict(asked=found["asked"], runs=found["runs"], findings=findings)
+        return Verdict(questions=found["asked"], runs=found["runs"], findings=findings)
     except (ValueError, LookupError, TypeError):
         return _cannot(NO_VERDICT.format(seconds=CPU_S))
 
@@ -72,7 +72,7 @@ def _record(story: Path, plant: Plant, again: Again) -> None:
 
 
 def _cannot(why: str) -> Verdict:
-    return Verdict(findings=[Finding(says=CAN_BE_JUDGED, seen=why)])
+    return Verdict(findings=[Finding(says=CAN_BE_JUDGED, evidence=why)])
 
 
 def _output(request: bytes) -> bytes:

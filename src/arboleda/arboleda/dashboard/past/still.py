@@ -35,7 +35,7 @@ def of_record(then: Moment, moment: int) -> Face:
     return {
         "past/at": moment,
         "text/record.at": [dated(moment), ""],
-        "text/record.event": ["" if event is None else said(then, event), ""],
+        "text/record.event": ["" if event is None else line(then, event), ""],
         "text/title": [title, state],
     }
 
@@ -50,7 +50,7 @@ def with_links(face: Face, events: Sequence[Row]) -> Face:
     }
 
 
-def said(then: Moment, event: Row) -> str:
+def line(then: Moment, event: Row) -> str:
     """The text of an event in one line."""
     _, cell, what, sentence = timeline.row(then, event)["texts"]
     return " · ".join(part for part in (cell, what, sentence) if part)

@@ -101,7 +101,7 @@ class Machine:
     def _forget_link(self, now: float) -> None:
         self._lines = LineReader()
         self._status: Status | None = None
-        self._heard_at, self._query_at = now, now
+        self._last_data_at, self._query_at = now, now
         self._patience_s = BOOT_S
         self._work: Move | Homing | None = None
         self._alarm: str | None = None  # the last one thrown, until the state is another one
@@ -130,7 +130,7 @@ class Machine:
                 self._open_at = math.inf
                 self._out.append(Open())
             return
-        if now - self._heard_at > self._patience_s:
+        if now - self._last_data_at > self._patience_s:
             self._close(
                 now, f"it has told no status for {self._patience_s:g} s; is it GRBL 1.1, at this baud?"
             )
@@ -228,7 +228,7 @@ class Machine:
 
     def _begun(self, now: float) -> None:
         """Take the banner: the end of a reset from here, or a boot."""
-        self._heard_at = now
+        self._last_data_at = now
         resets, self._resets = self._resets, False
         if self._step is Step.RESETTING:
             self._step, self._news = None, True
@@ -257,7 +257,7 @@ class Machine:
 
     def _look(self, now: float, status: Status) -> None:
         before, self._status = self._status, status
-        self._heard_at, self._patience_s, self._known = now, SILENT_S, True
+        self._last_data_at, self._patience_s, self._known = now, SILENT_S, True
         if status.state is not State.ALARM:
             self._alarm = None
         if self._left_at_work:  # nobody waits for that work any more

@@ -52,7 +52,7 @@ class Task:
     command: VerbCall | Stop | None
     is_work: bool = False
     over: Returned | Raised | None = None
-    seen_by: int = 0  # the first look that began after the end
+    first_look: int = 0  # the first look that began after the end
 
 
 class Machine:
@@ -195,7 +195,7 @@ class Machine:
             return  # the event loop runs, and a call hangs
         self._up, self._look_at = True, now + self._settings.poll_s
         for number, task in list(self._tasks.items()):
-            if task.over is not None and self._is_full_look and task.seen_by <= event.number:
+            if task.over is not None and self._is_full_look and task.first_look <= event.number:
                 del self._tasks[number]
                 self._settle(task, task.over)
         if self._may_read and self._tasks:
@@ -307,7 +307,7 @@ class Machine:
         if isinstance(task.command, Stop):
             self._stop_ended(now, task, task.command, event)
             return
-        task.seen_by = self._looks + 1
+        task.first_look = self._looks + 1
         self._look_at = now
 
     def _stop_ended(self, now: float, task: Task, stop: Stop, event: Returned | Raised) -> None:
@@ -358,8 +358,8 @@ class Machine:
 
     def _report(self, now: float) -> None:
         self._reported_at = now
-        said = Report(at=now, robot=self._device.name, boot_id=self._boot, state=self._state())
-        self._out.append(said.again(now, facts=self._facts, **self._receipts))
+        report = Report(at=now, robot=self._device.name, boot_id=self._boot, state=self._state())
+        self._out.append(report.again(now, facts=self._facts, **self._receipts))
 
 
 def _finishes(task: Task) -> bool:

@@ -115,7 +115,7 @@ class Machine:
         self._packets = PacketReader(self._maker.framing, replies=True)
         self._writes: deque[bytes] = deque()
         self._question: Question | None = None
-        self._asked, self._round_at, self._opened_at = len(self._ids), now, now
+        self._question_count, self._round_at, self._opened_at = len(self._ids), now, now
         self._modes: set[int] | None = set()  # None: all are known
         self._answered_at: dict[int, float] = {}
         self._readings: dict[int, Reading] = {}  # of this round
@@ -160,9 +160,9 @@ class Machine:
         while self._open and self._question is None:
             if self._writes:
                 self._out.append(Write(data=self._writes.popleft()))
-            elif self._asked < len(self._ids):
-                self._ask(now, self._ids[self._asked])
-                self._asked += 1
+            elif self._question_count < len(self._ids):
+                self._ask(now, self._ids[self._question_count])
+                self._question_count += 1
             elif now >= self._round_at:
                 self._end_round(now)
             else:
@@ -188,7 +188,7 @@ class Machine:
 
     def _end_round(self, now: float) -> None:
         """Judge a round in which all servos answered, and begin the next one."""
-        self._asked, self._round_at = 0, now + self._settings.poll_s
+        self._question_count, self._round_at = 0, now + self._settings.poll_s
         readings, self._readings = self._readings, {}
         if self._modes is not None:
             self._modes = None if len(self._modes) == len(self._ids) else self._modes

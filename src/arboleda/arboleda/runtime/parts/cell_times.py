@@ -48,7 +48,7 @@ class CellTimes:
         now_s = self._clock()
         if not 0 <= now_s - self._noted_s < SEEN_S:
             self._noted_s = now_s
-            self._kept(lambda store: store.seen(now_s))
+            self._kept(lambda store: store.note_run(now_s))
         if plant.version == self._version:
             return
         self._version = plant.version
@@ -62,7 +62,7 @@ class CellTimes:
 
     def stop(self) -> None:
         """Keep that the plant was ended on purpose, so that the time after it is not planned; idempotent."""
-        self._kept(lambda store: store.seen(self._clock(), ended=True))
+        self._kept(lambda store: store.note_run(self._clock(), ended=True))
         self._keeps = False
 
     def _kept(self, keep: Callable[[PlantMemory], None]) -> None:

@@ -10,7 +10,7 @@ from arboleda.model.messages import Reason
 from arboleda.model.plant_model import Evidence
 
 from ..recorded.commands import SentCommand
-from ..recorded.proofs import Proof, told
+from ..recorded.proofs import Proof, cause_text
 from .invariant import Look, Trigger, invariant
 
 NOTHING_SAID = Proof()
@@ -81,7 +81,7 @@ def _wrong_cause(look: Look, sent: SentCommand, proof: Proof) -> Iterator[str]:
     if failure is None:
         yield f"{sent} failed without a cause"
     elif failure.reason not in proof.causes | _by_time(look, sent):
-        yield f"{sent} failed for {told(failure)}, which is not what happened"
+        yield f"{sent} failed for {cause_text(failure)}, which is not what happened"
 
 
 def _by_time(look: Look, sent: SentCommand) -> set[Reason]:

@@ -254,5 +254,5 @@ def _off_path(nodes: tuple[int, ...], node: int) -> float:
     return 0.0 if node in nodes[:-1] else -1.0
 
 
-def told(failure: Failure | None) -> str:
+def cause_text(failure: Failure | None) -> str:
     return f"{failure.reason.value} ({failure.sentence})" if failure else "no cause"

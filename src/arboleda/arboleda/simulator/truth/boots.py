@@ -22,7 +22,7 @@ class Boots:
         self._known: set[str] = set()  # those told before any command of this step
 
     def look(self, reports: Iterable[Report], *, is_question: bool) -> None:
-        """Take in what the plant heard in this step; what was `asked` in it may have come before that."""
+        """Take in what the plant heard in this step; what it was asked in it may have come before that."""
         before = self._reported.copy() if is_question else None
         for report in reports:
             if report.robot in self.mute and report.boot_id is not None:

@@ -145,7 +145,7 @@ class RobotsTruth:
         now_us = round(self.world.now * 1e6)
         for robot in self._robots:
             news = robot.again or robot.board.boot_id != robot.boot
-            if news or robot.signs(robot.body) != robot.seen:
+            if news or robot.signs(robot.body) != robot.last_signs:
                 robot.look(now_us)
                 self.changed.append(robot)
         if self.changed:
