@@ -362,14 +362,14 @@ class PlantProcess:
 
     def _step_ending(self, ending: Ending) -> None:
         events, self.inbox = self.inbox, []
-        said = ending.plant.step(self._world.now, events)
+        messages = ending.plant.step(self._world.now, events)
         self._world.processes.due[self._name] = ending.plant.next_deadline
-        self._let_out_unkept(said, ending)
+        self._let_out_unkept(messages, ending)
         if ending.plant.intake.closed and ending.plant.at_rest:
             self.be_gone(ending)
 
-    def _let_out_unkept(self, said: Iterable[Any], ending: Ending) -> None:
-        for message in said:
+    def _let_out_unkept(self, messages: Iterable[Any], ending: Ending) -> None:
+        for message in messages:
             if not leaves_unkept(message):
                 if isinstance(message, Command):
                     why = as_sentence(ending.why)

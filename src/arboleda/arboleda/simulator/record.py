@@ -440,8 +440,8 @@ class Record:
             self._follow_refusals(plant)
         if self.commands.new or self.tasks.changes:
             self.works.follow(self.tasks, self.commands.new, plant.now)
-        asked = bool(self.world.moment.requests)
-        if asked:
+        has_requests = bool(self.world.moment.requests)
+        if has_requests:
             self.differences += differences(self)
             self._verbs.clear()
             self._cancels_a_task = False
@@ -454,15 +454,15 @@ class Record:
             idle = [cell for cell in self._cells if cell.queued and cell.state is CellState.IDLE]
             self.idle = [cell for cell in idle if not cell.paused]
         late = self.commands.soonest <= plant.now
-        self.news = moved or asked or changed or late or self.born or bool(self.tasks.changes)
-        said = self.tasks.changes or self.tasks.refused or self.answers or self.transitions
-        self.has_spoken = bool(said or self.errors)
+        self.news = moved or has_requests or changed or late or self.born or bool(self.tasks.changes)
+        news = self.tasks.changes or self.tasks.refused or self.answers or self.transitions
+        self.has_spoken = bool(news or self.errors)
         self.unnumbered = (changed or bool(self.tasks.changes)) and plant.version == self._version
         self._version = plant.version
         if self.news or plant.now >= self._look_again_at:
             self._look_into_trees(plant.now)
 
-    def _hear(self, asked: bool) -> None:
+    def _hear(self, is_requested: bool) -> None:
         """Take in reports; if somebody asked for something among them, a command may rest on any."""
         moment, robots = self.world.moment, self.robots
         commanded = {each.robot for each in moment.sent if isinstance(each, Command)}
@@ -470,7 +470,7 @@ class Record:
             known = robots.get(report.robot)
             if known is None:
                 continue
-            if report.robot in commanded and (asked or known.robot.home_at_start):
+            if report.robot in commanded and (is_requested or known.robot.home_at_start):
                 self._earlier.setdefault(report.robot, []).append(known.as_it_is())
             if report.robot in self.proofs.by_robot:
                 self.proofs.hear(report, known)
@@ -481,9 +481,9 @@ class Record:
                 if report.rejected is not None:
                     self.commands.hear(report, known)
 
-    def _ask(self, asked: list[Any]) -> None:
-        self._unanswered = deque(event for event in asked if isinstance(event, OperatorRequest))
-        for event in asked:
+    def _ask(self, requests: list[Any]) -> None:
+        self._unanswered = deque(event for event in requests if isinstance(event, OperatorRequest))
+        for event in requests:
             if isinstance(event, OperatorRequest):
                 self._cancels_a_task |= event.verb is Verb.CANCEL and event.scope not in self.scopes
                 self.undisturbed = False
@@ -595,8 +595,8 @@ class Record:
 
     def _obstacles(self, known: KnownRobot) -> frozenset[Obstacle]:
         """The obstacles that spoke against a command to this robot all through this step."""
-        asked = self.world.moment.requests
-        now = min((event.at for event in asked), default=self._plant.now)
+        requests = self.world.moment.requests
+        now = min((event.at for event in requests), default=self._plant.now)
         found = known.obstacles(now, self._plant.epoch)
         for earlier in self._earlier.get(known.robot.name, ()):
             earlier.stop = known.stop
@@ -605,12 +605,12 @@ class Record:
         stopped = all(self.cells[cell.name].stopped for cell in cells)
         return found | {Obstacle.STOPPED} if stopped else found
 
-    def _on_fact(self, said: Remember) -> None:
+    def _on_fact(self, message: Remember) -> None:
         kept = {fact: dict(rows) for fact, rows in self._kept.items()}
-        rows = kept.setdefault(said.fact, {})
-        rows.pop(said.name, None)
-        if said.value is not None:
-            rows[said.name] = said.value
+        rows = kept.setdefault(message.fact, {})
+        rows.pop(message.name, None)
+        if message.value is not None:
+            rows[message.name] = message.value
         self._kept = kept
 
     def _on_task(self, change: TaskChanged) -> None:

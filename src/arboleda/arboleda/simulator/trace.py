@@ -77,7 +77,7 @@ class Trace:
         requests = [f"asked      {_request_text(event)}" for event in moment.requests]
         messages = [each for each in moment.sent if not is_step(each) and not isinstance(each, Heartbeat)]
         sent = [f"plant      {_sent(each)}" for each in messages]
-        said = [
+        published = [
             f"{client or 'stranger':<10} {each.topic} {each.payload.decode(errors='replace')[:200]}"
             for client, each in moment.published
             if not each.topic.endswith(QUIET)
@@ -88,7 +88,7 @@ class Trace:
             if each.sender and not isinstance(each.message, Heartbeat)
         ]
         done = [f"{board:<10} carries out {_fields(goal)}" for board, goal in moment.executed]
-        return [*last, *requests, *sent, *others, *said, *done]
+        return [*last, *requests, *sent, *others, *published, *done]
 
 
 @cache

@@ -112,13 +112,13 @@ def _sum(plants: Sequence[LastSeenPlant], words: Words) -> list[str]:
     there = [state for state in ORDER if state in states]
     counts = [f"{_state_text(state, words)}: {states[state]}" for state in there[::-1]]
     tasks = sum((_tasks(plant) for plant in plants), Counter[str]())
-    heard = [plant for plant in plants if _is_there(plant)]
+    present = [plant for plant in plants if _is_there(plant)]
     figures = [words("site.plants", count=len(plants)), *counts]
-    if heard:
+    if present:
         figures += [
             words("site.open_tasks", running=tasks["running"], waiting=tasks["queued"]),
-            words("oee.counted", **_ended(heard)),
-            f"OEE {_percent(whole_oee(row for plant in heard for row in plant.oee))}",
+            words("oee.counted", **_ended(present)),
+            f"OEE {_percent(whole_oee(row for plant in present for row in plant.oee))}",
         ]
     return [" · ".join(figures), there[0] if there else ""]
 

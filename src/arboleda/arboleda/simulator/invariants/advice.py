@@ -26,8 +26,8 @@ def refusals_are_foretold(look: Look) -> Iterator[str]:
     for request, foretold in look.record.before_requests.foretold:
         (answer,) = look.record.answers
         if answer.refusal != foretold:
-            said = f"{request.verb.value} {request.scope!r}"
-            yield f"{said} was answered with {answer.refusal!r}, foretold was {foretold!r}"
+            verb = f"{request.verb.value} {request.scope!r}"
+            yield f"{verb} was answered with {answer.refusal!r}, foretold was {foretold!r}"
 
 
 @invariant(Trigger.END)

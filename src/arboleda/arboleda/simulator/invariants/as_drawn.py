@@ -42,8 +42,8 @@ class DrawnTasks:
 
     def look(self, look: Look) -> Iterator[str]:
         """Take in a step: each breach in a sentence."""
-        asked = [each for each in look.moment.requests if isinstance(each, OperatorRequest)]
-        self._is_disturbed |= any(each.verb not in HARMLESS for each in asked)
+        requests = [each for each in look.moment.requests if isinstance(each, OperatorRequest)]
+        self._is_disturbed |= any(each.verb not in HARMLESS for each in requests)
         if self._is_disturbed or look.world.last_fault_at > -math.inf:
             return
         for sent in look.record.commands.new:
@@ -91,9 +91,9 @@ def _meaning(
     for each in task.answers:
         answers.setdefault(roles.get(each.by, each.by), []).append(plain(each.answer))
 
-    def takes_s(role: str, told: Told) -> float:
+    def takes_s(role: str, call: Told) -> float:
         mine = [each.command for each in sent if roles[each.robot] == role]
-        alike = (each for each in mine if isinstance(each, VerbCall) and _order(each) == told)
+        alike = (each for each in mine if isinstance(each, VerbCall) and _order(each) == call)
         return max((each.takes_s for each in alike), default=0.0)
 
     return Meaning(recipes, answers, takes_s, pauses=pauses)
@@ -109,11 +109,11 @@ def _calls(cell: Cell, sent: Sequence[SentCommand]) -> dict[str, list[Told]]:
 
 
 def _differences(
-    task: str, roles: Sequence[str], told: dict[str, list[Told]], drawn: dict[str, list[Told]]
+    task: str, roles: Sequence[str], calls: dict[str, list[Told]], orders: dict[str, list[Told]]
 ) -> Iterator[str]:
     for role in roles:
-        if (said := told.get(role, [])) != (wanted := drawn.get(role, [])):
-            yield f"{task} is called done; {role} was told {said}, and {wanted} was drawn"
+        if (given := calls.get(role, [])) != (wanted := orders.get(role, [])):
+            yield f"{task} is called done; {role} was told {given}, and {wanted} was drawn"
 
 
 def _order(command: Command) -> Told:

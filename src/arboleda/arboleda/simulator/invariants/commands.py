@@ -196,8 +196,8 @@ def _too_many_turns(cell: KnownCell, leaf: Behaviour) -> Iterator[str]:
 
 def _rounds(loop: Loop) -> float:
     """The number that a loop of a file says of its rounds; without end where that is a variable, or -1."""
-    said = loop.ports.texts[loop.port]
-    return int(said) if said.isdecimal() else math.inf
+    text = loop.ports.texts[loop.port]
+    return int(text) if text.isdecimal() else math.inf
 
 
 @invariant(Trigger.NEWS)

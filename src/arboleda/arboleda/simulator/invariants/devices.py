@@ -176,11 +176,11 @@ def an_answer_is_to_its_question(look: Look) -> Iterator[str]:
         if not booked.done or not isinstance(booked.command, Query):
             continue
         board = look.world.model.robots[booked.command.robot].mqtt
-        told = booked.entry.answer
-        if told not in truth.answers(booked.command.id) and not truth.deceived_since(
+        answer = booked.entry.answer
+        if answer not in truth.answers(booked.command.id) and not truth.deceived_since(
             board, "answer", booked.sent_at
         ):
-            yield f"{booked.command.robot} has not answered {told!r} to {booked.command.id}"
+            yield f"{booked.command.robot} has not answered {answer!r} to {booked.command.id}"
 
 
 @invariant(Trigger.ASKED)
@@ -252,8 +252,8 @@ def _truly_holds(look: Look, body: RobotTruth) -> bool:
     return not lies and look.world.plant.dispatcher.memory.value(Fact.EMPTIED, body.robot.name) is None
 
 
-def _gives_back(said: Remember) -> bool:
-    return said.fact is Fact.QUARANTINE and said.value is None
+def _gives_back(message: Remember) -> bool:
+    return message.fact is Fact.QUARANTINE and message.value is None
 
 
 @invariant(Trigger.TOLD)
@@ -268,8 +268,8 @@ def numbers_lie_within_their_limits(look: Look) -> Iterator[str]:
         for parameter in (each for recipe in found for each in recipe.parameters):
             limits, value = parameter.limits(cell), known.order.values.get(parameter.name)
             if limits and isinstance(value, int | float) and not limits.lower <= value <= limits.upper:
-                said = f"task {known.id} was accepted with {parameter.name} {value:g}"
-                yield f"{said}, allowed is {limits.lower:g} to {limits.upper:g}"
+                task = f"task {known.id} was accepted with {parameter.name} {value:g}"
+                yield f"{task}, allowed is {limits.lower:g} to {limits.upper:g}"
 
 
 DEVICES = (

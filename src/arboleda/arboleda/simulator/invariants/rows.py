@@ -55,10 +55,10 @@ def line(change: TaskChanged) -> Row:
 
 def task(known: KnownTask) -> Row:
     """The row of a task as it was told, without its times."""
-    said = known.message
-    expected: Row = {"text": said.text, "cell": known.cell, "state": known.state.value}
+    change = known.message
+    expected: Row = {"text": change.text, "cell": known.cell, "state": known.state.value}
     if known.state in ENDED:  # a recovering task has its reason before that is told
-        expected |= {"reason": said.reason.value if said.reason else None, "sentence": said.sentence}
+        expected |= {"reason": change.reason.value if change.reason else None, "sentence": change.sentence}
     return expected
 
 
@@ -108,8 +108,10 @@ def _progress(cell: KnownCell, row: Row) -> Iterator[str]:
     elif done and ((shown > 0) is not any(done) or (shown == 1) is not all(done) or not 0 <= shown <= 1):
         yield f"{cell.name}: {shown} of the work is shown as done, of its {len(done)} steps {sum(done)} are"
     runs = [node.name for node in nodes_of(tree) if node.status is Status.RUNNING]
-    said = row["step"]
-    step = str(said.values["step"] if said is not None and said.phrase is IN_RECOVERY else said or "")
+    sentence = row["step"]
+    step = str(
+        sentence.values["step"] if sentence is not None and sentence.phrase is IN_RECOVERY else sentence or ""
+    )
     if bool(runs) is not bool(step) or (step and step not in runs):
         yield f"{cell.name}: {row['step']!r} is shown as the step, {runs} run"
 

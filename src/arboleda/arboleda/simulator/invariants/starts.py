@@ -38,8 +38,13 @@ def asked_again_is_the_same_task(look: Look) -> Iterator[str]:
         if not isinstance(request, TaskRequest) or "#" not in request.text or request.request not in answers:
             continue
         id, answer = request.text.rpartition("#")[2], answers[request.request]
-        said = look.record.starts.changes.get(id)
-        if said is not None and answer.task != id and not answer.for_now and _asks_for(look, request, said):
+        change = look.record.starts.changes.get(id)
+        if (
+            change is not None
+            and answer.task != id
+            and not answer.for_now
+            and _asks_for(look, request, change)
+        ):
             yield f"task {id} was accepted, and is now {answer.state.value}: {answer.sentence}"
 
 

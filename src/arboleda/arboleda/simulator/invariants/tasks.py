@@ -180,8 +180,8 @@ def cancelled_tasks_end_cancelled(look: Look) -> Iterable[str]:
 
 def _cancel_is_requested(look: Look) -> bool:
     """True if somebody asks for a cancel in this step: the plant reports the task before it answers."""
-    asked = (each for each in look.moment.requests if isinstance(each, OperatorRequest))
-    return any(each.verb is Verb.CANCEL for each in asked)
+    requests = (each for each in look.moment.requests if isinstance(each, OperatorRequest))
+    return any(each.verb is Verb.CANCEL for each in requests)
 
 
 @invariant(Trigger.NEWS)
@@ -204,9 +204,9 @@ def _unkept(look: Look) -> Iterator[str]:
             yield f"{name} has {len(run.queue)} tasks in its queue; by what was told {len(queue)}, or others"
     for change in tasks.changes:
         known = look.world.plant.intake.tasks.get(change.message.task)
-        told = tasks.known(change.message.task)
-        if known is not None and told is not None and known.state is not told.state:
-            yield f"task {known.id} is {known.state.value}, and was told to be {told.state.value}"
+        recorded = tasks.known(change.message.task)
+        if known is not None and recorded is not None and known.state is not recorded.state:
+            yield f"task {known.id} is {known.state.value}, and was told to be {recorded.state.value}"
         retried = look.world.plant_process.starts > 1 or look.record.cells[change.message.cell or ""].retries
         if known is not None and not retried and known.attempts != (known.started_at is not None):
             yield f"task {known.id} began at {known.started_at}, and that was attempt {known.attempts}"
@@ -285,14 +285,14 @@ def rejected_input_changes_nothing(look: Look) -> Iterable[str]:
 @invariant(Trigger.ASKED)
 def every_request_is_answered(look: Look) -> Iterable[str]:
     """Each task text and each verb has its answer in the step that takes it in."""
-    record, asked = look.record, look.moment.requests
-    verbs = sum(isinstance(each, OperatorRequest) for each in asked)
+    record, requests = look.record, look.moment.requests
+    verbs = sum(isinstance(each, OperatorRequest) for each in requests)
     if verbs != len(record.answers):
         yield f"{verbs} verbs were asked for, {len(record.answers)} answered"
-    tokens = [each.request for each in asked if isinstance(each, TaskRequest) and each.request is not None]
-    told = [each.request for each in look.moment.sent if isinstance(each, TaskChanged)]
-    if tokens != [token for token in told if token is not None]:
-        yield f"task requests {tokens} were answered as {told}"
+    tokens = [each.request for each in requests if isinstance(each, TaskRequest) and each.request is not None]
+    answered = [each.request for each in look.moment.sent if isinstance(each, TaskChanged)]
+    if tokens != [token for token in answered if token is not None]:
+        yield f"task requests {tokens} were answered as {answered}"
 
 
 @invariant(Trigger.COMMANDED)
