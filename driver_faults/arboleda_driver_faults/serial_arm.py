@@ -86,7 +86,7 @@ class ServoRig(Rig):
         self._driver = Loopback(Machine([self._arm], self._settings), self._servos, hear, now)
         return self._driver
 
-    def seen(self) -> tuple[str, bool] | None:
+    def place(self) -> tuple[str, bool] | None:
         gripper = self._settings.gripper
         assert gripper is not None
         *joints, jaw = self._servos.positions().values()
