@@ -93,7 +93,7 @@ class Both:
                 return
             values = seen if said_nothing else (seen[0], seen[1] - timedelta(seconds=0.5))
             db.execute(END_LEASE, values)
-        last = self.row.last_seen
+        last = self.row.lease_state
         self.row.end_lease(last if said_nothing else (last[0], NOW + 1.0))
 
     def compare(self) -> None:
