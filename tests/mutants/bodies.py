@@ -48,6 +48,12 @@ ZONES = (
         edit(CellZones.objection, "if not missing:", "if missing is not None:"),
         seeds=SHARED,
     ),
+    mutant(
+        "a_wait_names_its_cause",
+        "Who waits on is not told that another one has the zone now.",
+        edit(CellZones.leave, "self._zones.give_back(held) + waiting", "self._zones.give_back(held)"),
+        seeds=SHARED,
+    ),
 )
 
 MOTION = (

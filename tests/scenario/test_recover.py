@@ -161,3 +161,13 @@ def test_nothing_is_rescued_after_a_stop(tmp_path: Path, recipe: str) -> None:
     assert rig.operate(Verb.STOP, "bench") is None
     assert ended(rig).reason is Reason.STOPPED
     assert told(rig)[0] == "mover put_away" and "mover take_out" not in told(rig)
+
+
+def test_a_failure_that_the_tree_asks_for_keeps_its_words_while_the_rescue_takes_its_time(
+    tmp_path: Path,
+) -> None:
+    body = '<TryCatch><AlwaysFailure name="it says 2"/><Sleep msec="300"/></TryCatch>'
+    rig = written(tmp_path, xml=body)
+    outcome = run(rig, "tree")
+    assert outcome.state is TaskState.FAILED
+    assert str(rig.plant.intake.tasks[outcome.task].failed_step) == "it says 2"

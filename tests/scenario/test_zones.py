@@ -9,6 +9,7 @@ from importlib.resources import files
 from pathlib import Path
 
 import pytest
+from py_trees.common import Status
 
 from arboleda.core import reasons
 from arboleda.core.cell_states import CellState
@@ -80,6 +81,21 @@ def meet(rig: Rig, station: int = 7) -> float:
     rig.wait(0.4)
     assert zone(rig, "centre") == ("held", "ra1") and rig.runs("sis_b", "take zones")
     return since
+
+
+def waits_for(rig: Rig, cell: str) -> str:
+    """What the step that a cell is at says of its waiting."""
+    return next(
+        str(node.feedback)
+        for node in rig.plant.cells[cell].run.nodes
+        if node.name == "take zones" and node.status is Status.RUNNING
+    )
+
+
+def test_who_waits_for_a_zone_names_its_holder(zoned: Plants) -> None:
+    rig, _ = start(zoned(Evidence.IDS))
+    meet(rig)
+    assert waits_for(rig, "sis_b") == "waits for zone centre, which ra1 holds"
 
 
 def honest(witness: Witness) -> None:

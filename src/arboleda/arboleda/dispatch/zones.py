@@ -85,6 +85,10 @@ class Zones:
         names, zones = list(self._waiting), self._waiting[robot]
         return tuple(name for name in names[: names.index(robot)] if zones & self._waiting[name])
 
+    def waiting_for(self, zones: frozenset[str]) -> tuple[str, ...]:
+        """The robots that wait for any of the zones, the first one first."""
+        return tuple(robot for robot, asked in self._waiting.items() if asked & zones)
+
     def is_quarantined(self, zone: str) -> bool:
         return zone in self._quarantined
 

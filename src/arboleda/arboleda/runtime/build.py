@@ -416,65 +416,29 @@ class App:
         return self._reporting.report(task)
 
     def _build(self, parts: set[str], options: Options) -> None:
-        now, bridge, drivers = int(time.time()), None, None
+        """The parts of this process in the order in which they start; they end in the opposite one."""
+        now, bridge = int(time.time()), None
         virtual, scout = "devices" in parts, "broker" not in parts
         if "web" in parts and options.page:
             import_module("arboleda.dashboard.page")  # takes longer than a leader may say nothing
         epoch = self._lead(now) if "orchestrator" in parts else now
         if "bridge" in parts:
-            waits = virtual and scout
             bridge = self._bridge = BridgePart(
                 self.model,
                 max(now, epoch),
                 self._broker,
                 self._crash,
-                waits=waits,
+                waits=virtual and scout,
                 has_lease="orchestrator" in parts and self._store.renew_s is not None,
             )
             self._parts.append(bridge)
         if virtual:
             self._parts += self._boards(now, bridge, scout=scout)
         if "orchestrator" in parts:
-            if self.model.driven:
-                drivers = self._drivers = DriversPart(self.model, epoch, self._crash)
-                self._parts.append(drivers)
-            self.orchestrator = Orchestrator(
-                self.model,
-                epoch,
-                self._crash,
-                self._store,
-                history=self._recalled,
-                drops_waiting=not self._keeps_waiting,
-            )
-            self.orchestrator.diagnoses.append(self._pace.diagnosis)
-            self.orchestrator.observers += [self._garbage.stepped, self._look_for_restart]
-            self._parts += self._recorder(epoch, self.orchestrator, options)
-            self._parts.append(Periodic("place", self._looks(), self._crash))  # also while the plant ends
-            times = CellTimes(self._store, self.model.history_days)
-            self._parts.append(times)  # before the plant, so that it ends after it
-            self.orchestrator.observers.append(times.stepped)
-            if self._alarms is not None:
-                self._parts.append(self._alarms)
-                self.listen(self._alarms.changed)
-                self._pace.listeners.append(self._alarms.paced)
-                self.orchestrator.observers.append(self._alarms.stepped)
-            self._parts.append(self.orchestrator)
-            self._faults = FaultDesk(self.model, self._devices, self.orchestrator.hear)
-            if self._devices is not None:
-                self._devices.noted = self._faults.noted
+            self._build_plant(epoch, options)
         if "web" in parts:  # a process has one page, so it is made by who leads
-            self._web = self._web_part(options)
-            self.watch(self._web.plant.saw)
-            self._count()
-            self._parts.append(self._web)
-            self._parts += [each for each in (self._draft, self._make, self._proposals) if each]
-        if self._groot2 is not None:
-            self.watch(self._groot2.saw)
-            self._parts.append(self._groot2)
-        if self._opcua_view is not None:
-            self.listen(self._opcua_view.changed)
-            self.watch(self._opcua_view.saw)
-            self._parts.append(self._opcua_view)
+            self._build_page(options)
+        self._build_views()
         if options.demo and self._devices is not None and self.orchestrator is not None:
             befall = self._devices.befall
             self._demo = DemoPart(Demo(self.model), self.plant.submit, befall, self._crash)
@@ -482,11 +446,59 @@ class App:
             self._parts.append(self._demo)
         if self.orchestrator is not None and self._store.renew_s is not None:
             self._parts.append(CellResumption(self.plant, self._store.going, epoch))
-        self._join(bridge, drivers, self._link)
+        self._join(bridge, self._drivers, self._link)
         if self.orchestrator is not None:
             self._parts += [HangUpPart(self._versions.put_files)] if self._versions else []
             systemd = systemd_part(os.environ, lambda: self.plant.stepped_at)
             self._parts += [systemd] if systemd else []
+
+    def _build_plant(self, epoch: int, options: Options) -> None:
+        """The plant with its drivers, its record, its times and its alarms."""
+        if self.model.driven:
+            self._drivers = DriversPart(self.model, epoch, self._crash)
+            self._parts.append(self._drivers)
+        plant = self.orchestrator = Orchestrator(
+            self.model,
+            epoch,
+            self._crash,
+            self._store,
+            history=self._recalled,
+            drops_waiting=not self._keeps_waiting,
+        )
+        plant.diagnoses.append(self._pace.diagnosis)
+        plant.observers += [self._garbage.stepped, self._look_for_restart]
+        self._parts += self._recorder(epoch, plant, options)
+        self._parts.append(Periodic("place", self._looks(), self._crash))  # also while the plant ends
+        times = CellTimes(self._store, self.model.history_days)
+        self._parts.append(times)  # before the plant, so that it ends after it
+        plant.observers.append(times.stepped)
+        if self._alarms is not None:
+            self._parts.append(self._alarms)
+            self.listen(self._alarms.changed)
+            self._pace.listeners.append(self._alarms.paced)
+            plant.observers.append(self._alarms.stepped)
+        self._parts.append(plant)
+        self._faults = FaultDesk(self.model, self._devices, plant.hear)
+        if self._devices is not None:
+            self._devices.noted = self._faults.noted
+
+    def _build_page(self, options: Options) -> None:
+        """The page, with what is made and changed on it."""
+        self._web = self._web_part(options)
+        self.watch(self._web.plant.saw)
+        self._count()
+        self._parts.append(self._web)
+        self._parts += [each for each in (self._draft, self._make, self._proposals) if each]
+
+    def _build_views(self) -> None:
+        """The views for other programs: Groot2 and OPC UA."""
+        if self._groot2 is not None:
+            self.watch(self._groot2.saw)
+            self._parts.append(self._groot2)
+        if self._opcua_view is not None:
+            self.listen(self._opcua_view.changed)
+            self.watch(self._opcua_view.saw)
+            self._parts.append(self._opcua_view)
 
     def _looks(self) -> list[Callable[[], None]]:
         """The regular checks: the speed of the memory, and that its files are still in their place."""

@@ -57,13 +57,16 @@ class CellDevices:
         """True while the cell holds a device that it shares."""
         return self._zones.holder(device) == self._cell.name
 
+    def held(self) -> frozenset[str]:
+        """The shared devices that the cell holds."""
+        return self._zones.held_by(self._cell.name)
+
     def take(self, devices: frozenset[str]) -> bool:
         """Ask for shared devices, all at once; True once the cell has them.
 
         What a step that failed has left it goes back before: no cell waits for one while it holds another.
         """
-        name = self._cell.name
-        held = self._zones.held_by(name)
+        name, held = self._cell.name, self.held()
         if devices <= held:
             self._note_taken(devices)  # it may have got them while it waited
             return True
@@ -99,8 +102,8 @@ class CellDevices:
         held = self._zones.held_by(name) & devices
         quiet = frozenset(filter(self._may_change_hands, held))
         if quiet:
-            waiting = tuple(other for other, zones in self._zones.waiting if zones & quiet)
-            granted += self._zones.give_back(quiet) + waiting  # who still waits names another holder now
+            waiting = self._zones.waiting_for(quiet)  # who still waits names another holder now
+            granted += self._zones.give_back(quiet) + waiting
             self._dispatcher.memory.vacate(quiet)
         self._dispatcher.wake(granted)
         return held == quiet

@@ -120,7 +120,8 @@ class CellZones:
         granted = self._zones.withdraw(robot)
         held = self._left(robot, self._zones.held_by(robot))
         if held:
-            granted += self._zones.give_back(held)
+            waiting = self._zones.waiting_for(held)  # who still waits names another holder now
+            granted += self._zones.give_back(held) + waiting
             self._dispatcher.memory.vacate(held)
             self._dispatcher.wake(self._zones.robbed)
         self._dispatcher.wake(granted)
@@ -174,6 +175,13 @@ class CellZones:
         """Those of the zones that somebody else holds, each with its holder."""
         holders = {zone: self._zones.holder(zone) for zone in zones}
         return {zone: other for zone, other in holders.items() if other is not None and other != robot}
+
+    def asked_before(self, robot: str) -> tuple[str, str] | None:
+        """A zone that a waiting robot asked for, and the first of those that asked for it before."""
+        requests = dict(self._zones.waiting)
+        for other in self._zones.ahead_of(robot) if robot in requests else ():
+            return min(requests[robot] & requests[other]), other
+        return None
 
     def kept_by_machine(self, robot: str, zones: Iterable[str]) -> tuple[str, tuple[str, ...]] | None:
         """A machine at rest that keeps one of these zones, and the facts that it would have to report."""

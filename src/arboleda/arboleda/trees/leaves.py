@@ -29,6 +29,11 @@ KEPT_BY_MACHINE = Phrase(
     "{arm}: zone {zones} was not free within {seconds:g} s: "
     "{device} keeps it as long as it does not report {facts}",
 )
+WAITS_FOR_ZONE = Phrase("zone.waits_for", "waits for zone {zone}, which {other} holds")
+WAITS_FOR_ZONE_TURN = Phrase("zone.waits_for_turn", "waits for zone {zone}, which {other} asked for before")
+WAITS_FOR_MACHINE = Phrase(
+    "zone.waits_for_machine", "waits for {device}, which keeps its zone as long as it does not report {facts}"
+)
 WAITS_FOR_DEVICE = Phrase("device.waits", "waits for {device}, which {cell} holds")
 WAITS_FOR_TURN = Phrase("device.waits_for_turn", "waits for {device}, which {cell} asked for before")
 DEVICE_NOT_FREE = Phrase("device.not_free", "{cell}: {devices} was not free within {seconds:g} s")
@@ -43,6 +48,7 @@ PART_IN_FREE = Phrase(
 NOT_AT_HOME = Phrase(
     "device.not_at_home", "waits for {device}, which no cell holds and which is not seen at its home"
 )
+WAITS_TO_GIVE_BACK = Phrase("device.waits_to_give_back", "waits until {devices} can be given back")
 NOT_AT_REST = Phrase("device.not_at_rest", "{cell}: {devices} did not come to rest")
 NOT_OUTSIDE = Phrase("zone.not_outside", "{arm} was not seen outside its zones")
 Guard = Callable[[], "Failure | None"]
@@ -471,10 +477,26 @@ class TakeZones(Await):
         due = self.time.now >= self.until
         if due and self.recovers and self.access.will_come_free(self.robot):
             super().initialise()
-        return super().update()
+        status = super().update()
+        if status is Status.RUNNING:
+            self.feedback = self._awaited()
+        return status
 
     def _taken(self) -> bool:
         return self.access.take(self.robot, self.zones, inside=self.recovers)
+
+    def _awaited(self) -> Sentence:
+        """What it waits for; NOTHING where that is not known."""
+        if (kept := self.access.kept_by_machine(self.robot, self.zones)) is not None:
+            machine, facts = kept
+            return WAITS_FOR_MACHINE(device=machine, facts=facts)
+        if held := self.access.awaited(self.robot, self.zones):
+            zone = min(held)
+            return WAITS_FOR_ZONE(zone=zone, other=held[zone])
+        if ahead := self.access.asked_before(self.robot):
+            zone, other = ahead
+            return WAITS_FOR_ZONE_TURN(zone=zone, other=other)
+        return NOTHING
 
     def _not_free(self) -> Failure:
         zones = tuple(sorted(self.zones))
@@ -535,6 +557,8 @@ class TakeDevices(Await):
         if awaited := self.shared.awaited(self.devices):
             device, holder, holds = awaited
             return (WAITS_FOR_DEVICE if holds else WAITS_FOR_TURN)(device=device, cell=holder)
+        if held := self.shared.held():
+            return WAITS_TO_GIVE_BACK(devices=tuple(sorted(held)))
         away = next((each for each in sorted(self.devices) if not self.shared.is_home(each)), None)
         return NOTHING if away is None else NOT_AT_HOME(device=away)
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from functools import partial
 from typing import Any
@@ -65,7 +65,10 @@ def _bring_back(causes: list[Failure], before: list[Failure]) -> None:
 
 
 class Rescue(TryCatch):
-    """TryCatch of a plant: the cause for which a child failed stays, whatever becomes of the last one."""
+    """TryCatch of a plant: the cause for which a child failed stays, whatever becomes of the last one.
+
+    `failing` tells which leaf has failed in this tick as it is written, `note` that it ends the tree.
+    """
 
     def __init__(
         self, name: str, children: Sequence[Node], failures: Failures, causes: list[Failure]
@@ -75,6 +78,9 @@ class Rescue(TryCatch):
         self.causes = causes
         self.cause: Failure | None = None
         self.ends_tree = False  # with its cause
+        self.leaf: AlwaysFailure | None = None  # that is all the cause there is
+        self.failing: Callable[[], AlwaysFailure | None] = lambda: None
+        self.note: Callable[[AlwaysFailure], None] = lambda leaf: None
 
     def caught(self) -> None:
         """Put the cause aside, unless the task may not go on at all."""
@@ -82,6 +88,7 @@ class Rescue(TryCatch):
         if first is not None and first.reason in NO_RESCUE:
             return
         generic = Failure(reason=Reason.REJECTED, sentence=FAILED(tree=self.name))
+        self.leaf = self.failing() if first is None else None
         self.cause = first or (self.causes[0] if self.causes else generic)
         self.ends_tree = first is not None
         self._forget()
@@ -108,7 +115,9 @@ class Rescue(TryCatch):
         self.causes[:] = [cause]
         if self.ends_tree or self.failures.first is not None:
             self.failures.bring_back(cause)
-        self.cause, self.ends_tree = None, False
+        if self.leaf is not None:
+            self.note(self.leaf)
+        self.cause, self.leaf, self.ends_tree = None, None, False
 
     def kept(self) -> Mapping[str, Any] | None:
         if self.cause is None:
@@ -134,6 +143,8 @@ class Main(Node):
         for node in tree.iterate():
             if isinstance(node, AlwaysFailure):
                 node.note = self._note
+            elif isinstance(node, Rescue):
+                node.failing, node.note = self._failing_leaf, self._note
 
     @property
     def parameters(self) -> Mapping[str, Any]:
@@ -143,10 +154,10 @@ class Main(Node):
     def _note(self, leaf: AlwaysFailure) -> None:
         self._failing = leaf, self.causes[:]
 
-    def _failed_leaf(self) -> Node:
-        """The leaf that ended the tree as it is written, with no cause after it; else the tree."""
-        leaf, causes = self._failing or (self, [])
-        return leaf if causes == self.causes else self
+    def _failing_leaf(self) -> AlwaysFailure | None:
+        """The leaf that has failed in this tick as it is written, with no cause after it."""
+        leaf, causes = self._failing or (None, [])
+        return leaf if causes == self.causes else None
 
     def work(self) -> Result:
         self.begin()
@@ -164,7 +175,7 @@ class Main(Node):
             return FAILURE
         if result is FAILURE:
             generic = Failure(reason=Reason.REJECTED, sentence=FAILED(tree=self.name))
-            self.failures.add(self.causes[0] if self.causes else generic, self._failed_leaf())
+            self.failures.add(self.causes[0] if self.causes else generic, self._failing_leaf() or self)
         return result
 
     def _put_aside(self) -> Failure | None:

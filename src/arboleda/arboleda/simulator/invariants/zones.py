@@ -4,7 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from py_trees.common import Status
+
+from arboleda.core.cell_states import CellState
+from arboleda.model.sentence import Sentence
+from arboleda.trees.leaves import TakeDevices, TakeZones
+
+from ..recorded.cells import KnownCell
 from .invariant import Look, Trigger, invariant
+
+EVERY_S = 1.0
 
 
 @invariant(Trigger.MET)
@@ -35,4 +44,33 @@ def zone_entered_only_when_held(look: Look) -> Iterator[str]:
             yield f"{entry.arm} enters zone {entry.zone}, which the plant keeps for {kept_for}"
 
 
-ZONES = (one_robot_per_zone, zone_released_only_outside, zone_entered_only_when_held)
+@invariant(Trigger.FREED, every_s=EVERY_S)
+def a_wait_names_its_cause(look: Look) -> Iterator[str]:
+    """A step that waits for zones or for shared devices says why, and names who has one of them now."""
+    for cell in look.record.cells.values():
+        if cell.tree is not None and cell.state is CellState.EXECUTE:
+            yield from _silent_waits(look, cell)
+
+
+def _silent_waits(look: Look, cell: KnownCell) -> Iterator[str]:
+    for node in cell.run.run.nodes:
+        if node.status is not Status.RUNNING or not isinstance(node, TakeZones | TakeDevices):
+            continue
+        asks = (node.robot, node.zones) if isinstance(node, TakeZones) else (cell.name, node.devices)
+        holders = {look.world.plant.zones.holder(each) for each in asks[1]} - {None, asks[0]}
+        if not node.feedback:
+            yield f"{cell.name} waits in {node.name} and does not say for what"
+        elif holders and holders.isdisjoint(_named(node.feedback)):
+            yield f"{cell.name} {node.feedback}, and {', '.join(sorted(map(str, holders)))} has it"
+
+
+def _named(sentence: Sentence) -> set[object]:
+    return {each for each in sentence.values.values() if isinstance(each, str)}
+
+
+ZONES = (
+    one_robot_per_zone,
+    zone_released_only_outside,
+    zone_entered_only_when_held,
+    a_wait_names_its_cause,
+)
