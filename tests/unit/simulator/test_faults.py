@@ -95,7 +95,7 @@ def readable(world: World) -> bool:
 
 def reports(world: World) -> bool:
     """Whether the plant hears of anybody."""
-    return bool(happened(world, "heard"))
+    return bool(happened(world, "reports"))
 
 
 def beats(world: World) -> bool:
