@@ -302,8 +302,8 @@ OF_CELLS = (
     bug(
         CELL_DEVICES,
         "A shared device is given back at work.",
-        "return belief.online and not works and device not in self._dispatcher.latched",
-        "return belief.online and device not in self._dispatcher.latched",
+        "return online and not self._works(device) and device not in self._dispatcher.latched",
+        "return online and device not in self._dispatcher.latched",
     ),
     bug(
         CELL_DEVICES,

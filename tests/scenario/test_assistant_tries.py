@@ -19,6 +19,7 @@ from arboleda.web import limits
 from arboleda.web.access.auth import Role
 from arboleda.web.desks.draft import DraftRefused
 
+from ..lengths import length, sample
 from .assistant_site import HOST, REST, TREE, Caller, Site, bearer
 
 INJECTIONS = (
@@ -172,7 +173,7 @@ def test_forged_approvals_and_replayed_hashes_move_nothing(site: Site) -> None:
 def injected(hash: str) -> Iterator[tuple[Any, ...]]:
     """Text of outside in every place where an assistant, or somebody who feeds it, can write it."""
     assistant = bearer(Role.ASSISTANT)
-    for text in INJECTIONS:
+    for text in sample(INJECTIONS, 4):
         for body in (
             {"text": text, "by": "bot"},
             {"text": f"cell rest #{text}", "by": "bot"},
@@ -204,7 +205,7 @@ def injected(hash: str) -> Iterator[tuple[Any, ...]]:
 def test_text_of_outside_stays_text_wherever_it_stands(site: Site, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("arboleda.runtime.proposals.desk.MOST_OPEN", 10_000)
     found = unmoved(site, Caller(site), injected(proposed(site)))
-    assert len(found) >= 400 and 202 not in found
+    assert len(found) >= length(100, whole=400) and 202 not in found
     assert not [each for each in site.desk.listed() if each["stage"] == "approved"]
     assert {each.name for each in site.folder.iterdir()} == {"plant.yaml", "rest.xml", "shine.xml", "state"}
 
@@ -251,7 +252,10 @@ ACTS = st.lists(
 
 
 @settings(
-    max_examples=25, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture], database=None
+    max_examples=length(8, whole=25),
+    deadline=None,
+    suppress_health_check=[HealthCheck.function_scoped_fixture],
+    database=None,
 )
 @given(acts=ACTS)
 def test_whatever_the_order_only_what_was_approved_is_at_work(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
+from arboleda.core.leaving import WORTH_TELLING_S
 from arboleda.dispatch.ledger import State
 from arboleda.model.commands import Query, Switch
 from arboleda.model.messages import Reason
@@ -70,7 +71,8 @@ def _settled(look: Look, sent: SentCommand) -> bool:
     So do an effector that reports nothing and, at `state`, a move to where the robot is already.
     """
     evidence, timing = look.world.model.robots[sent.robot].evidence, look.record.timing_of(sent)
-    passed_s = look.record.stepped_at - sent.at - sent.late_s + ROUNDING_S
+    late_s = sent.late_s if sent.late_s >= WORTH_TELLING_S else 0.0  # the plant takes no notice of less
+    passed_s = look.record.stepped_at - sent.at - late_s + ROUNDING_S
     if isinstance(sent.command, Switch):
         return evidence is not Evidence.IDS and passed_s >= timing.effector_settle_s + sent.command.takes_s
     return evidence is Evidence.STATE and passed_s >= min(timing.stop_timeout_s, sent.deadline - sent.at)
