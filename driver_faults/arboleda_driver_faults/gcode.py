@@ -77,7 +77,7 @@ class GantryRig(Rig):
         self._driver = Loopback(Machine([self._gantry], self._settings), self._grbl, hear, now)
         return self._driver
 
-    def seen(self) -> str | None:
+    def place(self) -> str | None:
         here = self._settings.joints(self._grbl.place)
         for name, spot in self._spots.items():
             if all(abs(a - b) * 1000 < NEAR_MM for a, b in zip(here, spot, strict=True)):

@@ -61,7 +61,7 @@ def progress(console: Console, doing: str, total: int | None) -> Iterator[Show]:
     say = console.say if isinstance(console, SpeakingConsole) else str
     shown = say(doing)
     with _bar(console, shown, total) if console.is_terminal else _lines(console, shown) as show:
-        yield lambda said, done: show(say(said), done)
+        yield lambda sentence, done: show(say(sentence), done)
 
 
 @contextmanager

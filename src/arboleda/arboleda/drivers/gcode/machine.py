@@ -79,7 +79,7 @@ class Machine:
         self._latched = self._left_at_work = self._news = False
         self._known = False  # it has told a status before, on this line or an earlier one
         self._reported_at = -math.inf
-        self._told: dict[str, str] = {}
+        self._receipts: dict[str, str] = {}
         self._forget_link(0.0)
 
     @property
@@ -101,7 +101,7 @@ class Machine:
     def _forget_link(self, now: float) -> None:
         self._lines = LineReader()
         self._status: Status | None = None
-        self._heard_at, self._query_at = now, now
+        self._last_data_at, self._query_at = now, now
         self._patience_s = BOOT_S
         self._work: Move | Homing | None = None
         self._alarm: str | None = None  # the last one thrown, until the state is another one
@@ -130,7 +130,7 @@ class Machine:
                 self._open_at = math.inf
                 self._out.append(Open())
             return
-        if now - self._heard_at > self._patience_s:
+        if now - self._last_data_at > self._patience_s:
             self._close(
                 now, f"it has told no status for {self._patience_s:g} s; is it GRBL 1.1, at this baud?"
             )
@@ -228,7 +228,7 @@ class Machine:
 
     def _begun(self, now: float) -> None:
         """Take the banner: the end of a reset from here, or a boot."""
-        self._heard_at = now
+        self._last_data_at = now
         resets, self._resets = self._resets, False
         if self._step is Step.RESETTING:
             self._step, self._news = None, True
@@ -238,7 +238,7 @@ class Machine:
             return  # the end of a reset, after which another stop was given
         elif self._known:
             self._boot += 1
-            self._told, self._work, self._step, self._alarm = {}, None, None, None
+            self._receipts, self._work, self._step, self._alarm = {}, None, None, None
             self._left_at_work, self._news = False, True
 
     def _answered(self, now: float, answer: Answer) -> None:
@@ -257,7 +257,7 @@ class Machine:
 
     def _look(self, now: float, status: Status) -> None:
         before, self._status = self._status, status
-        self._heard_at, self._patience_s, self._known = now, SILENT_S, True
+        self._last_data_at, self._patience_s, self._known = now, SILENT_S, True
         if status.state is not State.ALARM:
             self._alarm = None
         if self._left_at_work:  # nobody waits for that work any more
@@ -339,7 +339,7 @@ class Machine:
         return TROUBLES.get(status.state)
 
     def _tell(self, **ids: str) -> None:
-        self._told |= {name: id for name, id in ids.items() if id}
+        self._receipts |= {name: id for name, id in ids.items() if id}
         self._news = True
 
     def _reject(self, id: str, word: str) -> None:
@@ -372,4 +372,4 @@ class Machine:
                 ("mode", status.state.value.lower()),
             ),
         )
-        return report.again(now, **self._told)
+        return report.again(now, **self._receipts)

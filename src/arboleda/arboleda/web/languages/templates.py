@@ -59,7 +59,7 @@ class Template:
         """True if a slot stands in quotes, in which nothing is said in another language."""
         return any(words[-1:] in QUOTES and slot == name for words, name in self._english if words)
 
-    def said(self, parts: Mapping[str, str]) -> str:
+    def fill(self, parts: Mapping[str, str]) -> str:
         """The text in the other language, with these in its slots."""
         return "".join(f"{words}{parts[slot] if slot else ''}" for words, slot in self._other)
 
@@ -99,14 +99,14 @@ class Templates:
                 continue
             if self._part is not None:
                 parts = {slot: self._part(slot, value) for slot, value in slots.items()}
-                yield each.letters, each.said(parts)
+                yield each.letters, each.fill(parts)
                 continue
             found = {
                 slot: (0, value) if each.verbatim(slot) else self._best(value, depth + 1)
                 for slot, value in slots.items()
             }
             letters = each.letters + sum(letters for letters, _ in found.values())
-            yield letters, each.said({slot: words for slot, (_, words) in found.items()})
+            yield letters, each.fill({slot: words for slot, (_, words) in found.items()})
 
     def _joined(self, text: str, depth: int) -> Iterator[tuple[int, str]]:
         """The text as two that stand beside each other: behind a place, a subject, or a sentence.
