@@ -184,7 +184,7 @@ def told_once(patch: Patch) -> Watch:
     watch = Watch(zoned())
     for cell in watch.world.model.cells:
         watch.world.request_task(f"{cell.name} palletizing")
-    watch.wait(30.0)
+    watch.wait(20.0)
     return watch
 
 
