@@ -13,9 +13,8 @@ from arboleda.model.errors import ConfigError
 from arboleda.model.sentence import Phrase
 from arboleda.plant_file.user_file import check_writable
 from arboleda.runtime import invocation
-from arboleda.web.languages.templates import findings
 
-from .language import allowed, language, say, say_in
+from .language import allowed, finding_in, language, say, say_in
 from .new import WROTE, write_files
 from .overview import WholeSentences
 
@@ -206,7 +205,7 @@ def _line(work: Work, verdict: Verdict, language: str) -> str:
 def _tell(work: Work, verdict: Verdict, language: str) -> None:
     for each in verdict.findings:
         typer.echo(say_in(language, TO_BE_SO(what=_in(each.says, language))))
-        typer.echo(say_in(language, SEEN(what=findings(language)(each.evidence))) + "\n")
+        typer.echo(say_in(language, SEEN(what=finding_in(language, each.evidence))) + "\n")
     if verdict.findings and verdict.findings[0].story:
         typer.echo("\n".join(verdict.findings[0].story) + "\n")
     if (work.where / STORY).is_file() and not verdict.passes:

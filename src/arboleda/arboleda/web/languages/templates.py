@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterator, Mapping
-from functools import cache, cached_property
+from functools import cached_property
 from string import Formatter
-from typing import Any
 
 from . import FIRST, contents
 
@@ -45,8 +44,12 @@ class Template:
     def _pattern(self) -> re.Pattern[str]:
         punctuated = any(sign in text for text in self._literals for sign in ",;:()")
         slot = WORDS if 0 < self.letters < FEW and not punctuated else ANYTHING
-        found = (f"{re.escape(text)}{f'(?P<_{name}>{slot})' if name else ''}" for text, name in self._english)
-        return re.compile("".join(found))
+        found, named = "", set[str]()
+        for text, name in self._english:
+            again = f"(?P=_{name})" if name in named else f"(?P<_{name}>{slot})"
+            found += f"{re.escape(text)}{again if name else ''}"
+            named.add(name)
+        return re.compile(found)
 
     def slots(self, text: str) -> dict[str, str] | None:
         """The words in the slots of a text of this template; None: it is of another."""
@@ -126,19 +129,11 @@ class Templates:
             yield one[0] + other[0], f"{one[1]}{between}{other[1]}"
 
 
-@cache
-def findings(language: str) -> Templates:
-    """The templates of what is found wrong in files and runs; in English there are none."""
-    return Templates(_words(language).get("sentences", {}))
-
-
 def heading(language: str, text: str) -> str:
     """The heading of a column of what is found."""
-    return str(_words(language).get("headings", {}).get(text, text))
-
-
-def _words(language: str) -> dict[str, Any]:
-    return {} if language == FIRST else contents(language, "findings")
+    if language == FIRST:
+        return text
+    return str(contents(language, "findings").get("headings", {}).get(text, text))
 
 
 def _pieces(text: str) -> list[tuple[str, str]]:
