@@ -10,7 +10,7 @@ from typing import Any
 
 from arboleda.model.sentence import Phrase, Sentence
 from arboleda.web.languages import FIRST, contents
-from arboleda.web.languages.templates import Templates
+from arboleda.web.languages.templates import FEW, Template, Templates
 
 from .wording import SENTENCES
 
@@ -66,7 +66,8 @@ def _told() -> Iterator[Phrase]:
 
 def _is_reason(phrase: Phrase) -> bool:
     group = phrase.key.partition(".")[0]
-    return group == DOING or (group in REASONS and " " in phrase.english)
+    letters = Template(phrase.english, "").letters  # of few, what is Spanish already may be one
+    return group == DOING or (group in REASONS and " " in phrase.english and letters >= FEW)
 
 
 def _phrases(value: Any) -> Iterator[Phrase]:
