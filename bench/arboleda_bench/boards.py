@@ -54,7 +54,7 @@ class Boards:
         }
         topics = [topic(name, channel) for name in self._boards for channel in COMMANDS]
         self._client = MqttClient(
-            "bench_boards", broker, on_event=self._heard, subscriptions=topics, clock=now
+            "bench_boards", broker, on_event=self._note, subscriptions=topics, clock=now
         )
 
     @property
@@ -73,7 +73,7 @@ class Boards:
     def _say(self, publication: Publication) -> None:
         self._client.publish(publication)
 
-    def _heard(self, event: Delivery | Connection) -> None:
+    def _note(self, event: Delivery | Connection) -> None:
         if isinstance(event, Delivery):
             name, channel = parse(event.topic)
             self._boards[name].obey(event.at, channel, event.payload)

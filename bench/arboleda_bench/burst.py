@@ -70,13 +70,13 @@ def run(scene: Scene) -> Result:
 
 
 def _measured(burst: Burst, user: CrewOnRos, node: Process) -> list[Figure]:
-    ids = _asked(burst, user)
+    ids = _request_all(burst, user)
     _await_rest(ids, user, node)
-    told = _told(user)
-    accepted = [id for id in ids if "queued" in told.get(id, ())]
-    refused = [id for id in ids if "refused" in told.get(id, ())]
+    states = _states(user)
+    accepted = [id for id in ids if "queued" in states.get(id, ())]
+    refused = [id for id in ids if "refused" in states.get(id, ())]
     lost = len(ids) - len(accepted) - len(refused)
-    wrong = sum(sum(told[id][state] for state in ENDED) != 1 for id in accepted)
+    wrong = sum(sum(states[id][state] for state in ENDED) != 1 for id in accepted)
     return [
         Figure(name=f"{burst.name}: accepted", unit="", ours=len(accepted)),
         Figure(name=f"{burst.name}: refused with the reason", unit="", ours=len(refused)),
@@ -85,7 +85,7 @@ def _measured(burst: Burst, user: CrewOnRos, node: Process) -> list[Figure]:
     ]
 
 
-def _asked(burst: Burst, user: CrewOnRos) -> Sequence[str]:
+def _request_all(burst: Burst, user: CrewOnRos) -> Sequence[str]:
     """Ask for all tasks of a burst; return their ids."""
     began = time.monotonic()
     ids = [f"b{time.monotonic_ns()}-{number}" for number in range(burst.tasks)]
@@ -105,17 +105,17 @@ def _await_rest(ids: Sequence[str], user: CrewOnRos, node: Process) -> None:
         if len(user.changes) == heard:
             return time.monotonic() - since >= QUIET_S
         heard, since = len(user.changes), time.monotonic()
-        told = _told(user)
-        return all(OVER & told.get(id, Counter()).keys() for id in ids)
+        states = _states(user)
+        return all(OVER & states.get(id, Counter()).keys() for id in ids)
 
     wait_for(rests, "the last task", node.check, LIMIT_S)
 
 
-def _told(user: CrewOnRos) -> dict[str, Counter[str]]:
+def _states(user: CrewOnRos) -> dict[str, Counter[str]]:
     """The number of reports of each state, by the task's id; in a refusal the id stands in the text."""
-    told: dict[str, Counter[str]] = {}
+    states: dict[str, Counter[str]] = {}
     for change in list(user.changes):
         id = change["id"] or change["text"].rpartition("#")[2]
         if change["state"] != "refused" or change["sentence"]:
-            told.setdefault(id, Counter())[change["state"]] += 1
-    return told
+            states.setdefault(id, Counter())[change["state"]] += 1
+    return states

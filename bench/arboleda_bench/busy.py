@@ -63,7 +63,7 @@ class Customers:
             time.sleep(over_s / len(cells) if number else 0.0)
             self._ask(cell)
 
-    def heard(self, change: TaskChanged) -> None:
+    def take(self, change: TaskChanged) -> None:
         if change.state is TaskState.RUNNING and change.cell is not None:
             self._ask(change.cell)
         elif change.state is TaskState.DONE:
@@ -95,7 +95,7 @@ def main(plant: str, state: str, move_s: str, seconds: str) -> None:
     topics = Topics(crew)
     orchestrator.connect_ros(topics)
     orchestrator.connect(topics)
-    app.listen(customers.heard)
+    app.listen(customers.take)
     app.start()
     try:
         crew.start()

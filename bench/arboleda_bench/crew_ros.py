@@ -42,7 +42,7 @@ class CrewOnRos:
         self.changes: list[dict[str, Any]] = []
         self._text = String
         self._link = connect()
-        self._heard_plant = False
+        self._plant_is_there = False
         self._busy = False
         self._number = count()
         self._port = self._link.bridge(model, self._on_message, time.monotonic)
@@ -64,7 +64,7 @@ class CrewOnRos:
 
     def wait_for_the_plant(self, node: Process) -> None:
         """Wait until the plant hears this process, and all its robots."""
-        wait_for(lambda: self._heard_plant, "the orchestrator", node.check, DISCOVERY_S)
+        wait_for(lambda: self._plant_is_there, "the orchestrator", node.check, DISCOVERY_S)
         wait_for(lambda: self._tasks.get_subscription_count(), "task_request", node.check, DISCOVERY_S)
         wait_for(lambda: self._node.count_publishers("task_status"), "task_status", node.check, DISCOVERY_S)
 
@@ -112,7 +112,7 @@ class CrewOnRos:
         self.ask(f"{cell} 0B {next(self._number) % 9}")
 
     def _on_message(self, event: Any) -> None:
-        self._heard_plant = True
+        self._plant_is_there = True
         self.crew.send(event.message)
 
     def _on_status(self, message: Any) -> None:

@@ -84,7 +84,7 @@ class Crowd:
                 pass
 
     async def _stream(self) -> None:
-        reader, writer = await self._asked("/api/events", "127.0.0.1")
+        reader, writer = await self._open("/api/events", "127.0.0.1")
         await reader.readuntil(b"\n\n")
         self.done["streams"] += 1
         while await reader.read(65536):
@@ -98,13 +98,13 @@ class Crowd:
             await asyncio.sleep(0.1)
 
     async def _got(self, path: str, address: str) -> bytes:
-        reader, writer = await self._asked(path, address)
+        reader, writer = await self._open(path, address)
         try:
             return bytes(await reader.read())
         finally:
             writer.close()
 
-    async def _asked(self, path: str, address: str) -> tuple[Any, Any]:
+    async def _open(self, path: str, address: str) -> tuple[Any, Any]:
         reader, writer = await asyncio.open_connection(
             "127.0.0.1", self._port, local_addr=(address, 0), limit=2**24
         )

@@ -55,19 +55,19 @@ class Watched(VirtualDobot):
     def __init__(self, *args: object, **named: object) -> None:
         super().__init__(*args, **named)  # type: ignore[arg-type]
         self.waits: list[tuple[float, float]] = []  # s
-        self._was, self._ended_at, self._told_at = Mode.IDLE, 0.0, 0.0
+        self._was, self._ended_at, self._frame_at = Mode.IDLE, 0.0, 0.0
 
     def step(self, now: float, events: Sequence[ClientText]) -> list[Message]:
         moves = any("MovJ" in event.text for event in events)
-        if moves and self._ended_at and self._told_at and now - self._ended_at < LONGEST_S:
-            self.waits.append((now - self._ended_at, now - self._told_at))
+        if moves and self._ended_at and self._frame_at and now - self._ended_at < LONGEST_S:
+            self.waits.append((now - self._ended_at, now - self._frame_at))
         out = super().step(now, events)
         if self._was is Mode.RUNNING and self.mode is Mode.IDLE:
-            self._ended_at, self._told_at = now, 0.0
+            self._ended_at, self._frame_at = now, 0.0
         if self.mode is not Mode.IDLE:
             self._ended_at = 0.0
-        elif self._ended_at and not self._told_at and any(isinstance(each, Frame) for each in out):
-            self._told_at = now
+        elif self._ended_at and not self._frame_at and any(isinstance(each, Frame) for each in out):
+            self._frame_at = now
         self._was = self.mode
         return out
 

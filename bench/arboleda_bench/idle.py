@@ -47,9 +47,9 @@ def _measured(scene: Scene, size: int) -> tuple[list[Figure], str]:
         floor.read()
         crew.wait_for_the_plant(ours)
         time.sleep(SETTLE_S)
-        told = crew.crew.told
+        told = crew.crew.repeats
         fed, bare = _loads(scene, ours, floor)
-        rate = (crew.crew.told - told) / _window_s(scene)
+        rate = (crew.crew.repeats - told) / _window_s(scene)
         figures = [_figure(size, fed, bare)]
         if size == max(SIZES):
             scene.say(f"{size} silent cells")

@@ -93,7 +93,7 @@ class Bare:
     def __init__(self, belt: Device, settings: Settings) -> None:
         self._nodes = OpcUaDevice(belt, settings).places
         self._loop = asyncio.new_event_loop()
-        self._heard: asyncio.Queue[object] = asyncio.Queue()
+        self._values: asyncio.Queue[object] = asyncio.Queue()
         self._number = 30000
         self._loop.run_until_complete(self._open(settings))
 
@@ -111,7 +111,7 @@ class Bare:
         self._loop.close()
 
     def datachange_notification(self, node: object, value: object, data: object) -> None:
-        self._heard.put_nowait(value)
+        self._values.put_nowait(value)
 
     async def _open(self, settings: Settings) -> None:
         from asyncua import Client
@@ -132,5 +132,5 @@ class Bare:
             pass
 
     async def _until(self, speed: int) -> None:
-        while await asyncio.wait_for(self._heard.get(), PATIENCE_S) != speed:
+        while await asyncio.wait_for(self._values.get(), PATIENCE_S) != speed:
             pass

@@ -99,7 +99,7 @@ class Crew:
         self.clockwork = Clockwork()
         self._ended: dict[str, tuple[float, type]] = {}
         self.reactions: list[float] = []
-        self.told = 0  # reports that came by the clock
+        self.repeats = 0  # reports that came by the clock
 
     def start(self) -> None:
         self.appear()
@@ -154,4 +154,4 @@ class Crew:
 
     def _tell(self, robot: PlayedRobot) -> None:
         self._post(robot.report(now()))
-        self.told += 1
+        self.repeats += 1

@@ -32,8 +32,8 @@ class Driven:
 
     def __init__(self, belt: Device, driver: Driver) -> None:
         self._belt, self._driver, self._number = belt, driver, 0
-        self._said: queue.Queue[Report] = queue.Queue()
-        self._driver.start([belt], lambda report: self._said.put(report), time.monotonic)
+        self._reports: queue.Queue[Report] = queue.Queue()
+        self._driver.start([belt], lambda report: self._reports.put(report), time.monotonic)
         self._until(lambda report: report.fact("mm_s") is not None)
 
     def order(self) -> float:
@@ -53,7 +53,7 @@ class Driven:
         self._driver.stop()
 
     def _until(self, fits: Callable[[Report], bool]) -> None:
-        while not fits(self._said.get(timeout=PATIENCE_S)):
+        while not fits(self._reports.get(timeout=PATIENCE_S)):
             pass
 
 

@@ -72,7 +72,7 @@ def main(file: str, state: str) -> None:
     assert app.orchestrator is not None
     robots = RobotsByLine(model, app.orchestrator)
     app.orchestrator.connect(robots)
-    app.listen(_heard)
+    app.listen(_take)
     app.start()
     robots.clockwork.start()
     try:
@@ -86,7 +86,7 @@ def main(file: str, state: str) -> None:
         app.stop()
 
 
-def _heard(change: TaskChanged) -> None:
+def _take(change: TaskChanged) -> None:
     if change.state is TaskState.DONE:
         end()
     elif change.state not in (TaskState.QUEUED, TaskState.RUNNING):

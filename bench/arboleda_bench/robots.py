@@ -88,7 +88,7 @@ class Body:
         self._state = node.create_publisher(UInt8, f"{robot.name}/motion_state", qos.COMMAND)
         self._joints = node.create_publisher(JointState, robot.joint_states.topic, qos.COMMAND)
         self._position = JointsMessage(robot)
-        self._here = self._seen_at(_resting_place(cell, robot))
+        self._here = self._state_at(_resting_place(cell, robot))
         self._commanded: list[str] = []
         for kind in convert.commands_of(robot):
             topic = f"{robot.name}/{PLAIN[kind]}"
@@ -136,7 +136,7 @@ class Body:
         if self._moving is not command:
             return
         self._moving = None
-        self._here = self._seen_at(_goal(command))
+        self._here = self._state_at(_goal(command))
         last = isinstance(command, MoveJoints) and self._layout.arm.motion.reached(
             command.q, self._layout.home.joints
         )
@@ -152,7 +152,7 @@ class Body:
         self._moving = None
         self._state.publish(UInt8(data=int(MotionState.STOPPED)))
 
-    def _seen_at(self, place: Sequence[float] | int) -> JointState:
+    def _state_at(self, place: Sequence[float] | int) -> JointState:
         """The joint states for a place: joints of an arm, or a node of the grid."""
         if isinstance(self._robot, Arm) and not isinstance(place, int):
             said = Report(at=0.0, robot=self._robot.name, q=self._robot.quantised(tuple(place)))

@@ -53,15 +53,15 @@ class Move(Behaviour):
         super().__init__(name)
         self.voice = voice
         self.message = message
-        self.heard = heard
+        self.robot = heard
         self.goal = goal
 
     def initialise(self) -> None:
         self.voice.publish(self.message)
 
     def update(self) -> Status:
-        there = all(abs(at - goal) < NEAR for at, goal in zip(self.heard.position, self.goal, strict=True))
-        return Status.SUCCESS if there and self.heard.state == 0 else Status.RUNNING
+        there = all(abs(at - goal) < NEAR for at, goal in zip(self.robot.position, self.goal, strict=True))
+        return Status.SUCCESS if there and self.robot.state == 0 else Status.RUNNING
 
 
 class Send(Behaviour):

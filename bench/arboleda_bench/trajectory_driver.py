@@ -70,9 +70,9 @@ class Driven:
         from arboleda_ros.joint_trajectory import FollowJointTrajectory
 
         self._arm, self._number = arm, 0
-        self._said: queue.Queue[Report] = queue.Queue()
+        self._reports: queue.Queue[Report] = queue.Queue()
         self._driver = FollowJointTrajectory(Settings(joints=NAMES))
-        self._driver.start([arm], lambda report: self._said.put(report), time.monotonic)
+        self._driver.start([arm], lambda report: self._reports.put(report), time.monotonic)
         self._until(lambda report: report.state is MotionState.STOPPED)
 
     def go(self, q: tuple[float, ...]) -> float:
@@ -87,7 +87,7 @@ class Driven:
         self._driver.stop()
 
     def _until(self, fits: Callable[[Report], bool]) -> None:
-        while not fits(self._said.get(timeout=PATIENCE_S)):
+        while not fits(self._reports.get(timeout=PATIENCE_S)):
             pass
 
 

@@ -72,7 +72,7 @@ class DobotRig(StorageRig):
     def moves(self) -> tuple[int, int]:
         if self._driver is None:
             return (0, 0)
-        return (sum(line.startswith("MovJ") for line in self._driver.told), self._driver.given)
+        return (sum(line.startswith("MovJ") for line in self._driver.received), self._driver.given)
 
     def by_hand(self) -> None:
         """Clear alarms and enable the arm at its pendant."""

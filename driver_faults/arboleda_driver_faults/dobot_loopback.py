@@ -24,7 +24,7 @@ class Loopback:
         self.dobot = dobot
         self.driver = Machine([arm], Settings(host="dobot"))
         self.now = now
-        self.told: list[str] = []  # lines of the dashboard
+        self.received: list[str] = []  # lines of the dashboard
         self._hear = hear
         self._to_dobot: deque[ClientText] = deque()
         self._to_driver: deque[Event] = deque()
@@ -78,7 +78,7 @@ class Loopback:
             self._connected = False
             self._to_driver.clear()
         elif isinstance(message, SendLine) and self._connected:
-            self.told.append(message.text)
+            self.received.append(message.text)
             self._to_dobot.append(ClientText(client=self._client, text=message.text))
 
     def _step_dobot(self, *said: ClientText) -> None:

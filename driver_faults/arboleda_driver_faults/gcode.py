@@ -90,12 +90,12 @@ class GantryRig(Rig):
         (self._gantry,) = example.robots.values()
         assert self._gantry.driver is not None and isinstance(self._gantry.driver.settings, Settings)
         self._settings = self._gantry.driver.settings
-        self._virtual = self._played()
+        self._virtual = self._controller()
         self._driver: Loopback | None = None
         (cell,) = example.cells
         self._spots = {name: pose.joints for name, pose in cell.reach[self._gantry.name].targets.items()}
 
-    def _played(self) -> VirtualGrbl | VirtualMarlin:
+    def _controller(self) -> VirtualGrbl | VirtualMarlin:
         return VirtualGrbl(self.faults, homed=True)
 
     @property
@@ -109,7 +109,7 @@ class GantryRig(Rig):
         self._driver = Loopback(machine([self._gantry], self._settings), self._virtual, hear, now)
         return self._driver
 
-    def seen(self) -> str | None:
+    def place(self) -> str | None:
         here = self._settings.joints(self._virtual.place)
         for name, spot in self._spots.items():
             if all(abs(a - b) * 1000 < NEAR_MM for a, b in zip(here, spot, strict=True)):
@@ -129,7 +129,7 @@ class MarlinRig(GantryRig):
     known = MARLIN_FAULTS
     tells_homing = False
 
-    def _played(self) -> VirtualMarlin:
+    def _controller(self) -> VirtualMarlin:
         self._marlin = VirtualMarlin(self.faults)
         return self._marlin
 

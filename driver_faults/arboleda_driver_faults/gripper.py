@@ -55,7 +55,7 @@ class CarryRig(ActionRig):
     def task(self, number: int) -> str:
         return f"{self.cell.name} carry slot_1 slot_2 #{number}"
 
-    def seen(self) -> tuple[str | None, bool]:
+    def place(self) -> tuple[str | None, bool]:
         spots = {name: pose.q for name, pose in self.cell.reach["arm"].targets.items()}
         return (
             spot(spots, self.bodies["arm"].position),

@@ -56,7 +56,7 @@ class RoundRig(ActionRig):
     def task(self, number: int) -> str:
         return f"{self.cell.name} round left right #{number}"
 
-    def seen(self) -> int | None:
+    def place(self) -> int | None:
         x, y, _ = self.bodies["cart"].position
         here = Pose(x, y)
         at = (node for node, place in self._nodes.items() if here.distance(Pose(*place)) < STANDS_M)

@@ -75,7 +75,7 @@ class BeltRig(Rig):
     def wire(self) -> Wire:
         """A new machine of the driver, connected to the PLC."""
 
-    def seen(self) -> tuple[int, int]:
+    def place(self) -> tuple[int, int]:
         return (self.belt.shown.part_at, self.belt.shown.gate)
 
     def moves(self) -> tuple[int, int]:

@@ -85,7 +85,7 @@ class HeatedShaker(HeaterShakerBackend):  # type: ignore[misc]
         super().__init__()
         self._faults, self._now = faults, now
         self._celsius, self._goal, self._at = ROOM, ROOM, now()
-        self.shakes, self.told = False, 0
+        self.shakes, self.orders = False, 0
 
     @property
     def celsius(self) -> float:
@@ -123,13 +123,13 @@ class HeatedShaker(HeaterShakerBackend):  # type: ignore[misc]
         return self.celsius + (8.0 if "drifts" in self._faults else 0.0)
 
     async def set_temperature(self, temperature: float) -> None:
-        self.told += 1
+        self.orders += 1
         await self._begin()
         if "lies" not in self._faults:
             self._goal = self.celsius and temperature
 
     async def start_shaking(self, speed: float) -> None:
-        self.told += 1
+        self.orders += 1
         await self._begin()
         self.shakes = True
 
@@ -261,12 +261,12 @@ class ShakerRig(Rig):
         self.loop.now = now
         return Loopback(self, hear, now)
 
-    def seen(self) -> tuple[str, bool]:
+    def place(self) -> tuple[str, bool]:
         warm = abs(self._backend.celsius - WARM) < 1
         return ("warm" if warm else "cold", self._backend.shakes)
 
     def moves(self) -> tuple[int, int]:
-        return (self._backend.told, self.given)
+        return (self._backend.orders, self.given)
 
     def bystanders(self, now: float) -> list[Report]:
         tip = (("tip", "none"),)

@@ -99,7 +99,7 @@ class Rig(ABC):
         """A new driver, connected to the device, whose reports go to `hear`."""
 
     @abstractmethod
-    def seen(self) -> Hashable | None:
+    def place(self) -> Hashable | None:
         """The true place of the device and its load; None at a place that does not matter."""
 
     @abstractmethod
@@ -163,7 +163,7 @@ class World:
         self._others = {robot.name for robot in self._cell.robots} - self._names
         self._epoch = EPOCH
         self._start()
-        self._seen: list[Hashable] = []  # since a task began
+        self._places: list[Hashable] = []  # since a task began
         self._looked_at = self.now
 
     def _start(self) -> None:
@@ -182,7 +182,7 @@ class World:
         )
         self._driver: Loopback | None = None
         self._inbox: list[Event] = []
-        self._heard: list[DriverOutput | CommandRequest | SendResult] = []
+        self._for_driver: list[DriverOutput | CommandRequest | SendResult] = []
 
     def restart(self) -> None:
         """Kill the plant, its driver with it, and start it anew on what it has kept."""
@@ -245,8 +245,8 @@ class World:
 
     def _settle(self) -> None:
         while True:
-            heard, self._heard = self._heard, []
-            for message in self._supervisor.step(self.now, heard):
+            events, self._for_driver = self._for_driver, []
+            for message in self._supervisor.step(self.now, events):
                 if isinstance(message, Report | Undelivered):
                     self._inbox.append(message)
                 elif isinstance(message, Begin):
@@ -259,20 +259,20 @@ class World:
                     self.disk.commit(out, self.now)
                 if isinstance(out, Command):
                     if out.robot in self._names:
-                        self._heard.append(CommandRequest(at=self.now, command=out))
+                        self._for_driver.append(CommandRequest(at=self.now, command=out))
                 elif isinstance(out, TaskChanged):
                     self._judge(out)
-            if not self._heard and not self._inbox:
+            if not self._for_driver and not self._inbox:
                 return
 
     def _hear(self, life: Life, report: Report) -> None:
-        self._heard.append(DriverOutput(at=self.now, life=life, report=report))
+        self._for_driver.append(DriverOutput(at=self.now, life=life, report=report))
 
     def _give(self, give: Give) -> None:
         assert self._driver is not None
         why = self._driver.ask(give.command)
         error = None if why is None else OWN(text=why)
-        self._heard.append(SendResult(at=self.now, life=give.life, command=give.command, error=error))
+        self._for_driver.append(SendResult(at=self.now, life=give.life, command=give.command, error=error))
 
     def _attend(self) -> None:
         """Do as a person what the plant advises."""
@@ -295,18 +295,18 @@ class World:
     # What must hold.
 
     def _look_at_device(self) -> None:
-        seen = self.rig.seen()
-        if seen is not None and (not self._seen or self._seen[-1] != seen):
-            self._seen.append(seen)
+        place = self.rig.place()
+        if place is not None and (not self._places or self._places[-1] != place):
+            self._places.append(place)
 
     def _judge(self, change: TaskChanged) -> None:
         if change.state is TaskState.RUNNING:
-            self._seen = []
+            self._places = []
         if change.state not in ENDED:
             return
         self.result.ended.append(change)
-        if change.state is TaskState.DONE and not _within(self.rig.work, self._seen):
-            self.result.breaches.append(f"false success: task {change.task}, it was seen at {self._seen}")
+        if change.state is TaskState.DONE and not _within(self.rig.work, self._places):
+            self.result.breaches.append(f"false success: task {change.task}, it was seen at {self._places}")
         if change.state is TaskState.FAILED and change.reason not in self._possible():
             self.result.breaches.append(
                 f"wrong cause: task {change.task} failed: {change.sentence} ({change.reason})"
@@ -321,6 +321,6 @@ class World:
         return set().union(*(self.rig.causes[name] for name in near))
 
 
-def _within(wanted: Sequence[Hashable], seen: Sequence[Hashable]) -> bool:
-    rest = iter(seen)
+def _within(wanted: Sequence[Hashable], places: Sequence[Hashable]) -> bool:
+    rest = iter(places)
     return all(each in rest for each in wanted)

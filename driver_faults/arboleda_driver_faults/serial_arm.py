@@ -86,10 +86,10 @@ class ServoRig(Rig):
         self._driver = Loopback(Machine([self._arm], self._settings), self._servos, hear, now)
         return self._driver
 
-    def seen(self) -> tuple[str, bool] | None:
+    def place(self) -> tuple[str, bool] | None:
         gripper = self._settings.gripper
         assert gripper is not None
-        *joints, jaw = self._servos.seen().values()
+        *joints, jaw = self._servos.positions().values()
         if gripper.near < abs(jaw - gripper.open) < 500:
             return None
         for name, spot in self._spots.items():

@@ -54,7 +54,7 @@ class StorageRig(Rig):
     def task(self, number: int) -> str:
         return f"{self.layout.name} palletizing #{number}"
 
-    def seen(self) -> tuple[str, bool] | None:
+    def place(self) -> tuple[str, bool] | None:
         joints, output = self.shows
         for name, spot in self._spots.items():
             if all(abs(a - b) < self.near_rad for a, b in zip(joints, spot, strict=True)):

@@ -70,13 +70,13 @@ class AgvRig(Rig):
         self._driver = ActionCounter(self.robots, self._settings, self._agv, hear, now)
         return self._driver
 
-    def seen(self) -> tuple[str, bool]:
+    def place(self) -> tuple[str, bool]:
         return (self._agv.node, self._agv.loaded)
 
     def moves(self) -> tuple[int, int]:
         if self._driver is None:
             return (0, 0)
-        orders = [said for topic, said in self._driver.told if topic == "order"]
+        orders = [said for topic, said in self._driver.received if topic == "order"]
         return (sum(not said["orderUpdateId"] for said in orders), self._driver.given)
 
 

@@ -43,7 +43,7 @@ class Loopback:
     ) -> None:
         self.agv, self.now = agv, now
         self.vehicle = Vehicle(devices, settings, mark="m")
-        self.told: list[tuple[str, dict[str, Any]]] = []  # topics and messages
+        self.received: list[tuple[str, dict[str, Any]]] = []  # topics and messages
         self.log: list[str] = []
         self._settings, self._hear = settings, hear
         self._names = (settings.version, settings.manufacturer, settings.serial)
@@ -117,6 +117,6 @@ class Loopback:
     def _publish(self, message: Publish) -> None:
         version, body = self._settings.version, {**self._to_agv(message.topic), **message.body}
         parsed = from_bytes(version, message.topic, to_bytes(version, message.topic, body))
-        self.told.append((message.topic, parsed))
+        self.received.append((message.topic, parsed))
         if self._connected:
             self._waiting.append(VehicleMessage(topic=message.topic, body=parsed))

@@ -45,7 +45,7 @@ class WatchedDevices:
         self._holding: set[str] = set()
         for robot in model.robots.values():
             board = self.devices.boards[robot.mqtt]
-            board.watch = lambda goal, name=robot.name: self._told(name, goal)
+            board.watch = lambda goal, name=robot.name: self._note_goal(name, goal)
             if isinstance(board.body, ArmBody):
                 self._arms[robot.name] = board.body
 
@@ -66,7 +66,7 @@ class WatchedDevices:
         deeds, self.deeds = self.deeds, []
         return deeds
 
-    def _told(self, robot: str, goal: Goal) -> None:
+    def _note_goal(self, robot: str, goal: Goal) -> None:
         if not isinstance(goal, StopGoal):
             self._add(robot, Did.WAS_TOLD, type(goal).__name__)
 

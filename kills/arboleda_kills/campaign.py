@@ -153,7 +153,7 @@ class Campaign:
                 return
             self._customers.look(plant, snapshot)
             self._attendant.look(plant, snapshot)
-            now = (len(self._customers.told), len(self._attendant.said))
+            now = (len(self._customers.ends), len(self._attendant.acts))
             if now != seen:
                 seen, patience = now, time.time() + QUIET_S
             if time.time() > patience:
@@ -168,7 +168,7 @@ class Campaign:
             history.close()
 
     def _judge(self, last: Kill) -> None:
-        outcome, customers, said = self._outcome, self._customers, self._attendant.said
+        outcome, customers, said = self._outcome, self._customers, self._attendant.acts
         self._deeds.write_text("".join(f"{json.dumps(deed.data())}\n" for deed in self._boards.deeds))
         rows = self._rows()
         outcome.verdict = judge(
@@ -177,7 +177,7 @@ class Campaign:
             outcome.kills,
             said,
             accepted=customers.accepted,
-            told=customers.told,
+            ends=customers.ends,
             last=last,
         )
         outcome.verdict.lost += customers.contradictions

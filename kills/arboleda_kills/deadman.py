@@ -121,7 +121,7 @@ class Teacher:
     def __init__(self, plant: Plant, session: int) -> None:
         self._plant, self._session = plant, session
         self._number = count(1)
-        self.said_at = -math.inf
+        self.beat_at = -math.inf
         self._held = threading.Event()
 
     def press(self, goal: float) -> threading.Thread:
@@ -138,10 +138,10 @@ class Teacher:
     def _hold(self, body: dict[str, Any]) -> None:
         with suppress(Exception):  # the plant may be dead
             while self._held.is_set():
-                said_at = clock.seconds()
+                beat_at = clock.seconds()
                 self._plant.ask("POST", f"/api/teach/{CELL}/jog", body)
-                self.said_at = said_at
-                time.sleep(max(0.0, said_at + BEAT_S - clock.seconds()))
+                self.beat_at = beat_at
+                time.sleep(max(0.0, beat_at + BEAT_S - clock.seconds()))
 
 
 class Bench:
@@ -196,7 +196,7 @@ class Bench:
         assert self._plant is not None
         if loss == "client":
             teacher.be_gone()
-            return teacher.said_at  # the last time that it spoke
+            return teacher.beat_at  # the last time that it spoke
         at = clock.seconds()
         if loss == "network":
             self._cable.cut = True

@@ -57,10 +57,10 @@ def judge(
     rows: Sequence[TaskRow],
     deeds: Sequence[Deed],
     kills: Sequence[Kill],
-    said: Sequence[Said],
+    acts: Sequence[Said],
     *,
     accepted: Mapping[str, str],
-    told: Mapping[str, str],
+    ends: Mapping[str, str],
     last: Kill,
 ) -> Verdict:
     """Hold the history against the customers' books and the boards' deeds.
@@ -69,32 +69,32 @@ def judge(
     """
     verdict, known = Verdict(), {row.id: row for row in rows}
     for id, text in accepted.items():
-        verdict.lost += _lost(id, text, known.get(id), told.get(id))
-    _follow_parts(verdict, rows, deeds, said)
-    _follow_moves(verdict, rows, [*kills, last][1:], deeds, said)
+        verdict.lost += _lost(id, text, known.get(id), ends.get(id))
+    _follow_parts(verdict, rows, deeds, acts)
+    _follow_moves(verdict, rows, [*kills, last][1:], deeds, acts)
     for number, kill in enumerate(kills):
         until = kills[number + 1].killed_at if number + 1 < len(kills) else float("inf")
         again = kills[number + 1].running if number + 1 < len(kills) else frozenset()
         for id in kill.running:
-            became = _became(known.get(id), kill.killed_at, until, said, again=id in again)
+            became = _became(known.get(id), kill.killed_at, until, acts, again=id in again)
             verdict.after[became] = verdict.after.get(became, 0) + 1
     return verdict
 
 
-def _lost(id: str, text: str, row: TaskRow | None, told: str | None) -> list[str]:
+def _lost(id: str, text: str, row: TaskRow | None, end: str | None) -> list[str]:
     if row is None:
         return [f"{id} ({text}) was accepted and is not in the history"]
     if row.text != text:
         return [f"{id} was accepted as '{text}' and kept as '{row.text}'"]
     if row.ended_s is None:
         return [f"{id} ({text}) was accepted and never ended: it is {row.state}"]
-    if told is not None and told != row.state:
-        return [f"{id} ({text}) was said to be {told} and was kept as {row.state}"]
+    if end is not None and end != row.state:
+        return [f"{id} ({text}) was said to be {end} and was kept as {row.state}"]
     return []
 
 
 def _follow_parts(
-    verdict: Verdict, rows: Sequence[TaskRow], deeds: Sequence[Deed], said: Sequence[Said]
+    verdict: Verdict, rows: Sequence[TaskRow], deeds: Sequence[Deed], acts: Sequence[Said]
 ) -> None:
     """Whose part each arm took up, and where it let it go."""
     picks: Counter[str] = Counter()
@@ -114,7 +114,7 @@ def _follow_parts(
             elif deed.what.startswith(PICK_UP) and not deed.what.endswith(ALONE):
                 verdict.put_back += 1
                 picks[carried.pop(deed.robot, "")] -= 1
-            elif _by_hand(deed, said):
+            elif _by_hand(deed, acts):
                 verdict.by_hand += 1
             else:
                 verdict.dropped.append(f"{deed.robot} let a part go at {deed.what}: {_whose(row)}")
@@ -131,28 +131,30 @@ def _follow_moves(
     rows: Sequence[TaskRow],
     starts: Sequence[Kill],
     deeds: Sequence[Deed],
-    said: Sequence[Said],
+    acts: Sequence[Said],
 ) -> None:
     """A robot is told something only for a verb said of its cell since the start, or a task taken since."""
-    told = sorted((deed for deed in deeds if deed.did is Did.WAS_TOLD), key=_at)
+    moves = sorted((deed for deed in deeds if deed.did is Did.WAS_TOLD), key=_at)
     for start in starts:
         began = start.started_at
-        since, until = (bisect_left(told, at, key=_at) for at in (start.joined_at, start.killed_at))
-        for deed in told[since:until]:
+        since, until = (bisect_left(moves, at, key=_at) for at in (start.joined_at, start.killed_at))
+        for deed in moves[since:until]:
             row = _at_work(rows, deed)
-            asked = row is not None and row.accepted_s >= began
-            if not asked and not any(began <= each.at <= deed.at and each.cell == deed.cell for each in said):
+            is_accepted_since = row is not None and row.accepted_s >= began
+            if not is_accepted_since and not any(
+                began <= each.at <= deed.at and each.cell == deed.cell for each in acts
+            ):
                 verdict.moved.append(
                     f"{deed.robot} was told a {deed.what} before anybody let {deed.cell} go on"
                 )
 
 
-def _became(row: TaskRow | None, killed_at: float, until: float, said: Sequence[Said], *, again: bool) -> str:
+def _became(row: TaskRow | None, killed_at: float, until: float, acts: Sequence[Said], *, again: bool) -> str:
     """What became of a task that a kill left at work, as far as it got before the next kill."""
     if row is None:
         return "lost"
     end = until if row.ended_s is None else min(row.ended_s, until)
-    verbs = {each.verb for each in said if each.cell == row.cell and killed_at < each.at <= end}
+    verbs = {each.verb for each in acts if each.cell == row.cell and killed_at < each.at <= end}
     if (
         row.reason == Reason.INTERRUPTED.value
         and row.ended_s is not None
@@ -186,5 +188,5 @@ def _station(row: TaskRow) -> str:
     return STATION + row.text.split()[2]
 
 
-def _by_hand(deed: Deed, said: Sequence[Said]) -> bool:
-    return any(each.cell == deed.cell and each.drops and 0 <= deed.at - each.at < BY_HAND_S for each in said)
+def _by_hand(deed: Deed, acts: Sequence[Said]) -> bool:
+    return any(each.cell == deed.cell and each.drops and 0 <= deed.at - each.at < BY_HAND_S for each in acts)

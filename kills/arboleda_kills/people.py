@@ -37,7 +37,7 @@ class Said:
 class Customers:
     """Each cell gets the next task as soon as one of its tasks has ended, until they `bring` no more.
 
-    `accepted`: id to text of what the plant said it has. `told`: id to the end that it said, which may never
+    `accepted`: id to text of what the plant said it has. `ends`: id to the end that it said, which may never
     change; `contradictions` says where it did.
     """
 
@@ -46,11 +46,11 @@ class Customers:
         self._dice = dice
         self._name = name
         self._count = 0
-        self._asked: dict[str, str] = {}  # by id, whether or not an answer came
+        self._texts: dict[str, str] = {}  # by id, whether or not an answer came
         self._of_cell: dict[str, set[str]] = {cell.name: set() for cell in cells}  # those that have not ended
         self.bring = True
         self.accepted: dict[str, str] = {}
-        self.told: dict[str, str] = {}
+        self.ends: dict[str, str] = {}
         self.contradictions: list[str] = []
 
     @property
@@ -60,15 +60,15 @@ class Customers:
 
     def come_back(self, plant: Plant) -> None:
         """Ask again for all that has not ended, also where no answer came, and for some that has."""
-        some = self._dice.sample(sorted(self.told), min(AGAIN, len(self.told)))
+        some = self._dice.sample(sorted(self.ends), min(AGAIN, len(self.ends)))
         for id in [*sorted(set().union(*self._of_cell.values())), *some]:
             self._ask(plant, id)
 
     def look(self, plant: Plant, snapshot: dict[str, Any]) -> None:
         """Take in what ended, and bring what is next."""
         for task in snapshot["tasks"]:
-            if task["id"] in self._asked:
-                self._heard(task["id"], task["state"])
+            if task["id"] in self._texts:
+                self._note(task["id"], task["state"])
         for cell in self._cells if self.bring else ():
             while len(self._of_cell[cell.name]) < WAITING:
                 self._ask(plant, self._next(cell))
@@ -77,26 +77,26 @@ class Customers:
         self._count += 1
         id = f"{self._name}-{self._count}"
         path, station = self._dice.choice([*cell.paths]), self._count % len(cell.stations)
-        self._asked[id] = f"{cell.name} {path} {station}"
+        self._texts[id] = f"{cell.name} {path} {station}"
         self._of_cell[cell.name].add(id)
         return id
 
     def _ask(self, plant: Plant, id: str) -> None:
-        status, answer = plant.ask("POST", "/api/tasks", {"text": f"{self._asked[id]} #{id}"})
+        status, answer = plant.ask("POST", "/api/tasks", {"text": f"{self._texts[id]} #{id}"})
         if status != ACCEPTED:
-            self.contradictions.append(f"{id} ({self._asked[id]}) was not accepted: {answer['sentence']}")
+            self.contradictions.append(f"{id} ({self._texts[id]}) was not accepted: {answer['sentence']}")
             self._forget(id)
             return
-        self.accepted[id] = self._asked[id]
-        self._heard(id, answer["state"])
+        self.accepted[id] = self._texts[id]
+        self._note(id, answer["state"])
 
-    def _heard(self, id: str, state: str) -> None:
+    def _note(self, id: str, state: str) -> None:
         if state in OVER:
             self._forget(id)
-        if self.told.get(id, state) != state:
-            self.contradictions.append(f"{id} was {self.told[id]} and then {state}")
+        if self.ends.get(id, state) != state:
+            self.contradictions.append(f"{id} was {self.ends[id]} and then {state}")
         elif state in OVER:
-            self.told[id] = state
+            self.ends[id] = state
 
     def _forget(self, id: str) -> None:
         for ids in self._of_cell.values():
@@ -108,7 +108,7 @@ class Attendant:
 
     def __init__(self, boards: Boards) -> None:
         self._boards = boards
-        self.said: list[Said] = []
+        self.acts: list[Said] = []
         self.stuck: set[str] = set()
         self.refused: list[str] = []
 
@@ -136,7 +136,7 @@ class Attendant:
         if advice["by_hand"]:
             self._boards.act({BY_HAND[verb]: scope})
             drops = verb == Verb.RELEASE.value
-        self.said.append(Said(at=time.time(), cell=cell, verb=verb, scope=scope, drops=drops))
+        self.acts.append(Said(at=time.time(), cell=cell, verb=verb, scope=scope, drops=drops))
         status, answer = plant.ask(
             "POST", f"/api/cells/{scope}/{verb}", {"by_hand": True} if advice["by_hand"] else None
         )

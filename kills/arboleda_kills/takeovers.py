@@ -80,7 +80,7 @@ class Takeovers:
             if asked.returncode:
                 self.trouble.append(f"handover: {said.strip()}")
             free_at = led_at - float(said.rpartition("for ")[2].split()[0])
-            self.attendant.said += [
+            self.attendant.acts += [
                 Said(at=led_at, cell=cell, verb="resume", scope=cell, drops=False) for cell in self._cells
             ]
         self.seconds[how].append(led_at - free_at)
@@ -160,7 +160,7 @@ class Takeovers:
                 return
             self.customers.look(self.leader, snapshot)
             self.attendant.look(self.leader, snapshot)
-            now = (len(self.customers.told), len(self.attendant.said))
+            now = (len(self.customers.ends), len(self.attendant.acts))
             if now != seen:
                 seen, patience = now, time.time() + QUIET_S
             if time.time() > patience:
@@ -206,9 +206,9 @@ def _report(run: Takeovers, store: str, folder: Path) -> int:
     rows = history.select(TaskQuery(limit=None))
     history.close()
     customers = run.customers
-    told, deeds, said = customers.told, run.boards.deeds, run.attendant.said
+    told, deeds, said = customers.ends, run.boards.deeds, run.attendant.acts
     accepted = customers.accepted
-    verdict = judge(rows, deeds, run.kills, said, accepted=accepted, told=told, last=run.last)
+    verdict = judge(rows, deeds, run.kills, said, accepted=accepted, ends=told, last=run.last)
     verdict.lost += customers.contradictions
     for how, times in run.seconds.items():
         if times:

@@ -30,7 +30,7 @@ PR_SET_PDEATHSIG = 1  # prctl(2)
 class Ended:
     """What a child said last, or which signal ended it; `at` is what it was at by then."""
 
-    said: dict[str, Any] | None
+    answer: dict[str, Any] | None
     signal: int | None
     at: str
     cpu_s: float
@@ -41,7 +41,7 @@ class _Child(Generic[T]):
     task: T
     pid: int
     pipe: int
-    heard_at: float
+    last_word_at: float
     raw: bytearray = field(default_factory=bytearray)
 
 
@@ -91,11 +91,11 @@ class Children(Generic[T]):
             child: _Child[T] = key.data
             chunk = os.read(child.pipe, 65536)
             child.raw += chunk
-            child.heard_at = time.monotonic()
+            child.last_word_at = time.monotonic()
             if not chunk:
                 yield child.task, self._bury(child)
         for child in list(self._alive.values()):
-            if time.monotonic() - child.heard_at > SILENT_S:
+            if time.monotonic() - child.last_word_at > SILENT_S:
                 os.killpg(child.pid, signal.SIGKILL)
 
     def _bury(self, child: _Child[T]) -> Ended:
@@ -105,9 +105,9 @@ class Children(Generic[T]):
         del self._alive[child.pid]
         lines = [json.loads(line) for line in child.raw.splitlines() if line.endswith(b"}")]
         at = next((line["at"] for line in reversed(lines) if "at" in line), "")
-        said = lines[-1] if lines and "at" not in lines[-1] else None
+        answer = lines[-1] if lines and "at" not in lines[-1] else None
         number = os.WTERMSIG(status) if os.WIFSIGNALED(status) else None
-        return Ended(said, number, at, round(used.ru_utime + used.ru_stime, 2))
+        return Ended(answer, number, at, round(used.ru_utime + used.ru_stime, 2))
 
 
 def _do(work: Work, pipe: int, log: Path) -> None:

@@ -88,12 +88,12 @@ class Judging:
                     yield (mutant, judge, order.seeds), work
 
     def _verdict(self, mutant: Mutant, judge: str, asked: int, ended: Ended) -> Verdict:
-        said = ended.said
-        if said is None:  # it computed without an end, took all memory, or ended the process
+        answer = ended.answer
+        if answer is None:  # it computed without an end, took all memory, or ended the process
             how = f"signal {ended.signal}" if ended.signal else "an end without a word"
-            said = {"killed": True, "by": f"{ended.at or 'the import'}: {how}", "ran": 0}
+            answer = {"killed": True, "by": f"{ended.at or 'the import'}: {how}", "ran": 0}
         return Verdict(
-            key=mutant.key, judge=judge, of=self._of[judge], asked=asked, cpu_s=ended.cpu_s, **said
+            key=mutant.key, judge=judge, of=self._of[judge], asked=asked, cpu_s=ended.cpu_s, **answer
         )
 
     def _reaches(self, order: Order, tell: Told) -> dict[str, Reach]:
@@ -115,12 +115,12 @@ class Judging:
             )
         with Children[str](order.jobs, self._log) as children:
             for judge, ended in children.run(missing.items()):
-                if ended.said is None:
+                if ended.answer is None:
                     raise RuntimeError(f"nothing could be measured; {self._log} says why")
-                reaches[judge] = reach = Reach(**ended.said)
+                reaches[judge] = reach = Reach(**ended.answer)
                 if reach.failed:
                     tell(f"these fail with nothing planted, and are left out: {', '.join(reach.failed)}")
-                found = {"of": self._of[judge], "seeds": order.seeds, "reach": ended.said}
+                found = {"of": self._of[judge], "seeds": order.seeds, "reach": ended.answer}
                 self._reach_file(judge).write_text(json.dumps(found))
         return reaches
 

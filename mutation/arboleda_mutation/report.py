@@ -62,7 +62,7 @@ def show(console: Console, rows: Sequence[Row]) -> None:
     """The survivors, then a table of all."""
     for row in sorted(rows, key=lambda row: (row.mutant.file, row.mutant.line)):
         if row.end in ("survived", "argued"):
-            console.print(_told(row))
+            console.print(_line(row))
     console.print(_table(rows))
     found = totals(rows)
     console.print(
@@ -83,7 +83,7 @@ def _table(rows: Sequence[Row]) -> Table:
     return table
 
 
-def _told(row: Row) -> Text:
+def _line(row: Row) -> Text:
     mutant = row.mutant
     text = Text(
         f"{mutant.place}  {mutant.function or 'module'}  {mutant.operator}  {row.end}\n", style="bold"

@@ -39,10 +39,10 @@ class Place:
 
 def mutants(file: str, source: str, enums: Enums) -> list[Mutant]:
     """Every mutant of a file, in the order of its text."""
-    seen: Counter[tuple[str, ...]] = Counter()
+    counts: Counter[tuple[str, ...]] = Counter()
     found = []
     for number, (place, change) in enumerate(_all(ast.parse(source), enums)):
-        mutant = _named(file, source, number, place, change, seen)
+        mutant = _named(file, source, number, place, change, counts)
         found.append(mutant)
     return found
 
@@ -120,12 +120,12 @@ def _named(
     number: int,
     place: Place,
     change: Change,
-    seen: Counter[tuple[str, ...]],
+    counts: Counter[tuple[str, ...]],
 ) -> Mutant:
     operator, new = change
     old_text, new_text, at = _texts(source, place, operator, new)
     same = (place.function, operator.split()[0], old_text, new_text)
-    seen[same] += 1
+    counts[same] += 1
     removed, added = _lines(source, at, new_text)
     begin = place.statement.lineno
     return Mutant(
@@ -134,7 +134,7 @@ def _named(
         operator=operator.split()[0],
         old=old_text,
         new=new_text,
-        nth=seen[same],
+        nth=counts[same],
         number=number,
         line=at[0],
         lines=(begin, max(begin, _end(place.statement))),

@@ -80,7 +80,7 @@ class Both:
         self.row.wanted = NOW
 
     def grow_older(self, seconds: float) -> None:
-        self.row.seen = None if self.row.seen is None else self.row.seen - seconds
+        self.row.renewed_at = None if self.row.renewed_at is None else self.row.renewed_at - seconds
         self.row.wanted = None if self.row.wanted is None else self.row.wanted - seconds
 
     def end_lease(self) -> None:
@@ -93,7 +93,7 @@ class Both:
                 return
             values = seen if said_nothing else (seen[0], seen[1] - timedelta(seconds=0.5))
             db.execute(END_LEASE, values)
-        last = self.row.last_seen
+        last = self.row.lease_state
         self.row.end_lease(last if said_nothing else (last[0], NOW + 1.0))
 
     def compare(self) -> None:
@@ -107,7 +107,7 @@ class Both:
         self.others.close()
 
     def _agree(self) -> None:
-        ages = [None if at is None else NOW - at for at in (self.row.seen, self.row.wanted)]
+        ages = [None if at is None else NOW - at for at in (self.row.renewed_at, self.row.wanted)]
         with self._connection() as db:
             known = db.execute("SELECT seen IS NULL, wanted IS NULL FROM leader").fetchone()
             assert known in (None, tuple(age is None for age in ages))

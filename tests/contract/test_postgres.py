@@ -61,7 +61,7 @@ def take_over(server: Server, plant: str) -> None:
         lambda memory: memory.attempted("kept", 5),
         lambda memory: memory.forget_tasks(100.0),
         lambda memory: memory.began(5.0, 4.0),
-        lambda memory: memory.seen(5.0, ended=True),
+        lambda memory: memory.note_run(5.0, ended=True),
         lambda memory: memory.stands("sis_a", "held", 5.0),
         lambda memory: memory.renew(),
     ],

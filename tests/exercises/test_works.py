@@ -19,4 +19,4 @@ def test_a_work_is_judged_as_it_is(work: Sample) -> None:
     if work.right:
         assert verdict.runs >= len(catalog()[work.exercise].trials) + sum(each.runs // 2 for each in proofs)
     else:
-        assert verdict.findings[0].seen
+        assert verdict.findings[0].evidence

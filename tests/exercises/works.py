@@ -70,7 +70,9 @@ def main(names: list[str]) -> int:
         wrong += verdict.passes != each.right
         mark = "    " if verdict.passes == each.right else "BAD "
         why = (
-            "" if verdict.passes else f" | {verdict.findings[0].says['en']}: {verdict.findings[0].seen[:140]}"
+            ""
+            if verdict.passes
+            else f" | {verdict.findings[0].says['en']}: {verdict.findings[0].evidence[:140]}"
         )
         print(f"{mark}{process_time() - before:5.1f} s {verdict.runs:4} runs  {each}{why}", flush=True)
     print(f"{wrong} judged otherwise than they are")

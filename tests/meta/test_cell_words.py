@@ -87,7 +87,7 @@ def test_what_stands_beside_a_state_begins_with_its_word_or_the_cell(state: Cell
 
 @pytest.mark.parametrize("state", CellState)
 def test_the_plants_sentences_have_the_word_in_spanish(state: CellState) -> None:
-    assert words("es").say(state.said) == on_page("es")[state.value]
+    assert words("es").say(state.sentence) == on_page("es")[state.value]
 
 
 def test_a_sentence_about_a_state_has_its_word_and_no_other_in_spanish() -> None:

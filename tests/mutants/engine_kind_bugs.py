@@ -52,7 +52,7 @@ KIND_BUGS = (
     bug(
         DECLARED,
         "A virtual device always gives the first answer.",
-        "        if call.told.virtual is None:\n            return answers[0]\n",
+        "        if call.definition.virtual is None:\n            return answers[0]\n",
         "        return answers[0]\n",
         argued="the judge asks the same function, and which answer a virtual device gives is its own affair",
     ),
@@ -65,37 +65,37 @@ KIND_BUGS = (
     bug(
         DECLARED,
         "Work goes on through a stop.",
-        "    @property\n    def on_stop(self) -> OnStop:\n        return self.told.on_stop",
+        "    @property\n    def on_stop(self) -> OnStop:\n        return self.definition.on_stop",
         "    @property\n    def on_stop(self) -> OnStop:\n        return OnStop.FINISH",
     ),
     bug(
         DECLARED,
         "Work that finishes is halted.",
-        "    @property\n    def on_stop(self) -> OnStop:\n        return self.told.on_stop",
+        "    @property\n    def on_stop(self) -> OnStop:\n        return self.definition.on_stop",
         "    @property\n    def on_stop(self) -> OnStop:\n        return OnStop.HALT",
     ),
     bug(
         DECLARED,
         "A verb forgets its needs.",
-        "        return self.told.needs\n",
+        "        return self.definition.needs\n",
         "        return ()\n",
     ),
     bug(
         DECLARED,
         "A switch that lets go is booked as one that grips.",
-        "return bool(dict(self.sets)[self.told.held[0]]) if self.told.holds else None",
-        "return True if self.told.holds else None",
+        "return bool(dict(self.sets)[self.definition.held[0]]) if self.definition.holds else None",
+        "return True if self.definition.holds else None",
     ),
     bug(
         DECLARED,
         "A switch of a part is no grip.",
-        "return bool(dict(self.sets)[self.told.held[0]]) if self.told.holds else None",
+        "return bool(dict(self.sets)[self.definition.held[0]]) if self.definition.holds else None",
         "return None",
     ),
     bug(
         DECLARED,
         "No verb works on a part.",
-        "        return self.told.works_on_part\n",
+        "        return self.definition.works_on_part\n",
         "        return False\n",
     ),
     bug(

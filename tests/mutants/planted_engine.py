@@ -148,7 +148,7 @@ class Looking:
         tasks = [((bug, judge), self._work(bug, judge)) for bug in bugs if self.verdict(bug, judge) is None]
         with Children[Task](self._jobs, self._log) as children:
             for (bug, _), ended in children.run(tasks):
-                verdict = self._said(bug, judge, ended)
+                verdict = self._verdict(bug, judge, ended)
                 self.book.add(verdict)
                 yield bug, verdict
 
@@ -175,22 +175,22 @@ class Looking:
             print("measuring which seeds come by which lines", flush=True)
             with Children[str](1, self._log) as children:
                 ((_, ended),) = children.run([("reach", partial(measure, self._seeds))])
-            if ended.said is None:
+            if ended.answer is None:
                 raise RuntimeError(f"nothing could be measured; {self._log} says why")
-            kept = {"of": of, "seeds": self._seeds, "reach": ended.said}
+            kept = {"of": of, "seeds": self._seeds, "reach": ended.answer}
             file.write_text(json.dumps(kept))
         reach = Reach(**kept["reach"])
         if reach.failed:
             raise RuntimeError(f"these seeds find something with nothing planted: {', '.join(reach.failed)}")
         return reach
 
-    def _said(self, bug: EngineBug, judge: str, ended: Ended) -> Verdict:
-        said = ended.said
-        if said is None:  # it computed without an end, took all memory, or ended the process
+    def _verdict(self, bug: EngineBug, judge: str, ended: Ended) -> Verdict:
+        answer = ended.answer
+        if answer is None:  # it computed without an end, took all memory, or ended the process
             how = f"signal {ended.signal}" if ended.signal else "an end without a word"
-            said = {"killed": True, "by": f"{ended.at or 'the import'}: {how}", "ran": 0}
+            answer = {"killed": True, "by": f"{ended.at or 'the import'}: {how}", "ran": 0}
         asked = self._seeds if judge == SIMULATOR else 0
-        return Verdict(key=bug.key, judge=judge, of=self._of[judge], asked=asked, cpu_s=ended.cpu_s, **said)
+        return Verdict(key=bug.key, judge=judge, of=self._of[judge], asked=asked, cpu_s=ended.cpu_s, **answer)
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -209,7 +209,7 @@ def main(arguments: list[str] | None = None) -> int:
     except KeyboardInterrupt:
         print("interrupted; what was judged is kept, the same command goes on")
         return 130
-    return _told(looking, bugs)
+    return _print_summary(looking, bugs)
 
 
 def sample(size: int | None, only: str = "") -> list[EngineBug]:
@@ -224,7 +224,7 @@ def _is_found(looking: Looking, bug: EngineBug, judge: str) -> bool:
     return verdict is not None and verdict.killed
 
 
-def _told(looking: Looking, bugs: Sequence[EngineBug]) -> int:
+def _print_summary(looking: Looking, bugs: Sequence[EngineBug]) -> int:
     """Print the table: a row for each layer, then every survivor."""
     rows: dict[str, Counter[str]] = {}
     survivors = []

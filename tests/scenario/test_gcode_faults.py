@@ -64,7 +64,7 @@ def test_an_ok_that_is_an_end_would_be_found(monkeypatch: pytest.MonkeyPatch) ->
 
 
 def test_a_switch_at_an_end_that_is_not_heard_would_be_found(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(marlin.MarlinMachine, "_fails", lambda self, now, word: None)
+    monkeypatch.setattr(marlin.MarlinMachine, "_take_trouble", lambda self, now, word: None)
     assert any(
         "false success" in each for seed in range(3) for each in breaches(seed, "endstop_hit", rig=MARLIN)
     )

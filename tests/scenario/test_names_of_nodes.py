@@ -58,7 +58,7 @@ def test_each_node_is_that_of_its_device(tmp_path: Path, body: str, told: list[s
     here.submit("c t #one")
     assert here.wait(20.0, until=lambda: here.outcomes()["one"].state in ENDED)
     assert here.outcomes()["one"].state is TaskState.DONE
-    assert [f"{each.robot} {each.verb}" for each in here.sent if hasattr(each, "told")] == told
+    assert [f"{each.robot} {each.verb}" for each in here.sent if hasattr(each, "definition")] == told
 
 
 def test_two_roles_that_would_make_one_node_are_named(tmp_path: Path) -> None:

@@ -108,8 +108,8 @@ def _report(run: Run, folder: Path) -> int:
     if any(counted.values()):
         deeds = [deed.data() for deed in run.cast.boards.deeds]
         (folder / "deeds.jsonl").write_text("".join(f"{json.dumps(deed)}\n" for deed in deeds))
-        (folder / "seen.jsonl").write_text("".join(f"{json.dumps(row)}\n" for row in run.cast.watch.seen))
-        changes = (*run.kills, *run.attendant.said)
+        (folder / "seen.jsonl").write_text("".join(f"{json.dumps(row)}\n" for row in run.cast.watch.executed))
+        changes = (*run.kills, *run.attendant.acts)
         (folder / "changes.txt").write_text("".join(f"{each}\n" for each in changes))
         print(f"logs, deeds and changes are in {folder}")
     return int(any(counted.values()))

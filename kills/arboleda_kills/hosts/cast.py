@@ -66,10 +66,10 @@ class HostPlant(Plant):
 
 
 class Watch:
-    """The process of `watch.py`; `seen` grows while it runs: time, robot, id."""
+    """The process of `watch.py`; `executed` grows while it runs: time, robot, id."""
 
     def __init__(self, before: Sequence[str], robots: Sequence[str], log: Path) -> None:
-        self.seen: list[tuple[float, str, str]] = []
+        self.executed: list[tuple[float, str, str]] = []
         with log.open("ab") as errors:
             self._child = subprocess.Popen(
                 [*before, sys.executable, "-m", "arboleda_kills.hosts.watch", *robots],
@@ -92,7 +92,7 @@ class Watch:
         assert self._child.stdout is not None
         for line in self._child.stdout:
             said = json.loads(line)
-            self.seen.append((said["at"], said["robot"], said["id"]))
+            self.executed.append((said["at"], said["robot"], said["id"]))
 
 
 class Cast:

@@ -63,7 +63,7 @@ class Run:
         self._leader: HostPlant | None = None
         self._greeted: HostPlant | None = None
         self._superseded: HostPlant | None = None
-        self._seen: tuple[int, ...] = ()
+        self._last_news: tuple[int, ...] = ()
         self._patience = 0.0
         with self.network.inside(DATA):
             self._others.prepare()
@@ -117,7 +117,7 @@ class Run:
             history.close()
             with self.cast.database.connection() as db:
                 rows = truly(db, SCHEMA, rows)
-        customers, deeds, said = self.customers, self.cast.boards.deeds, self.attendant.said
+        customers, deeds, said = self.customers, self.cast.boards.deeds, self.attendant.acts
         visitors = self.visitors
         last = Kill(started_at=self._led_at, joined_at=self._led_at)
         found = judge(
@@ -126,11 +126,11 @@ class Run:
             self.kills,
             said,
             accepted=customers.accepted | visitors.accepted,
-            told=customers.told | visitors.told,
+            ends=customers.ends | visitors.ends,
             last=last,
         )
         found.lost += customers.contradictions + visitors.contradictions
-        return found, two_leaders(self.cast.watch.seen), rows
+        return found, two_leaders(self.cast.watch.executed), rows
 
     @property
     def _plant(self) -> HostPlant:
@@ -180,7 +180,7 @@ class Run:
         took_s = self._led_at - self._fault_at
         self.seconds.setdefault(fault.name, []).append(took_s)
         if fault.name == "handover":  # whose cells go on by themselves
-            self.attendant.said += [
+            self.attendant.acts += [
                 Said(at=self._led_at, cell=cell, verb="resume", scope=cell, drops=False)
                 for cell in self._cells
             ]
@@ -240,9 +240,9 @@ class Run:
                         return
                     self.customers.look(self._plant, snapshot)
                     self.attendant.look(self._plant, snapshot)
-            now = (len(self.customers.told), len(self.attendant.said), self._epoch)
-            if now != self._seen:
-                self._seen, self._patience = now, time.time() + QUIET_S
+            now = (len(self.customers.ends), len(self.attendant.acts), self._epoch)
+            if now != self._last_news:
+                self._last_news, self._patience = now, time.time() + QUIET_S
             if time.time() > self._patience:
                 raise TimeoutError(f"nothing happened for {QUIET_S:g} s")
             time.sleep(PASS_S)
@@ -261,11 +261,11 @@ class Run:
         return snapshot if "cells" in snapshot else None
 
 
-def two_leaders(seen: Iterable[tuple[float, str, str]]) -> list[str]:
+def two_leaders(executed: Iterable[tuple[float, str, str]]) -> list[str]:
     """A sentence for each command of a leader that a board accepted after one of the next leader."""
     found, newest, first_at = [], 0, 0.0
     of_robot: dict[str, int] = {}
-    for at, robot, id in sorted(seen):
+    for at, robot, id in sorted(executed):
         epoch = int(id.partition("-")[0])
         if epoch < of_robot.get(robot, 0) or (epoch < newest and at > first_at + SLACK_S):
             found.append(f"{robot} accepted {id} after a command of plant {newest}")

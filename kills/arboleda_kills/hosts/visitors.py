@@ -21,7 +21,7 @@ TRIES = 100
 class Visitors:
     """One for each way: it brings the next task as soon as the last was taken, until they `bring` no more.
 
-    `accepted`, `told` and `contradictions` are as those of customers. `sent`: how many were taken by each
+    `accepted`, `ends` and `contradictions` are as those of customers. `sent`: how many were taken by each
     way. `refused`: how often, by way and sentence.
     """
 
@@ -29,7 +29,7 @@ class Visitors:
         self._cells = cells
         self.bring = True
         self.accepted: dict[str, str] = {}
-        self.told: dict[str, str] = {}
+        self.ends: dict[str, str] = {}
         self.contradictions: list[str] = []
         self.sent: Counter[str] = Counter()
         self.refused: Counter[tuple[str, str]] = Counter()
@@ -61,8 +61,8 @@ class Visitors:
             if answer.state:
                 self.sent[name] += id not in self.accepted
                 self.accepted[id] = text
-            if answer.state in OVER and self.told.setdefault(id, answer.state) != answer.state:
-                self.contradictions.append(f"{id} was {self.told[id]} and then {answer.state}")
+            if answer.state in OVER and self.ends.setdefault(id, answer.state) != answer.state:
+                self.contradictions.append(f"{id} was {self.ends[id]} and then {answer.state}")
             if not answer.sentence:
                 return
             self.refused[name, re.sub(r"\d+", "N", answer.sentence)] += 1

@@ -136,9 +136,9 @@ class PlayedMarlin(VirtualMarlin):
             self._told(None)
         self._stands = True
 
-    def _shown(self) -> str:
+    def _position_line(self) -> str:
         self._stands = False
-        return super()._shown()
+        return super()._position_line()
 
     def _move(self, now: float, line: str) -> list[str]:
         words = words_of(line)

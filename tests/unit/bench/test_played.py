@@ -67,9 +67,9 @@ def test_a_reaction_is_a_command_that_no_dwell_precedes(house, clock):
 
 def test_every_robot_reports_ten_times_a_second(house):
     _, _, _, crew, go_on = house
-    before = crew.told
+    before = crew.repeats
     go_on(1.0)
-    assert crew.told - before == pytest.approx(20, abs=1)
+    assert crew.repeats - before == pytest.approx(20, abs=1)
 
 
 def test_robots_hear_which_plant_they_belong_to(house):

@@ -74,7 +74,7 @@ def two(name: str) -> list[Sample]:
 def test_a_work_is_judged_as_it_is(work: Sample) -> None:
     verdict = work.judged()
     assert verdict.passes is work.right
-    assert verdict.passes or verdict.findings[0].seen
+    assert verdict.passes or verdict.findings[0].evidence
 
 
 def handed_in(folder: Path, name: str, student: str) -> Path:
@@ -121,7 +121,7 @@ def test_a_work_that_cannot_be_judged_says_why(tmp_path: Path, files: dict[str, 
         (tmp_path / name).write_text(text, "utf-8")
     [work] = works([tmp_path])
     assert trouble in work.trouble
-    assert [each.seen for each in judge_process.judged(work).findings] == [work.trouble]
+    assert [each.evidence for each in judge_process.judged(work).findings] == [work.trouble]
 
 
 def test_a_zip_is_read_and_never_unpacked(tmp_path: Path) -> None:
@@ -140,7 +140,7 @@ def test_a_plant_that_was_changed_elsewhere_does_not_pass() -> None:
     [right] = [each for each in samples("need") if each.right][:1]
     changed = right.files["plant.yaml"].replace(b"takes_s: 3", b"takes_s: 0.1")
     verdict = Sample(exercise="need", right=False, about="", files={"plant.yaml": changed}).judged()
-    assert "kinds.press.verbs.press.takes_s of plant.yaml was changed" in verdict.findings[0].seen
+    assert "kinds.press.verbs.press.takes_s of plant.yaml was changed" in verdict.findings[0].evidence
 
 
 def test_python_that_ends_the_judge_gets_no_verdict() -> None:

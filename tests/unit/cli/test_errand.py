@@ -64,7 +64,7 @@ def test_it_does_not_wait_for_tasks_that_a_held_cell_cannot_start(started) -> No
     errand.changed(change("sis_a 1", TaskState.FAILED, Reason.LINK_LOST))
     assert not ends
     for _ in range(2):
-        errand.seen(snapshot(sis_a={"paused": True}))
+        errand.note_snapshot(snapshot(sis_a={"paused": True}))
     assert ends == ["over"] and not errand.ok
     assert errand.results["t-sis_a 2"].state is TaskState.QUEUED
 
@@ -110,7 +110,7 @@ class Waiting:
     def at(self, now: float, seen: dict[str, Any]) -> int:
         """How often it was over, once that is seen then."""
         self.now = now
-        self.errand.seen(seen)
+        self.errand.note_snapshot(seen)
         return self.ends
 
 

@@ -6,8 +6,12 @@ from string import Formatter
 
 import pytest
 
+from arboleda.campaigns.setting import rules
+from arboleda.dashboard.findings import findings, plant_reasons
+from arboleda.dashboard.wording import words
+from arboleda.model.sentence import Phrase
 from arboleda.web.languages import contents
-from arboleda.web.languages.templates import Templates, findings
+from arboleda.web.languages.templates import Templates
 
 SENTENCES: dict[str, str] = contents("es", "findings")["sentences"]
 FEWER = {"  faults     {0} of {1} {2} enough:"}  # the value is a verb, of which Spanish needs no second form
@@ -63,3 +67,25 @@ def test_values_of_a_part_are_left_to_it() -> None:
         {"Invalid value for {name}: {why}": "Mal {name}: {why}"}, lambda slot, value: value.upper()
     )
     assert templates("Invalid value for port: low") == "Mal PORT: LOW"
+
+
+def test_a_slot_that_stands_twice_has_the_same_words_twice() -> None:
+    templates = Templates({"{arm} is away; home {arm} helps": "{arm} no está; home {arm} ayuda"})
+    assert templates("ur1 is away; home ur1 helps") == "ur1 no está; home ur1 ayuda"
+    assert templates("ur1 is away; home ur2 helps") == "ur1 is away; home ur2 helps"
+
+
+@pytest.mark.parametrize("reason", plant_reasons(), ids=lambda each: each.key)
+def test_a_reason_of_the_plant_is_said_inside_a_finding_as_on_the_page(reason: Phrase) -> None:
+    sentence = reason(**{slot: "x9" if spec == "" else 7 for slot, spec in values(reason)})
+    english = f'task failed once without any fault: recipe rinse (rejected), as in "rinse 1": {sentence}'
+    assert findings("es")(english).endswith(f'"rinse 1": {words("es").say(sentence)}')
+
+
+@pytest.mark.parametrize("rule", list(rules().values()), ids=list(rules()))
+def test_the_rule_of_an_invariant_is_said_in_spanish(rule: str) -> None:
+    assert findings("es")(f"  must hold  {rule}") == f"  debe cumplirse {SENTENCES[rule]}"
+
+
+def values(phrase: Phrase) -> list[tuple[str, str]]:
+    return [(name, spec or "") for _, name, spec, _ in Formatter().parse(phrase.english) if name is not None]

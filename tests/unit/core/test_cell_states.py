@@ -29,7 +29,7 @@ def test_a_pair_follows_the_table_or_is_refused_with_a_sentence(state: CellState
     if (state, cause) in TABLE:
         assert after(state, cause, "sis_a") is TABLE[state, cause]
         return
-    with pytest.raises(IllegalTransition, match=f"sis_a is {state.said}: no {cause.value} there"):
+    with pytest.raises(IllegalTransition, match=f"sis_a is {state.sentence}: no {cause.value} there"):
         after(state, cause, "sis_a")
 
 

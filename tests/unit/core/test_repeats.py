@@ -91,14 +91,15 @@ class Desk:
         self.now += 0.1
         if not self.knows:
             for belief in self.dispatcher.beliefs.values():
-                belief._said = ()
+                belief._last_words = ()
         self.dispatcher.report(Report(at=self.now, **self.last), self.now)
 
     def shown(self) -> list[Any]:
         """All that came of it."""
         desk, ledger = self.dispatcher, self.dispatcher.ledger
         beliefs = [
-            {**vars(belief), "robot": None, "_said": (), "repeats": 0} for belief in desk.beliefs.values()
+            {**vars(belief), "robot": None, "_last_words": (), "repeats": 0}
+            for belief in desk.beliefs.values()
         ]
         entries = [
             (id, entry.state, entry.deadline, vars(entry.observations))

@@ -61,7 +61,7 @@ def shown(
 ) -> list[tuple[str, bool | None]]:
     browser = Browser()
     its: Any = Desk(browser, plant, Feed(plant), words("en"))  # type: ignore[arg-type]
-    asyncio.run(its.asked(act, of, more))
+    asyncio.run(its.take(act, of, more))
     return browser.shown
 
 

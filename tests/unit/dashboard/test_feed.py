@@ -119,9 +119,9 @@ def test_a_browser_that_stops_reading_is_told_no_more_until_it_reads_again(side:
     feed.add(quick)
     for number in range(BEHIND * 2):
         news(side, feed, f"sis_a 0B 7 #n{number}")
-        feed.seen(quick, quick.frames[-1][0])
+        feed.note_shown(quick, quick.frames[-1][0])
     assert len(quick.frames) == BEHIND * 2 and len(slow.frames) <= BEHIND + 2
-    feed.seen(slow, slow.frames[-1][0])
+    feed.note_shown(slow, slow.frames[-1][0])
     feed.turn()
     assert "text/sis_b.state" in slow.frames[-1][1]
 
@@ -149,7 +149,7 @@ def test_a_page_is_not_behind_after_a_time_without_news(side: Side, feed: Feed) 
 def test_a_browser_cannot_claim_to_have_seen_the_future(side: Side, feed: Feed) -> None:
     viewer = Viewer()
     feed.add(viewer)
-    feed.seen(viewer, 10**9)
+    feed.note_shown(viewer, 10**9)
     for number in range(BEHIND * 2):
         news(side, feed, f"sis_a 0B 7 #n{number}")
     assert len(viewer.frames) <= BEHIND + 2

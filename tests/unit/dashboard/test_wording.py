@@ -72,7 +72,7 @@ def test_every_word_of_the_plant_has_a_name(language: str, group: str, known: se
             "recovery: move to home",
             "recuperación: ir a reposo",
         ),
-        (belief.OFFLINE.said(robot="ra1"), "ra1 is offline", "ra1 está sin conexión"),
+        (belief.OFFLINE.phrase(robot="ra1"), "ra1 is offline", "ra1 está sin conexión"),
         (
             dispatcher.NO_TELEMETRY(robot="rm_sis_a", seconds=1.5, doing=paths.DRIVING(path="0B")),
             "rm_sis_a: no telemetry for 1.5 s while driving path 0B",

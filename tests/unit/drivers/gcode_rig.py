@@ -42,12 +42,12 @@ class GcodeRig(ABC):
         settings = Settings(**{**vars(settings), **changes})  # type: ignore[arg-type]
         self.reports: list[Report] = []
         driver = machine([self.robot], settings)
-        self.line = Loopback(driver, self.played(), self.reports.append, 100.0)
+        self.line = Loopback(driver, self.controller(), self.reports.append, 100.0)
         self._numbers = itertools.count(1)
         self.wait(0.5)
 
     @abstractmethod
-    def played(self) -> VirtualGrbl | VirtualMarlin:
+    def controller(self) -> VirtualGrbl | VirtualMarlin:
         """The virtual machine at the other end."""
 
     @property
@@ -109,7 +109,7 @@ class GrblRig(GcodeRig):
         self._homed = homed
         super().__init__(*on, **changes)
 
-    def played(self) -> VirtualGrbl:
+    def controller(self) -> VirtualGrbl:
         self.grbl = VirtualGrbl(self.faults, homed=self._homed)
         return self.grbl
 
@@ -125,6 +125,6 @@ class MarlinRig(GcodeRig):
         if homed:
             self.until(done=self.home(), homed=True)
 
-    def played(self) -> VirtualMarlin:
+    def controller(self) -> VirtualMarlin:
         self.marlin = VirtualMarlin(self.faults)
         return self.marlin

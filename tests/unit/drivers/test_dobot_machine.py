@@ -43,7 +43,7 @@ def test_a_move_is_accepted_and_done_at_its_goal() -> None:
     joined.wait(3.0, until=lambda report: report.done is not None)
     end = joined.last
     assert (end.done, end.state, end.q) == (GO.id, MotionState.STOPPED, pytest.approx(GOAL, abs=1e-5))
-    assert sum(line.startswith("MovJ") for line in joined.told) == 1
+    assert sum(line.startswith("MovJ") for line in joined.received) == 1
 
 
 def test_a_report_comes_ten_times_a_second() -> None:
@@ -111,9 +111,9 @@ def test_what_was_left_at_work_is_stopped_by_who_comes_back() -> None:
     joined.faults.switch("mute", on=True)
     joined.wait(1.2)
     joined.faults.switch("mute", on=False)
-    joined.told.clear()
+    joined.received.clear()
     joined.wait(2.0)
-    assert "Stop()" in joined.told and not any(line.startswith("MovJ") for line in joined.told)
+    assert "Stop()" in joined.received and not any(line.startswith("MovJ") for line in joined.received)
     assert (joined.last.state, joined.last.done) == (MotionState.STOPPED, None)
 
 
@@ -170,7 +170,7 @@ def test_getting_ready_powers_and_enables_the_arm() -> None:
     joined.ask(READY)
     joined.wait(5.0, until=lambda report: report.done == READY.id)
     assert (joined.last.state, joined.last.homed) == (MotionState.STOPPED, True)
-    assert [line for line in joined.told if line in ("PowerOn()", "EnableRobot()")] == [
+    assert [line for line in joined.received if line in ("PowerOn()", "EnableRobot()")] == [
         "PowerOn()",
         "EnableRobot()",
     ]
@@ -269,13 +269,13 @@ def test_alarms_are_said_whose_answer_lacks_its_last_brace() -> None:
 
 def test_control_that_an_enabled_arm_refuses_is_asked_for_again_when_it_is_disabled() -> None:
     joined = up()
-    assert joined.told.count("RequestControl()") == 1
+    assert joined.received.count("RequestControl()") == 1
     joined.tell("DisableRobot()")
     joined.wait(0.2)
-    assert joined.told.count("RequestControl()") == 2
+    assert joined.received.count("RequestControl()") == 2
     joined.ask(READY)
     joined.wait(2.0)
-    assert joined.told.count("RequestControl()") == 2
+    assert joined.received.count("RequestControl()") == 2
 
 
 @pytest.mark.parametrize("fault", ["script", "stop_button", "alarm", "power_off"])

@@ -51,11 +51,11 @@ def test_an_arm_without_torque_is_made_ready_where_it_is(maker: str) -> None:
         servo.set_goal(3000)  # a goal of before: it must not go there
     assert rig.report.state is MotionState.NOT_HOMED and rig.report.homed is False
     assert ("torque", "off") in (rig.report.facts or ())
-    before = dict(rig.servos.seen())
+    before = dict(rig.servos.positions())
     id = rig.home()
     rig.until(done=id, state=STILL, homed=True)
     rig.wait(0.5)
-    assert rig.servos.seen() == before
+    assert rig.servos.positions() == before
 
 
 @MAKERS
@@ -121,10 +121,10 @@ def test_a_servo_that_does_not_answer_has_the_others_hold(maker: str) -> None:
     rig.faults.switch("mute_servo", on=True)
     lost = rig.until(state=MotionState.NO_LINK)
     assert "servo 3 (elbow_flex) does not answer" in str(lost.lost)
-    there = rig.servos.seen()[1]
+    there = rig.servos.positions()[1]
     assert there > 2048 - 1100  # its goal is 1138 ticks away
     rig.wait(0.5)
-    assert rig.servos.seen()[1] == pytest.approx(there, abs=90)
+    assert rig.servos.positions()[1] == pytest.approx(there, abs=90)
     rig.faults.switch("mute_servo", on=False)
     rig.until(state=STILL)
 
@@ -141,9 +141,9 @@ def test_power_that_is_lost_is_a_boot(maker: str) -> None:
     rig.faults.switch("power_cycle", on=False)
     back = rig.until(state=MotionState.NOT_HOMED)
     assert back.boot_id != boot
-    there = rig.servos.seen()
+    there = rig.servos.positions()
     rig.wait(1.0)
-    assert rig.servos.seen() == there
+    assert rig.servos.positions() == there
     rig.until(done=rig.home(), state=STILL)
 
 
@@ -155,9 +155,9 @@ def test_a_cable_that_is_pulled_and_put_back() -> None:
     rig.until(state=MotionState.NO_LINK)
     rig.faults.switch("unplugged", on=False)
     rig.until(state=STILL)
-    there = rig.servos.seen()
+    there = rig.servos.positions()
     rig.wait(0.5)
-    assert rig.servos.seen() == there
+    assert rig.servos.positions() == there
 
 
 @pytest.mark.parametrize("fault", ["broken_frames", "torn", "noise", "echo", "wrong_id", "late"])

@@ -55,7 +55,7 @@ def told_by(rig: Rig, said: dict[str, Any]) -> list[str]:
 def test_a_vehicle_is_asked_for_its_factsheet_when_it_comes(version: str) -> None:
     rig = Rig(version)
     rig.run(0.5)
-    asked = [each["actionType"] for _, said in rig.told for each in said["actions"]]
+    asked = [each["actionType"] for _, said in rig.received for each in said["actions"]]
     assert asked == ["stateRequest", "factsheetRequest"]
     assert rig.log == []  # the virtual one has all that the example asks for
 
@@ -65,10 +65,10 @@ def test_a_vehicle_that_does_not_listen_at_once_is_asked_again() -> None:
     rig.faults.switch("deaf", on=True)
     rig.faults.switch("hush", on=True)
     rig.run(10.0)
-    asked = Counter(each["actionType"] for _, said in rig.told for each in said["actions"])
+    asked = Counter(each["actionType"] for _, said in rig.received for each in said["actions"])
     assert asked["factsheetRequest"] == FACTSHEET_TRIES
     assert asked["stateRequest"] == 5  # without a state it is of no use
-    assert all(len(said["actions"]) == 1 for _, said in rig.told)
+    assert all(len(said["actions"]) == 1 for _, said in rig.received)
 
 
 @pytest.mark.parametrize("version", ["2.1", "3.0"])
@@ -125,7 +125,7 @@ def test_a_message_has_no_more_nodes_than_it_takes_and_the_rest_comes_by_updates
     told_by(rig, sheet(*able(), arrays={"order.edges": 2}))
     rig.drive(0, 3, 6, 7, 8)
     rig.run(5.0)
-    sizes = [len(said["nodes"]) for topic, said in rig.told if topic == "order"]
+    sizes = [len(said["nodes"]) for topic, said in rig.received if topic == "order"]
     assert (max(sizes), len(sizes)) == (3, 3)
     assert rig.reports["cart"].done == "1-1"
     assert rig.reports["cart"].node == 8
@@ -136,7 +136,7 @@ def test_a_base_that_is_shorter_than_the_limit_stays_as_it_is() -> None:
     rig.run(0.5)
     told_by(rig, sheet(*able(), arrays={"order.nodes": 4}))
     rig.drive(0, 3, 6, 7, 8)
-    assert [node["released"] for node in rig.told[-1][1]["nodes"]] == [True, True, False, False]
+    assert [node["released"] for node in rig.received[-1][1]["nodes"]] == [True, True, False, False]
 
 
 def test_orders_of_one_node_are_named() -> None:

@@ -52,7 +52,7 @@ def test_a_way_is_driven_and_proven_by_its_ids(version: str) -> None:
 def test_the_base_goes_two_nodes_ahead_and_grows_by_updates(rig: Rig) -> None:
     rig.drive(0, 3, 6, 7, 8)
     rig.run(WAY_S)
-    orders = [said for topic, said in rig.told if topic == "order"]
+    orders = [said for topic, said in rig.received if topic == "order"]
     assert [said["orderUpdateId"] for said in orders] == [0, 1, 2]
     assert [[node["released"] for node in said["nodes"]] for said in orders] == [
         [True, True, True, False, False],
@@ -73,12 +73,12 @@ def test_a_base_of_0_releases_all(rig: Rig) -> None:
     rig = Rig(base=0)
     rig.run(0.5)
     rig.drive(0, 3, 6, 7, 8)
-    assert all(node["released"] for node in rig.told[-1][1]["nodes"])
+    assert all(node["released"] for node in rig.received[-1][1]["nodes"])
 
 
 def test_a_way_begins_where_the_vehicle_stands(rig: Rig) -> None:
     rig.drive(6, 7)
-    assert [node["nodeId"] for node in rig.told[-1][1]["nodes"]] == ["0", "3", "6", "7"]
+    assert [node["nodeId"] for node in rig.received[-1][1]["nodes"]] == ["0", "3", "6", "7"]
 
 
 def test_a_way_that_comes_by_its_goal_is_driven_to_its_end(rig: Rig) -> None:
@@ -94,14 +94,16 @@ def test_nodes_have_the_names_and_places_of_the_vehicle() -> None:
     rig.agv.node = "a"
     rig.run(0.5)
     rig.drive(0, 1)
-    node = rig.told[-1][1]["nodes"][1]
+    node = rig.received[-1][1]["nodes"][1]
     assert node["nodeId"] == "b"
     assert node["nodePosition"] == {"x": pytest.approx(0.4), "y": 0.0, "mapId": "hall"}
 
 
 def test_a_verb_is_an_action_at_the_node_where_the_vehicle_stands(rig: Rig) -> None:
     rig.do("pick", height=0.4)
-    assert rig.told[-1][1]["nodes"][0]["actions"][0]["actionParameters"] == [{"key": "height", "value": 0.4}]
+    assert rig.received[-1][1]["nodes"][0]["actions"][0]["actionParameters"] == [
+        {"key": "height", "value": 0.4}
+    ]
     rig.run(2)
     said = rig.reports["forks"]
     assert (said.done, said.fact("loaded")) == ("1-2", True)
@@ -119,7 +121,7 @@ def test_an_instant_verb_is_done_on_the_way() -> None:
 def test_an_edge_has_its_action_in_both_directions_and_counts_for_the_end(horned: Rig) -> None:
     rig = horned
     rig.drive(0, 3, 6, 3)
-    edges = next(said["edges"] for topic, said in rig.told if topic == "order")
+    edges = next(said["edges"] for topic, said in rig.received if topic == "order")
     assert [[each["actionType"] for each in edge["actions"]] for edge in edges] == [
         [],
         ["soundHorn"],
@@ -219,7 +221,7 @@ def test_instant_actions_of_2_0_are_under_both_keys_that_its_vehicles_read() -> 
     rig = Rig("2.0")
     rig.run(0.5)
     rig.stop(StopMode.CLEAR)
-    assert rig.told[-1][1]["instantActions"] == rig.told[-1][1]["actions"]
+    assert rig.received[-1][1]["instantActions"] == rig.received[-1][1]["actions"]
 
 
 def test_a_second_order_while_driving_is_not_sent(rig: Rig) -> None:
@@ -244,7 +246,7 @@ def test_what_is_left_of_an_order_is_cancelled_when_the_vehicle_is_back(rig: Rig
     assert "the connection of arboleda/agv1 broke" in str(rig.reports["cart"].lost)
     rig.faults.switch("vanish", on=False)
     rig.run(1)
-    assert [each["actionType"] for each in rig.told[-1][1]["actions"]] == ["cancelOrder"]
+    assert [each["actionType"] for each in rig.received[-1][1]["actions"]] == ["cancelOrder"]
     assert (rig.reports["cart"].state, rig.agv.course.steps) == (MotionState.STOPPED, [])
 
 

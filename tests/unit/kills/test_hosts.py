@@ -60,13 +60,13 @@ def test_a_visitor_asks_again_for_the_same_task_until_it_is_taken(monkeypatch: p
     visitors = brought(monkeypatch, *nobody, Answer(state="queued"))
     assert list(visitors.accepted) == ["v0-1"] and visitors.sent == {"on foot": 1}
     assert visitors.refused == {("on foot", "process N has ended"): 2}
-    assert visitors.told == {} and visitors.contradictions == []
+    assert visitors.ends == {} and visitors.contradictions == []
 
 
 def test_a_visitor_who_waited_in_vain_hears_how_its_task_ended(monkeypatch: pytest.MonkeyPatch) -> None:
     broken_off = Answer(state="queued", sentence="the plant has ended")
     visitors = brought(monkeypatch, broken_off, Answer(state="done"))
-    assert visitors.sent == {"on foot": 1} and visitors.told == {"v0-1": "done"}
+    assert visitors.sent == {"on foot": 1} and visitors.ends == {"v0-1": "done"}
 
 
 def test_an_end_that_becomes_another_one_is_a_contradiction(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -41,7 +41,7 @@ PLACED = deed(17.0, Did.LET_GO, "station 1")
 def judged(
     *deeds: Deed, row: TaskRow | None = ROW, said: tuple[Said, ...] = (RESUME,), **books: object
 ) -> Verdict:
-    known: dict[str, object] = {"accepted": {"a": "sis_a 0B 1"}, "told": {}, "last": LAST, **books}
+    known: dict[str, object] = {"accepted": {"a": "sis_a 0B 1"}, "ends": {}, "last": LAST, **books}
     kills = known.pop("kills", [KILL])
     return judge([row] if row else [], deeds, kills, said, **known)  # type: ignore[arg-type]
 
@@ -66,7 +66,7 @@ def test_an_accepted_task_that_is_not_as_it_was_is_lost(row: TaskRow | None, sen
 
 
 def test_an_end_that_was_told_and_changed_is_lost() -> None:
-    verdict = judged(PICKED, PLACED, told={"a": "failed"})
+    verdict = judged(PICKED, PLACED, ends={"a": "failed"})
     assert verdict.lost == ["a (sis_a 0B 1) was said to be failed and was kept as done"]
 
 

@@ -271,7 +271,9 @@ def test_facts_are_told_as_the_kind_declares_them(alone: Alone) -> None:
             "home_cmd was refused (no_home): it has no homing routine",
         ),
         (
-            MotionCall(id="5-1", robot="station", verb="fly", values=(), told=STATION.verbs["go"], made=()),
+            MotionCall(
+                id="5-1", robot="station", verb="fly", values=(), definition=STATION.verbs["go"], made=()
+            ),
             "formato",
             "order fly was refused (formato): it makes no sense for this robot",
         ),

@@ -22,7 +22,7 @@ def test_its_text_is_its_english_with_what_is_inside() -> None:
 
 
 def test_another_language_says_all_of_it() -> None:
-    said = late().told(lambda phrase: SPANISH[phrase.key])
+    said = late().text_by(lambda phrase: SPANISH[phrase.key])
     assert said == "ra3 está sin conexión: ra1, ra2, 1.25 s tarde"
 
 
@@ -77,6 +77,6 @@ def test_a_value_that_says_nothing_leaves_no_parentheses() -> None:
     assert str(held(cell="sis_a", why=NOTHING, next="retry")) == "sis_a is held; retry"
     assert str(held(cell="f ()", why="link", next="retry")) == "f () is held (link); retry"
     assert (
-        held(cell="c", why="", next="n").told(lambda _: "{cell}: detenida ({why}); {next}")
+        held(cell="c", why="", next="n").text_by(lambda _: "{cell}: detenida ({why}); {next}")
         == "c: detenida; n"
     )

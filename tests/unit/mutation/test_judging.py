@@ -57,7 +57,7 @@ def test_a_mutant_is_imported_and_no_file_is_written(sources: Sources, tmp_path:
         return {"fits": sizes.fits(3), "shipped": sizes.fits(4)}
 
     ended = _in_a_child(look, tmp_path)
-    assert ended.said == {"fits": True, "shipped": False}
+    assert ended.answer == {"fits": True, "shipped": False}
     written = {path.suffix for path in (tmp_path / PACKAGE).rglob("*") if path.is_file()}
     assert written == {".py"} and (tmp_path / PACKAGE / "core" / "sizes.py").read_text() == CORE
 
@@ -77,7 +77,7 @@ def test_a_test_sees_the_mutant_though_pytest_wants_to_rewrite_its_module(
         return by_tests.judge(sources, mutant, [("test_sizes.py::test_limit", 0.1)], say)
 
     ended = _in_a_child(judge, tmp_path)
-    assert ended.said == {"killed": True, "by": "test_sizes.py::test_limit", "ran": 1}
+    assert ended.answer == {"killed": True, "by": "test_sizes.py::test_limit", "ran": 1}
 
 
 def test_a_child_that_dies_says_by_what_and_where(tmp_path: Path) -> None:
@@ -87,7 +87,7 @@ def test_a_child_that_dies_says_by_what_and_where(tmp_path: Path) -> None:
         return {}
 
     ended = _in_a_child(die, tmp_path)
-    assert (ended.said, ended.signal, ended.at) == (None, signal.SIGPROF, "the third test")
+    assert (ended.answer, ended.signal, ended.at) == (None, signal.SIGPROF, "the third test")
 
 
 def test_nothing_is_left_of_children_that_are_not_awaited(tmp_path: Path) -> None:
@@ -144,7 +144,7 @@ def test_a_test_that_is_slow_on_a_busy_machine_is_no_kill(tmp_path: Path) -> Non
         return {"status": by_tests._pytest(tmp_path, by_tests.ARGUMENTS, ["test_slow.py"], object())}
 
     ended = _in_a_child(run, tmp_path)
-    assert ended.said == {"status": 0}
+    assert ended.answer == {"status": 0}
 
 
 def test_what_is_carried_out_at_import_concerns_everybody_in_the_file(sources: Sources) -> None:

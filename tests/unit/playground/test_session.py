@@ -28,7 +28,7 @@ def session(model: Any, **more: Any) -> Session:
 def at_work(model: Any, **more: Any) -> Session:
     """A session in which a task is half done."""
     made = session(model, **more)
-    made.asked("submit", TASK)
+    made.take("submit", TASK)
     made.advance(80)
     return made
 
@@ -45,7 +45,7 @@ def board(model: Any, robot: str) -> str:
 
 def test_a_task_is_answered_and_done(model: Any) -> None:
     made = session(model)
-    made.asked("submit", TASK)
+    made.take("submit", TASK)
     made.advance(MINUTE)
     assert [good for _, good in made.frame()["said"]] == [True]
     made.forget()
@@ -55,7 +55,7 @@ def test_a_task_is_answered_and_done(model: Any) -> None:
 
 def test_a_task_that_nobody_offers_is_refused_with_a_sentence(model: Any) -> None:
     made = session(model)
-    made.asked("submit", "nowhere 1")
+    made.take("submit", "nowhere 1")
     made.advance(4)
     ((sentence, good),) = made.frame()["said"]
     assert "nowhere" in sentence and good is False
@@ -94,8 +94,8 @@ def test_another_act_in_the_past_forgets_what_came_after_it(model: Any) -> None:
 
 def test_two_acts_at_one_moment_both_happen(model: Any) -> None:
     made = session(model)
-    made.asked("submit", TASK)
-    made.asked("submit", "sis_b 0A 8")
+    made.take("submit", TASK)
+    made.take("submit", "sis_b 0A 8")
     made.advance(8)
     assert len(made.frame()["said"]) == 2
 
@@ -118,7 +118,7 @@ def test_who_follows_the_advice_gets_a_cell_going_whose_board_has_rebooted(model
         face = made.frame()["face"]
         offered = [act for way in face["rows/ways.sis_a"] for act in face[f"row/ways.sis_a/{way}"]["acts"]]
         for act in offered[:1]:
-            made.asked(act["act"], act["of"], act["by_hand"])
+            made.take(act["act"], act["of"], act["by_hand"])
         made.advance(MINUTE)
     assert state(made) == "idle"
 
@@ -142,14 +142,14 @@ def test_what_somebody_has_to_do_at_a_machine_has_a_button(model: Any) -> None:
     face = made.frame()["face"]
     first = face["rows/hands"][0]
     assert face[f"row/hands/{first}"]["acts"][0]["of"] == first
-    made.asked("hand", first)
+    made.take("hand", first)
     made.advance(160)
     assert first not in made.frame()["face"].get("rows/hands", [])
 
 
 def test_steps_go_from_one_happening_to_the_next_and_back_again(model: Any) -> None:
     made = session(model)
-    made.asked("submit", TASK)
+    made.take("submit", TASK)
     ticks = []
     for _ in range(5):
         made.step()
@@ -172,7 +172,7 @@ def test_a_step_in_which_nothing_happens_takes_a_minute(model: Any) -> None:
 @pytest.mark.parametrize("request_", [("unheard", "of"), ("hand", "unheard of"), ("seen", "")])
 def test_what_no_button_asks_for_is_ignored(model: Any, request_: tuple[str, str]) -> None:
     made = session(model)
-    made.asked(*request_)
+    made.take(*request_)
     made.befall("unheard", "of", 1.0)
     made.befall("reboot", "nobody", 1.0)
     made.advance(4)

@@ -68,7 +68,7 @@ def test_kept_tasks_come_in_their_order_with_times_of_this_start(store: Store) -
     assert (a.attempts, b.attempts) == (1, 0)
     assert a.failure is not None and a.failure.reason is Reason.DEADLINE
     assert str(a.failure.sentence) == "ra1 took 3 s"
-    assert a.failure.sentence.told(lambda phrase: {"late": "{robot} tardó {seconds} s"}[phrase.key]) == (
+    assert a.failure.sentence.text_by(lambda phrase: {"late": "{robot} tardó {seconds} s"}[phrase.key]) == (
         "ra1 tardó 3 s"
     )
 

@@ -138,7 +138,7 @@ def test_customers_come_back_for_their_ids_and_each_is_one_task() -> None:
     customers = Customers(world, seed=1)
     world.crash()
     asked: list[str] = []
-    world.watchers.append(lambda: asked.extend(getattr(each, "text", "") for each in world.moment.asked))
+    world.watchers.append(lambda: asked.extend(getattr(each, "text", "") for each in world.moment.requests))
     world.advance(4.0)
     ids = {text.partition("#")[2] for text in asked} - {""}
     assert ids

@@ -95,7 +95,7 @@ def readable(world: World) -> bool:
 
 def reports(world: World) -> bool:
     """Whether the plant hears of anybody."""
-    return bool(happened(world, "heard"))
+    return bool(happened(world, "reports"))
 
 
 def beats(world: World) -> bool:
@@ -620,7 +620,7 @@ def asked(world: World, fault: Fault) -> list[Any]:
     events: list[Any] = []
 
     def look() -> None:
-        events.extend(world.moment.asked)
+        events.extend(world.moment.requests)
 
     world.watchers.append(look)
     begin(world, fault)
@@ -642,7 +642,7 @@ def test_an_operator_declares_only_what_cannot_tell_itself():
     world = World(shipped("sis_a", evidence=Evidence.JOINTS))
     assert asked(world, fault("operator_home", "ra1", word="by hand")) == []
     told: list[Any] = []
-    world.watchers.append(lambda: told.extend(world.moment.asked))
+    world.watchers.append(lambda: told.extend(world.moment.requests))
     world.advance(2.0)
     assert [event.by_hand for event in told] == [True], "once it stands at its reference"
 

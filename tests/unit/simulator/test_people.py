@@ -78,7 +78,7 @@ def test_nobody_says_that_a_robot_is_homed_while_it_moves():
     world = World(shipped("sis_a", evidence=Evidence.JOINTS, assume_homed=True))
     told: list[OperatorRequest] = []
     world.watchers.append(
-        lambda: told.extend(e for e in world.moment.asked if isinstance(e, OperatorRequest))
+        lambda: told.extend(e for e in world.moment.requests if isinstance(e, OperatorRequest))
     )
     world.advance(1.0)
     world.manual.home(MOBILE)

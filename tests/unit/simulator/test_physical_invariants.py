@@ -179,6 +179,15 @@ def entered_unasked(patch: Patch) -> Watch:
     return watch
 
 
+def told_once(patch: Patch) -> Watch:
+    patch.setattr(Zones, "waiting_for", lambda self, zones: ())
+    watch = Watch(zoned())
+    for cell in watch.world.model.cells:
+        watch.world.request_task(f"{cell.name} palletizing")
+    watch.wait(20.0)
+    return watch
+
+
 def moved_unhomed(patch: Patch) -> Watch:
     watch = Watch()
     watch.world.crash(ARM)
@@ -370,6 +379,7 @@ BREAKS: list[tuple[str, Callable[[Patch], Watch]]] = [
     ("one_robot_per_zone", everybody_gets_it),
     ("zone_released_only_outside", freed_at_a_stop),
     ("zone_entered_only_when_held", entered_unasked),
+    ("a_wait_names_its_cause", told_once),
     ("no_unhomed_move", moved_unhomed),
     ("no_move_after_a_boot_that_was_told", moved_after_a_told_boot),
     ("nothing_moves_unasked", began_by_itself),

@@ -216,7 +216,7 @@ def test_who_asks_twice_gets_an_answer_that_is_no_change(world, record):
     for _ in range(2):
         world.request_task(f"{TASK} #one")
         world.advance(0.01)
-    told = [(change.said.state, change.answer) for change in changes]
+    told = [(change.message.state, change.answer) for change in changes]
     assert told[:2] == [(TaskState.QUEUED, False), (TaskState.RUNNING, False)]
     assert (TaskState.RUNNING, True) in told
 
@@ -339,11 +339,11 @@ def test_positions_are_those_that_boards_told_lately(world, record):
     world.advance(2.5)
     told = record.robots["rm_sis_a"].node
     assert told not in (0, 8)
-    assert board.said(None, told, record.reports_from_s(world.now))
-    assert not board.said(None, 8, 0.0)
-    assert board.said(None, 0, 0.0)
+    assert board.has_reported(None, told, record.reports_from_s(world.now))
+    assert not board.has_reported(None, 8, 0.0)
+    assert board.has_reported(None, 0, 0.0)
     world.advance(10)
-    assert not board.said(None, 0, record.reports_from_s(world.now))
+    assert not board.has_reported(None, 0, record.reports_from_s(world.now))
 
 
 def test_a_slow_line_may_bring_old_positions(world, record):
@@ -378,7 +378,7 @@ def test_what_was_said_before_the_record_began_is_known(world):
     record = Record(world)
     known = record.robots["ra1"]
     assert known.obstacles(world.now, world.plant.epoch) == frozenset()
-    assert record.boards.by_name["ra_1"].said(known.q, None, record.reports_from_s(world.now))
+    assert record.boards.by_name["ra_1"].has_reported(known.q, None, record.reports_from_s(world.now))
     assert replace(said(), robot="ra1").robot == known.robot.name
 
 

@@ -47,4 +47,4 @@ def test_of_a_task_that_nobody_told_to_be_done_the_row_on_the_disk_says_what_nob
     )
     tasks.restart([row], 2.0)
     known = tasks.known("lot")
-    assert known is not None and known.said.sentence
+    assert known is not None and known.message.sentence

@@ -314,7 +314,7 @@ def test_what_was_asked_may_have_come_before_a_boot_of_which_the_plant_hears_in_
     stage = Stage(shipped("sis_a", evidence=Evidence.JOINTS))
     told: list[bool] = []  # after each step in which the plant heard something
     stage.world.watchers.append(
-        lambda: told.append(stage.truth.boots.is_known("ra1")) if stage.world.moment.heard else None
+        lambda: told.append(stage.truth.boots.is_known("ra1")) if stage.world.moment.reports else None
     )
     stage.world.stall(PLANT, 1.0)
     stage.world.crash(ARM)

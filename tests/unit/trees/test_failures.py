@@ -11,8 +11,8 @@ from arboleda.model.messages import Failure, Reason
 from arboleda.testing import shipped
 from arboleda.trees.context import Context
 
-FIRST = Failure(reason=Reason.LINK_LOST, sentence=OFFLINE.said(robot="ra1"))
-THEN = Failure(reason=Reason.DEVICE_FAULT, sentence=OFFLINE.said(robot="rm_sis_a"))
+FIRST = Failure(reason=Reason.LINK_LOST, sentence=OFFLINE.phrase(robot="ra1"))
+THEN = Failure(reason=Reason.DEVICE_FAULT, sentence=OFFLINE.phrase(robot="rm_sis_a"))
 
 
 @pytest.fixture
@@ -59,7 +59,7 @@ def test_another_tree_knows_no_failure(context: Context) -> None:
 
 def test_an_effector_that_opened_unbidden_is_a_failure_where_nothing_else_was(context: Context) -> None:
     (robot, *_) = context.cell.holders
-    opened = OFFLINE.said(robot=robot)
+    opened = OFFLINE.phrase(robot=robot)
     context.parts._effectors.opened[robot] = opened
     failures = context.failures
     assert failures.opened_effector() == Failure(reason=Reason.PART_LOST, sentence=opened)

@@ -30,7 +30,7 @@ from arboleda.drivers.pylabrobot.paths import steps
 from arboleda.drivers.pylabrobot.settings import LABWARE, Call, MachineMapping, Settings
 from arboleda.model.commands import Command
 from arboleda.model.messages import Report
-from arboleda.model.outside import said_by
+from arboleda.model.outside import text_of_error
 from arboleda.model.plant_model import Robot
 
 MISSING = "PyLabRobot is not installed, which it needs: pip install 'arboleda[pylabrobot]'"
@@ -93,7 +93,7 @@ class Bench:
         except (Exception, asyncio.CancelledError) as error:  # noqa: BLE001 - backends raise their own
             self._tasks.pop(begin.number, None)
             name = type(error).__name__
-            self._post(Raised(number=begin.number, name=name, text=said_by(error), first=done == 0))
+            self._post(Raised(number=begin.number, name=name, text=text_of_error(error), first=done == 0))
         else:
             self._tasks.pop(begin.number, None)
             self._post(Returned(number=begin.number, result=shown))
@@ -315,4 +315,4 @@ def _named(place: str) -> Any:
 def _text(error: Exception) -> str:
     if isinstance(error, ModuleNotFoundError) and error.name == "pylabrobot":
         return MISSING
-    return str(error) if isinstance(error, DriverError) else f"{type(error).__name__}: {said_by(error)}"
+    return str(error) if isinstance(error, DriverError) else f"{type(error).__name__}: {text_of_error(error)}"

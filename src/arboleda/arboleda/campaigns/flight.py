@@ -27,10 +27,10 @@ ALL = Limits(megabytes=1e6, days=1e6)
 
 @dataclass
 class Flight:
-    """The recording of a seed: `make_plant` for the world; at the end `said` has a line for each file."""
+    """The recording of a seed: `make_plant` for the world; at the end `lines` has a line for each file."""
 
     make_plant: MakePlant
-    said: list[str] = field(default_factory=list)
+    lines: list[str] = field(default_factory=list)
 
 
 @contextmanager
@@ -44,7 +44,7 @@ def recorded(file: Path, plant: Plant) -> Iterator[Flight]:
             recorder.close()
         except RecordNotWritten as lost:
             raise ArboledaError(f"{file}: cannot be written: {lost.error.strerror or lost.error}") from lost
-        flight.said += _copied(Path(made), file)
+        flight.lines += _copied(Path(made), file)
 
 
 def _copied(made: Path, file: Path) -> Iterator[str]:

@@ -70,7 +70,7 @@ class _Play:
         self._conduct = Conduct()
         self._world = World(model)
         self._people = {each.name: Dice(seed, "says", each.name) for each in model.robots.values()}
-        self._asked: set[str] = set()
+        self._questions: set[str] = set()
         self._world.watchers.append(self._look)
         answer_anything(self._world, seed)
 
@@ -100,7 +100,7 @@ class _Play:
 
 
 def _words(command: Command) -> str:
-    given = {name: _number(value) for name, value in command.given.items() if name != "told"}
+    given = {name: _number(value) for name, value in command.given.items() if name != "definition"}
     return f"{type(command).__name__}{given}"
 
 

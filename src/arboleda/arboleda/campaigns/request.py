@@ -49,31 +49,35 @@ class Request:
     @property
     def changes_files(self) -> bool:
         """True if the plant's files are changed while it runs: as asked, or as in the file of a seed."""
-        return self.revises or (self.told is not None and self.told.revises)
+        return self.revises or (self.faults_file is not None and self.faults_file.revises)
 
     @property
     def two_hosts(self) -> bool:
         """True if a second host waits to lead: as asked, or as in the file of a broken seed."""
-        return self.standby or (self.told is not None and self.told.standby)
+        return self.standby or (self.faults_file is not None and self.faults_file.standby)
 
     @property
     def first(self) -> int:
         """The first seed, or the only one."""
-        if self.told is not None and self.told.seed is not None:
-            return self.told.seed
+        if self.faults_file is not None and self.faults_file.seed is not None:
+            return self.faults_file.seed
         return SEED if self.seed is None else self.seed
 
     @property
     def count(self) -> int | None:
         """The number of seeds; None: until something breaks."""
-        if self.told is not None and self.told.seed is not None:
+        if self.faults_file is not None and self.faults_file.seed is not None:
             return 1
         return self.seeds or (None if self.until_failure else 1 if self.has_people else SEEDS)
 
     @property
     def has_people(self) -> bool:
         """True if a file says what people do: then seeds differ by little."""
-        return self.told is not None and isinstance(self.told.climate, dict) and "people" in self.told.climate
+        return (
+            self.faults_file is not None
+            and isinstance(self.faults_file.climate, dict)
+            and "people" in self.faults_file.climate
+        )
 
     @property
     def turn(self) -> Iterable[int]:
@@ -81,7 +85,7 @@ class Request:
         return count(self.first) if self.count is None else range(self.first, self.first + self.count)
 
     @cached_property
-    def told(self) -> FaultsFile | None:
+    def faults_file(self) -> FaultsFile | None:
         """The contents of the file that `faults` names; None if it is a level."""
         if self.faults in LEVELS:
             return None
@@ -93,13 +97,13 @@ class Request:
     @cached_property
     def plants(self) -> Plants:
         """The plants that the seeds run on; a broken seed of a file runs on the plant that is in there."""
-        if self.told is not None and self.told.plant_file is not None:
-            return PlantRotation(plants=(loaded(self.told.plant_file, self.told.plant_files),))
+        if self.faults_file is not None and self.faults_file.plant_file is not None:
+            return PlantRotation(plants=(loaded(self.faults_file.plant_file, self.faults_file.plant_files),))
         return RandomPlants() if self.drawn_plants else PlantRotation(plants=self._by_files)
 
     @property
     def _by_files(self) -> tuple[Plant, ...]:
-        wanted = self.told.plant if self.told else None
+        wanted = self.faults_file.plant if self.faults_file else None
         named = self.plant or self.plant_here
         known = [loader.load_with_files(named)] if named else []
         if named is None or (self.plant is None and wanted not in (None, known[0][0].name)):
@@ -118,8 +122,8 @@ class Request:
             plants=self.plants,
             cycles=self.cycles,
             level=self.faults,
-            told=self.told.climate if self.told else None,
-            seconds=self.told.seconds if self.told else None,
+            faults_data=self.faults_file.climate if self.faults_file else None,
+            seconds=self.faults_file.seconds if self.faults_file else None,
             any_of=self.any_of,
             standby=self.two_hosts,
             revises=self.changes_files,
@@ -137,7 +141,7 @@ class Request:
     @property
     def _checked(self) -> Iterable[int]:
         """The seeds that stand for all: faults of a file must be possible in each plant."""
-        if self.told is None:
+        if self.faults_file is None:
             return range(self.first, self.first + 1)
         if isinstance(self.plants, PlantRotation):
             return range(self.first, self.first + len(self.plants.plants))

@@ -12,8 +12,9 @@ from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn, TimeEl
 from rich.table import Column, Table
 from rich.text import Text
 
+from arboleda.dashboard.findings import findings
 from arboleda.web.languages import FIRST
-from arboleda.web.languages.templates import findings, heading
+from arboleda.web.languages.templates import heading
 
 EVERY_S = 5.0  # between plain lines
 WIDTH = 120  # columns where there is no terminal that has a width
@@ -61,7 +62,7 @@ def progress(console: Console, doing: str, total: int | None) -> Iterator[Show]:
     say = console.say if isinstance(console, SpeakingConsole) else str
     shown = say(doing)
     with _bar(console, shown, total) if console.is_terminal else _lines(console, shown) as show:
-        yield lambda said, done: show(say(said), done)
+        yield lambda sentence, done: show(say(sentence), done)
 
 
 @contextmanager

@@ -31,7 +31,7 @@ copyreg.pickle(BrokenInvariant, lambda broken: (BrokenInvariant, (broken.invaria
 
 @dataclass(frozen=True, kw_only=True)
 class Setting:
-    """`plants` says on which one a seed runs; faults are drawn at `level`, or are as `told`.
+    """`plants` says on which one a seed runs; faults are drawn at `level`, or are those of `faults_data`.
 
     A run goes on until `cycles` tasks have ended, or for `seconds` if given. With `any_of` about half of the
     tasks are for several cells. `standby`: the plant runs on two hosts. `revises`: its files
@@ -41,7 +41,7 @@ class Setting:
     plants: Plants
     cycles: int
     level: str
-    told: Any = None  # what Climate.from_file and script_from take
+    faults_data: Any = None  # what Climate.from_file and script_from take
     seconds: float | None = None
     any_of: bool = False
     standby: bool = False
@@ -53,13 +53,13 @@ class Setting:
 
     def climate(self, seed: int) -> Climate:
         """The faults of a seed; BadFaults where those that are told cannot be."""
-        if self.told is not None:
-            return Climate.from_file(self.plant(seed), seed, self.told, standby=self.standby)
+        if self.faults_data is not None:
+            return Climate.from_file(self.plant(seed), seed, self.faults_data, standby=self.standby)
         return Climate.draw(self.plant(seed), seed, self.level, standby=self.standby)
 
     def script(self, plant: PlantModel) -> Script | None:
         """The acts of people if the file has some; BadFaults if they are impossible."""
-        return script_from(plant, self.told)
+        return script_from(plant, self.faults_data)
 
     def run(
         self,

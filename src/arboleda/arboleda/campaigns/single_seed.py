@@ -34,7 +34,7 @@ def run(
         if record is not None and record.suffix == flight.SUFFIX:
             result = _flown(request, trace=trace, record=record, lines=flown)
         else:
-            result = _told(request, trace=trace, record=record)
+            result = _run(request, trace=trace, record=record)
     except KeyboardInterrupt:
         console.print(Text("interrupted", style="yellow"))
         return INTERRUPTED
@@ -60,10 +60,10 @@ def _flown(request: Request, *, trace: bool, record: Path, lines: list[str]) -> 
     tell = LineWriter(printed=True, file=None) if trace else None
     with flight.recorded(record, request.plants.of(request.first)) as flown:
         result = request.setting.run(request.first, tell=tell, make_plant=flown.make_plant)
-    lines += flown.said
+    lines += flown.lines
     return result
 
 
-def _told(request: Request, *, trace: bool, record: Path | None) -> Result:
+def _run(request: Request, *, trace: bool, record: Path | None) -> Result:
     with record.open("wb", buffering=0) if record else nullcontext() as file:
         return request.setting.run(request.first, tell=LineWriter(printed=trace, file=file))

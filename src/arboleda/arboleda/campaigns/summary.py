@@ -76,7 +76,11 @@ def _broken(request: Request, tally: Tally, seed: int, shrunk: ShrunkBreach | No
         "injected": len(found.faults),
         "shrunk": fewest is not None,
         "faults": [asdict(fault) for fault in best.faults],
-        **({"people": request.told.climate["people"]} if request.told and request.has_people else {}),
+        **(
+            {"people": request.faults_file.climate["people"]}
+            if request.faults_file and request.has_people
+            else {}
+        ),
         **plant.plain,
         "replay": request.replay(seed),
     }

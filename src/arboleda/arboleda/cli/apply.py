@@ -131,7 +131,7 @@ def apply(
     kept.go_on()
     wanted = _on_disk(file) if back is None else _checked(file, kept, kept.find(back))
     base = _base(wanted.plant_name, kept, state)
-    lines = tuple(each.words for each in _told(base.version, wanted))
+    lines = tuple(each.words for each in _changes(base.version, wanted))
     if base.version is not None and not lines:
         if back is not None and not kept.is_in_place(wanted.version):
             _ask(say(BRING_BACK()), yes=yes)
@@ -142,7 +142,7 @@ def apply(
     _print(compared if base.version else f"{file}: {base.name}")
     for line in lines:
         _print(f"  {finding(line)}")
-    if base.running is not None and (needing := needing_restart(_told(base.version, wanted))):
+    if base.running is not None and (needing := needing_restart(_changes(base.version, wanted))):
         _print(say(A_RESTART()))
         for line in needing:
             _print(f"  {finding(line)}")
@@ -227,7 +227,7 @@ def _base(plant_name: str, kept: Versions, state: Path | None) -> _Base:
     return _Base(version=last or started, running=running)
 
 
-def _told(base: Version | None, wanted: _Wanted) -> Sequence[Change]:
+def _changes(base: Version | None, wanted: _Wanted) -> Sequence[Change]:
     """Changes that a version makes to what is at work, of which there may be nothing."""
     if base is None:
         return ()

@@ -20,12 +20,14 @@ from arboleda.adapters.broker_login import KEY as MQTT_KEY
 from arboleda.model.errors import StartError
 from arboleda.model.outside import quoted
 from arboleda.model.plant_model import Link, PlantModel
+from arboleda.model.sentence import Phrase, Sentence
 from arboleda.plant_file import loader
 from arboleda.plant_file.user_file import read_bytes
 from arboleda.runtime import invocation
 from arboleda.web.access.names import own_addresses, own_names
 
 from . import mosquitto_files
+from .language import say
 from .plant_options import PlantFile
 
 if TYPE_CHECKING:  # most installs are without its library
@@ -39,6 +41,59 @@ NAME = re.compile(
     r"(?=.{1,253}$)[A-Za-z0-9]([A-Za-z0-9-]*[A-Za-z0-9])?(\.[A-Za-z0-9]([A-Za-z0-9-]*[A-Za-z0-9])?)*"
 )
 ADDRESS = re.compile(r"[0-9.]+|[0-9A-Fa-f:.]*:[0-9A-Fa-f:.]*")
+
+NAME_TAKEN = Phrase(
+    "cli.certs.name_taken", "a board cannot have the MQTT name {name} here: it is that of another"
+)
+UNKNOWN = Phrase("cli.certs.unknown", "nobody here is called {name}; there are {known}")
+BELIEVED = Phrase("cli.certs.believed", "who believes it believes the others")
+LACKS = Phrase(
+    "cli.certs.lacks", "{path}.crt is there and does not have {name}; --renew {user} makes it anew"
+)
+AND_NOT = Phrase("cli.certs.and_not", "{names}; not {new}, which this machine is called now: --renew {user}")
+SAYS_ELSE = Phrase(
+    "cli.certs.says_else", "{path} is there and says something else; move it away to have it written anew"
+)
+NOT_WRITTEN = Phrase("cli.certs.not_written", "{folder} cannot be written: {why}")
+NOT_OF = Phrase("cli.certs.not_of", "{path}.crt is not of {authority}.crt; --renew {user} makes it anew")
+MADE = Phrase("cli.certs.made", "made")
+WAS_THERE = Phrase("cli.certs.was_there", "was there")
+UNTIL = Phrase("cli.certs.until", "until {day}")
+EXPIRES = Phrase("cli.certs.expires", "expires {day}: {how}")
+HAS_EXPIRED = Phrase("cli.certs.has_expired", "HAS EXPIRED {day}: {how}")
+RENEW = Phrase("cli.certs.renew", "--renew {user}")
+NEW_FOLDER = Phrase("cli.certs.new_folder", "a new folder, and its ca.crt to everybody")
+AUTHORITY_EXPIRED = Phrase("cli.certs.authority_expired", "has expired on {day}; make a new folder")
+HALF = Phrase("cli.certs.half", "{there} is there without {other}; put it back, or move {there} away")
+NO_NAME = Phrase(
+    "cli.certs.no_name", "{name} is neither a name of a machine nor an address; write e.g. plant.lab"
+)
+ABOUT = Phrase("cli.certs.about", "{file} {why}")
+NO_LIBRARY = Phrase(
+    "cli.certs.no_library",
+    "certificates are made with the library {library}, which is not installed here; type "
+    "`{python} -m pip install 'arboleda[certs]'`",
+)
+SIGNS = Phrase(
+    "cli.certs.signs", "{file} signs: who has it is believed by all of them. Keep it off the network."
+)
+TO_EVERYBODY = Phrase(
+    "cli.certs.to_everybody",
+    "{file} goes to everybody who is to believe this plant: boards, browsers, other machines ({variable}).",
+)
+STAYS = Phrase(
+    "cli.certs.stays",
+    "{file} and .key stay on this machine, for --tls-cert and --tls-key of `arboleda up`.",
+)
+TO_BOARDS = Phrase("cli.certs.to_boards", "{file} and .key go to the board of that name, and nowhere else.")
+TO_BROKER = Phrase(
+    "cli.certs.to_broker",
+    "{folder} goes to {at} of the broker's machine, owned by the user that mosquitto has there: "
+    "mosquitto -c {configuration}",
+)
+USES_BROKER = Phrase(
+    "cli.certs.uses_broker", "The plant uses it with --broker mqtts://NAME, {ca}, {certificate} and {key}"
+)
 
 Folder = Annotated[Path, typer.Argument(metavar="FOLDER", help="Folder of the certificates.")]
 Names = Annotated[
@@ -93,12 +148,10 @@ def certs(
     named, of_broker = ([_checked(each) for each in names or ()] for names in (name, mosquitto))
     boards = _boards(model)
     if taken := {PLANT, BROKER} & set(boards):
-        raise StartError(f"a board cannot have the MQTT name {taken.pop()} here: it is that of another")
+        raise StartError(NAME_TAKEN(name=taken.pop()))
     hosts = (PLANT, BROKER) if of_broker else (PLANT,)
     if unknown := sorted(set(renew or ()) - {*hosts, *boards}):
-        raise typer.BadParameter(
-            f"nobody here is called {quoted(unknown[0])}; there are {', '.join((*hosts, *boards))}"
-        )
+        raise typer.BadParameter(say(UNKNOWN(name=quoted(unknown[0]), known=(*hosts, *boards))))
     now = datetime.now(timezone.utc).replace(microsecond=0)
     with _library():
         found = _found(folder, now)
@@ -133,7 +186,7 @@ class _Lab:
         made = not path.with_suffix(".crt").exists()
         if made:
             self._add(path, self.authority.pair)
-        self._say(path, made, self.authority.until, "who believes it believes the others")
+        self._say(path, made, self.authority.until, BELIEVED())
 
     def host(self, path: Path, user: str, named: Sequence[str], own: Sequence[str]) -> None:
         """Make the certificate of a server, with the names given by a person and those that it has itself."""
@@ -144,12 +197,11 @@ class _Lab:
             return
         until, has = there
         if lacks := [each for each in named if each not in has]:
-            raise StartError(
-                f"{path}.crt is there and does not have {quoted(lacks[0])}; --renew {user} makes it anew"
-            )
+            raise StartError(LACKS(path=str(path), name=quoted(lacks[0]), user=user))
         new = [each for each in names if each not in has]
-        more = f"; not {' '.join(new)}, which this machine is called now: --renew {user}" if new else ""
-        self._say(path, False, until, " ".join(has) + more, user)
+        names_there = " ".join(has)
+        says = AND_NOT(names=names_there, new=" ".join(new), user=user) if new else names_there
+        self._say(path, False, until, says, user)
 
     def board(self, user: str) -> None:
         """Make the certificate with which a board logs in."""
@@ -165,7 +217,7 @@ class _Lab:
         if not os.path.lexists(path):
             self._fresh.append((path, content, 0o644))
         elif read_bytes(path, LARGEST) != content:
-            raise StartError(f"{path} is there and says something else; move it away to have it written anew")
+            raise StartError(SAYS_ELSE(path=str(path)))
 
     def write(self) -> None:
         """Write all new files; StartError, and nothing changed, if the machine refuses."""
@@ -180,7 +232,7 @@ class _Lab:
             for fresh, path in done:
                 os.replace(fresh, path)
         except OSError as error:
-            raise StartError(f"{self.folder} cannot be written: {error.strerror}") from error
+            raise StartError(NOT_WRITTEN(folder=str(self.folder), why=str(error.strerror))) from error
         finally:
             for fresh, _ in done:
                 fresh.unlink(missing_ok=True)
@@ -196,7 +248,7 @@ class _Lab:
         with _about(f"{path}.crt"):
             facts = self.authority.signed(read_bytes(Path(f"{path}.crt"), LARGEST))
         if facts is None:
-            raise StartError(f"{path}.crt is not of {self.folder / CA}.crt; --renew {user} makes it anew")
+            raise StartError(NOT_OF(path=str(path), authority=str(self.folder / CA), user=user))
         return facts.until, facts.names
 
     def _make(self, path: Path, pair: Pair, says: str) -> None:
@@ -211,12 +263,14 @@ class _Lab:
             (Path(f"{path}.crt"), pair.certificate, 0o644),
         ]
 
-    def _say(self, path: Path, made: bool, until: datetime, says: str, user: str = "") -> None:
-        held = f"until {until:%Y-%m-%d}"
+    def _say(self, path: Path, made: bool, until: datetime, says: Sentence | str, user: str = "") -> None:
+        day = f"{until:%Y-%m-%d}"
+        held = UNTIL(day=day)
         if until < self.now + SOON:
-            how = f"--renew {user}" if user else "a new folder, and its ca.crt to everybody"
-            held = f"{'HAS EXPIRED' if until < self.now else 'expires'} {until:%Y-%m-%d}: {how}"
-        self.lines.append(f"{path}.crt  {'made' if made else 'was there'}, {held}  {says}")
+            how = RENEW(user=user) if user else NEW_FOLDER()
+            held = (HAS_EXPIRED if until < self.now else EXPIRES)(day=day, how=how)
+        was = MADE() if made else WAS_THERE()
+        self.lines.append(f"{path}.crt  {say(was)}, {say(held)}  {say(says)}")
 
 
 def _found(folder: Path, now: datetime) -> Authority:
@@ -230,7 +284,7 @@ def _found(folder: Path, now: datetime) -> Authority:
     with _about(f"{path}.crt"):
         known = authority.Authority(authority.Pair(certificate=pair[0], key=pair[1]))
         if known.until <= now:
-            raise StartError(f"has expired on {known.until:%Y-%m-%d}; make a new folder")
+            raise StartError(AUTHORITY_EXPIRED(day=f"{known.until:%Y-%m-%d}"))
     return known
 
 
@@ -239,9 +293,7 @@ def _is_there(path: Path) -> bool:
     there = [ending for ending in (".crt", ".key") if os.path.lexists(f"{path}{ending}")]
     if len(there) == 1:
         other = ".key" if there == [".crt"] else ".crt"
-        raise StartError(
-            f"{path}{there[0]} is there without {path}{other}; put it back, or move {path}{there[0]} away"
-        )
+        raise StartError(HALF(there=f"{path}{there[0]}", other=f"{path}{other}"))
     return bool(there)
 
 
@@ -252,9 +304,7 @@ def _boards(model: PlantModel) -> list[str]:
 
 def _checked(name: str) -> str:
     if not _is_name(name):
-        raise typer.BadParameter(
-            f"{quoted(name)} is neither a name of a machine nor an address; write e.g. plant.lab"
-        )
+        raise typer.BadParameter(say(NO_NAME(name=quoted(name))))
     return name.lower()
 
 
@@ -274,7 +324,7 @@ def _about(file: str) -> Iterator[None]:
     try:
         yield
     except StartError as error:
-        raise StartError(f"{file} {error}") from error
+        raise StartError(ABOUT(file=file, why=error.sentence)) from error
 
 
 @contextmanager
@@ -282,30 +332,28 @@ def _library() -> Iterator[None]:
     try:
         yield
     except ModuleNotFoundError as error:
-        raise StartError(
-            f"certificates are made with the library {error.name}, which is not installed here; type "
-            f"`{invocation.python()} -m pip install 'arboleda[certs]'`"
-        ) from error
+        raise StartError(NO_LIBRARY(library=str(error.name), python=invocation.python())) from error
 
 
 def _next(folder: Path, boards: Sequence[str]) -> list[str]:
     """The instructions for using the files."""
     lines = [
-        f"{folder}/{CA}.key signs: who has it is believed by all of them. Keep it off the network.",
-        f"{folder}/{CA}.crt goes to everybody who is to believe this plant: boards, browsers, "
-        f"other machines (${MQTT_CA}).",
-        f"{folder}/{PLANT}.crt and .key stay on this machine, for --tls-cert and --tls-key of `arboleda up`.",
+        SIGNS(file=f"{folder}/{CA}.key"),
+        TO_EVERYBODY(file=f"{folder}/{CA}.crt", variable=f"${MQTT_CA}"),
+        STAYS(file=f"{folder}/{PLANT}.crt"),
     ]
     if boards:
-        lines.append(f"{folder}/{BOARDS}/NAME.crt and .key go to the board of that name, and nowhere else.")
-    return lines
+        lines.append(TO_BOARDS(file=f"{folder}/{BOARDS}/NAME.crt"))
+    return [say(line) for line in lines]
 
 
 def _of_broker(folder: Path, at: Path) -> list[str]:
     """The instructions for using the files of mosquitto."""
-    return [
-        f"{folder}/{MOSQUITTO}/ goes to {at} of the broker's machine, owned by the user that mosquitto has "
-        f"there: mosquitto -c {at}/{mosquitto_files.CONFIGURATION}",
-        f"The plant uses it with --broker mqtts://NAME, ${MQTT_CA}={folder}/{CA}.crt, "
-        f"${MQTT_CERTIFICATE}={folder}/{PLANT}.crt and ${MQTT_KEY}={folder}/{PLANT}.key",
-    ]
+    configuration = f"{at}/{mosquitto_files.CONFIGURATION}"
+    to_broker = TO_BROKER(folder=f"{folder}/{MOSQUITTO}/", at=str(at), configuration=configuration)
+    uses = USES_BROKER(
+        ca=f"${MQTT_CA}={folder}/{CA}.crt",
+        certificate=f"${MQTT_CERTIFICATE}={folder}/{PLANT}.crt",
+        key=f"${MQTT_KEY}={folder}/{PLANT}.key",
+    )
+    return [say(to_broker), say(uses)]

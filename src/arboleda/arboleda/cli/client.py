@@ -79,7 +79,7 @@ class PlantClient:
         self._state = state
         self._elsewhere = elsewhere or RemotePlant(state, lambda: ("", ""), dict)
         self._listening: Line | None = None  # the line that sends changes also gets requests
-        self._said = ""
+        self._last_notice = ""
 
     def submit(self, text: str) -> dict[str, Any]:
         """The queued task; TextError if the text is refused, QueueFull if the plant takes no task now."""
@@ -251,7 +251,7 @@ class PlantClient:
     def _beyond(self, answer: Answer) -> FarLine:
         """The line to the process that leads the plant, as a process that stands by names it."""
         sentence = answer.sentence if answer.status >= 300 else say(STANDS_BY(it=answer.sentence))
-        led = of_standby(answer.said)
+        led = of_standby(answer.body)
         if not led.url:
             raise ArboledaError(sentence)
         try:
@@ -298,9 +298,9 @@ class PlantClient:
         if not isinstance(line, FarLine) and done is ASKED_THERE:
             return
         notice = say(done(plant=line.place.plant, host=line.host))
-        if notice != self._said:
+        if notice != self._last_notice:
             print(plain(notice, LONGEST), file=sys.stderr, flush=True)
-            self._said = notice
+            self._last_notice = notice
 
 
 def _others() -> Sentence:

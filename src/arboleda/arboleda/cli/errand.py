@@ -47,9 +47,9 @@ class Errand:
         self.results: dict[str, TaskChanged] = {}
         self.seconds: dict[str, float] = {}
         self._finished = finished
-        self._asked = 0
+        self._answer_count = 0
         self._blocked: set[str | None] = set()
-        self._told = False
+        self._is_reported = False
         self._started: dict[str, float] = {}
         self._lock = threading.Lock()
 
@@ -57,7 +57,7 @@ class Errand:
     def ok(self) -> bool:
         """True if every task is done."""
         done = [change.state is TaskState.DONE for change in self.results.values()]
-        return self._asked == len(self.texts) and all(done)
+        return self._answer_count == len(self.texts) and all(done)
 
     def start(self, submit: Callable[[str], Future[TaskChanged]]) -> None:
         for text in self.texts:
@@ -71,7 +71,7 @@ class Errand:
             self._note(change)
         self._finish_if_over()
 
-    def seen(self, snapshot: dict[str, Any]) -> None:
+    def note_snapshot(self, snapshot: dict[str, Any]) -> None:
         """Note which cells of a snapshot start no task before an operator acts or a device is back."""
         blocked = [cell["name"] for cell in snapshot["cells"] if cell["paused"] and not cell["task"]]
         absent = _absent(snapshot)
@@ -87,15 +87,15 @@ class Errand:
 
     def _answered(self, change: TaskChanged) -> None:
         with self._lock:
-            self._asked += 1
-            key = change.task or f"refused {self._asked}"
+            self._answer_count += 1
+            key = change.task or f"refused {self._answer_count}"
             self.results[key] = change
         self._finish_if_over()
 
     def _finish_if_over(self) -> None:
         with self._lock:
-            over = self._over() and not self._told
-            self._told = self._told or over
+            over = self._over() and not self._is_reported
+            self._is_reported = self._is_reported or over
             if over:
                 self._say_what_is_missing()
         if over:
@@ -109,7 +109,7 @@ class Errand:
             self.seconds[change.task] = time.monotonic() - self._started[change.task]
 
     def _over(self) -> bool:
-        if self._asked < len(self.texts):
+        if self._answer_count < len(self.texts):
             return False
         return all(
             change.state is TaskState.QUEUED and self._is_stuck(change.cell) for change in self._waiting()

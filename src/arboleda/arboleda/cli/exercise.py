@@ -13,9 +13,8 @@ from arboleda.model.errors import ConfigError
 from arboleda.model.sentence import Phrase
 from arboleda.plant_file.user_file import check_writable
 from arboleda.runtime import invocation
-from arboleda.web.languages.templates import findings
 
-from .language import allowed, language, say, say_in
+from .language import allowed, finding_in, language, say, say_in
 from .new import WROTE, write_files
 from .overview import WholeSentences
 
@@ -199,14 +198,14 @@ def _row(work: Work, verdict: Verdict) -> dict[str, Any]:
 def _line(work: Work, verdict: Verdict, language: str) -> str:
     word = say_in(language, PASSES() if verdict.passes else FAILS())
     finding = verdict.findings[0] if verdict.findings else None
-    why = "" if finding is None else f"  {_in(finding.says, language)}: {finding.seen}"
+    why = "" if finding is None else f"  {_in(finding.says, language)}: {finding.evidence}"
     return f"{work.student or str(work.where):24} {work.exercise:20} {word}{why}"
 
 
 def _tell(work: Work, verdict: Verdict, language: str) -> None:
     for each in verdict.findings:
         typer.echo(say_in(language, TO_BE_SO(what=_in(each.says, language))))
-        typer.echo(say_in(language, SEEN(what=findings(language)(each.seen))) + "\n")
+        typer.echo(say_in(language, SEEN(what=finding_in(language, each.evidence))) + "\n")
     if verdict.findings and verdict.findings[0].story:
         typer.echo("\n".join(verdict.findings[0].story) + "\n")
     if (work.where / STORY).is_file() and not verdict.passes:

@@ -10,9 +10,13 @@ import typer
 from arboleda.board_kit.firmware_config.header import header
 from arboleda.board_kit.firmware_config.resolving import tables
 from arboleda.kinds.declared import Device
+from arboleda.model.outside import quoted
 from arboleda.model.plant_model import Link, PlantModel, Robot
+from arboleda.model.sentence import Phrase
 from arboleda.plant_file import loader
 
+from .language import allowed, say
+from .new import WROTE
 from .plant_options import PlantFile
 
 HELP = """Write the header with which the boards' firmware becomes a device of a declared kind.
@@ -23,6 +27,11 @@ at is named as well: the board says of it what it was told, and that proves noth
 
 Exit status: 0 written, 2 bad input."""
 
+NO_INPUT = Phrase(
+    "cli.firmware.no_input",
+    "note: {name} is said as it was told; no input looks at it, so it proves nothing",
+)
+NO_DEVICE = Phrase("cli.firmware.no_device", "{name} is no device of a declared kind; {others}")
 Name = Annotated[
     str, typer.Argument(metavar="DEVICE", help="The device's name on MQTT, or in the plant file.")
 ]
@@ -40,14 +49,12 @@ def add_to(cli: typer.Typer) -> None:
         made = tables(_named(loader.load(plant), device), wiring)
         text = header(made)
         for name in made.unseen:
-            typer.echo(
-                f"note: {name} is said as it was told; no input looks at it, so it proves nothing", err=True
-            )
+            typer.echo(say(NO_INPUT(name=name)), err=True)
         if output is None:
             print(text, end="")
             return
         output.write_text(text, encoding="utf-8")
-        typer.echo(f"wrote {output}", err=True)
+        typer.echo(say(WROTE(file=str(output))), err=True)
 
     cli.command("firmware-config", help=HELP, short_help=HELP.partition("\n")[0])(firmware_config)
 
@@ -57,8 +64,8 @@ def _named(model: PlantModel, name: str) -> Device:
     devices |= {robot.name: robot for robot in devices.values()}
     found = devices.get(name)
     if found is None:
-        there = f"there are {', '.join(sorted(devices)) or 'none'}"
-        raise typer.BadParameter(f"'{name}' is no device of a declared kind; {there}", param_hint="DEVICE")
+        wrong = NO_DEVICE(name=quoted(name), others=allowed(name, sorted(devices)))
+        raise typer.BadParameter(say(wrong), param_hint="DEVICE")
     return cast(Device, found)
 
 

@@ -10,7 +10,6 @@ from typing import Any
 from arboleda.model.errors import ArboledaError
 from arboleda.model.sentence import OWN, Phrase, Sentence, retold
 from arboleda.web.languages import FIRST, contents, spoken
-from arboleda.web.languages.templates import findings
 
 VARIABLES = ("ARBOLEDA_LANG", "LC_ALL", "LC_MESSAGES", "LANG")  # the first that is set says it
 
@@ -84,7 +83,16 @@ def say_error(error: ArboledaError) -> str:
 
 def finding(text: str) -> str:
     """A finding in a file or in a run, in this language."""
-    return findings(language())(text)
+    return finding_in(language(), text)
+
+
+def finding_in(language: str, text: str) -> str:
+    """A finding in a file or in a run, in a language."""
+    if language == FIRST:
+        return text
+    from arboleda.dashboard.findings import findings
+
+    return findings(language)(text)
 
 
 def _of_data(english: str, key: object, values: object) -> Sentence:

@@ -28,7 +28,7 @@ class Answer:
     """Answer: status and content of a response, a refusal too, and its headers."""
 
     status: int
-    said: Any
+    body: Any
     headers: Mapping[str, str]
 
     @property
@@ -39,11 +39,11 @@ class Answer:
     @property
     def stands_by(self) -> bool:
         """True if the process that answers only waits to lead the plant."""
-        return stands_by(self.said)
+        return stands_by(self.body)
 
     @property
     def sentence(self) -> str:
-        return plain(str(self.said.get("sentence", "")) if isinstance(self.said, dict) else "", LONGEST)
+        return plain(str(self.body.get("sentence", "")) if isinstance(self.body, dict) else "", LONGEST)
 
 
 SILENT = Phrase("cli.line.silent", "{name} did not answer.")
@@ -69,7 +69,7 @@ class Line:
     def taken(self, answer: Answer) -> Any:
         """The content of an answer; a refusal raises the error that it stands for."""
         if answer.status < 300:
-            return answer.said
+            return answer.body
         raise self._refusal(answer)
 
     def events(self) -> Iterator[tuple[str, dict[str, Any]]]:
@@ -86,7 +86,7 @@ class Line:
                 yield event
 
     def _refusal(self, answer: Answer) -> ArboledaError:
-        return refusal(answer.status, answer.said, answer.headers.get("retry-after"))
+        return refusal(answer.status, answer.body, answer.headers.get("retry-after"))
 
     def _silent(self, error: NoAnswer) -> str:
         return say(SILENT(name=self._name))
@@ -142,4 +142,4 @@ class FarLine(Line):
 
 def _answer(reply: Reply) -> Answer:
     """The answer in a reply; NoAnswer if no plant gave it."""
-    return Answer(status=reply.status, said=reply.content(), headers=reply.headers)
+    return Answer(status=reply.status, body=reply.content(), headers=reply.headers)

@@ -17,11 +17,13 @@ from arboleda.model.errors import ConfigError
 from arboleda.model.messages import ENDED
 from arboleda.model.outside import plain
 from arboleda.model.plant_model import PlantModel
+from arboleda.model.sentence import Phrase, Sentence
 from arboleda.playback.record_text import moment, sentence_of
 from arboleda.playback.recorded_plant import model_of, versions_of
 from arboleda.recorder.errors import NoRecord
 from arboleda.recorder.preamble import Beginning
 
+from .language import say
 from .plant_options import StateFolder
 from .record import File, changes, last_of
 
@@ -31,6 +33,35 @@ if TYPE_CHECKING:
     from arboleda.recorder.steps import RecordedStep
 
     from .fork import Options
+
+PAGE_ALONE = Phrase(
+    "cli.replay.page_alone",
+    "--page shows a record as it was: only --until, --task and --port go with it",
+)
+NO_TIME = Phrase("cli.replay.no_time", "{option} {text}: is no time; write 2026-11-22T03:15:00, or 03:15:00")
+NO_TASK = Phrase("cli.replay.no_task", "--task {task}: there is no such task in this record")
+ONLY_READ = Phrase(
+    "cli.replay.only_read",
+    "{file} cannot be replayed, only read: its first {missing} files were deleted to make room.",
+)
+NOT_COMPARED = Phrase("cli.replay.not_compared", "{why}, so that nothing was compared.")
+NO_STEP = Phrase("cli.replay.no_step", "{file} has no step")
+NO_STEP_UNTIL = Phrase("cli.replay.no_step_until", "{file} has no step up to the time that --until names")
+READ = Phrase("cli.replay.read", "{number} read, then {broken}")
+READ_OF = Phrase("cli.replay.read_of", "{there} steps, {number} read, then {broken}")
+READ_ARE_EQUAL = Phrase("cli.replay.read_are_equal", "{read}; those that were read are equal")
+ENDS_EARLY = Phrase("cli.replay.ends_early", "the record ends early: {broken}")
+ALL_EQUAL = Phrase("cli.replay.all_equal", "{number} steps, all equal")
+OTHER_VERSION = Phrase(
+    "cli.replay.other_version", "note: recorded by Arboleda {recorded}, replayed by {here}"
+)
+OTHER_PLANT = Phrase(
+    "cli.replay.other_plant", "note: replayed with {plant} instead of the plant file of the record"
+)
+DEADLINE = Phrase("cli.replay.deadline", "no event, a deadline")
+DIFFERS_AT = Phrase("cli.replay.differs_at", "{equal} steps are equal; step {number}, of {time}, is not")
+WENT_IN = Phrase("cli.replay.went_in", "what went in: {events}")
+WAS = Phrase("cli.replay.was", "{field} was {before}, is now {now}")
 
 DIFFERS = 1
 ENDS = {state.value for state in ENDED}
@@ -115,8 +146,7 @@ def replay(
     other = any((fork_at, setting, recipe, healthy))
     if page:
         if speed or plant or other:
-            only = "only --until, --task and --port go with it"
-            raise ConfigError((f"--page shows a record as it was: {only}",))
+            raise ConfigError((say(PAGE_ALONE()),))
         _show(record, until, task, port)
         return
     _refuse_part(record)
@@ -137,32 +167,31 @@ def replay(
 
 def _refuse_part(record: Record) -> None:
     if record.missing:
-        gone = f"its first {record.missing} files were deleted to make room"
-        raise NoRecord(f"{record.paths[0]} cannot be replayed, only read: {gone}.")
+        raise NoRecord(ONLY_READ(file=str(record.paths[0]), missing=record.missing))
 
 
 def _compare(record: Record, plant: Path | None, chosen: Chosen) -> None:
     """Compare every step with the recorded one, and print the result."""
     last = _run(record, model_of(record.first.beginning, plant), chosen)
     if last is None:
-        raise NoRecord(f"{_nothing(record, chosen)}, so that nothing was compared.")
+        raise NoRecord(NOT_COMPARED(why=_nothing(record, chosen)))
     _finish(record, last)
 
 
-def _nothing(record: Record, chosen: Chosen) -> str:
+def _nothing(record: Record, chosen: Chosen) -> Sentence:
     if record.broken:
         return _extent(record, 0)
-    until = " up to the time that --until names" if chosen.until_ns is not None else ""
-    return f"{record.paths[0]} has no step{until}"
+    return (NO_STEP if chosen.until_ns is None else NO_STEP_UNTIL)(file=str(record.paths[0]))
 
 
-def _extent(record: Record, number: int) -> str:
+def _extent(record: Record, number: int) -> Sentence:
     """The number of its steps that were read, and the damage that ended the reading."""
     from arboleda.recorder.reader import steps_there
 
     there = steps_there(record.paths)
-    known = f"{there} steps, " if there is not None and there >= number else ""
-    return f"{known}{number} read, then {record.broken}"
+    if there is not None and there >= number:
+        return READ_OF(there=there, number=number, broken=str(record.broken))
+    return READ(number=number, broken=str(record.broken))
 
 
 def _fork(record: Record, options: Options) -> None:
@@ -177,7 +206,7 @@ def _fork(record: Record, options: Options) -> None:
     for line in fork.lines(found, options):
         _say(line)
     if record.broken:
-        _say(f"the record ends early: {record.broken}")
+        _say(say(ENDS_EARLY(broken=str(record.broken))))
     if not all(pair.same for pair in fork.compared(found, options.task)):
         raise typer.Exit(DIFFERS)
 
@@ -199,16 +228,16 @@ def _finish(record: Record, last: ReplayedStep) -> None:
             _say(line)
         raise typer.Exit(DIFFERS)
     if record.broken:
-        _say(f"{_extent(record, last.number)}; those that were read are equal")
+        _say(say(READ_ARE_EQUAL(read=_extent(record, last.number))))
         raise typer.Exit(DIFFERS)
-    _say(f"{last.number} steps, all equal")
+    _say(say(ALL_EQUAL(number=last.number)))
 
 
 def _notes(beginning: Beginning, plant: Path | None) -> Iterator[str]:
     if beginning.version != __version__:
-        yield f"note: recorded by Arboleda {beginning.version}, replayed by {__version__}"
+        yield say(OTHER_VERSION(recorded=beginning.version, here=__version__))
     if plant is not None:
-        yield f"note: replayed with {plant} instead of the plant file of the record"
+        yield say(OTHER_PLANT(plant=str(plant)))
 
 
 def _time(option: str, text: str, began_ns: int) -> int:
@@ -219,7 +248,7 @@ def _time(option: str, text: str, began_ns: int) -> int:
             return int(datetime.fromisoformat(candidate).timestamp() * 1e9)
         except (OverflowError, ValueError):
             continue
-    raise ConfigError((f"{option} {plain(text, 40)}: is no time; write 2026-11-22T03:15:00, or 03:15:00",))
+    raise ConfigError((say(NO_TIME(option=option, text=plain(text, 40))),))
 
 
 def _run(record: Record, model: PlantModel, chosen: Chosen) -> ReplayedStep | None:
@@ -239,7 +268,7 @@ def _run(record: Record, model: PlantModel, chosen: Chosen) -> ReplayedStep | No
         if chosen.task is not None and any(row["state"] in ENDS for row in rows):
             break
     if chosen.task is not None and not known and (last is None or last.difference is None):
-        raise ConfigError((f"--task {plain(chosen.task, 80)}: there is no such task in this record",))
+        raise ConfigError((say(NO_TASK(task=plain(chosen.task, 80))),))
     return last
 
 
@@ -275,11 +304,11 @@ def _line(row: dict[str, Any]) -> str:
 def _difference(last: ReplayedStep) -> Iterator[str]:
     step, found = last.recorded, last.difference
     assert found is not None
-    events = ", ".join(_event(each) for each in step.events) or "no event, a deadline"
+    events = ", ".join(_event(each) for each in step.events) or DEADLINE()
     when = moment(step.unix_ns, "microseconds")
-    yield f"{last.number - 1} steps are equal; step {last.number}, of {when}, is not"
-    yield f"  what went in: {events}"
-    yield f"  {found.field} was {_value(found.recorded)}, is now {_value(found.now)}"
+    yield say(DIFFERS_AT(equal=last.number - 1, number=last.number, time=when))
+    yield f"  {say(WENT_IN(events=events))}"
+    yield f"  {say(WAS(field=found.field, before=_value(found.recorded), now=_value(found.now)))}"
 
 
 def _event(event: Any) -> str:

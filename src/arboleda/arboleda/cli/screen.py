@@ -104,7 +104,7 @@ class Screen:
             transient=True,
         )
         self._steps: dict[str, str | None] = {}
-        self._asked: dict[str, str | None] = {}
+        self._question_ids: dict[str, str | None] = {}
 
     def __enter__(self) -> Screen:
         if self.console.is_terminal:
@@ -141,10 +141,10 @@ class Screen:
             self._steps[cell["name"]] = cell["step"]
         for robot in snapshot["robots"]:
             question_id = robot["question"] and robot["question"]["id"]
-            if question_id != self._asked.get(robot["name"]):
+            if question_id != self._question_ids.get(robot["name"]):
                 for line in _question(robot):
                     self.say(_words(line), at)
-            self._asked[robot["name"]] = question_id
+            self._question_ids[robot["name"]] = question_id
 
 
 def logged(line: logging.LogRecord) -> Text:
@@ -174,7 +174,7 @@ def table(snapshot: dict[str, Any]) -> Group:
     questions to people, answers to the tasks that run, and obstacles."""
     robots = {robot["name"]: robot for robot in snapshot["robots"]}
     columns = _columns(snapshot["cells"])
-    headings = [*map(_said, (CELL, STATE, TASK, STEP)), *columns, _said(TIME)]
+    headings = [*map(_text, (CELL, STATE, TASK, STEP)), *columns, _text(TIME)]
     title = _words(PLANT(name=snapshot["plant"]), "italic")
     drawn = _table(headings, title=title, title_justify="left")
     for cell in snapshot["cells"]:
@@ -189,13 +189,13 @@ def table(snapshot: dict[str, Any]) -> Group:
 
 def _table(headings: list[str], **settings: Any) -> Table:
     drawn = Table(box=SIMPLE_HEAD, padding=(0, 1, 0, 0), **settings)
-    short = {_said(each) for each in SHORT}
+    short = {_text(each) for each in SHORT}
     for heading in headings:
         drawn.add_column(heading, no_wrap=heading in short)
     return drawn
 
 
-def _said(phrase: Phrase) -> str:
+def _text(phrase: Phrase) -> str:
     return say(phrase())
 
 
@@ -212,11 +212,11 @@ def _heading(device: dict[str, Any]) -> str:
 
 def _devices(cells: list[dict[str, Any]], robots: dict[str, dict[str, Any]]) -> Table:
     """The table of the devices: state, facts and last command of each."""
-    drawn = _table([*map(_said, (CELL, DEVICE, KIND, STATE, SAYS, LAST_COMMAND))])
+    drawn = _table([*map(_text, (CELL, DEVICE, KIND, STATE, SAYS, LAST_COMMAND))])
     for _, device in view.devices_once(cells):
         name = device["name"]
         robot = robots[name]
-        state = _said(STATES[robot["state"]] if robot["online"] else OFFLINE)
+        state = _text(STATES[robot["state"]] if robot["online"] else OFFLINE)
         having = [cell["name"] for cell in cells if any(each["name"] == name for each in cell["devices"])]
         held = [say(HELD_BY(cell=robot["holder"]))] if robot.get("holder") else []
         words = (
@@ -225,13 +225,13 @@ def _devices(cells: list[dict[str, Any]], robots: dict[str, dict[str, Any]]) -> 
             device["kind"],
             state,
             ", ".join(filter(None, [says(robot), *held])),
-            _told(robot),
+            _last_command(robot),
         )
         drawn.add_row(*(_words(word, "" if robot["online"] else "dim") for word in words))
     return drawn
 
 
-def _told(robot: dict[str, Any]) -> str:
+def _last_command(robot: dict[str, Any]) -> str:
     command, answer = robot["command"], robot["answer"]
     if command is None:
         return ""
@@ -256,11 +256,11 @@ def fact(name: str, value: Value | None) -> str:
     """A fact for a person; `?` if it was not reported yet."""
     if value is None:
         return "?"
-    return _said(SWITCHED[value]) if name == EFFECTOR and isinstance(value, bool) else answered(value)
+    return _text(SWITCHED[value]) if name == EFFECTOR and isinstance(value, bool) else answered(value)
 
 
 def answered(value: Value) -> str:
-    return _said(TRUE[value]) if isinstance(value, bool) else shown(value)
+    return _text(TRUE[value]) if isinstance(value, bool) else shown(value)
 
 
 def _words(text: str | Sentence, style: str = "") -> Text:
@@ -281,7 +281,7 @@ def _zones(zones: list[dict[str, Any]]) -> Table:
     """The table of the shared zones: the robot in each, and those that wait for it."""
     drawn = Table(box=SIMPLE_HEAD, padding=(0, 1, 0, 0))
     for heading in (ZONE, STATE, ROBOT, WAITING):
-        drawn.add_column(_said(heading))
+        drawn.add_column(_text(heading))
     for each in zones:
         style = {"free": "dim", "quarantined": "red"}.get(each["state"], "")
         words = (
@@ -339,10 +339,10 @@ def _question(robot: dict[str, Any]) -> list[str]:
 def _answers(cell: dict[str, Any]) -> list[str]:
     """The last answers to the task of a cell."""
     answers = (cell["task"] or {}).get("answers", [])[-MOST_ANSWERS:]
-    return [say(HEARD(cell=cell["name"], answers=heard(answers)))] if answers else []
+    return [say(HEARD(cell=cell["name"], answers=answers_line(answers)))] if answers else []
 
 
-def heard(answers: Iterable[Mapping[str, Any]]) -> str:
+def answers_line(answers: Iterable[Mapping[str, Any]]) -> str:
     """The answers in one line: for each the one who gave it, the question and the answer."""
     return "; ".join(f"{each['by']}, {each['asked']}: {answered(each['answer'])}" for each in answers)
 
@@ -415,9 +415,9 @@ def _left(robot: dict[str, Any], holds: str | None) -> str:
 
 def summary(results: dict[str, TaskChanged], seconds: dict[str, float]) -> Table:
     """The table of outcomes of the tasks, in the order they were asked for; keys are task ids."""
-    drawn = Table(title=_said(SUMMARY), title_justify="left")
+    drawn = Table(title=_text(SUMMARY), title_justify="left")
     for heading in (TASK, OUTCOME, TIME, REASON):
-        drawn.add_column(_said(heading))
+        drawn.add_column(_text(heading))
     for task, change in results.items():
         took = f"{seconds[task]:.1f} s" if task in seconds else ""
         outcome = Text(word("task_state", change.state.value), style=STYLES[change.state])

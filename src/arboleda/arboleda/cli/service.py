@@ -16,15 +16,50 @@ import typer
 from arboleda.host.users import home_of
 from arboleda.model.errors import StartError
 from arboleda.model.outside import plain
+from arboleda.model.sentence import Phrase
 from arboleda.plant_file import loader
 from arboleda.runtime.state import default_state
 
+from .language import say
 from .overview import WholeSentences
 from .plant_options import PlantFile, StateFolder
 from .service_unit import unit
 
 TIMEOUT_S = 100.0  # longer than a unit may take to end
 HELP = "Have systemd run the plant: from the start of the machine on, and again where it breaks down."
+RUNS_FROM_LOGIN = Phrase("cli.service.runs_from_login", "{plant} runs, and starts with your login: {unit}")
+RUNS_FROM_START = Phrase("cli.service.runs_from_start", "{plant} runs, and starts with the machine: {unit}")
+LINGER = Phrase(
+    "cli.service.linger", "To have it run while you are not logged in: loginctl enable-linger {user}"
+)
+REMOVED = Phrase("cli.service.removed", "{plant} is no service any more; its state directory is as it was")
+NO_SYSTEMD = Phrase(
+    "cli.service.no_systemd",
+    "this machine has no systemd (systemctl is not there); let what starts its programs call `arboleda up`",
+)
+NO_SERVICE = Phrase(
+    "cli.service.no_service",
+    "{plant} is no service here ({unit} is not there); it may be one with --system, "
+    "or type `arboleda service install`",
+)
+NO_SERVICE_OF_SYSTEM = Phrase(
+    "cli.service.no_service_of_system",
+    "{plant} is no service here ({unit} is not there); it may be one without --system, "
+    "or type `arboleda service install`",
+)
+NOT_ENDED = Phrase("cli.service.not_ended", "systemctl {words} has not ended after {seconds:.0f} s")
+REFUSED = Phrase("cli.service.refused", "systemd does not do it (systemctl {words}): {why}")
+EXIT_STATUS = Phrase("cli.service.exit_status", "exit status {status}")
+NOT_WRITTEN = Phrase("cli.service.not_written", "{path} cannot be written: {why}")
+NO_RIGHTS = Phrase("cli.service.no_rights", "{path} cannot be written: {why}; type sudo before it")
+BEFORE_DASHES = Phrase(
+    "cli.service.before_dashes", "{option} stands before --: `arboleda service install {option} ...`"
+)
+NOT_MADE = Phrase("cli.service.not_made", "{folder} cannot be made: {why}")
+NO_COMMAND = Phrase(
+    "cli.service.no_command", "there is no command arboleda beside {python}; install it with pip first"
+)
+NO_USER = Phrase("cli.service.no_user", "this machine has no user {user}; name one with --user")
 cli = typer.Typer(cls=WholeSentences, help=HELP, no_args_is_help=True, rich_markup_mode=None)
 
 System = Annotated[
@@ -71,9 +106,9 @@ def install(
     manager = Manager(system)
     _make(home, who)
     manager.install(name, text)
-    print(f"{name} runs, and starts with {'the machine' if system else 'your login'}: {manager.path(name)}")
+    print(say((RUNS_FROM_START if system else RUNS_FROM_LOGIN)(plant=name, unit=str(manager.path(name)))))
     if not system:
-        print(f"To have it run while you are not logged in: loginctl enable-linger {getpass.getuser()}")
+        print(say(LINGER(user=getpass.getuser())))
 
 
 @cli.command()
@@ -100,7 +135,7 @@ def remove(plant: PlantFile = None, system: System = False) -> None:
     manager = Manager(system)
     manager.refuse_missing(name)
     manager.remove(name)
-    print(f"{name} is no service any more; its state directory is as it was")
+    print(say(REMOVED(plant=name)))
 
 
 class Manager:
@@ -108,10 +143,7 @@ class Manager:
 
     def __init__(self, system: bool) -> None:
         if shutil.which("systemctl") is None:
-            raise StartError(
-                "this machine has no systemd (systemctl is not there); let what starts its programs call "
-                "`arboleda up`"
-            )
+            raise StartError(NO_SYSTEMD())
         self._system = system
         self._units = Path("/etc/systemd/system" if system else Path.home() / ".config/systemd/user")
 
@@ -139,11 +171,8 @@ class Manager:
 
     def refuse_missing(self, plant: str) -> None:
         if not self.path(plant).exists():
-            other = "without --system" if self._system else "with --system"
-            raise StartError(
-                f"{plant} is no service here ({self.path(plant)} is not there); it may be one {other}, "
-                "or type `arboleda service install`"
-            )
+            missing = NO_SERVICE_OF_SYSTEM if self._system else NO_SERVICE
+            raise StartError(missing(plant=plant, unit=str(self.path(plant))))
 
     def run(self, *words: str, quiet: bool = False) -> subprocess.CompletedProcess[str]:
         """Run systemctl with these words; its output is printed, or kept if `quiet`."""
@@ -153,13 +182,14 @@ class Manager:
                 ["systemctl", *whose, *words], capture_output=quiet, text=True, timeout=TIMEOUT_S, check=False
             )
         except subprocess.TimeoutExpired as error:
-            raise StartError(f"systemctl {' '.join(words)} has not ended after {TIMEOUT_S:.0f} s") from error
+            raise StartError(NOT_ENDED(words=" ".join(words), seconds=TIMEOUT_S)) from error
 
     def _ask(self, *words: str) -> None:
         ran = self.run(*words, quiet=True)
         if ran.returncode:
-            trouble = (ran.stderr.strip() or f"exit status {ran.returncode}").splitlines()[0]
-            raise StartError(f"systemd does not do it (systemctl {' '.join(words)}): {plain(trouble)}")
+            trouble = ran.stderr.strip().splitlines()
+            why = plain(trouble[0]) if trouble else EXIT_STATUS(status=ran.returncode)
+            raise StartError(REFUSED(words=" ".join(words), why=why))
 
     def _write(self, path: Path, text: str | None) -> None:
         try:
@@ -169,8 +199,8 @@ class Manager:
             path.parent.mkdir(parents=True, exist_ok=True)
             path.write_text(text)
         except OSError as error:
-            rights = "; type sudo before it" if self._system and isinstance(error, PermissionError) else ""
-            raise StartError(f"{path} cannot be written: {error.strerror}{rights}") from error
+            phrase = NO_RIGHTS if self._system and isinstance(error, PermissionError) else NOT_WRITTEN
+            raise StartError(phrase(path=str(path), why=str(error.strerror))) from error
 
     def _undo(self, path: Path, before: str | None) -> None:
         if before is None:
@@ -187,7 +217,7 @@ def _check_options(context: typer.Context, words: Sequence[str]) -> None:
     up = group.get_command(context, "up")  # type: ignore[attr-defined]
     named = [each for each in ("--plant", "--state") if any(word.split("=")[0] == each for word in words)]
     if named:
-        raise typer.BadParameter(f"{named[0]} stands before --: `arboleda service install {named[0]} ...`")
+        raise typer.BadParameter(say(BEFORE_DASHES(option=named[0])))
     with up.make_context("up", list(words)):
         pass
 
@@ -201,7 +231,7 @@ def _make(folder: Path, owner: str | None) -> None:
             if owner is not None:
                 shutil.chown(each, owner)
     except OSError as error:
-        raise StartError(f"{folder} cannot be made: {error.strerror}") from error
+        raise StartError(NOT_MADE(folder=str(folder), why=str(error.strerror))) from error
 
 
 def _program() -> Path:
@@ -209,7 +239,7 @@ def _program() -> Path:
     beside = Path(sys.executable).with_name("arboleda")
     found = beside if beside.exists() else shutil.which("arboleda")
     if found is None:
-        raise StartError(f"there is no command arboleda beside {sys.executable}; install it with pip first")
+        raise StartError(NO_COMMAND(python=sys.executable))
     return Path(found).absolute()
 
 
@@ -219,7 +249,7 @@ def _state_of(plant: str, user: str | None) -> Path:
         return default_state(plant)
     home = home_of(user)
     if home is None:
-        raise StartError(f"this machine has no user {plain(user)}; name one with --user")
+        raise StartError(NO_USER(user=plain(user)))
     return home / ".local/state/arboleda" / plant
 
 

@@ -91,7 +91,7 @@ class Session:
         """Run the plant, without `stay` until the tasks have ended; 0, or 1 if one was not done."""
         self._app.listen(self._errand.changed)
         self._app.watch(lambda snapshot: self._later(self._screen.stepped, snapshot, time.time()))
-        self._app.watch(self._errand.seen)
+        self._app.watch(self._errand.note_snapshot)
         self._app.when_over(lambda: self._news.put(None))
         with interruptible(), self._logging() as self._log:
             self._start()

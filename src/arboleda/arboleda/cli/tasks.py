@@ -24,7 +24,7 @@ from arboleda.store.task_rows import History, TaskQuery, TaskRow, answers_of, ch
 from . import plant_options
 from .language import say, word
 from .plant_options import RunningPlant, StateFolder, StoreAddress
-from .screen import STYLES, heard
+from .screen import STYLES, answers_line
 
 AGO = re.compile(r"(\d{1,6})\s*([smhdw])")
 SECONDS = {"s": 1.0, "m": 60.0, "h": 3600.0, "d": 86_400.0, "w": 604_800.0}
@@ -146,7 +146,7 @@ def _table(rows: Sequence[TaskRow], *, first: bool) -> None:
         whole = max(len(plain(row.id)) for row in rows) if name == "id" else None  # it is copied
         drawn.add_column(say(heading()), overflow="fold", min_width=whole)
     for row in rows:
-        at, by, id, text, _, took, why, answers = _said(row)
+        at, by, id, text, _, took, why, answers = _columns(row)
         state = Text(word("task_state", row.state), style=STYLES[TaskState(row.state)])
         tries, last = str(row.attempts or ""), [Text(answers)] if answered else []
         drawn.add_row(at, Text(by), Text(id), Text(text), state, tries, took, Text(why), *last)
@@ -155,7 +155,7 @@ def _table(rows: Sequence[TaskRow], *, first: bool) -> None:
 
 def _lines(rows: Sequence[TaskRow], *, first: bool) -> None:
     for row in rows:
-        print("  ".join(each for each in _said(row) if each), flush=True)
+        print("  ".join(each for each in _columns(row) if each), flush=True)
 
 
 def _json(rows: Sequence[TaskRow], *, first: bool) -> None:
@@ -174,7 +174,7 @@ def _csv(rows: Sequence[TaskRow], *, first: bool) -> None:
     print(table(rows, names=first), end="", flush=True)
 
 
-def _said(row: TaskRow) -> tuple[str, ...]:
+def _columns(row: TaskRow) -> tuple[str, ...]:
     at = datetime.fromtimestamp(row.accepted_s).isoformat(sep=" ", timespec="seconds")
     took = ""
     if row.started_s is not None and row.ended_s is not None:
@@ -187,5 +187,5 @@ def _said(row: TaskRow) -> tuple[str, ...]:
         word("task_state", row.state),
         took,
         plain(why),
-        plain(heard(map(vars, answers_of(row)))),
+        plain(answers_line(map(vars, answers_of(row)))),
     )

@@ -59,11 +59,11 @@ class Flow(Generic[P, Result]):
         if side is None:
             return self
 
-        def asked(*args: P.args, **named: P.kwargs) -> Any:
+        def call(*args: P.args, **named: P.kwargs) -> Any:
             work = self.work(side, *args, **named)
             return at_once(work) if isinstance(side, Blocking) else work
 
-        return update_wrapper(asked, self.work)
+        return update_wrapper(call, self.work)
 
 
 class Following(Generic[P, Item]):
@@ -87,11 +87,11 @@ class Following(Generic[P, Item]):
         if side is None:
             return self
 
-        def asked(*args: P.args, **named: P.kwargs) -> Any:
+        def call(*args: P.args, **named: P.kwargs) -> Any:
             items = self.work(side, *args, **named)
             return each_at_once(items) if isinstance(side, Blocking) else items
 
-        return update_wrapper(asked, self.work)
+        return update_wrapper(call, self.work)
 
 
 class Route(Flow[P, Result]):

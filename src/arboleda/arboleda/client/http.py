@@ -10,7 +10,7 @@ from contextlib import AbstractAsyncContextManager, asynccontextmanager, context
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
-from arboleda.model.outside import said_by
+from arboleda.model.outside import text_of_error
 
 from .errors import LONGEST, LibraryMissing, NoAnswer
 
@@ -208,10 +208,10 @@ def reason(error: BaseException, request: HttpRequest, connect_s: float) -> str:
     if isinstance(error, httpx.ConnectTimeout):
         return f", which cannot be reached at {url} (no connection in {connect_s:g} s)."
     if isinstance(error, httpx.ConnectError):
-        return f", which cannot be reached at {url} ({said_by(error, LONGEST)})."
+        return f", which cannot be reached at {url} ({text_of_error(error, LONGEST)})."
     if isinstance(error, httpx.TimeoutException):
         return f", which gave no answer at {url} in {request.within_s:g} s."
-    return f", and what answers at {url} is no plant or broke off ({said_by(error, LONGEST)})."
+    return f", and what answers at {url} is no plant or broke off ({text_of_error(error, LONGEST)})."
 
 
 def _doubt(error: BaseException | None) -> str | None:

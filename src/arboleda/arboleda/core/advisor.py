@@ -40,7 +40,7 @@ class Advisor:
     def ways_out(self, cell: str, visited: frozenset[str] = frozenset()) -> tuple[Advice, ...]:
         """The advice, in the order to follow it; none where the cell works or only time is needed.
 
-        `asked`: the cells that wait for this one to give its zones back.
+        `visited`: the cells that wait for this one to give its zones back.
         """
         run = self._cells[cell]
         lead = LEADS.get(run.state)
@@ -328,7 +328,7 @@ def _recovered(run: CellRun) -> tuple[str, ...]:
 
 
 def _movers(run: CellRun) -> tuple[str, ...]:
-    return tuple(robot.name for robot in run.cell.reached if not robot.is_asked)
+    return tuple(robot.name for robot in run.cell.reached if not robot.is_person)
 
 
 STOPPING = (CellState.ABORTING, CellState.ABORTED, CellState.CLEARING, CellState.STOPPED)

@@ -25,7 +25,7 @@ class CellState(str, Enum):
     RESETTING = "resetting"
 
     @property
-    def said(self) -> Sentence:
+    def sentence(self) -> Sentence:
         """The word as it stands in a sentence, after "the cell is"."""
         return SAID[self]
 
@@ -90,5 +90,5 @@ def after(state: CellState, cause: Cause, cell: str) -> CellState:
     """The next state; IllegalTransition where the table has no row."""
     found = TABLE.get((state, cause))
     if found is None:
-        raise IllegalTransition(NO_WAY(cell=cell, state=state.said, cause=cause.value))
+        raise IllegalTransition(NO_WAY(cell=cell, state=state.sentence, cause=cause.value))
     return found

@@ -51,15 +51,15 @@ class Silence:
     """For how long a leader has said nothing, by the clock of who waits for that: the store's may be set."""
 
     def __init__(self) -> None:
-        self._seen: object = None
+        self._last_state: object = None
         self._since = math.inf
 
     def ends_lease(self, now: float, state: object) -> bool:
-        """True once it has lasted as long as a lease; `seen` is what the store last heard of him, another
+        """True once it has lasted as long as a lease; `state` is what the store last heard of him, another
         thing whenever he says anything.
         """
-        if state != self._seen:
-            self._seen, self._since = state, now
+        if state != self._last_state:
+            self._last_state, self._since = state, now
         return now - self._since >= LEASE_S
 
 

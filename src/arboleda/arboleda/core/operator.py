@@ -483,7 +483,7 @@ class Operator:
         """A person has taken out what devices hold; all of them are still, as far as the plant moves them."""
         for cell in cells:
             if cell.state in AT_WORK:
-                raise VerbRefusal(HOLD_FIRST(cell=cell.cell.name, state=cell.state.said))
+                raise VerbRefusal(HOLD_FIRST(cell=cell.cell.name, state=cell.state.sentence))
         able = [(cell, name) for cell in cells for name in self._holders(cell, robots)]
         if not able:
             raise VerbRefusal(self._none_able(robots, sorted(robots)[0]))
@@ -594,7 +594,7 @@ class Operator:
         if cell.closed:
             return reasons.ENDING()
         if not rests:
-            return NOT_AT_REST(cell=name, state=cell.state.said)
+            return NOT_AT_REST(cell=name, state=cell.state.sentence)
         if (busy := cell.readiness.busy()) is not None:
             return busy
         for robot in (each for each in cell.cell.reached if each.goes and each.name in cell.cell.own):
@@ -661,7 +661,7 @@ class Operator:
 
     def _not_clearable(self, cell: CellRun, robots: set[str]) -> Sentence | None:
         if cell.state not in (CellState.ABORTED, CellState.CLEARING):
-            return ONLY_ABORTED(cell=cell.cell.name, state=cell.state.said)
+            return ONLY_ABORTED(cell=cell.cell.name, state=cell.state.sentence)
         others = self._kept_stopped(cell, robots)
         if others and others.keys() >= {each.name for each in cell.cell.robots if each.name in robots}:
             device, cells = next(iter(others.items()))
@@ -709,14 +709,14 @@ class Operator:
         if cell.state is CellState.IDLE:
             return None if cell.queue.paused else QUEUE_RUNS(cell=cell.cell.name)
         if cell.state is not CellState.HELD:
-            return ONLY_HELD(cell=cell.cell.name, state=cell.state.said)
+            return ONLY_HELD(cell=cell.cell.name, state=cell.state.sentence)
         if cell.task is None or cell.trouble is not None or cell.stranded:
             return reasons.of_hold(cell)
         return _not_yet(cell)
 
     def _not_releasable(self, cell: CellRun, robots: set[str]) -> Sentence | None:
         if cell.state in AT_WORK:
-            return HOLD_FIRST(cell=cell.cell.name, state=cell.state.said)
+            return HOLD_FIRST(cell=cell.cell.name, state=cell.state.sentence)
         if cell.manual.teaching is not None:
             return cell.manual.teaching.sentence
         able = self._holders(cell, robots)
@@ -792,13 +792,13 @@ def _always(operator: Operator, cell: CellRun, robots: set[str]) -> Sentence | N
 
 
 def _in(*states: CellState) -> Callable[[Operator, CellRun, set[str]], Sentence | None]:
-    first, *others = (state.said for state in states)
+    first, *others = (state.sentence for state in states)
     allowed = reduce(lambda before, other: OR(first=before, second=other), others, first)
 
     def check(operator: Operator, cell: CellRun, robots: set[str]) -> Sentence | None:
         if cell.state in states:
             return None
-        return OTHER_STATE(cell=cell.cell.name, state=cell.state.said, allowed=allowed)
+        return OTHER_STATE(cell=cell.cell.name, state=cell.state.sentence, allowed=allowed)
 
     return check
 
@@ -812,13 +812,13 @@ def _not_resettable(operator: Operator, cell: CellRun, robots: set[str]) -> Sent
         return None
     if cell.state in STOPPING:
         return CLEAR_FIRST(cell=cell.cell.name)
-    return NOT_STOPPED(cell=cell.cell.name, state=cell.state.said)
+    return NOT_STOPPED(cell=cell.cell.name, state=cell.state.sentence)
 
 
 def _not_holdable(operator: Operator, cell: CellRun, robots: set[str]) -> Sentence | None:
     if cell.state is CellState.EXECUTE:
         return None
-    return NOT_AT_WORK(cell=cell.cell.name, state=cell.state.said)
+    return NOT_AT_WORK(cell=cell.cell.name, state=cell.state.sentence)
 
 
 def _not_retryable(operator: Operator, cell: CellRun, robots: set[str]) -> Sentence | None:

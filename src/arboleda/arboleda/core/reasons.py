@@ -46,9 +46,9 @@ def of_waiting(run: CellRun) -> Sentence | None:
     if run.state is CellState.IDLE:
         return RESTARTS() if run.awaits_restart else run.not_ready
     if run.trouble is None or run.state is CellState.HELD:
-        return of_hold(run) or STANDS(cell=name, state=run.state.said, next=_next(run))
+        return of_hold(run) or STANDS(cell=name, state=run.state.sentence, next=_next(run))
     why = run.trouble.sentence
-    return STANDS_BECAUSE(cell=name, state=run.state.said, why=why, next=_next(run))
+    return STANDS_BECAUSE(cell=name, state=run.state.sentence, why=why, next=_next(run))
 
 
 def of_hindrance(run: CellRun) -> Sentence | None:

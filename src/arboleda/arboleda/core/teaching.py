@@ -99,9 +99,9 @@ class Teaching:
     def objection(self, jog: Jog) -> Sentence | None:
         """The reason for which nothing would come of a press now; None where it can begin."""
         cell = self._context.cell
-        robot = next((each for each in cell.reached if each.name == jog.robot and not each.is_asked), None)
+        robot = next((each for each in cell.reached if each.name == jog.robot and not each.is_person), None)
         if robot is None:
-            known = tuple(each.name for each in cell.reached if not each.is_asked)
+            known = tuple(each.name for each in cell.reached if not each.is_person)
             return NOT_OF_CELL(robot=quoted(jog.robot), cell=cell.name, known=known)
         try:
             return self._objection(robot, jog)

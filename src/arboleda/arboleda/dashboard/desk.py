@@ -37,11 +37,11 @@ class Desk(OpenPage):
     """Desk: the only way from the events of a page to the plant."""
 
     def __init__(self, client: Client, plant: PageApi, feed: Feed, words: Words) -> None:
-        super().__init__(client, words, feed.seen)
+        super().__init__(client, words, feed.note_shown)
         self._plant = plant
         self._feed = feed
 
-    async def asked(self, act: str, of: str, more: object) -> None:
+    async def take(self, act: str, of: str, more: object) -> None:
         """Do what the page asks for; `more` is True for what was done by hand, or has a verb's arguments."""
         if act == DOWNLOAD:
             self._download()

@@ -29,7 +29,7 @@ class Feed:
 
     def __init__(self, plant: PageApi) -> None:
         self._plant = plant
-        self._told: deque[tuple[float, dict[str, Any]]] = deque(maxlen=WAITING)
+        self._snapshots: deque[tuple[float, dict[str, Any]]] = deque(maxlen=WAITING)
         self._story: PageState | None = None
         self._frames = Frames()
         self._loop: asyncio.AbstractEventLoop | None = None
@@ -54,9 +54,9 @@ class Feed:
     def remove(self, viewer: Viewer) -> None:
         self._frames.remove(viewer)
 
-    def seen(self, viewer: Viewer, number: int) -> None:
+    def note_shown(self, viewer: Viewer, number: int) -> None:
         """Note the frame that a page says it has shown."""
-        self._frames.seen(viewer, number)
+        self._frames.note_shown(viewer, number)
 
     def start(self) -> None:
         """Listen to the plant; in the event loop that will `run`."""
@@ -79,7 +79,7 @@ class Feed:
             self._news.clear()
             try:
                 if quiet and self._frames.languages:
-                    self._told.append((time.time(), self._plant.snapshot()))
+                    self._snapshots.append((time.time(), self._plant.snapshot()))
                 self.turn(beat=quiet)
             except Exception:  # one frame that cannot be made does not end the page
                 log.exception("a frame of the page failed")
@@ -102,12 +102,12 @@ class Feed:
             self._frames.send(language, story.face(language, links), beat=beat)
 
     def _take_in(self) -> None:
-        while self._told and self._story is not None:
-            unix_s, snapshot = self._told.popleft()
+        while self._snapshots and self._story is not None:
+            unix_s, snapshot = self._snapshots.popleft()
             self._story.see(snapshot, unix_s)
 
     def _tell(self, snapshot: dict[str, Any]) -> None:
-        self._told.append((time.time(), snapshot))
+        self._snapshots.append((time.time(), snapshot))
         self._wake()
 
     def _wake(self) -> None:

@@ -33,7 +33,7 @@ class ViewerProgress:
     def __init__(self) -> None:
         self.whole = True  # the next frame has everything
         self.sent = 0
-        self.seen = 0
+        self.shown = 0
 
 
 class Frames:
@@ -55,11 +55,11 @@ class Frames:
     def remove(self, viewer: Viewer) -> None:
         self._viewers.pop(viewer, None)
 
-    def seen(self, viewer: Viewer, number: int) -> None:
+    def note_shown(self, viewer: Viewer, number: int) -> None:
         """Note the frame that a page says it has shown."""
         known = self._viewers.get(viewer)
         if known is not None and 0 <= number <= known.sent:
-            known.seen = max(known.seen, number)
+            known.shown = max(known.shown, number)
 
     def send(self, language: str, face: Face, *, beat: bool) -> None:
         """Send each viewer of a language the changes since its last frame; with `beat` even none."""
@@ -80,7 +80,7 @@ class Frames:
 
     def _ready(self, viewer: Viewer, progress: ViewerProgress) -> bool:
         """True if a viewer can take a frame; one that is away or behind gets everything later."""
-        if viewer.connected and progress.sent - progress.seen <= BEHIND:
+        if viewer.connected and progress.sent - progress.shown <= BEHIND:
             return True
         progress.whole = True
         return False

@@ -17,14 +17,14 @@ SEEN = "seen"
 
 
 class OpenPage:
-    """OpenPage: a viewer of frames; `seen` gets the number of each frame that was shown. Subclasses check
-    roles in `asked`."""
+    """OpenPage: a viewer of frames; `note_shown` gets the number of each frame shown. Subclasses check
+    roles in `take`."""
 
-    def __init__(self, client: Client, words: Words, seen: Callable[[OpenPage, int], None]) -> None:
+    def __init__(self, client: Client, words: Words, note_shown: Callable[[OpenPage, int], None]) -> None:
         self.language = words.language
         self._client = client
         self._words = words
-        self._seen = seen
+        self._note_shown = note_shown
 
     @property
     def connected(self) -> bool:
@@ -45,11 +45,11 @@ class OpenPage:
         args = event.args if isinstance(event.args, list) else [event.args]
         act, of, more = [*args, None, None, None][:3]
         if act == SEEN and isinstance(of, int):
-            self._seen(self, of)
+            self._note_shown(self, of)
         elif isinstance(act, str) and isinstance(of, str) and len(of) <= LONGEST:
-            await self.asked(act, of, more)
+            await self.take(act, of, more)
 
-    async def asked(self, act: str, of: str, more: object) -> None:
+    async def take(self, act: str, of: str, more: object) -> None:
         """Take a request of the page."""
         raise NotImplementedError
 

@@ -94,7 +94,7 @@ def mount(server: FastAPI, plant: PageApi) -> None:
         if past_page.is_of_draft(request) and is_operator(request):
             past_page.open_page(client, *tried.last(), turns, request, beside=True)
             return
-        if past_page.asked(request):
+        if past_page.is_of_record(request):
             past_page.open_page(client, plant, stills, turns, request, beside=True)
             return
         wording, layout = words(language_of(request)), plant.layout()

@@ -25,7 +25,7 @@ class PageState:
         self.trees: dict[str, TreeMemory] = {cell["name"]: TreeMemory() for cell in layout["cells"]}
         self.ended: dict[str, EndedTree] = {}  # by task, while the snapshot shows it
         self._failed: set[str] = set()  # cells that have failed, also where that event is forgotten
-        self._told = 0  # the number of the last event that was looked at
+        self._last_event = 0  # the number of the last event that was looked at
         self._offset_s: float | None = None  # unix s less the plant's clock, so that shown times stay put
         self._snapshot: Row | None = None
 
@@ -45,8 +45,10 @@ class PageState:
         self._snapshot = snapshot
 
     def _note_failures(self) -> None:
-        newest = [*takewhile(lambda event: event["number"] > self._told, reversed(self.chronicle.events))]
-        self._told += len(newest)
+        newest = [
+            *takewhile(lambda event: event["number"] > self._last_event, reversed(self.chronicle.events))
+        ]
+        self._last_event += len(newest)
         self._failed |= {event["cell"] for event in newest if is_failure(event)}
 
     def face(self, language: str, links: Row) -> Face:

@@ -6,7 +6,7 @@ from . import task_form
 from .cell_filter import cell_filter
 from .page_api import Layout
 from .tags import link, live, report, rows, tag, way
-from .trees import heard, zooms
+from .trees import answers_table, zooms
 from .wording import Words
 
 KEPT = ("state", "text", "accepted", "asked_by", "ended", "took", "attempts", "why", "id")
@@ -90,7 +90,7 @@ def _one(layout: Layout, words: Words) -> None:
             link(words("task.close"), tab="tasks", classes="act")
         live("p", "task.when", classes="hint")
         live("p", "task.cause", classes="trouble")
-        heard("task.heard", words)
+        answers_table("task.heard", words)
         live("p", "task.choice", classes="hint")
         live("p", "task.note", classes="note")
         if layout.get("recorded"):

@@ -72,17 +72,17 @@ def _card(layout: dict[str, Any], devices: list[dict[str, Any]], words: Words) -
         live("span", f"{cell}.act", classes="act-line")
     for device in devices:
         if device["asked"]:
-            _asked(device["name"])
+            _question(device["name"])
     rows(f"ways.{cell}", ["", ""], classes="ways")
     if layout["places"] or layout["stations"]:
         columns = [words(f"column.{each}") for each in ("place", "parts", "note", "acts")]
         rows(f"places.{cell}", columns, classes="places")
     if any(device["position"] is None for device in devices):
         rows(f"devices.{cell}", ["", "", ""], classes="devices")
-        heard(f"heard.{cell}", words)
+        answers_table(f"heard.{cell}", words)
 
 
-def _asked(person: str) -> None:
+def _question(person: str) -> None:
     """Draw the question to a person, announced once; the time that is left is not announced."""
     with tag("div", classes="asked"):
         with tag("div", role="status", aria_live="polite"):
@@ -92,7 +92,7 @@ def _asked(person: str) -> None:
         live("p", f"asked_left.{person}", classes="asked-left")
 
 
-def heard(name: str, words: Words) -> None:
+def answers_table(name: str, words: Words) -> None:
     """Draw the table of answers to a task: the one who answered, the question and the answer."""
     rows(name, [words(f"column.{each}") for each in ("by", "question", "answer")], classes="heard")
 

@@ -19,7 +19,7 @@ class Words:
     def __init__(self, language: str, tree: dict[str, Any], english: dict[str, Any]) -> None:
         self.language = language
         self._sentences: dict[str, str] = tree.get(SENTENCES, {})
-        self._said: dict[Sentence, str] = {}
+        self._known: dict[Sentence, str] = {}
         self.flat = {**_texts(english), **_texts(tree)}
 
     def __call__(self, key: str, **values: Any) -> str:
@@ -43,11 +43,11 @@ class Words:
         """A sentence of the plant in this language; any other text, as of a user's own step, unchanged."""
         if isinstance(sentence, str):
             return sentence
-        text = self._said.get(sentence)
+        text = self._known.get(sentence)
         if text is None:
-            if len(self._said) > 2000:
-                self._said.clear()
-            text = self._said[sentence] = sentence.told(self._template)
+            if len(self._known) > 2000:
+                self._known.clear()
+            text = self._known[sentence] = sentence.text_by(self._template)
         return text
 
     def _template(self, phrase: Phrase) -> str:

@@ -97,7 +97,7 @@ class Belief:
         self.facts: dict[str, Value] = {}
         self.lost: Sentence | None = None  # why there is no link
         self.facts_no = 0  # the report that changed one of them last
-        self._said: tuple[object, ...] = ()  # the words of the last report
+        self._last_words: tuple[object, ...] = ()  # the words of the last report
 
     @property
     def numbers_commands(self) -> bool:
@@ -122,7 +122,7 @@ class Belief:
 
     def hear_again(self, report: Report) -> bool:
         """Take over a report that only repeats what an online robot said last; False: it is to be merged."""
-        if not self.online or report.at < self.position_at or report.words != self._said:
+        if not self.online or report.at < self.position_at or report.words != self._last_words:
             return False
         self.repeats += 1
         self._hear(report)
@@ -150,7 +150,7 @@ class Belief:
             self.piece_boot = self.boot_id
         if report.epoch is not None:
             self.plant = report.plant  # a bridge that restarted has to hear the plant anew
-        self._said, self.lost = report.words, report.lost
+        self._last_words, self.lost = report.words, report.lost
         self._count_rate(report.at)
         self.online = self._is_online()
 
@@ -295,7 +295,7 @@ class Belief:
     def _failure(self, trouble: Trouble | None, *, was: bool) -> Failure | None:
         if trouble is None:
             return None
-        sentence = trouble.was if was else trouble.said
+        sentence = trouble.was if was else trouble.phrase
         return Failure(reason=trouble.reason, sentence=sentence(robot=self.robot.name, **trouble.more))
 
     def _unanswered(self) -> Trouble:
@@ -345,7 +345,7 @@ class Trouble(NamedTuple):
     """Trouble of a robot: its sentence while it lasts, and another one that stays true afterwards."""
 
     reason: Reason
-    said: Phrase
+    phrase: Phrase
     was: Phrase
     more: Mapping[str, int | Sentence] = {}
 

@@ -302,7 +302,7 @@ class Dispatcher:
         if belief.robot.objection(report) is not None:
             self.ledger.ignored["report"] += 1
             return
-        before, facts = Before.of(belief), self._told(belief)
+        before, facts = Before.of(belief), self._facts_shown(belief)
         was_held, held_since_boot = belief.held_in(belief), belief.held_boot
         self._hear_of_others(report)
         was_online, latched = belief.online, report.robot in self.latched
@@ -323,7 +323,7 @@ class Dispatcher:
         self._prove(belief, report, now, before)
         if latched and (new_link or (belief.online and not was_online)):  # it may have forgotten its stop
             self._stop(report.robot, StopMode.LATCH)
-        if self._told(belief) != facts:
+        if self._facts_shown(belief) != facts:
             self.version += 1
             self.ledger.changed |= self._cells_of[report.robot]
 
@@ -459,7 +459,7 @@ class Dispatcher:
         elif self.under_way.is_overdue(name, now) and not self.ledger.of_robot(name):
             self._stop(name, StopMode.HALT)
 
-    def _told(self, belief: Belief) -> tuple[object, ...]:
+    def _facts_shown(self, belief: Belief) -> tuple[object, ...]:
         """The part of a belief to which trees and screens react: everything but positions."""
         return (belief.trouble, belief.piece, belief.effector, belief.facts_no)
 

@@ -352,7 +352,7 @@ def _unproven(entry: Entry, belief: Belief, report: Report) -> Verdict | None:
     return None
 
 
-def _set_as_told(entry: Entry, belief: Belief, report: Report) -> Verdict | None:
+def _set_as_reported(entry: Entry, belief: Belief, report: Report) -> Verdict | None:
     """UInt8 commands carry no id over ROS 2: what the robot reports of it confirms a switch."""
     if not entry.sets:
         return Verdict(feed=Feed.DONE) if report.done == entry.command.id else None
@@ -400,8 +400,8 @@ RULES: dict[tuple[type[Command], Evidence], Rule] = {
     (Process, Evidence.IDS): _work_by_ids,
     (Process, Evidence.JOINTS): _process_by_facts,
     (Process, Evidence.STATE): _work_by_state,
-    (Switch, Evidence.IDS): _set_as_told,
-    (Switch, Evidence.JOINTS): _set_as_told,
+    (Switch, Evidence.IDS): _set_as_reported,
+    (Switch, Evidence.JOINTS): _set_as_reported,
     (Query, Evidence.IDS): _answered,
     (Query, Evidence.JOINTS): _answered,
     (Query, Evidence.STATE): _answered,

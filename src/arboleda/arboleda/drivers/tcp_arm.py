@@ -48,7 +48,7 @@ class TcpArm(ABC):
     @property
     def next_deadline(self) -> float:
         """The time (s) at which `step` is due even without events."""
-        return min(self._link_deadline, self._heard_at + SILENT_S) if self._open else self._open_at
+        return min(self._link_deadline, self._last_data_at + SILENT_S) if self._open else self._open_at
 
     def step(self, now: float, events: Sequence[Any]) -> list[Any]:
         """Take events and the time, and return messages to act on; at most one is a report of the arm."""
@@ -97,7 +97,7 @@ class TcpArm(ABC):
         self._lose(now, why)
 
     def _silence(self, now: float) -> str:
-        silent = now >= self._heard_at + SILENT_S
+        silent = now >= self._last_data_at + SILENT_S
         return f"its feedback has stood still for {SILENT_S:g} s" if silent else ""
 
     def _lose(self, now: float, why: str) -> None:
@@ -113,7 +113,7 @@ class TcpArm(ABC):
     def _forget_arm(self, now: float) -> None:
         self._rest_since: float | None = None
         self._stopping_since: float | None = None  # inf: the stop is not answered yet
-        self._heard_at = now
+        self._last_data_at = now
 
     # Commands.
 

@@ -198,24 +198,26 @@ class DeviceKind:
         sets = known.sets_with(dict(in_order))
         if known.sets_by is not None:
             self._check_facts(f"{verb} sets", sets)
-        return COMMANDS[known.effect](id=id, robot=robot, verb=verb, values=in_order, told=known, made=sets)
+        return COMMANDS[known.effect](
+            id=id, robot=robot, verb=verb, values=in_order, definition=known, made=sets
+        )
 
     def shown_by(self, call: VerbCall, facts: Facts) -> Facts:
         """The further facts that a virtual device shows after this; raises UseError for an invalid one."""
-        if call.told.virtual is None:
+        if call.definition.virtual is None:
             return ()
         what = f"virtual of {call.verb}"
-        found = _facts(what, _computed(what, call.told.virtual, dict(facts), **dict(call.values)))
+        found = _facts(what, _computed(what, call.definition.virtual, dict(facts), **dict(call.values)))
         self._check_facts(what, found)
         return found
 
     def answer_of(self, call: VerbCall, facts: Facts) -> Value:
         """The answer of a virtual device to a query; raises UseError if the query has no such answer."""
-        answers = call.told.answers
-        if call.told.virtual is None:
+        answers = call.definition.answers
+        if call.definition.virtual is None:
             return answers[0]
         what = f"virtual of {call.verb}"
-        found = _computed(what, call.told.virtual, dict(facts), **dict(call.values))
+        found = _computed(what, call.definition.virtual, dict(facts), **dict(call.values))
         if found not in answers:
             allowed = ", ".join(map(shown, answers))
             raise UseError(f"{what} answers {quoted(found)}; its answers are {allowed}")
@@ -255,7 +257,7 @@ class VerbCall(Command):
 
     verb: str
     values: Facts
-    told: DeviceVerb = field(repr=False, compare=False)
+    definition: DeviceVerb = field(repr=False, compare=False)
     made: Facts = field(repr=False, compare=False)  # the facts that it sets with these values
 
     @property
@@ -273,25 +275,25 @@ class VerbCall(Command):
     @property
     def takes_s(self) -> float:
         """The time that a virtual device takes for it, s."""
-        return self.told.takes_s_with(dict(self.values))
+        return self.definition.takes_s_with(dict(self.values))
 
     @property
     def needs(self) -> Facts:
-        return self.told.needs
+        return self.definition.needs
 
     @property
     def works_on_part(self) -> bool:
-        return self.told.works_on_part
+        return self.definition.works_on_part
 
     @property
     def at_most_s(self) -> float:
-        return self.told.at_most_s
+        return self.definition.at_most_s
 
 
 class WorkCall(VerbCall, Work):
     @property
     def on_stop(self) -> OnStop:
-        return self.told.on_stop
+        return self.definition.on_stop
 
 
 class MotionCall(WorkCall, Motion):
@@ -307,7 +309,7 @@ class SwitchCall(VerbCall, Switch):
 
     @property
     def grips(self) -> bool | None:
-        return bool(dict(self.sets)[self.told.held[0]]) if self.told.holds else None
+        return bool(dict(self.sets)[self.definition.held[0]]) if self.definition.holds else None
 
 
 class QueryCall(VerbCall, Query):

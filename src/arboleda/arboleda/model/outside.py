@@ -38,10 +38,10 @@ def quoted(value: object, most: int = 40) -> str:
     return plain(repr(value), most)
 
 
-def said_by(error: BaseException, most: int = LINE) -> str:
+def text_of_error(error: BaseException, most: int = LINE) -> str:
     """The text of an error, on one line; its name where it has none.
 
-    >>> said_by(ValueError("no port")), said_by(TimeoutError())
+    >>> text_of_error(ValueError("no port")), text_of_error(TimeoutError())
     ('no port', 'TimeoutError')
     """
     return plain(str(error).strip(), most) or type(error).__name__

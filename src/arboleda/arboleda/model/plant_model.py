@@ -179,7 +179,7 @@ class Robot:
         return None
 
     @property
-    def is_asked(self) -> bool:
+    def is_person(self) -> bool:
         """True for a person, who answers on the plant's own screens."""
         return self.link is Link.SCREEN
 
@@ -270,7 +270,7 @@ class Pose:
         return self.q
 
     @property
-    def said(self) -> Sentence:
+    def sentence(self) -> Sentence:
         """Its name as sentences have it."""
         return self.title or OWN(text=self.name)
 

@@ -50,12 +50,12 @@ class Sentence:
     def key(self) -> str:
         return self.phrase.key
 
-    def told(self, template: Callable[[Phrase], str]) -> str:
+    def text_by(self, template: Callable[[Phrase], str]) -> str:
         """It in the language whose text for a phrase, with the same slots, is `template`.
 
         Of a value that says nothing its parentheses say nothing either.
         """
-        words = {slot: _told(value, template) for slot, value in self.values.items()}
+        words = {slot: _text_of(value, template) for slot, value in self.values.items()}
         text = template(self.phrase)
         for slot in [slot for slot, word in words.items() if word == ""]:
             text = text.replace(f" ({{{slot}}})", "")
@@ -75,7 +75,7 @@ class Sentence:
 
     def __str__(self) -> str:
         if self._text is None:
-            self._text = self.told(_english)
+            self._text = self.text_by(_english)
         return self._text
 
     def __repr__(self) -> str:
@@ -150,11 +150,11 @@ def _english(phrase: Phrase) -> str:
     return phrase.english
 
 
-def _told(value: Value, template: Callable[[Phrase], str]) -> Any:
+def _text_of(value: Value, template: Callable[[Phrase], str]) -> Any:
     if isinstance(value, Sentence):
-        return str(value) if template is _english else value.told(template)
+        return str(value) if template is _english else value.text_by(template)
     if isinstance(value, tuple):
-        return ", ".join(str(_told(each, template)) for each in value)
+        return ", ".join(str(_text_of(each, template)) for each in value)
     return value
 
 

@@ -90,5 +90,5 @@ class FilmRun:
                 self._look()
 
     def _look(self) -> None:
-        self.seen, self.positions = self._film.at(self.tick)
-        self.state.see(self.seen, self._began_unix_s + self.tick * TICK_S)
+        self.snapshot, self.positions = self._film.at(self.tick)
+        self.state.see(self.snapshot, self._began_unix_s + self.tick * TICK_S)

@@ -34,7 +34,7 @@ class Run:
         self.tick = 0
         self.answers: dict[str, Answer] = {}  # by the token of the request
         self.state = PageState(layout, [])
-        self.seen: Row = {}  # the last snapshot that the screen's memory took in
+        self.snapshot: Row = {}  # the last snapshot that the screen's memory took in
         self._watched = JudgedWorld(model, invariants=())
         self._climate = climate
         self._began_unix_s = began_unix_s
@@ -111,8 +111,8 @@ class Run:
             self._watched.begin(fault)
 
     def _look(self) -> None:
-        self.seen = self._snapshot()
-        self.state.see(self.seen, self._began_unix_s + self._watched.seconds)
+        self.snapshot = self._snapshot()
+        self.state.see(self.snapshot, self._began_unix_s + self._watched.seconds)
 
     def _hear(self) -> None:
         moment = self._watched.world.moment

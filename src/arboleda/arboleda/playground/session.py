@@ -62,7 +62,7 @@ class Session:
         self._acts: list[Act] = []
         self._awaited: dict[str, VerbAsked | TaskAsked] = {}
         self._followed: dict[int, dict[str, str]] = {}  # acts that devices carry out, by number
-        self._said: list[Said] = []
+        self._lines: list[Said] = []
         self._looks = False
         self._drawn: Row = {}
         self.forget()
@@ -118,7 +118,7 @@ class Session:
         now = self._run.tick
         self.go(max((tick for tick in map(self._shown_at, self._happened()) if tick < now), default=0))
 
-    def asked(self, act: str, of: str, more: object = None) -> None:
+    def take(self, act: str, of: str, more: object = None) -> None:
         """Take a request of the page, in the form of its buttons; anything else is ignored."""
         if self._refused():
             return
@@ -144,7 +144,7 @@ class Session:
     def _refused(self) -> bool:
         """Say so where nothing can be asked, as all has happened already."""
         if self._film is not None:
-            self._said.append((texts(self._words.language, "playground")["story_is_over"], False))
+            self._lines.append((texts(self._words.language, "playground")["story_is_over"], False))
         return self._film is not None
 
     def task_face(self, id: str) -> Face:
@@ -157,7 +157,7 @@ class Session:
         follows), marks (ticks of mishaps)}."""
         run = self._run
         face = run.state.face(self._words.language, run.links)
-        face |= self._hands(run.seen)
+        face |= self._hands(run.snapshot)
         patch, self._shown = changed(self._shown, face), face
         return {
             "face": patch,
@@ -215,7 +215,7 @@ class Session:
         for token in [each for each in self._awaited if each in self._run.answers]:
             act, answer = self._awaited.pop(token), self._run.answers[token]
             if isinstance(answer, TaskChanged):
-                self._said.append(outcomes.of_task(self._words, view.change(answer)))
+                self._lines.append(outcomes.of_task(self._words, view.change(answer)))
             elif isinstance(act, VerbAsked):
                 self._answered(act, answer)
         for number in [*self._followed]:
@@ -223,7 +223,7 @@ class Session:
 
     def _answered(self, act: VerbAsked, answer: OperatorAnswer) -> None:
         named = outcomes.act(self._words, act.verb, act.scope, act.arguments, by_hand=act.by_hand)
-        self._said.append(outcomes.of_answer(self._words, answer, named))
+        self._lines.append(outcomes.of_answer(self._words, answer, named))
         if answer.outcome is Outcome.UNDER_WAY and answer.act is not None:
             self._followed[answer.act] = named
 
@@ -233,10 +233,10 @@ class Session:
             named = self._followed.pop(number)
             if row is not None:
                 outcome = Outcome(row["outcome"])
-                self._said.append(outcomes.of_outcome(self._words, outcome, row["why"], named))
+                self._lines.append(outcomes.of_outcome(self._words, outcome, row["why"], named))
 
     def _taken_lines(self) -> list[Said]:
-        lines, self._said = self._said, []
+        lines, self._lines = self._lines, []
         return lines
 
     def _twin_patch(self) -> Row:

@@ -95,7 +95,7 @@ class Tab:
         return self._framed()
 
     def act(self, request: Row) -> Row:
-        self._open.asked(request["act"], request["of"], request["more"])
+        self._open.take(request["act"], request["of"], request["more"])
         return self._framed()
 
     def befall(self, request: Row) -> Row:

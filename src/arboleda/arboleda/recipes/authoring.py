@@ -32,7 +32,7 @@ from arboleda.trees.leaves import Dwell, Require, Unless, titled
 
 from .decorators import Again, AtMost, Forgiven, Inverted, Rescue, Times
 from .errors import RecipeError, RoleError
-from .handles import Ask, Step, chain, flat, handle, is_list, named, question_of, said, usable
+from .handles import Ask, Step, chain, flat, handle, is_list, named, question_of, usable, value_text
 from .holding import WORK, held
 from .parameters import parameter
 from .sharing import check_at_once, using
@@ -138,7 +138,7 @@ def _build(
     context.parts.forget_origins()
     making = Making(running=((name, order.values),))
     step = usable(function(Kit(context, making), **order.values), f"{name} returns", RETURNS)
-    check_asked(step, making)
+    check_choices(step, making)
     called = title() if title else name
     return steps.task(called, flat([held(context, step)]), context, notes_origins=True)
 
@@ -184,7 +184,7 @@ class Making:
         return Making(running=running, chosen=self.chosen)
 
 
-def check_asked(step: Step, making: Making) -> None:
+def check_choices(step: Step, making: Making) -> None:
     """RecipeError where something is chosen by an answer that nobody has been asked for by then."""
     if not making.chosen:
         return
@@ -314,7 +314,7 @@ class Kit:
             if answer in ways:
                 return self._context.failures.first
             known = tuple(map(shown, ways))
-            sentence = OTHER_ANSWER(robot=question.name, answer=said(answer), known=known)
+            sentence = OTHER_ANSWER(robot=question.name, answer=value_text(answer), known=known)
             return Failure(reason=Reason.REJECTED, sentence=sentence)
 
         def branch(value: Value, way: Step | Sequence[Step]) -> Step:

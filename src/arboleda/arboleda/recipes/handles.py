@@ -152,14 +152,14 @@ class Handle:
 
     def _unsaid(self, facts: Mapping[str, Value]) -> list[str]:
         """Those of the facts that the device does not say."""
-        return [name for name, value in facts.items() if self._told(name) != value]
+        return [name for name, value in facts.items() if self._reported(name) != value]
 
-    def _told(self, fact: str) -> Value | None:
+    def _reported(self, fact: str) -> Value | None:
         return self._context.robots.fact(self._device.name, fact)
 
     def _objection(self, facts: Mapping[str, Value]) -> Failure | None:
         for name in self._unsaid(facts):
-            reported, value = said(self._told(name)), shown(facts[name])
+            reported, value = value_text(self._reported(name)), shown(facts[name])
             sentence = NOT_SO(robot=self._device.name, told=reported, fact=name, value=value)
             return Failure(reason=Reason.PRECONDITION, sentence=sentence)
         return None
@@ -196,7 +196,7 @@ class DeviceHandle(Handle):
                 act = self._of(Act(f"{name} {words}", self._context, make, DOING(order=words)))
                 return steps.sequence(act.title, *zones, act) if zones else act
             question = Ask(f"{name} {words}", self._context, make, DOING(order=words))
-            question.answers, question.by, question.asked = order.told.answers, name, words
+            question.answers, question.by, question.asked = order.definition.answers, name, words
             self._of(question)
             return titled(AskInZones(question, zones), question.title) if zones else question
 
@@ -265,7 +265,7 @@ class RobotHandle(Handle):
         there = flat(work, "visit")
         check_holds_none("a visit", there)
         parts = steps.visit_from_anywhere(self._context, self._device.name, pose, there)
-        return self._of(steps.sequence(VISIT(pose=pose.said), *parts))
+        return self._of(steps.sequence(VISIT(pose=pose.sentence), *parts))
 
     def tour(self, *stops: str | Pick | Place) -> Step:
         """Go from target to target, take hold and let go there, and stay at the last one.
@@ -341,7 +341,7 @@ def named(step: object) -> str:
     return step.name if isinstance(step, Behaviour) else quoted(step)
 
 
-def said(value: Value | None) -> str:
+def value_text(value: Value | None) -> str:
     return "nothing" if value is None else shown(value)
 
 

@@ -113,7 +113,7 @@ def _groups(context: Context, parts: Sequence[Behaviour]) -> list[_Group]:
     for index, part in enumerate(parts):
         if _may_stay_in_zones(part):
             needed[index] = needed[index].union(*needed[index:])
-    people = {each.name for each in context.cell.robots if each.is_asked}
+    people = {each.name for each in context.cell.robots if each.is_person}
     last = {device: index for index, devices in enumerate(needed) for device in devices - people}
     found: list[_Group] = []
     for index, devices in enumerate(needed):

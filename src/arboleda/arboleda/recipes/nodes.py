@@ -28,7 +28,7 @@ from arboleda.model.plant_model import Cell
 from arboleda.model.recipe import Limits
 from arboleda.trees.context import Context
 
-from .authoring import Kit, Making, check_asked, notes_of
+from .authoring import Kit, Making, check_choices, notes_of
 from .errors import RecipeError
 from .handles import Step, usable
 from .parameters import Choice, Number, Target, parameter
@@ -69,7 +69,7 @@ class WrittenNode:
         step = usable(
             self.function(Kit(context, making), *children, **values), f"{self.name} returns", RETURNS
         )
-        check_asked(step, making)
+        check_choices(step, making)
         there = {id(each) for each in step.iterate()}
         if any(id(each) not in there for each in children):
             raise RecipeError(f"{self.name} returns a step in which one of its children is not")

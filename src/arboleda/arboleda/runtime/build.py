@@ -134,7 +134,7 @@ class App:
         self._metrics: Metrics | None = None
         self._web: WebPart | None = None
         options.alarms.check(model, has_broker=model.has_boards or options.broker is not None)
-        self._alarms = alarms_part(model, options.alarms, self._broker, self._seen_at)
+        self._alarms = alarms_part(model, options.alarms, self._broker, self._address_of)
         self._groot2 = _groot2(model, options) if "orchestrator" in parts else None
         self._opcua_view = self._view(model, options) if "orchestrator" in parts else None
         self._bridge: BridgePart | None = None
@@ -534,7 +534,7 @@ class App:
         """The address of this host that hosts which reach the memory may reach it by."""
         return self._store.own_address() or other_address()
 
-    def _seen_at(self, cell: str, task: str | None) -> str | None:
+    def _address_of(self, cell: str, task: str | None) -> str | None:
         return self._web.address_of(cell, task) if self._web is not None else None
 
     def _count(self) -> None:
@@ -651,12 +651,12 @@ def _acts(store: PlantMemory) -> list[dict[str, Any]]:
     """The acts of operators before this start, oldest first."""
     entries = reversed(store.entries())
     return [
-        {"at": each.unix_s, "scope": each.scope, "cell": each.cell, "sentence": _told(each)}
+        {"at": each.unix_s, "scope": each.scope, "cell": each.cell, "sentence": _sentence_of(each)}
         for each in entries
     ]
 
 
-def _told(entry: JournalEntry) -> Sentence:
+def _sentence_of(entry: JournalEntry) -> Sentence:
     """The sentence about an operator's act; plain text if an older start or another version wrote it."""
     try:
         return from_data(json.loads(entry.said or ""), ACTS_TOLD | PHRASES)

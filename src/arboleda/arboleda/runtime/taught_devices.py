@@ -80,7 +80,7 @@ def _shown(unit: str, value: float) -> float:
 
 
 def _device(plant: Plant, role: str, robot: Robot) -> Row | None:
-    if robot.is_asked:
+    if robot.is_person:
         return None
     return {
         **standing(plant, robot.name),

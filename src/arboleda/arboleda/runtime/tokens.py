@@ -46,16 +46,16 @@ class TokenFile:
 
     def __init__(self, state: Path) -> None:
         self._file = state / TOKENS
-        self._seen: tuple[int, int] | None = None
+        self._last_file: tuple[int, int] | None = None
         self._tokens: dict[Role, str] = {}
 
     def __call__(self) -> dict[Role, str]:
         """The tokens by role; StartError if the file is missing, readable by others, or malformed."""
         try:
             about = self._file.stat()
-            if (about.st_ino, about.st_mtime_ns) != self._seen:
+            if (about.st_ino, about.st_mtime_ns) != self._last_file:
                 self._tokens = self._read(about.st_mode)
-                self._seen = (about.st_ino, about.st_mtime_ns)
+                self._last_file = (about.st_ino, about.st_mtime_ns)
         except OSError as error:
             raise StartError(f"The tokens in {self._file} cannot be read: {error.strerror}.") from error
         return self._tokens

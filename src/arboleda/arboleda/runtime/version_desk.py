@@ -213,7 +213,7 @@ class VersionDesk(VersionsApi):
         answer: State = {"version": version.number, "problems": (), "warnings": found.warnings, "cells": {}}
         restart = needing_restart(differences)
         if not restart:
-            outcome = self._told(version, by)
+            outcome = self._answer(version, by)
             restart = () if outcome.refusal is None else (str(outcome.refusal),)
             answer |= {"cells": _when(self._plant(), outcome), "cancelled": outcome.cancelled}
         if restart:
@@ -221,7 +221,7 @@ class VersionDesk(VersionsApi):
             return answer | {"restart": restart, "cells": {}, "cancelled": ()}
         return answer | {"restart": ()}
 
-    def _told(self, version: Version, by: str) -> RevisionAnswer:
+    def _answer(self, version: Version, by: str) -> RevisionAnswer:
         """The answer of the plant to a version; the files are read again, without running any Python."""
         try:
             model, files = loader.load_with_files(self._folder.ours, runs=True)

@@ -39,8 +39,8 @@ class ArmBody(Robotic):
         self.stuck = False
         self._axes = tuple(_axis(joint) for joint in arm.joints)
         self._drift = self._steps(start)  # true position minus counted position, per joint
-        self._seen: tuple[object, ...] = ()  # the values that `_told` was made of
-        self._told = BodyReport()
+        self._last_state: tuple[object, ...] = ()  # the values that `_last_report` was made of
+        self._last_report = BodyReport()
         self.reset()
         self._count_anew()
 
@@ -147,11 +147,11 @@ class ArmBody(Robotic):
 
     def tell(self) -> BodyReport:
         state = (self.position, self._drift, self.next_change_us, self.effector, self.holding, self.supplied)
-        if state != self._seen:
-            self._seen = state
+        if state != self._last_state:
+            self._last_state = state
             q = tuple([steps * step for steps, step in zip(state[0], self._step_deg, strict=True)])
-            self._told = BodyReport(q, None, self.effector, self.holding or self._piece_lies_here())
-        return self._told
+            self._last_report = BodyReport(q, None, self.effector, self.holding or self._piece_lies_here())
+        return self._last_report
 
     def _steps(self, q: tuple[float, ...]) -> tuple[int, ...]:
         return tuple(joint.steps(value) for joint, value in zip(self._joints, q, strict=True))

@@ -55,7 +55,7 @@ class Board:
         self._channels = {topic(robot.mqtt, channel): channel for channel in Channel if channel in channels}
         self._now_us = now_us
         self._uplink = Uplink(robot.mqtt)
-        self._said: tuple[Any, ...] | None = None  # values of the last telemetry
+        self._last_state: tuple[Any, ...] | None = None  # values of the last telemetry
         self._boot(boot_id, homed=True)
 
     def _boot(self, boot_id: int, *, homed: bool) -> None:
@@ -306,10 +306,10 @@ class Board:
     def _tell(self) -> None:
         """Send telemetry; a message equal to the last one but for its number is not built anew."""
         report = self.body.tell()
-        state = (report, self.state, self.boot_id, self.homed, self._receipts.told)
-        last, self._said = self._said, state
+        state = (report, self.state, self.boot_id, self.homed, self._receipts.words)
+        last, self._last_state = self._last_state, state
         if not self._uplink.connected:
-            self._said = None
+            self._last_state = None
         elif state == last:
             self._uplink.tell_again()
         elif last is not None and report.q is not None and _joints_apart(state) == _joints_apart(last):

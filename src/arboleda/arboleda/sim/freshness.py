@@ -17,11 +17,11 @@ class Freshness:
 
     def __init__(self) -> None:
         self._marks: deque[tuple[int, int]] = deque(maxlen=FRESH_US // MARK_US)
-        self._told = 0
+        self._last_number = 0
 
     def tell(self, now_us: int, number: int) -> None:
         """Note that telemetry of this number leaves."""
-        self._told = number
+        self._last_number = number
         if not self._marks or now_us - self._marks[-1][0] >= MARK_US:
             self._marks.append((now_us, number))
 
@@ -33,4 +33,4 @@ class Freshness:
     def covers(self, now_us: int, number: int) -> bool:
         """True if telemetry of this number left within FRESH_US."""
         first = next((report for at_us, report in self._marks if now_us - at_us <= FRESH_US), None)
-        return first is not None and first <= number <= self._told
+        return first is not None and first <= number <= self._last_number

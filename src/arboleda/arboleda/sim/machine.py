@@ -31,7 +31,7 @@ class RunningOrder:
 
     @property
     def verb(self) -> DeviceVerb:
-        return self.command.told
+        return self.command.definition
 
     @property
     def is_work(self) -> bool:
@@ -125,7 +125,7 @@ class MachineBody:
             return "formato"
         if (word := self.refuses(goal)) is not None:
             return word
-        works = command.told.effect in WORK
+        works = command.definition.effect in WORK
         if latched and not _goes_on_while_stopped(command):
             return "paro"
         if works and (self.moving or faulted):
@@ -200,7 +200,7 @@ class MachineBody:
 
     def _supersede(self, command: VerbCall) -> None:
         """Forget the query asked before, and give up the switches of facts that this one sets, too."""
-        effect, sets = command.told.effect, {name for name, _ in command.sets}
+        effect, sets = command.definition.effect, {name for name, _ in command.sets}
         for deed in [deed for deed in self._deeds if not deed.is_repeat]:
             is_switch = deed.verb.effect is Effect.SWITCH
             if is_switch and sets & {name for name, _ in deed.command.sets}:
@@ -240,7 +240,7 @@ class MachineBody:
 
 def _goes_on_while_stopped(command: VerbCall) -> bool:
     """True for a query, and for an order that lets go of a part."""
-    return command.told.effect is Effect.QUERY or getattr(command, "grips", None) is False
+    return command.definition.effect is Effect.QUERY or getattr(command, "grips", None) is False
 
 
 def _never(goal: OrderGoal) -> None:

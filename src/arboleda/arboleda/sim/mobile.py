@@ -23,7 +23,7 @@ class MobileBody(Robotic):
 
     def __init__(self, mobile: Mobile, *, start_node: int) -> None:
         self._grid = mobile.grid
-        self._told = tuple(BodyReport(node=node) for node in range(mobile.grid.size))
+        self._reports = tuple(BodyReport(node=node) for node in range(mobile.grid.size))
         self._edge_us = max(1, round(mobile.grid.pitch / mobile.speed * 1e6))
         self._start_node = self.true_node = start_node
         self.reset()
@@ -84,7 +84,7 @@ class MobileBody(Robotic):
         raise NotImplementedError("a mobile robot has no effector and no topic for one")
 
     def tell(self) -> BodyReport:
-        return self._told[self.node]
+        return self._reports[self.node]
 
     @property
     def _next_node(self) -> int:

@@ -15,7 +15,7 @@ class Receipts:
     """Numbers of the last accepted, finished and refused command, the last answer, and the last few failures.
 
     All count only for `epoch`. `least` is the oldest epoch that still counts: that of the newest heartbeat or
-    command. The tokens are those that the accepted and the finished one carried. `told` has all of these.
+    command. The tokens are those that the accepted and the finished one carried. `words` has all of these.
     `known` is the number of accepted commands that are recognised if they come twice.
     """
 
@@ -39,7 +39,7 @@ class Receipts:
 
     def _note(self) -> None:
         given_up = self.failures
-        self.told = (
+        self.words = (
             self.epoch,
             self.least,
             self.accepted,

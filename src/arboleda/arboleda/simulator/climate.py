@@ -26,7 +26,7 @@ KEYS = ("plant", "seconds", "people", "rates", "faults")  # the first three are 
 
 @dataclass(frozen=True, kw_only=True)
 class Climate:
-    """The faults of one run: `rates` of each kind per minute are drawn from, `told` have a fixed time.
+    """The faults of one run: `rates` of each kind per minute are drawn from; `fixed_faults` have their time.
 
     The same climate gives the same faults for a minute, whichever minutes were asked for before.
     """
@@ -34,7 +34,7 @@ class Climate:
     model: PlantModel
     seed: int
     rates: Mapping[str, float]
-    told: tuple[Fault, ...] = ()
+    fixed_faults: tuple[Fault, ...] = ()
 
     @classmethod
     def draw(cls, model: PlantModel, seed: int, level: str, *, standby: bool = False) -> Climate:
@@ -67,16 +67,16 @@ class Climate:
         from_list: list[Fault] = []
         for number, each in enumerate(listed):
             with within("faults", number):
-                from_list.append(_told(model, Dice(seed, "told", number), each))
+                from_list.append(_fault_from(model, Dice(seed, "told", number), each))
         for name in (*rates, *(fault.kind for fault in from_list)):
             _refuse_hosts(name, standby=standby)
-        return cls(model=model, seed=seed, rates=rates, told=tuple(from_list))
+        return cls(model=model, seed=seed, rates=rates, fixed_faults=tuple(from_list))
 
     def faults(self, minute: int) -> list[Fault]:
         """The faults that begin in a minute of the run, in the order of their times."""
         begin, dice = minute * MINUTE_S, Dice(self.seed, "faults", minute)
         drawn = [self._fault(dice, begin) for _ in range(_count(dice, sum(self.rates.values())))]
-        listed = [fault for fault in self.told if begin <= fault.at < begin + MINUTE_S]
+        listed = [fault for fault in self.fixed_faults if begin <= fault.at < begin + MINUTE_S]
         return sorted([*listed, *drawn], key=lambda fault: fault.at)
 
     def _fault(self, dice: Dice, begin: float) -> Fault:
@@ -132,7 +132,7 @@ def _rates(data: Any) -> dict[str, float]:
     return rates
 
 
-def _told(model: PlantModel, dice: Dice, data: Any) -> Fault:
+def _fault_from(model: PlantModel, dice: Dice, data: Any) -> Fault:
     entry = only(data, FIELDS, "a fault")
     for name in entry:
         _check(name, entry[name])

@@ -59,7 +59,7 @@ class Findings:
         self._world = world
         self._record = record
         self._plant: Plant | None = None
-        self._seen = 0  # commands that were not given
+        self._not_given_count = 0  # commands that were not given
         self._refused: dict[str, list[Finding]] = {}  # by cell, of the task that runs there
         self._recipes: dict[str, str] = {}  # by cell, of the same task
         self._tasks: dict[str, str] = {}  # by cell, its text
@@ -68,12 +68,16 @@ class Findings:
         """Take in a step; no fault has come until then."""
         record, plant = self._record, self._world.plant
         if plant is not self._plant:
-            self._plant, self._seen = plant, 0
-        if record.tasks.changes or record.commands.moved or plant.dispatcher.not_given_count != self._seen:
+            self._plant, self._not_given_count = plant, 0
+        if (
+            record.tasks.changes
+            or record.commands.moved
+            or plant.dispatcher.not_given_count != self._not_given_count
+        ):
             self._take_in()
 
     def _take_in(self) -> None:
-        changes = [change.said for change in self._record.tasks.changes if not change.answer]
+        changes = [change.message for change in self._record.tasks.changes if not change.answer]
         for task_change in changes:
             if task_change.state is TaskState.RUNNING and task_change.cell not in self._recipes:
                 self._began(task_change)
@@ -88,8 +92,8 @@ class Findings:
     def _not_given(self) -> list[Entry]:
         """The commands that did not leave in this step."""
         dispatcher = self._world.plant.dispatcher
-        fresh = dispatcher.not_given_count - self._seen
-        self._seen += fresh
+        fresh = dispatcher.not_given_count - self._not_given_count
+        self._not_given_count += fresh
         return list(dispatcher.not_given)[-fresh:] if fresh else []
 
     def _began(self, change: TaskChanged) -> None:

@@ -56,7 +56,7 @@ class JudgedWorld:
         make_plant: Callable[..., Plant] | None = None,
         standby: bool = False,
     ) -> None:
-        disk = SharedDisk(LeaderRow(epoch=FIRST_EPOCH + 1, seen=START_S)) if standby else None
+        disk = SharedDisk(LeaderRow(epoch=FIRST_EPOCH + 1, renewed_at=START_S)) if standby else None
         self.world = World(model, recipes=recipes, make_plant=make_plant, disk=disk)
         hosts = None if disk is None else Hosts(self.world, disk)
         self._start = self.world.now
@@ -100,7 +100,7 @@ class JudgedWorld:
         """Bring a fault about now, and have it end when its seconds have passed."""
         world, number = self.world, len(self.faults)
         self.faults.append(fault)
-        self.trace.note(f"FAULT      {_told(fault)}")
+        self.trace.note(f"FAULT      {_line(fault)}")
         end = KINDS[fault.kind].begin(world, fault)
         world.last_fault_at = world.now
         if end is not None:
@@ -155,7 +155,7 @@ class JudgedWorld:
             end()
             self.world.faults_active -= 1
             self.world.last_fault_at = self.world.now
-            self.trace.note(f"fault over {_told(self.faults[number])}")
+            self.trace.note(f"fault over {_line(self.faults[number])}")
 
     def _check(self) -> None:
         look = self._look
@@ -173,7 +173,7 @@ class JudgedWorld:
             raise BrokenInvariant(name, sentence)
 
 
-def _told(fault: Fault) -> str:
+def _line(fault: Fault) -> str:
     parts = [fault.kind, fault.target, fault.word, f"{fault.amount:g}" if fault.amount else ""]
     lasting = f"for {fault.seconds:.3f} s" if 0 < fault.seconds < math.inf else ""
     return " ".join(part for part in (*parts, lasting) if part)

@@ -32,8 +32,10 @@ class Moment:
     are the commands of which the plant heard in this step that they did not leave.
     """
 
-    asked: list[Event] = field(default_factory=list)  # tasks and operators' requests that reached the plant
-    heard: list[Report] = field(default_factory=list)  # reports that reached the plant
+    requests: list[Event] = field(
+        default_factory=list
+    )  # tasks and operators' requests that reached the plant
+    reports: list[Report] = field(default_factory=list)  # reports that reached the plant
     sent: list[Any] = field(default_factory=list)  # commands and notices of the plant
     taken: list[FromPlant] = field(default_factory=list)  # what the bridge took in from the plant and others
     published: list[tuple[str, Publication]] = field(default_factory=list)  # (client, what it published)
@@ -51,8 +53,8 @@ class Moment:
     late: list[tuple[Any, float]] = field(default_factory=list)
 
     def clear(self) -> None:
-        self.asked.clear()
-        self.heard.clear()
+        self.requests.clear()
+        self.reports.clear()
         self.sent.clear()
         self.taken.clear()
         self.published.clear()

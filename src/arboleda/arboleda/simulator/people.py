@@ -44,7 +44,7 @@ class Customers:
         self._world = world
         self._dice = Dice(seed, "customers")
         self._groups = Dice(seed, "groups of cells") if any_of else None
-        self._asked: dict[str, Cell] = {}  # by token
+        self._open_requests: dict[str, Cell] = {}  # by token
         self._waiting: set[str] = set()  # their own tasks that are in a queue
         self._started: set[str] = set()
         self._gone = False
@@ -70,8 +70,8 @@ class Customers:
             if isinstance(message, TaskChanged):
                 if message.request is None:
                     self._follow(message)
-                elif message.request in self._asked:
-                    self._answered(message, self._asked.pop(message.request))
+                elif message.request in self._open_requests:
+                    self._answered(message, self._open_requests.pop(message.request))
                 elif message.request in self._texts:
                     self._texts.pop(message.request)
                     self._take_repeat(message)
@@ -89,9 +89,9 @@ class Customers:
 
     def _come_back(self) -> None:
         """Ask again after a death of the plant: anew where no answer came, by id where the task has one."""
-        for cell in self._asked.values():
+        for cell in self._open_requests.values():
             self._come(cell)
-        self._asked.clear()
+        self._open_requests.clear()
         self._texts.clear()
         for id in self._theirs:
             self._world.at(self._world.now + self._back.between(0.0, 20.0), self._ask_again, id)
@@ -138,7 +138,7 @@ class Customers:
                 text = self._theirs[id] = f"{text} #{id}"
                 for old in [*self._theirs][:-REMEMBERED]:
                     del self._theirs[old]
-            self._asked[token] = cell
+            self._open_requests[token] = cell
             self._world.request_task(text, token)
 
     def _text(self, cell: Cell) -> str:

@@ -225,10 +225,10 @@ class PlantProcess:
             if isinstance(event, Undelivered):
                 moment.undelivered.append(event.id)
             elif isinstance(event, Report):
-                moment.heard.append(event)
+                moment.reports.append(event)
             else:
-                moment.asked.append(event)
-        if moment.asked:
+                moment.requests.append(event)
+        if moment.requests:
             for look in world.before_asking:
                 look()
         self._writes_until = world.now
@@ -343,9 +343,9 @@ class PlantProcess:
     def _make_last_words(self) -> None:
         """Make all that the plant was asked and has sent in this step its last words."""
         moment = self._world.moment
-        moment.last_words += [*moment.asked, *moment.sent]
-        moment.asked.clear()
-        moment.heard.clear()
+        moment.last_words += [*moment.requests, *moment.sent]
+        moment.requests.clear()
+        moment.reports.clear()
         moment.sent.clear()
 
     def _end(self, unkept: Iterable[Any], why: DiskFull) -> None:
@@ -362,14 +362,14 @@ class PlantProcess:
 
     def _step_ending(self, ending: Ending) -> None:
         events, self.inbox = self.inbox, []
-        said = ending.plant.step(self._world.now, events)
+        messages = ending.plant.step(self._world.now, events)
         self._world.processes.due[self._name] = ending.plant.next_deadline
-        self._let_out_unkept(said, ending)
+        self._let_out_unkept(messages, ending)
         if ending.plant.intake.closed and ending.plant.at_rest:
             self.be_gone(ending)
 
-    def _let_out_unkept(self, said: Iterable[Any], ending: Ending) -> None:
-        for message in said:
+    def _let_out_unkept(self, messages: Iterable[Any], ending: Ending) -> None:
+        for message in messages:
             if not leaves_unkept(message):
                 if isinstance(message, Command):
                     why = as_sentence(ending.why)

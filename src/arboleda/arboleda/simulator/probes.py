@@ -67,7 +67,7 @@ class Probes:
         for _, publication in self._world.moment.published:
             if found := WORD.search(publication.payload):
                 yield f"board: {found[1].decode()}"
-        for report in self._world.moment.heard:
+        for report in self._world.moment.reports:
             if report.refusal is not None:
                 yield f"bridge: {report.refusal}"
 
@@ -86,7 +86,7 @@ class Probes:
     def _bridges(self) -> Iterator[str]:
         if self._bridge is not self._world.bridge:
             self._bridge, self._epochs = self._world.bridge, {}
-        for report in self._world.moment.heard:
+        for report in self._world.moment.reports:
             yield from self._raised(report)
 
     def _raised(self, report: Report) -> Iterator[str]:

@@ -64,7 +64,7 @@ class Record:
 
     Of a step: `stepped`: the plant made it in this pass; `born`: the plant started in this pass; `begins`: it
     is the plant's first; `news`: something changed in it besides what robots report, or it is time to look at
-    everything again; `told`: the plant spoke of a task, answered somebody, or a cell changed its state.
+    everything again; `has_spoken`: the plant spoke of a task, answered somebody, or a cell changed its state.
     `anew`: reports that say something else than before, or the same for some time. `away`: the
     plant finds in this step that it did nothing for long; `unattended`: the cells for which nobody has asked
     for anything since, with whether they had something to do then; `unasked`: the motions that it sends to
@@ -91,10 +91,10 @@ class Record:
         self._storage = tuple(storage.values())
         self._people = [robot.name for robot in model.robots.values() if robot.link is Link.SCREEN]
         self.works = Works(storage, self.robots)
-        self.asked = EarlierState()
+        self.before_requests = EarlierState()
         self.acts = Acts()
         self.teachers = Teachers()
-        world.before_asking.append(lambda: self.asked.look(self._cells, self.tasks, world))
+        world.before_asking.append(lambda: self.before_requests.look(self._cells, self.tasks, world))
         self.courses = Courses()
         self.courses.look(world.plant, born=True)
         self.choices = Choices(self.robots, self.courses)
@@ -119,7 +119,7 @@ class Record:
         self.waiting: list[KnownCell] = []  # whose arm waits for zones
         self._requests: tuple[tuple[str, frozenset[str]], ...] = ()
         self.idle: list[KnownCell] = []  # with tasks in the queue, which is not paused
-        self.stepped = self.news = self.born = self.begins = self.told = False
+        self.stepped = self.news = self.born = self.begins = self.has_spoken = False
         self._has_begun = True
         self.undisturbed = True
         self.unnumbered = False
@@ -177,7 +177,7 @@ class Record:
         skipped = self.world.skipped_s != self._skipped_s
         if skipped or self.world.to_plant.troubles or (inbox and inbox[0].at < now):
             self.slow_until, self._skipped_s = now + SLOW_S, self.world.skipped_s
-        acted = moment.sent or moment.heard or moment.asked
+        acted = moment.sent or moment.reports or moment.requests
         if acted or plant.now != self.stepped_at or plant is not self._plant:
             self._look_at_plant(plant)
         elif self.stepped:
@@ -306,12 +306,12 @@ class Record:
             self.proofs.of.clear()
         if self.works.wrong:
             self.works.wrong.clear()
-        if moment.heard:
-            self._hear(bool(moment.asked))
-        if moment.asked:
-            self._ask(moment.asked)
-        if moment.asked or self.teachers.taught or self.teachers.was:
-            self.teachers.look(moment.asked, moment.sent)
+        if moment.reports:
+            self._hear(bool(moment.requests))
+        if moment.requests:
+            self._ask(moment.requests)
+        if moment.requests or self.teachers.taught or self.teachers.was:
+            self.teachers.look(moment.requests, moment.sent)
         self.kept = self._kept
         for message in moment.sent:
             take = taker(message.__class__)
@@ -425,7 +425,7 @@ class Record:
         self.errors.clear()
         self.transitions.clear()
         self.differences.clear()
-        self._has_news = self.told = False
+        self._has_news = self.has_spoken = False
 
     def _compare(self, plant: Plant) -> None:
         """Take over what the plant's books say after this step."""
@@ -440,8 +440,8 @@ class Record:
             self._follow_refusals(plant)
         if self.commands.new or self.tasks.changes:
             self.works.follow(self.tasks, self.commands.new, plant.now)
-        asked = bool(self.world.moment.asked)
-        if asked:
+        has_requests = bool(self.world.moment.requests)
+        if has_requests:
             self.differences += differences(self)
             self._verbs.clear()
             self._cancels_a_task = False
@@ -454,23 +454,23 @@ class Record:
             idle = [cell for cell in self._cells if cell.queued and cell.state is CellState.IDLE]
             self.idle = [cell for cell in idle if not cell.paused]
         late = self.commands.soonest <= plant.now
-        self.news = moved or asked or changed or late or self.born or bool(self.tasks.changes)
-        said = self.tasks.changes or self.tasks.refused or self.answers or self.transitions
-        self.told = bool(said or self.errors)
+        self.news = moved or has_requests or changed or late or self.born or bool(self.tasks.changes)
+        news = self.tasks.changes or self.tasks.refused or self.answers or self.transitions
+        self.has_spoken = bool(news or self.errors)
         self.unnumbered = (changed or bool(self.tasks.changes)) and plant.version == self._version
         self._version = plant.version
         if self.news or plant.now >= self._look_again_at:
             self._look_into_trees(plant.now)
 
-    def _hear(self, asked: bool) -> None:
+    def _hear(self, is_requested: bool) -> None:
         """Take in reports; if somebody asked for something among them, a command may rest on any."""
         moment, robots = self.world.moment, self.robots
         commanded = {each.robot for each in moment.sent if isinstance(each, Command)}
-        for report in moment.heard:
+        for report in moment.reports:
             known = robots.get(report.robot)
             if known is None:
                 continue
-            if report.robot in commanded and (asked or known.robot.home_at_start):
+            if report.robot in commanded and (is_requested or known.robot.home_at_start):
                 self._earlier.setdefault(report.robot, []).append(known.as_it_is())
             if report.robot in self.proofs.by_robot:
                 self.proofs.hear(report, known)
@@ -481,9 +481,9 @@ class Record:
                 if report.rejected is not None:
                     self.commands.hear(report, known)
 
-    def _ask(self, asked: list[Any]) -> None:
-        self._unanswered = deque(event for event in asked if isinstance(event, OperatorRequest))
-        for event in asked:
+    def _ask(self, requests: list[Any]) -> None:
+        self._unanswered = deque(event for event in requests if isinstance(event, OperatorRequest))
+        for event in requests:
             if isinstance(event, OperatorRequest):
                 self._cancels_a_task |= event.verb is Verb.CANCEL and event.scope not in self.scopes
                 self.undisturbed = False
@@ -521,7 +521,7 @@ class Record:
         for cell in self._cells:
             cell.looked, run = False, cell.run
             cell.wakes = cell.context.time.wakes
-            if cell.signs(run) == cell.seen and len(run.queue) == cell.queued:
+            if cell.signs(run) == cell.last_signs and len(run.queue) == cell.queued:
                 continue
             before, changed = cell.state, True
             cell.follow()
@@ -595,8 +595,8 @@ class Record:
 
     def _obstacles(self, known: KnownRobot) -> frozenset[Obstacle]:
         """The obstacles that spoke against a command to this robot all through this step."""
-        asked = self.world.moment.asked
-        now = min((event.at for event in asked), default=self._plant.now)
+        requests = self.world.moment.requests
+        now = min((event.at for event in requests), default=self._plant.now)
         found = known.obstacles(now, self._plant.epoch)
         for earlier in self._earlier.get(known.robot.name, ()):
             earlier.stop = known.stop
@@ -605,16 +605,16 @@ class Record:
         stopped = all(self.cells[cell.name].stopped for cell in cells)
         return found | {Obstacle.STOPPED} if stopped else found
 
-    def _on_fact(self, said: Remember) -> None:
+    def _on_fact(self, message: Remember) -> None:
         kept = {fact: dict(rows) for fact, rows in self._kept.items()}
-        rows = kept.setdefault(said.fact, {})
-        rows.pop(said.name, None)
-        if said.value is not None:
-            rows[said.name] = said.value
+        rows = kept.setdefault(message.fact, {})
+        rows.pop(message.name, None)
+        if message.value is not None:
+            rows[message.name] = message.value
         self._kept = kept
 
     def _on_task(self, change: TaskChanged) -> None:
-        requests = (each for each in self.world.moment.asked if isinstance(each, TaskRequest))
+        requests = (each for each in self.world.moment.requests if isinstance(each, TaskRequest))
         again = change.request is not None or any(each.request is None for each in requests)
         self.tasks.take(change, self._plant.now, is_repeated=again)
         if change.state is TaskState.QUEUED and not self.unattended.get(change.cell or "", True):

@@ -86,14 +86,16 @@ class Simulation:
         answer_anything(self.world, seed)
         self._engineers = Revisions(self.world, seed) if revises else None
         self._script = script
-        self._people = self._customers(seed, any_of=any_of) if script is None else self._told(script, seed)
+        self._people = (
+            self._customers(seed, any_of=any_of) if script is None else self._scripted(script, seed)
+        )
 
     def _customers(self, seed: int, *, any_of: bool) -> Customers:
         customers = Customers(self.world, seed, any_of=any_of)
         Attendant(self.world, seed)
         return customers
 
-    def _told(self, script: Script, seed: int) -> ScriptedPeople:
+    def _scripted(self, script: Script, seed: int) -> ScriptedPeople:
         return ScriptedPeople(self.world, script, lambda: Attendant(self.world, seed))
 
     def run(self, *, cycles: int | None = None, seconds: float | None = None) -> Result:

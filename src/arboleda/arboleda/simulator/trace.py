@@ -53,8 +53,10 @@ class Trace:
         if moment.last_words or moment.unkept:
             unheard = (*moment.last_words, *moment.unkept)
             words += [_hashed(message) for message in unheard if not is_step(message)]
-        if moment.sent or moment.asked:
-            words += [_hashed(message) for message in (*moment.sent, *moment.asked) if not is_step(message)]
+        if moment.sent or moment.requests:
+            words += [
+                _hashed(message) for message in (*moment.sent, *moment.requests) if not is_step(message)
+            ]
         self._hash.update(b"".join(words))
         if self._lines is not None or self._tell is not None:
             for line in self._news():
@@ -72,10 +74,10 @@ class Trace:
         moment = self._world.moment
         final = (*moment.last_words, *moment.unkept)
         last = [f"last words {_last(each)}" for each in final if not isinstance(each, Heartbeat)]
-        requests = [f"asked      {_asked(event)}" for event in moment.asked]
+        requests = [f"asked      {_request_text(event)}" for event in moment.requests]
         messages = [each for each in moment.sent if not is_step(each) and not isinstance(each, Heartbeat)]
         sent = [f"plant      {_sent(each)}" for each in messages]
-        said = [
+        published = [
             f"{client or 'stranger':<10} {each.topic} {each.payload.decode(errors='replace')[:200]}"
             for client, each in moment.published
             if not each.topic.endswith(QUIET)
@@ -86,7 +88,7 @@ class Trace:
             if each.sender and not isinstance(each.message, Heartbeat)
         ]
         done = [f"{board:<10} carries out {_fields(goal)}" for board, goal in moment.executed]
-        return [*last, *requests, *sent, *others, *said, *done]
+        return [*last, *requests, *sent, *others, *published, *done]
 
 
 @cache
@@ -101,7 +103,7 @@ def _hashed(message: Any) -> bytes:
     return repr(message).encode()
 
 
-def _asked(event: Any) -> str:
+def _request_text(event: Any) -> str:
     if isinstance(event, TaskRequest):
         return repr(event.text)
     if isinstance(event, OperatorRequest):
@@ -112,7 +114,7 @@ def _asked(event: Any) -> str:
 
 def _last(message: Any) -> str:
     if isinstance(message, TaskRequest | OperatorRequest):
-        return f"asked {_asked(message)}"
+        return f"asked {_request_text(message)}"
     return _sent(message)
 
 

@@ -9,7 +9,7 @@ import httpx
 
 from arboleda.client.protocol import COMMAND_LINE
 from arboleda.model.errors import ArboledaError
-from arboleda.model.outside import plain, said_by
+from arboleda.model.outside import plain, text_of_error
 from arboleda.model.sentence import Phrase
 from arboleda.runtime.endpoints import Place
 
@@ -68,7 +68,7 @@ class Reach:
         except (asyncio.TimeoutError, httpx.TimeoutException) as error:
             raise PlantSilent(NO_ANSWER(seconds=ANSWER_S)) from error
         except httpx.HTTPError as error:
-            raise PlantSilent(NOT_REACHED(url=url, error=said_by(error)[:LONGEST])) from error
+            raise PlantSilent(NOT_REACHED(url=url, error=text_of_error(error)[:LONGEST])) from error
         except ValueError as error:
             raise PlantSilent(NO_PLANT(url=url)) from error
         if answer.is_success:

@@ -247,7 +247,7 @@ class PlantMemory(ABC):
         ):
             self._write(statement, durable=False)
 
-    def seen(self, unix_s: float, *, ended: bool = False) -> None:
+    def note_run(self, unix_s: float, *, ended: bool = False) -> None:
         """Commit that the plant still runs, or that it was ended."""
         last = "number = (SELECT max(number) FROM run)"
         update = f"UPDATE run SET seen_s = ?, ended = ? WHERE {last}"

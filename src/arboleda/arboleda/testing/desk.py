@@ -54,7 +54,7 @@ class Desk:
 
     def __init__(self, world: World) -> None:
         self._world = world
-        self._asked: dict[str, Handle] = {}
+        self._handles: dict[str, Handle] = {}
         self._by_id: dict[str, list[Handle]] = {}
         self._answers: list[OperatorAnswer] = []
         world.watchers.append(self._look)
@@ -62,13 +62,13 @@ class Desk:
     @property
     def tasks(self) -> list[Handle]:
         """All tasks that were asked for so far."""
-        return list(self._asked.values())
+        return list(self._handles.values())
 
     def submit(self, text: str) -> Handle:
         """Ask for a task and let the plant answer."""
         handle = Handle(text)
-        request = f"test-{len(self._asked) + 1}"
-        self._asked[request] = handle
+        request = f"test-{len(self._handles) + 1}"
+        self._handles[request] = handle
         self._world.tell(TaskRequest(at=self._world.now, text=text, request=request))
         self._world.settle()
         return handle
@@ -94,7 +94,7 @@ class Desk:
 
     def _follow(self, change: TaskChanged) -> None:
         followers = self._by_id.setdefault(change.task, []) if change.task else []
-        request = self._asked.get(change.request or "")
+        request = self._handles.get(change.request or "")
         if request is not None and request not in followers:
             followers.append(request)
         for handle in followers:

@@ -31,23 +31,23 @@ def follow(rig: Rig, cell: str) -> list[str]:
         ways = rig.plant.advice(cell)
         assert ways, f"after {done} nothing is advised: {reasons.of_waiting(rig.plant.cells[cell])}"
         assert len(done) < ENOUGH, f"{done} lead nowhere: {reasons.of_waiting(rig.plant.cells[cell])}"
-        for each in _until_seen(ways):
+        for each in _next_steps(ways):
             done.append(str(in_words(each)))
             assert each.refusal is None, f"{done[-1]} is advised first and refused: {each.refusal}"
             answers = len(rig.answers)
             do(rig, each)
             rig.wait(SOON_S)
             refused = [answer for answer in rig.answers[answers:] if answer.refusal is not None]
-            assert not refused or _is_seen_already(rig, cell, each), refused[-1]
+            assert not refused or _is_reported_already(rig, cell, each), refused[-1]
     return done
 
 
-def _is_seen_already(rig: Rig, cell: str, advice: Advice) -> bool:
+def _is_reported_already(rig: Rig, cell: str, advice: Advice) -> bool:
     """True if a device had reported what was done by hand before anybody said so."""
     return advice.by_hand and advice not in rig.plant.advice(cell)
 
 
-def _until_seen(ways: tuple[Advice, ...]) -> tuple[Advice, ...]:
+def _next_steps(ways: tuple[Advice, ...]) -> tuple[Advice, ...]:
     """The advice to follow now: the first, and after a look into a zone the next, that it is empty."""
     return ways[:2] if ways[0].do is Hand.CHECK else ways[:1]
 

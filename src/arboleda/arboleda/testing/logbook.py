@@ -48,11 +48,11 @@ class Logbook:
 
     def _start(self, plant: Plant) -> None:
         """Begin with a plant that has just begun; one that died and began anew knows nothing of before."""
-        self._plant, self._resting, self._seen = plant, RestingCells(), 0
+        self._plant, self._resting, self._last_number = plant, RestingCells(), 0
         self._chronicle = Chronicle()
         if not self.rows:
             self._chronicle.see(self._snapshot(plant), 0.0)
-            self._seen = len(self._chronicle.events)
+            self._last_number = len(self._chronicle.events)
 
     def _look(self) -> None:
         assert self._watched is not None
@@ -71,8 +71,8 @@ class Logbook:
 
     def _events(self) -> Iterator[Happening]:
         for event in self._chronicle.events:
-            if event["number"] > self._seen:
-                self._seen = event["number"]
+            if event["number"] > self._last_number:
+                self._last_number = event["number"]
                 yield Happening(
                     at=event["at"],
                     cell=event["cell"] or "",

@@ -49,7 +49,7 @@ class Sim:
         self._invariants: tuple[Invariant, ...] | None = None
         self._attendant: Attendant | None = None
         self._asking = False  # a condition of the test is being asked: what it raises is the test's
-        self._told = False  # the error that ended the test has the timeline in it
+        self._has_timeline = False  # the error that ended the test has the timeline in it
 
     def plant(self, plant: PlantModel | Path | str | None = None) -> PlantModel:
         """Choose the plant by its file or as a model; None, and no choice at all, is the shipped plant."""
@@ -156,7 +156,7 @@ class Sim:
             return
         assert until is not None
         if not self._do(lambda: self.world.advance(at_most, lambda: self._ask(until))):
-            self._told = True
+            self._has_timeline = True
             raise self._failure(wording.never(at_most, self._desk.tasks, self._watched))
 
     def rest(self) -> None:
@@ -227,7 +227,7 @@ class Sim:
 
     def last_words(self) -> list[str]:
         """The end of the timeline, for a failed test that has not shown it."""
-        lines = self.timeline() if self._started and not self._told else []
+        lines = self.timeline() if self._started and not self._has_timeline else []
         return wording.timeline(lines) if lines else []
 
     def _before_start(self, what: str) -> None:
@@ -276,5 +276,5 @@ class Sim:
             if self._asking:
                 raise
             breach, cause = BrokenInvariant(NO_EXCEPTION, f"{type(error).__name__}: {error}"), error
-        self._told = True
+        self._has_timeline = True
         raise self._failure(wording.breach(breach, self._watched)) from cause

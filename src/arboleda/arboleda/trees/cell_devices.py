@@ -131,10 +131,15 @@ class CellDevices:
                 return device, earlier[0], False
         return None
 
-    def part_in_free(self, devices: Iterable[str]) -> str | None:
-        """The first of the devices that no cell holds, that does nothing, and in which a part may be."""
+    def unused(self, devices: Iterable[str]) -> list[str]:
+        """Those of the devices that no cell holds and that do nothing, in order of their names."""
         free = [each for each in sorted(devices) if self._zones.holder(each) is None]
-        return next((each for each in free if self._may_hold(each) and not self._works(each)), None)
+        return [each for each in free if not self._works(each)]
+
+    def may_hold(self, device: str) -> bool:
+        """True for a device in which a part may be."""
+        effectors, robot = self._dispatcher.effectors, self._dispatcher.model.robots[device]
+        return robot.held_fact is not None and effectors.grips.holding(device)
 
     def is_stopped(self, device: str) -> bool:
         """True while a stop is not over: it is not cleared, or a cell of the device is not reset."""
@@ -161,7 +166,7 @@ class CellDevices:
 
     def is_as_left(self, device: str) -> bool:
         """True for a shared device as cells leave it to each other: it holds no part, and is at home."""
-        return not self._may_hold(device) and self.is_home(device)
+        return not self.may_hold(device) and self.is_home(device)
 
     def is_home(self, device: str) -> bool:
         """True for a shared robot that is seen at its home, outside all zones, and for what goes nowhere."""
@@ -173,11 +178,7 @@ class CellDevices:
 
     def part_left_in(self, devices: Iterable[str]) -> str | None:
         """The first of the shared devices that the cell holds, and in which a part may be."""
-        return next((each for each in sorted(devices) if self.holds(each) and self._may_hold(each)), None)
-
-    def _may_hold(self, device: str) -> bool:
-        effectors, robot = self._dispatcher.effectors, self._dispatcher.model.robots[device]
-        return robot.held_fact is not None and effectors.grips.holding(device)
+        return next((each for each in sorted(devices) if self.holds(each) and self.may_hold(each)), None)
 
     def _is_first_of(self, robot: str) -> bool:
         return self._dispatcher.model.cell_of[robot].name == self._cell.name

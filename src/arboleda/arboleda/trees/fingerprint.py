@@ -105,7 +105,7 @@ class Spelling:
 
     def __init__(self, known: Seen, *, by_code: bool, source: str) -> None:
         self.words = [source] if source and not by_code else []
-        self._seen = known
+        self._known = known
         self._by_code = by_code
         self._has_source = bool(source)
 
@@ -124,14 +124,14 @@ class Spelling:
             self.words.append(f"{kind.__qualname__}.{value.name}" if is_enum else repr(value))
         elif kind is tuple and PLAIN_TYPES.issuperset(map(type, value)):
             self.words.append(repr(value))
-        elif id(value) in self._seen:
-            self.words.append(f"see {self._seen[id(value)][0]}")
+        elif id(value) in self._known:
+            self.words.append(f"see {self._known[id(value)][0]}")
         else:
             self._add_parts(value, kind, parts)
 
     def _add_parts(self, value: Any, kind: type, parts: Parts) -> None:
         """A call for each value that has parts, and none for each word: a tree has thousands."""
-        self._seen[id(value)] = len(self._seen), value
+        self._known[id(value)] = len(self._known), value
         words = self.words
         words.append(kind.__qualname__)
         if kind is FunctionType and not self._counts_code(value):

@@ -45,6 +45,7 @@ PART_IN_FREE = Phrase(
     "{cell}: {device}, which no cell holds, may hold a part; "
     "release {device} first, or take the part out by hand",
 )
+CANNOT_TAKE = Phrase("device.cannot_take", "{cell} cannot take {device}: {why}")
 NOT_AT_HOME = Phrase(
     "device.not_at_home", "waits for {device}, which no cell holds and which is not seen at its home"
 )
@@ -533,25 +534,37 @@ class LeaveZones(Await):
 class TakeDevices(Await):
     """Wait until a cell has the devices that it shares, all at once; left early, it waits no longer.
 
-    It fails at once where one that no cell holds may hold a part: nothing takes that out but a person.
+    It fails at once where one that no cell holds may hold a part, or has lost its reference: only a person
+    helps there.
     """
 
     def __init__(self, name: Sentence | str, context: Context, devices: frozenset[str]) -> None:
         super().__init__(name, context, self._taken, context.cell.zone_wait_s, self._not_free)
         self.cell = context.cell.name
         self.shared = context.devices
+        self.robots = context.robots
         self.devices = devices
 
     def update(self) -> Status:
-        if (device := self.shared.part_in_free(self.devices)) is not None:
-            sentence = PART_IN_FREE(cell=self.cell, device=device)
-            failure = Failure(reason=Reason.ZONE_UNAVAILABLE, sentence=sentence)
+        if (failure := self._objection()) is not None:
             self.failures.add(failure, self)
             return self.failed(failure)
         status = super().update()
         if status is Status.RUNNING:
             self.feedback = self._awaited()
         return status
+
+    def _objection(self) -> Failure | None:
+        """Why it would wait in vain for a device that no cell holds."""
+        for device in self.shared.unused(self.devices):
+            if self.shared.may_hold(device):
+                sentence = PART_IN_FREE(cell=self.cell, device=device)
+                return Failure(reason=Reason.ZONE_UNAVAILABLE, sentence=sentence)
+            obstacle = self.robots.obstacle(device)
+            if obstacle is not None and obstacle.reason is Reason.NOT_HOMED:
+                sentence = CANNOT_TAKE(cell=self.cell, device=device, why=obstacle.sentence)
+                return Failure(reason=Reason.NOT_HOMED, sentence=sentence)
+        return None
 
     def _awaited(self) -> Sentence:
         if awaited := self.shared.awaited(self.devices):

@@ -246,7 +246,7 @@ def grip(context: Context, robot: str, pose: Pose, *, check: PieceCheck) -> list
     if not check:
         return [unchecked_grip(context, robot)]
     retry, wait_s = context.cell.retry, context.timing.piece_wait_s
-    none = Failure(reason=Reason.NO_PIECE, sentence=NO_PIECE(arm=robot, pose=pose.said))
+    none = Failure(reason=Reason.NO_PIECE, sentence=NO_PIECE(arm=robot, pose=pose.sentence))
     patience_s = wait_s + retry.times * (retry.backoff_s + wait_s)  # to try again is to wait again
     needed = check is True
     attempts = [_attempt(context, robot, pose, number, needed=needed) for number in range(retry.times + 1)]
@@ -397,7 +397,7 @@ def _move(context: Context, robot: str, pose: Pose, *, above: bool = False) -> B
         return device.go(id=id, way=device.motion.route(context.robots.position(robot), goal))
 
     title, doing = (MOVE_ABOVE, MOVING_ABOVE) if above else (MOVE, MOVING)
-    return Act(title(pose=pose.said), context, make, doing(pose=pose.said), guard=context.parts.lost)
+    return Act(title(pose=pose.sentence), context, make, doing(pose=pose.sentence), guard=context.parts.lost)
 
 
 def effector(context: Context, robot: str, *, on: bool, then: Callable[[], None] | None = None) -> Behaviour:
@@ -415,7 +415,7 @@ def effector(context: Context, robot: str, *, on: bool, then: Callable[[], None]
 def _attempt(context: Context, robot: str, pose: Pose, number: int, *, needed: bool) -> Behaviour:
     """Effector on and the piece seen in it; a later attempt opens the effector first."""
     retry = context.cell.retry
-    missed = Failure(reason=Reason.NOT_GRIPPED, sentence=NOT_GRIPPED(arm=robot, pose=pose.said))
+    missed = Failure(reason=Reason.NOT_GRIPPED, sentence=NOT_GRIPPED(arm=robot, pose=pose.sentence))
     final = number == retry.times
     wait_s = context.timing.piece_wait_s
     piece = Piece(PIECE_GRIPPED(), context, robot, wait_s, missed, needed=needed, final=final)

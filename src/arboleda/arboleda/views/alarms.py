@@ -97,7 +97,7 @@ def of_cell(plant: Plant, cell: str) -> Alarm:
     need, first = need_of(run), run.task or next(iter(run.queue), None)
     task = _task(first.id, first.order.text) if first else None
     if need is None:
-        return _alarm(plant, cell, CELL_CLEARED, task, None, CLEARED(cell=cell, state=run.state.said))
+        return _alarm(plant, cell, CELL_CLEARED, task, None, CLEARED(cell=cell, state=run.state.sentence))
     reason = run.trouble.reason.value if run.trouble and need.kind == CELL_HELD else None
     return _alarm(plant, cell, need.kind, task, reason, _why(run))
 

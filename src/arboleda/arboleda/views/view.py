@@ -159,7 +159,7 @@ def _device(role: str, robot: Robot) -> dict[str, Any]:
         "kind": robot.kind_name,
         "position": robot.position_key,
         "holds": robot.held_fact,
-        "asked": robot.is_asked,
+        "asked": robot.is_person,
     }
 
 

@@ -61,7 +61,7 @@ class TcpServer(ABC):
         """The events of a client that has connected to a port."""
 
     @abstractmethod
-    def _heard(self, client: int, port: str, data: bytes) -> list[Any]:
+    def _events_of(self, client: int, port: str, data: bytes) -> list[Any]:
         """The events of bytes that a client sent to a port; none: it has hung up."""
 
     @abstractmethod
@@ -87,7 +87,7 @@ class TcpServer(ABC):
             data = b""
         if not data:
             self._drop(number)
-        return self._heard(number, port, data)
+        return self._events_of(number, port, data)
 
     def _welcome(self, listener: socket.socket, port: str) -> list[Any]:
         client, _ = listener.accept()

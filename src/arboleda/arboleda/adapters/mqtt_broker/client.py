@@ -45,7 +45,7 @@ class Client(asyncio.BufferedProtocol):
         self._unacknowledged: set[int] = set()
         self._half_received: set[int] = set()  # ids of QoS 2 between PUBLISH and PUBREL
         self._silence_s = limits.HELLO_S
-        self._heard_at = self._loop.time()
+        self._last_data_at = self._loop.time()
         self._clock: asyncio.TimerHandle | None = None
         self._rest: asyncio.TimerHandle | None = None
         self._rest_s = 0.0
@@ -74,7 +74,7 @@ class Client(asyncio.BufferedProtocol):
         return self._read
 
     def buffer_updated(self, nbytes: int) -> None:
-        self._heard_at = self._loop.time()
+        self._last_data_at = self._loop.time()
         self._stream.feed(memoryview(self._read)[:nbytes])
         self._work()
 
@@ -277,7 +277,7 @@ class Client(asyncio.BufferedProtocol):
         if self._clock is not None:
             self._clock.cancel()
             self._clock = None
-        left = self._heard_at + self._silence_s - self._loop.time()
+        left = self._last_data_at + self._silence_s - self._loop.time()
         if self._silence_s == 0.0 or self._over:
             return
         if left > 0:

@@ -132,7 +132,7 @@ def commands(kind: DeviceKind, verb: DeviceVerb) -> Iterator[VerbCall]:
 
 def is_work(command: VerbCall) -> bool:
     """True if an order is a motion or a process."""
-    return command.told.effect in WORK
+    return command.definition.effect in WORK
 
 
 def _so(facts: dict[str, Value], wanted: Facts) -> bool:

@@ -152,15 +152,17 @@ def busy(bench: DeviceBench) -> Steps:
 
 def queries(bench: DeviceBench) -> Steps:
     """Each query is answered by its number, with one of the declared answers."""
-    verbs = [each for each in _every(bench) if each.told.effect is Effect.QUERY]
+    verbs = [each for each in _every(bench) if each.definition.effect is Effect.QUERY]
     if not verbs:
         raise CheckSkipped("its kind has no query")
     for command in verbs:
         yield from lead_to(bench, lambda each, wanted=command: each == wanted, f"way to {command.verb}")  # type: ignore[misc]
         yield from carry_out(bench, command)
         answer = bench.last.answer
-        known = not command.told.answers or answer in command.told.answers
-        demand(known, f"it answers {named(command)} with {answer!r}; its kind has {command.told.answers}")
+        known = not command.definition.answers or answer in command.definition.answers
+        demand(
+            known, f"it answers {named(command)} with {answer!r}; its kind has {command.definition.answers}"
+        )
 
 
 def retained(bench: DeviceBench) -> Steps:
@@ -217,7 +219,7 @@ def silence(bench: DeviceBench) -> Steps:
 
 
 def _any(command: VerbCall) -> bool:
-    return command.told.effect is not Effect.QUERY
+    return command.definition.effect is not Effect.QUERY
 
 
 def _every(bench: DeviceBench) -> list[VerbCall]:

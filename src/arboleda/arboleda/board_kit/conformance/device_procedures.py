@@ -54,7 +54,7 @@ def lasting(bench: DeviceBench, least_s: float = LEAST_S) -> Steps:
     """Begin, with beats, a motion or process that lasts and that a stop ends, and return its order."""
 
     def wanted(command: VerbCall) -> bool:
-        return is_work(command) and command.told.on_stop is OnStop.HALT and command.takes_s >= least_s
+        return is_work(command) and command.definition.on_stop is OnStop.HALT and command.takes_s >= least_s
 
     order = yield from lead_to(bench, wanted, f"motion or process of {least_s:g} s and more that a stop ends")
     bench.beating = True
@@ -80,6 +80,6 @@ def _ended(bench: DeviceBench, command: VerbCall, number: int) -> bool:
         return last.state != MOVING and bench.holds(command.sets)
     if number == last.refused or any(seq == number for seq, _ in last.failures):
         return True
-    if command.told.effect is Effect.QUERY:
+    if command.definition.effect is Effect.QUERY:
         return last.answered == number
     return bench.holds(command.sets) and (not is_work(command) or last.done == number)

@@ -57,18 +57,18 @@ class Finding:
     """Finding: what was to be so, what was seen instead, and the last things that happened."""
 
     says: Text
-    seen: str
+    evidence: str
     story: tuple[str, ...] = ()
 
 
 @dataclass(kw_only=True)
 class Verdict:
-    """Verdict on a work: it passes where there are no `findings`. `asked` is the number of questions,
-    `runs` that of simulated runs; `again` simulates the first finding once more, in a plant that is
-    made as its argument says.
+    """Verdict on a work: it passes where there are no `findings`. `questions` and `runs` count its
+    questions and the simulated runs; `again` simulates the first finding once more, in a plant that is made
+    as its argument says.
     """
 
-    asked: int = 0
+    questions: int = 0
     runs: int = 0
     findings: list[Finding] = field(default_factory=list)
     again: Again | None = None
@@ -82,9 +82,10 @@ class Verdict:
     def plain(self) -> dict[str, Any]:
         """The verdict for JSON."""
         findings = [
-            {"says": dict(each.says), "seen": each.seen, "story": list(each.story)} for each in self.findings
+            {"says": dict(each.says), "seen": each.evidence, "story": list(each.story)}
+            for each in self.findings
         ]
-        return {"passes": self.passes, "asked": self.asked, "runs": self.runs, "findings": findings}
+        return {"passes": self.passes, "asked": self.questions, "runs": self.runs, "findings": findings}
 
 
 class Judge:
@@ -112,11 +113,11 @@ class Judge:
                 self._judge(folder, play)
             except ConfigError as error:
                 text = "; ".join(each.replace(f"{folder}/", "") for each in error.problems[:3])
-                self._find(Finding(says=IS_A_PLANT, seen=plain(text, LONGEST)))
+                self._find(Finding(says=IS_A_PLANT, evidence=plain(text, LONGEST)))
         return self.verdict
 
     def _judge(self, folder: Path, play: Play | None) -> None:
-        self.verdict.asked += 1
+        self.verdict.questions += 1
         self._changed()
         if self.verdict.findings:
             return  # what it asks may not be there
@@ -148,26 +149,26 @@ class Judge:
             return  # the plant file's own check says what is wrong
         for place in self._exercise.keeps:
             if _at(before, place) != _at(now, place):
-                self._find(Finding(says=STAYS, seen=f"{place} of {PLANT} was changed"))
+                self._find(Finding(says=STAYS, evidence=f"{place} of {PLANT} was changed"))
 
     def _declared(self, model: PlantModel, recipe: str, ends: Mapping[str, Any]) -> None:
-        self.verdict.asked += 1
+        self.verdict.questions += 1
         declared_ends = [
             dict(each.end_of({})) for cell in model.cells for each in cell.recipes if each.name == recipe
         ]
         for what, value in ends.items():
             if not any(each.get(what) == value for each in declared_ends):
                 evidence = f"ends_with of {recipe} does not say that {what} is {shown(value)}"
-                self._find(Finding(says=DECLARES, seen=evidence))
+                self._find(Finding(says=DECLARES, evidence=evidence))
 
     def _try(self, model: PlantModel, trial: Trial) -> None:
-        self.verdict.asked += 1
+        self.verdict.questions += 1
         faults: Sequence[TimedFault] = trial.faults
         if trial.faults_in:
             try:
                 faults = _written(self._theirs.get(trial.faults_in, b""), model, trial.faults_in)
             except ArboledaError as error:
-                self._find(Finding(says=trial.says, seen=str(error)))
+                self._find(Finding(says=trial.says, evidence=str(error)))
                 return
         course = self._run(model, trial, faults)
         if trial.faults_in and self._exercise.record is not None:
@@ -175,7 +176,7 @@ class Judge:
             course.objections += _others(recorded, course)
         if course.objections:
             evidence = plain("; ".join(course.objections[:MOST]), LONGEST)
-            finding = Finding(says=trial.says, seen=evidence, story=tuple(course.story[-LAST:]))
+            finding = Finding(says=trial.says, evidence=evidence, story=tuple(course.story[-LAST:]))
             self._find(finding, lambda make: run_trial(model, trial, faults, make_plant=make))
 
     def _run(self, model: PlantModel, trial: Trial, faults: Sequence[TimedFault]) -> Course:
@@ -187,18 +188,18 @@ class Judge:
         self._progress(self.verdict.runs)
 
     def _prove(self, model: PlantModel, proving: Proving) -> None:
-        self.verdict.asked += 1
+        self.verdict.questions += 1
         boards = model.on_boards(*ELSEWHERE)
         calm = tuple(calm_runs(boards, scenarios(boards, [proving.recipe])))
         if not calm:
-            self._find(Finding(says=HOLDS, seen=f"no cell offers {proving.recipe}"))
+            self._find(Finding(says=HOLDS, evidence=f"no cell offers {proving.recipe}"))
         for each in calm:
             if not each.is_sound and not _was_to_fail(each):
                 broken = ": ".join(each.run.outcome.broken or ())
                 why = broken or f"{each.run.outcome.words}: {each.finding or each.why}"
                 self._find(
                     Finding(
-                        says=HOLDS, seen=plain(f"{each.scenario.name}, without any fault: {why}", LONGEST)
+                        says=HOLDS, evidence=plain(f"{each.scenario.name}, without any fault: {why}", LONGEST)
                     )
                 )
                 return
@@ -209,14 +210,16 @@ class Judge:
             name, sentence = breach.run.outcome.broken or ("", "")
             evidence = f"{breach.scenario.name}: {breach.befell}, {breach.instant.name}: {name}: {sentence}"
             finding = Finding(
-                says=HOLDS, seen=plain(evidence, LONGEST), story=tuple(_short(breach.result.lines)[-LAST:])
+                says=HOLDS,
+                evidence=plain(evidence, LONGEST),
+                story=tuple(_short(breach.result.lines)[-LAST:]),
             )
             at = next(each for each in calm if each.scenario == breach.scenario)
             self._find(finding, partial(_recorded, boards, at, breach.fault))
         wrong = next(_wrong_ends(tally, proving), None)
         if wrong is not None and not self.verdict.findings:
             case, evidence = wrong
-            finding = Finding(says=HOLDS, seen=plain(evidence, LONGEST))
+            finding = Finding(says=HOLDS, evidence=plain(evidence, LONGEST))
             self._find(finding, partial(_recorded, boards, calm[case.row], case.fault))
 
 

@@ -39,14 +39,14 @@ def judged(work: Work, *, story: Path | None = None) -> Verdict:
         "files": {name: each.decode("utf-8", "surrogateescape") for name, each in work.files.items()},
         "story": None if story is None else str(story.absolute()),
     }
-    output = _said(json.dumps(request).encode())
+    output = _output(json.dumps(request).encode())
     try:
         found = json.loads(output.splitlines()[-1])
         findings = [
-            Finding(says=each["says"], seen=each["seen"], story=tuple(each["story"]))
+            Finding(says=each["says"], evidence=each["seen"], story=tuple(each["story"]))
             for each in found["findings"]
         ]
-        return Verdict(asked=found["asked"], runs=found["runs"], findings=findings)
+        return Verdict(questions=found["asked"], runs=found["runs"], findings=findings)
     except (ValueError, LookupError, TypeError):
         return _cannot(NO_VERDICT.format(seconds=CPU_S))
 
@@ -72,10 +72,10 @@ def _record(story: Path, plant: Plant, again: Again) -> None:
 
 
 def _cannot(why: str) -> Verdict:
-    return Verdict(findings=[Finding(says=CAN_BE_JUDGED, seen=why)])
+    return Verdict(findings=[Finding(says=CAN_BE_JUDGED, evidence=why)])
 
 
-def _said(request: bytes) -> bytes:
+def _output(request: bytes) -> bytes:
     """Answer of the process; nothing, and it is ended with all that it has started, if it takes too long."""
     command = [sys.executable, "-I", "-c", START, json.dumps(sys.path)]
     pipe = subprocess.PIPE

@@ -66,7 +66,7 @@ def _of_verbs(role: str, device: Any, clues: Clues, text: str, named: int) -> It
         for values in _values(verb):
             sets = dict(verb.sets_with(values)) if _is_certain(verb, values) else {}
             facts = clues.count(sets) + clues.count({str(word) for word in sets.values()})
-            flags = any(type(value) is bool and _is_said(value, clues) for value in sets.values())
+            flags = any(type(value) is bool and _is_in_text(value, clues) for value in sets.values())
             for arguments in _arguments(verb, values, text):
                 yield KnownStep(
                     role=role,
@@ -78,7 +78,7 @@ def _of_verbs(role: str, device: Any, clues: Clues, text: str, named: int) -> It
                 )
 
 
-def _is_said(value: bool, clues: Clues) -> bool:
+def _is_in_text(value: bool, clues: Clues) -> bool:
     return shown(value) in clues.text.replace(",", " ").split()
 
 

@@ -30,7 +30,7 @@ class Calm:
 
     `finding` is what went wrong although nothing had: a command that was refused, a task that failed and was
     not to. `again` is what came of the same task a second time, empty where that was done.
-    `asked` are those who were asked something, with the answers that they did not give.
+    `questions` are those who were asked something, with the answers that they did not give.
     """
 
     scenario: Scenario
@@ -40,7 +40,7 @@ class Calm:
     commands: tuple[str, ...]
     state: EndState
     lasts_s: float
-    asked: tuple[tuple[str, tuple[Value, ...]], ...]
+    questions: tuple[tuple[str, tuple[Value, ...]], ...]
     finding: str = ""
     again: str = ""
 
@@ -57,7 +57,7 @@ class _Marks:
 
     def __init__(self, stage: Stage) -> None:
         self.rows: list[Mark] = []
-        self.asked: dict[str, tuple[Value, ...]] = {}
+        self.questions: dict[str, tuple[Value, ...]] = {}
         self._stage, self._what = stage, "the request"
         self._fuse = Fuse(FAR, Side.AFTER, lambda: None)
         self._counted = FAR
@@ -73,12 +73,12 @@ class _Marks:
         begins = False
         for message in moment.sent:
             begins |= self._begins(message)
-        for entry in self._stage.asked:
+        for entry in self._stage.new_questions:
             begins = True
             self._ask(entry)
         ended = [each for each in truth.books.ended if each.entry.cell == self._stage.cell.name]
         reports = any(isinstance(each, TaskChanged | OperatorAnswer) for each in moment.sent)
-        if begins or ended or reports or moment.asked or moment.executed or commits:
+        if begins or ended or reports or moment.requests or moment.executed or commits:
             what = f"the end of {entry_name(ended[0].entry)}" if ended and not begins else self._what
             at = self._stage.watched.seconds
             self.rows.append(Mark(at=at, what=what, begins=begins, commits=commits))
@@ -95,9 +95,9 @@ class _Marks:
         """Take down a step that begins, and what can be answered where it asks something."""
         self._what, command = entry_name(entry), entry.command
         if isinstance(command, Question):
-            self.asked[command.robot] = tuple(command.answers)
+            self.questions[command.robot] = tuple(command.answers)
         elif isinstance(command, QueryCall):
-            self.asked[command.robot] = command.told.answers
+            self.questions[command.robot] = command.definition.answers
 
 
 def calm_run(model: PlantModel, scenario: Scenario) -> Calm:
@@ -110,7 +110,7 @@ def calm_run(model: PlantModel, scenario: Scenario) -> Calm:
     given = dict(scenario.answers)
     questions = {
         who: tuple(each for each in words if each != given.get(who, words[0]))
-        for who, words in marks.asked.items()
+        for who, words in marks.questions.items()
     }
     calm = Calm(
         scenario=scenario,
@@ -121,7 +121,7 @@ def calm_run(model: PlantModel, scenario: Scenario) -> Calm:
         commands=tuple(stage.commands),
         state=stage.state,
         lasts_s=rows[-1].at - ASKED_AT_S,
-        asked=tuple(questions.items()),
+        questions=tuple(questions.items()),
     )
     return replace(calm, again=stage.again(calm.lasts_s)) if run.outcome.end is End.DONE else calm
 
@@ -143,7 +143,7 @@ def calm_runs(model: PlantModel, scenarios: Iterable[Scenario]) -> Iterator[Calm
                 continue
             known.add(ending)
             yield calm
-            for who, words in calm.asked:
+            for who, words in calm.questions:
                 others = [calm.scenario.with_answer(who, word) for word in words]
                 waiting += [each for each in others if each.answers not in tried]
                 tried |= {each.answers for each in others}

@@ -100,4 +100,4 @@ def _questions(cell: Cell) -> Iterator[str]:
     """The queries of the devices of a cell, then a question to each person."""
     for role, robot in cell.members:
         yield from (f"{role}.{verb}()" for verb in robot.query_names)
-    yield from (f"{role}.ask(...)" for role, robot in cell.members if robot.is_asked)
+    yield from (f"{role}.ask(...)" for role, robot in cell.members if robot.is_person)

@@ -39,7 +39,7 @@ SORTS: dict[type, dict[str, tuple[str, bool]]] = {
         "number": HEARD,
     },
     Uplink: {"sent": TOLD},
-    Freshness: {"_told": HEARD},
+    Freshness: {"_last_number": HEARD},
     BoardLink: {"number": HEARD},
     Report: {"number": HEARD},
     Command: {"heard": HEARD},

@@ -52,14 +52,14 @@ def _fault_case(suite: Xml.Element, key: RecipeKey, kind: str, row: Row, breache
         failure = Xml.SubElement(
             case, "failure", message=f"{row.broken} of {row.runs} runs break an invariant"
         )
-        failure.text = _clean("\n".join(map(_told, breaches)))
+        failure.text = _clean("\n".join(map(_failure_text, breaches)))
     ends = ", ".join(f"{count} {end}" for end, count in row.ends.most_common())
     summary = f"{row.runs} runs: {ends}; {row.alone} ready again without a person"
     unnoticed = f"; {row.unnoticed} done, and nobody notices that not all is so" if row.unnoticed else ""
     Xml.SubElement(case, "system-out").text = summary + unnoticed
 
 
-def _told(breach: Breach) -> str:
+def _failure_text(breach: Breach) -> str:
     name, sentence = breach.run.outcome.broken or ("", "")
     return "\n".join([f"{name}: {sentence}", breach.instant.name, *breach.result.lines[-20:]])
 

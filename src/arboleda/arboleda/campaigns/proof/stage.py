@@ -60,7 +60,7 @@ class Stage:
     """Stage: a task in its plant; `play` has something begin at its time, and returns what came of it.
 
     `state` is what was so when the task was done, `stated` what its recipe says of that; `commands` are those
-    that its cell has given by then. `asked` are the persons who were asked something in the last step.
+    that its cell has given by then. `new_questions` are those of the last step to persons.
     `on_its_way` is called after each step until the task has ended. `waits`: it goes on for its whole time
     also where it is known that nothing happens any more.
     """
@@ -80,9 +80,9 @@ class Stage:
         self.cell = model.cell(scenario.cell)
         self.state: EndState = {}
         self.stated: EndState = {}
-        self.heard: EndState = {}  # of that, by then, by the plant
+        self.reported: EndState = {}  # of that, by then, by the plant
         self.commands: list[str] = []
-        self.asked: list[Entry] = []
+        self.new_questions: list[Entry] = []
         self._people = [robot.name for robot in self.cell.robots if robot.link is Link.SCREEN]
         self._ended: dict[bool, Counter[str]] = {True: Counter(), False: Counter()}  # commands done, and not
         self._questions: set[str] = set()  # by id, of all that persons were asked so far
@@ -214,7 +214,7 @@ class Stage:
         end, cause = self._end_and_cause()
         if end is End.DONE and commands is not None and tuple(self.commands) != commands:
             end = End.RECOVERED
-        untrue = differences(expected, self.state, self.heard) if end in IS_DONE else ()
+        untrue = differences(expected, self.state, self.reported) if end in IS_DONE else ()
         untrue += tuple(self._left_out(commands or ())) if end in IS_DONE else ()
         broken = self._false_end() if end in IS_DONE else None
         return Outcome(end=end, cause=cause, alone=self._is_ready(), untrue=untrue, broken=broken)
@@ -231,7 +231,7 @@ class Stage:
 
     def _false_end(self) -> tuple[str, str] | None:
         """The breach of a task that is done, and not as its recipe says; none where a board has lied."""
-        false = () if self.world.deceptions else differences(self.stated, self.state, self.heard)
+        false = () if self.world.deceptions else differences(self.stated, self.state, self.reported)
         return (ENDS_AS_SAID, f"{self._task} is called done, but {'; '.join(false)}") if false else None
 
     def _end_and_cause(self) -> tuple[End, str]:
@@ -257,8 +257,8 @@ class Stage:
                 self._follow(message)
             elif (entry := entries.get(getattr(message, "id", ""))) and entry.cell == self.cell.name:
                 self.commands.append(entry_name(entry))
-        self.asked = list(self._fresh_questions())
-        self.commands += map(entry_name, self.asked)
+        self.new_questions = list(self._fresh_questions())
+        self.commands += map(entry_name, self.new_questions)
         if (
             self.world.plant_process.starts > 1
             and self.last_change is not None
@@ -295,7 +295,7 @@ class Stage:
         self._order = self._order or (task.order if task is not None else None)
         if change.state is TaskState.DONE and (order := self._order) is not None:
             self.state = end_state(self.watched, self.cell)
-            self.heard = facts_by_report(self.watched, self.cell)
+            self.reported = facts_by_report(self.watched, self.cell)
             self.stated = stated(self.cell, order.recipe, order.values)
 
 

@@ -22,7 +22,7 @@ class Standstill:
     def __init__(self, watched: JudgedWorld) -> None:
         self._watched, self._world = watched, watched.world
         self._since = self._world.now  # the last news
-        self._seen = (self._world.plant, -1)
+        self._last_state = (self._world.plant, -1)
         self._world.watchers.append(self._look)
 
     @property
@@ -44,14 +44,14 @@ class Standstill:
     def _look(self) -> None:
         plant = self._world.plant
         state = (plant, plant.version)
-        if state != self._seen or self._watched.truth.changed or self._has_news:
-            self._seen, self._since = state, self._world.now
+        if state != self._last_state or self._watched.truth.changed or self._has_news:
+            self._last_state, self._since = state, self._world.now
 
     @property
     def _has_news(self) -> bool:
         """True if anybody asked, was told or did anything in this step but say that they are there."""
         moment = self._world.moment
-        done = moment.asked or moment.executed or moment.opened or moment.put_right
+        done = moment.requests or moment.executed or moment.opened or moment.put_right
         lost = moment.last_words or moment.unkept or moment.undelivered or moment.late
         return bool(done or lost) or any(not isinstance(each, Heartbeat) for each in moment.sent)
 

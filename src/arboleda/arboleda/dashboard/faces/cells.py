@@ -34,7 +34,7 @@ def face(moment: Moment) -> Face:
         found.update(tree_face(moment.words, cell["name"], memory, leaf=leaf, rests=rests))
         found.update(_changes(moment, cell["name"], memory))
         found.update(_devices(moment, cell["name"], devices[cell["name"]], robots))
-        found.update(_heard(moment, cell, devices[cell["name"]]))
+        found.update(_last_answers(moment, cell, devices[cell["name"]]))
     return found
 
 
@@ -82,7 +82,7 @@ def _devices(moment: Moment, name: str, devices: list[Row], robots: dict[str, Ro
     return found
 
 
-def _heard(moment: Moment, cell: Row, devices: list[Row]) -> Face:
+def _last_answers(moment: Moment, cell: Row, devices: list[Row]) -> Face:
     """The last answers to the task of a cell, if one of its devices can answer."""
     if all(each["position"] for each in devices):
         return {}
@@ -149,13 +149,13 @@ def _ways(words: Words, cell: Row) -> Face:
         before = _before(cell["advice"], number)
         found[f"row/ways.{name}/{number}"] = {
             "state": "hand" if advice["hand"] else "next" if number == 0 else "later",
-            "texts": [_said(words, advice) if advice["hand"] else "", _note(words, advice, before)],
+            "texts": [_advice_text(words, advice) if advice["hand"] else "", _note(words, advice, before)],
             "acts": [] if advice["hand"] else [_offer(words, advice)],
         }
     return {f"rows/ways.{name}": [str(number) for number in range(len(cell["advice"]))], **found}
 
 
-def _said(words: Words, advice: Row) -> str:
+def _advice_text(words: Words, advice: Row) -> str:
     if advice["by_hand"]:
         return words(f"ways.{advice['do']}_by_hand", robot=advice["scope"])
     text = words.say(advice["said"])
@@ -173,7 +173,7 @@ def _before(ways: list[Row], number: int) -> list[Row]:
 def _note(words: Words, advice: Row, before: list[Row]) -> str:
     """The note on an advice: the advice to follow first, or the reason against it now, or else its effect."""
     if advice["refusal"] and before and not advice["instead"]:
-        note = words("ways.after", first=words("ways.or").join(_said(words, each) for each in before))
+        note = words("ways.after", first=words("ways.or").join(_advice_text(words, each) for each in before))
     elif advice["refusal"]:
         note = words("ways.not_yet", why=words.say(advice["refusal"]))
     elif advice["drops"]:
@@ -186,7 +186,7 @@ def _note(words: Words, advice: Row, before: list[Row]) -> str:
 
 
 def _offer(words: Words, advice: Row) -> Row:
-    label, asks = _said(words, advice), []
+    label, asks = _advice_text(words, advice), []
     if advice["by_hand"]:
         asks = words.asks(f"{advice['do']}_by_hand")
     elif advice["drops"]:

@@ -29,14 +29,14 @@ PARTS: Parts = {
 }
 
 
-def asked(request: Request) -> bool:
+def is_of_record(request: Request) -> bool:
     """True if the address is one of a record."""
     return KEY in request.query_params
 
 
 def is_of_draft(request: Request) -> bool:
     """True if the address is one of the last tryout of the draft."""
-    return asked(request) and request.query_params.get(START) == DRAFT
+    return is_of_record(request) and request.query_params.get(START) == DRAFT
 
 
 def mount(server: FastAPI, side: PastSide) -> None:

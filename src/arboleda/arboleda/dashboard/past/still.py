@@ -14,12 +14,12 @@ Row = dict[str, Any]
 
 def without_acts(face: Face) -> Face:
     """The same face without buttons; a button's label stands in its row if nothing else would."""
-    found = {key: _told(each) if key.startswith("row/") else each for key, each in face.items()}
+    found = {key: _without_acts(each) if key.startswith("row/") else each for key, each in face.items()}
     none: Face = {"rows/for_all": []} if "rows/for_all" in found else {}
     return found | none | {key: ["", ""] for key in found if key.endswith(".offer")}
 
 
-def _told(row: Row) -> Row:
+def _without_acts(row: Row) -> Row:
     acts = row.get("acts", ())
     rest = {key: each for key, each in row.items() if key != "acts"}
     labels = " / ".join(act["label"] for act in acts)
@@ -35,7 +35,7 @@ def of_record(then: Moment, moment: int) -> Face:
     return {
         "past/at": moment,
         "text/record.at": [dated(moment), ""],
-        "text/record.event": ["" if event is None else said(then, event), ""],
+        "text/record.event": ["" if event is None else line(then, event), ""],
         "text/title": [title, state],
     }
 
@@ -50,7 +50,7 @@ def with_links(face: Face, events: Sequence[Row]) -> Face:
     }
 
 
-def said(then: Moment, event: Row) -> str:
+def line(then: Moment, event: Row) -> str:
     """The text of an event in one line."""
     _, cell, what, sentence = timeline.row(then, event)["texts"]
     return " · ".join(part for part in (cell, what, sentence) if part)

@@ -49,14 +49,14 @@ def _row(plant: LastSeenPlant, words: Words) -> Row:
     state = state_of(plant)
     tasks = _tasks(plant)
     texts = [
-        _said(state, words),
+        _state_text(state, words),
         plant.name,
         _why(plant, words),
         words("site.open_tasks", running=tasks["running"], waiting=tasks["queued"])
-        if _is_heard(plant)
+        if _is_there(plant)
         else "",
-        words("oee.counted", **_ended([plant])) if plant.oee and _is_heard(plant) else "",
-        _percent(whole_oee(plant.oee if _is_heard(plant) else ())),
+        words("oee.counted", **_ended([plant])) if plant.oee and _is_there(plant) else "",
+        _percent(whole_oee(plant.oee if _is_there(plant) else ())),
     ]
     return {
         "state": state,
@@ -75,11 +75,11 @@ def _stop(plant: LastSeenPlant, words: Words) -> Row:
     }
 
 
-def _said(state: str, words: Words) -> str:
+def _state_text(state: str, words: Words) -> str:
     return words("site.silent") if state == SILENT else words.cell(state)
 
 
-def _is_heard(plant: LastSeenPlant) -> bool:
+def _is_there(plant: LastSeenPlant) -> bool:
     return state_of(plant) != SILENT
 
 
@@ -97,7 +97,7 @@ def _why(plant: LastSeenPlant, words: Words) -> str:
 
 
 def _tasks(plant: LastSeenPlant) -> Counter[str]:
-    tasks = plant.snapshot["tasks"] if plant.snapshot and _is_heard(plant) else ()
+    tasks = plant.snapshot["tasks"] if plant.snapshot and _is_there(plant) else ()
     return Counter(task["state"] for task in tasks)
 
 
@@ -110,15 +110,15 @@ def _sum(plants: Sequence[LastSeenPlant], words: Words) -> list[str]:
     """The number of plants in each state, coloured by the worst; tasks and OEE of all."""
     states = Counter(map(state_of, plants))
     there = [state for state in ORDER if state in states]
-    counts = [f"{_said(state, words)}: {states[state]}" for state in there[::-1]]
+    counts = [f"{_state_text(state, words)}: {states[state]}" for state in there[::-1]]
     tasks = sum((_tasks(plant) for plant in plants), Counter[str]())
-    heard = [plant for plant in plants if _is_heard(plant)]
+    present = [plant for plant in plants if _is_there(plant)]
     figures = [words("site.plants", count=len(plants)), *counts]
-    if heard:
+    if present:
         figures += [
             words("site.open_tasks", running=tasks["running"], waiting=tasks["queued"]),
-            words("oee.counted", **_ended(heard)),
-            f"OEE {_percent(whole_oee(row for plant in heard for row in plant.oee))}",
+            words("oee.counted", **_ended(present)),
+            f"OEE {_percent(whole_oee(row for plant in present for row in plant.oee))}",
         ]
     return [" · ".join(figures), there[0] if there else ""]
 

@@ -13,7 +13,7 @@ from nicegui import Client, app, ui
 from arboleda.model.errors import PayloadError
 from arboleda.model.messages import Verb
 from arboleda.web.access.auth import SUBMIT, allowed, require
-from arboleda.web.api import task_asked
+from arboleda.web.api import task_in
 from arboleda.web.schema.bodies import TaskText
 
 from .. import header, shell
@@ -66,7 +66,7 @@ def _serve(server: FastAPI, site: SiteSide) -> None:
     async def add_task(request: Request) -> JSONResponse:
         """Give a task to the best of the plants it names, `north/sis_a,south/sis_a 0B 7`, or refuse it."""
         require(request.scope["arboleda.role"], SUBMIT)
-        form = task_asked(await request.body())
+        form = task_in(await request.body())
         if not isinstance(form, TaskText):
             raise PayloadError('The body must be JSON like {"text": "north/sis_a,south/sis_a 0B 7"}.')
         answer = await site.submit("", form.text)
@@ -115,10 +115,10 @@ class Desk(OpenPage):
     """Desk: the way from the events of a page to the plants."""
 
     def __init__(self, client: Client, site: SiteSide, frames: Frames, wording: Words) -> None:
-        super().__init__(client, wording, frames.seen)
+        super().__init__(client, wording, frames.note_shown)
         self._site = site
 
-    async def asked(self, act: str, of: str, more: object) -> None:
+    async def take(self, act: str, of: str, more: object) -> None:
         """Send a task to the plant `of`, whose text is `more`, or stop that plant."""
         if act not in (SUBMIT, Verb.STOP.value):
             return

@@ -62,9 +62,9 @@ class Show:
 
     def drawn(self, looker: TwinViewer, number: int) -> None:
         """Note the frame that a viewer says it has drawn."""
-        seen = self._lookers.get(looker)
-        if seen is not None and 0 <= number <= seen.sent:
-            seen.drawn = max(seen.drawn, number)
+        progress = self._lookers.get(looker)
+        if progress is not None and 0 <= number <= progress.sent:
+            progress.drawn = max(progress.drawn, number)
 
     async def run(self) -> None:
         """Send frames until cancelled."""
@@ -81,26 +81,26 @@ class Show:
 
     def turn(self) -> None:
         """Send each viewer the difference to its last frame, if there is any."""
-        ready = [(looker, seen) for looker, seen in self._lookers.items() if _ready(looker, seen)]
+        ready = [(looker, progress) for looker, progress in self._lookers.items() if _ready(looker, progress)]
         if self._twin is None or not ready:
             return
         positions = self._plant.positions()
         before, self._frame = self._frame, self._twin.frame(positions, positions["now"])
         patch = changed(before, self._frame)
         text, everything = json.dumps(patch), ""
-        for looker, seen in ready:
-            if seen.whole:
+        for looker, progress in ready:
+            if progress.whole:
                 everything = everything or json.dumps(self._frame)
             elif not patch:
                 continue
-            seen.sent += 1
-            looker.draw(seen.sent, everything if seen.whole else text)
-            seen.whole = False
+            progress.sent += 1
+            looker.draw(progress.sent, everything if progress.whole else text)
+            progress.whole = False
 
 
-def _ready(looker: TwinViewer, seen: ViewerProgress) -> bool:
+def _ready(looker: TwinViewer, progress: ViewerProgress) -> bool:
     """True if a viewer can take a frame; one that is away or behind gets everything later."""
-    if looker.connected and seen.sent - seen.drawn <= BEHIND:
+    if looker.connected and progress.sent - progress.drawn <= BEHIND:
         return True
-    seen.whole = True
+    progress.whole = True
     return False

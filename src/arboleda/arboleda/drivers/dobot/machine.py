@@ -236,7 +236,7 @@ class Machine(TcpArm):
         if before is not None and (feedback.run_ms, feedback.time_ms) == (before.run_ms, before.time_ms):
             return  # the same frame again is no news from the arm
         self._see_boot(now, feedback)
-        self._heard_at, self._feedback = now, feedback
+        self._last_data_at, self._feedback = now, feedback
         still = before is not None and feedback.mode is not Mode.RUNNING and not _moved(before, feedback)
         self._see_rest(now, still=still, broken=feedback.mode in BROKEN)
         if self._work is not None and self._failing is None:

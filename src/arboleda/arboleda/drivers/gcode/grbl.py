@@ -84,7 +84,7 @@ class GrblMachine(Machine):
                 self._hear(now, line)
 
     def _wait(self, now: float) -> None:
-        if now - self._heard_at > self._patience_s:
+        if now - self._last_data_at > self._patience_s:
             self._close(
                 now, f"it has told no status for {self._patience_s:g} s; is it GRBL 1.1, at this baud?"
             )
@@ -145,7 +145,7 @@ class GrblMachine(Machine):
 
     def _begun(self, now: float) -> None:
         """Take the banner: the end of a reset from here, or a boot."""
-        self._heard_at = now
+        self._last_data_at = now
         resets, self._resets = self._resets, False
         if self._step is Step.RESETTING:
             self._step, self._news = None, True
@@ -155,7 +155,7 @@ class GrblMachine(Machine):
             return  # the end of a reset, after which another stop was given
         elif self._known:
             self._boot += 1
-            self._told, self._work, self._step, self._alarm = {}, None, None, None
+            self._receipts, self._work, self._step, self._alarm = {}, None, None, None
             self._left_at_work, self._news = False, True
 
     def _answered(self, now: float, answer: Answer) -> None:
@@ -174,7 +174,7 @@ class GrblMachine(Machine):
 
     def _look(self, now: float, status: Status) -> None:
         before, self._status = self._status, status
-        self._is_heard, self._heard_at, self._patience_s, self._known = True, now, SILENT_S, True
+        self._is_heard, self._last_data_at, self._patience_s, self._known = True, now, SILENT_S, True
         if status.state is not State.ALARM:
             self._alarm = None
         if self._left_at_work:  # nobody waits for that work any more

@@ -39,7 +39,7 @@ class Machine(ABC):
         self._boot = 1
         self._latched = self._left_at_work = self._news = False
         self._reported_at = -math.inf
-        self._told: dict[str, str] = {}
+        self._receipts: dict[str, str] = {}
         self._forget_link(0.0)
 
     @property
@@ -55,7 +55,7 @@ class Machine(ABC):
         due = self._news or now >= self._reported_at + self._settings.poll_s
         if self._open and self._is_heard and due:
             self._news, self._reported_at = False, now
-            self._out.append(self._report(now).again(now, **self._told))
+            self._out.append(self._report(now).again(now, **self._receipts))
         out, self._out = self._out, []
         return out
 
@@ -64,7 +64,7 @@ class Machine(ABC):
     @abstractmethod
     def _forget_link(self, now: float) -> None:
         """Begin with a new line, of which nothing is known."""
-        self._heard_at, self._query_at = now, now
+        self._last_data_at, self._query_at = now, now
         self._is_heard = False  # has told a position on this line
         self._stop_id = ""
 
@@ -171,7 +171,7 @@ class Machine(ABC):
     # What the plant hears.
 
     def _tell(self, **ids: str) -> None:
-        self._told |= {name: id for name, id in ids.items() if id}
+        self._receipts |= {name: id for name, id in ids.items() if id}
         self._news = True
 
     def _reject(self, id: str, word: str) -> None:

@@ -38,7 +38,7 @@ from .marlin_lines import (
 SILENT_S = 3.0  # a busy controller says so once a second
 BOOT_S = 10.0  # a board boots when its line is opened, some with a picture on their screen
 STOP_AGAIN_S = 2.0  # Marlin drops all moves for a second, and answers after that
-ANEW, NAME, WHERE, WAIT, FIND, HOLD_ON = "M110 N0", "M115", "M114", "M400", "G28", "M17"
+SET_NUMBER, ASK_NAME, ASK_PLACE, FINISH, HOME_ALL, MOTORS_ON = "M110 N0", "M115", "M114", "M400", "G28", "M17"
 SETTINGS = ("M113 S1", "M84 S0")  # a sign of life each second; motors that never go off by themselves
 PARSER = "EMERGENCY_PARSER"
 NO_PARSER = (
@@ -82,43 +82,43 @@ class MarlinMachine(Machine):
 
     def _begin(self, now: float) -> None:
         """Know nothing of the controller: after a boot, or where nobody knows what happened meanwhile."""
-        self._heard_at = now
-        self._due: deque[str] = deque()  # lines that wait for the answer to those before
-        self._asked: deque[str] = deque()  # lines without an answer
+        self._last_data_at = now
+        self._queue: deque[str] = deque()  # lines that wait for the answer to those before
+        self._unanswered: deque[str] = deque()  # lines without an answer
         self._number = 0
         self._has_name = self._has_parser = self._is_homed = False
         self._position: tuple[float, ...] | None = None
         self._place: Place | None = None  # of the answer that is under way
         self._refusal = self._trouble = ""
         self._work: Move | Homing | None = None
-        self._halts: Halt | None = None
+        self._open_halt: Halt | None = None
         self._halt_at = now
 
     def _greet(self, now: float) -> None:
         if self._left_at_work:  # nobody waits for that work any more
             self._left_at_work = False
             self._say_halt(now, Halt.QUICK)
-        self._ask(ANEW)
-        self._ask(NAME)
+        self._ask(SET_NUMBER)
+        self._ask(ASK_NAME)
 
     @property
     def _at_work(self) -> bool:
-        return self._work is not None or self._halts is not None
+        return self._work is not None or self._open_halt is not None
 
     def _ask(self, line: str) -> None:
-        self._asked.append(line)
+        self._unanswered.append(line)
         self._write(numbered(self._number, line))
         self._number += 1
 
     def _go_on(self) -> None:
-        if self._due and not self._asked:
-            self._ask(self._due.popleft())
+        if self._queue and not self._unanswered:
+            self._ask(self._queue.popleft())
 
     def _wait(self, now: float) -> None:
         patience_s = SILENT_S if self._position is not None else BOOT_S
         if self._trouble == HALTED:
             pass  # it says nothing more until it is reset
-        elif now - self._heard_at > patience_s:
+        elif now - self._last_data_at > patience_s:
             self._close(now, f"it has said nothing for {patience_s:g} s; is it Marlin, at this baud?")
             return
         elif isinstance(self._work, Move) and not self._work.is_taken and now - self._work.sent_at > ANSWER_S:
@@ -126,12 +126,17 @@ class MarlinMachine(Machine):
             return
         elif isinstance(self._work, Homing) and now - self._work.began_at > HOMING_S:
             self._give_up(now, "homing_has_no_end")
-        elif self._has_name and self._halts is not None and now - self._halt_at > STOP_AGAIN_S:
-            self._say_halt(now, self._halts)  # what it asks for is the same however often it is said
+        elif self._has_name and self._open_halt is not None and now - self._halt_at > STOP_AGAIN_S:
+            self._say_halt(now, self._open_halt)  # what it asks for is the same however often it is said
         if now >= self._query_at:
             self._query_at = now + self._settings.poll_s
-            if self._position is not None and self._trouble != HALTED and not self._due and not self._asked:
-                self._due.append(WHERE)
+            if (
+                self._position is not None
+                and self._trouble != HALTED
+                and not self._queue
+                and not self._unanswered
+            ):
+                self._queue.append(ASK_PLACE)
         self._go_on()
 
     # Commands.
@@ -142,7 +147,9 @@ class MarlinMachine(Machine):
             return
         feed = self._feed(self._settings.joints(self._position), command.q)
         self._work = Move(id=command.id, sent_at=now)
-        self._due.extend(("G90", "G21", f"G1{self._settings.words(command.q)}F{feed:.1f}", WAIT, WHERE))
+        self._queue.extend(
+            ("G90", "G21", f"G1{self._settings.words(command.q)}F{feed:.1f}", FINISH, ASK_PLACE)
+        )
 
     def _home(self, now: float, command: Home) -> None:
         if self._trouble:
@@ -151,26 +158,26 @@ class MarlinMachine(Machine):
         self._work = Homing(id=command.id, began_at=now)
         self._is_homed = False
         self._tell(accepted=command.id)
-        self._due.extend((FIND if self._settings.homing else HOLD_ON, WHERE))
+        self._queue.extend((HOME_ALL if self._settings.homing else MOTORS_ON, ASK_PLACE))
 
     def _halt(self, now: float) -> None:
         """Drop all moves. Homing would go on with its next leg, and believe its end: that is shut down."""
         if self._trouble == HALTED:
-            self._halted()
+            self._end_halt()
             return
         if self._work is not None:
             self._is_homed = self._is_homed and self._settings.stop_keeps_place
         self._work, self._news = None, True
-        self._due = deque(each for each in self._due if each in SETTINGS)
-        self._say_halt(now, Halt.KILL if FIND in self._asked else Halt.QUICK)
+        self._queue = deque(each for each in self._queue if each in SETTINGS)
+        self._say_halt(now, Halt.KILL if HOME_ALL in self._unanswered else Halt.QUICK)
 
     def _say_halt(self, now: float, halt: Halt) -> None:
-        self._halts, self._halt_at = halt, now
-        self._asked.append(halt.value)
+        self._open_halt, self._halt_at = halt, now
+        self._unanswered.append(halt.value)
         self._write(halt.value)  # without a number: it passes lines that were lost or are not read yet
 
-    def _halted(self) -> None:
-        self._halts, self._news = None, True
+    def _end_halt(self) -> None:
+        self._open_halt, self._news = None, True
         self._tell(accepted=self._stop_id)
         self._stop_id = ""
 
@@ -179,100 +186,100 @@ class MarlinMachine(Machine):
     def _listen(self, now: float, data: bytes) -> None:
         for line in self._lines.feed(data):
             if self._open:
-                self._heard_at = now
+                self._last_data_at = now
                 self._hear(now, line)
 
     def _hear(self, now: float, line: Line) -> None:
         if isinstance(line, Ok):
-            self._answered(now)
+            self._take_ok(now)
         elif isinstance(line, Place):
-            if self._asked and self._asked[0] == WHERE:
+            if self._unanswered and self._unanswered[0] == ASK_PLACE:
                 self._place = line
         elif isinstance(line, Refusal):
             self._refusal = line.word
         elif isinstance(line, Trouble):
-            self._fails(now, line.word)
+            self._take_trouble(now, line.word)
         elif isinstance(line, Capability):
             self._has_parser = self._has_parser or (line.name == PARSER and line.on)
         elif isinstance(line, Firmware):
-            self._named(now, line.name)
+            self._take_name(now, line.name)
         elif isinstance(line, Start):
-            self._begun(now)
+            self._take_start(now)
         elif isinstance(line, Resend):
             self._close(now, "a line did not come to it as it was sent; none is sent again")
 
-    def _begun(self, now: float) -> None:
+    def _take_start(self, now: float) -> None:
         if self._is_heard:
             self._boot += 1
-            self._told, self._stop_id, self._news = {}, "", True
+            self._receipts, self._stop_id, self._news = {}, "", True
         self._begin(now)
         self._greet(now)
 
-    def _named(self, now: float, name: str) -> None:
+    def _take_name(self, now: float, name: str) -> None:
         """Take the name: all answers before this one are those to lines of an earlier connection."""
-        if self._has_name or NAME not in self._asked:
+        if self._has_name or ASK_NAME not in self._unanswered:
             self._close(now, "it has told its name without being asked")
         elif not name.startswith("Marlin"):
             self._close(now, f"it is no Marlin, it says {name[:40]}")
         else:
             self._has_name = True
-            while self._asked[0] != NAME:
-                self._asked.popleft()
+            while self._unanswered[0] != ASK_NAME:
+                self._unanswered.popleft()
 
-    def _answered(self, now: float) -> None:
-        if not self._has_name or not self._asked:
+    def _take_ok(self, now: float) -> None:
+        if not self._has_name or not self._unanswered:
             return
-        line, refusal, self._refusal = self._asked.popleft(), self._refusal, ""
-        if line == NAME:
+        line, refusal, self._refusal = self._unanswered.popleft(), self._refusal, ""
+        if line == ASK_NAME:
             if not self._has_parser:
                 self._close(now, NO_PARSER)
                 return
-            self._due.extend((*SETTINGS, WHERE))
+            self._queue.extend((*SETTINGS, ASK_PLACE))
         elif line in SETTINGS and refusal:
             self._close(now, f"it does not know {line}")
             return
-        elif line == WHERE:
+        elif line == ASK_PLACE:
             place, self._place = self._place, None
             if place is None or len(place.position) < len(self._settings.axes):
                 self._close(now, "its answer to M114 has no position for each axis")
                 return
             self._look(now, place.position)
-        elif line in (FIND, HOLD_ON):
-            self._has_found(now, refusal)
+        elif line in (HOME_ALL, MOTORS_ON):
+            self._take_homing_ok(now, refusal)
         elif line.startswith("G1"):
-            self._has_taken(now, refusal)
-        elif line == Halt.QUICK.value and not self._asked:
-            self._due.append(WHERE)
+            self._take_move_ok(now, refusal)
+        elif line == Halt.QUICK.value and not self._unanswered:
+            self._queue.append(ASK_PLACE)
         self._go_on()
 
-    def _has_found(self, now: float, refusal: str) -> None:
+    def _take_homing_ok(self, now: float, refusal: str) -> None:
         if isinstance(self._work, Homing):
             self._work.is_answered = True
             if refusal:
                 self._give_up(now, refusal)
 
-    def _has_taken(self, now: float, refusal: str) -> None:
+    def _take_move_ok(self, now: float, refusal: str) -> None:
         if isinstance(self._work, Move):
             if refusal:
-                self._due.clear()
+                self._queue.clear()
                 self._reject(self._work.id, refusal)
                 self._work = None
                 self._is_homed = self._is_homed and refusal != UNHOMED
             else:
                 self._work.is_taken = True
                 self._tell(accepted=self._work.id)
-        elif self._halts is not None:
-            self._say_halt(now, self._halts)  # the one before may have come too early for this move
+        elif self._open_halt is not None:
+            self._say_halt(now, self._open_halt)  # the one before may have come too early for this move
 
     def _look(self, now: float, position: tuple[float, ...]) -> None:
         """Take the place where it stands: all lines before the question have been answered."""
         self._news = self._news or position != self._position
         self._position, work = position, self._work
-        if self._halts is not None and self._asked:
+        if self._open_halt is not None and self._unanswered:
             return  # the stop came after this question
         self._is_heard = True
-        if self._halts is not None:
-            self._halted()
+        if self._open_halt is not None:
+            self._end_halt()
         elif isinstance(work, Homing) and work.is_answered:
             self._work, self._is_homed = None, True
             self._tell(done=work.id)
@@ -280,7 +287,7 @@ class MarlinMachine(Machine):
             self._work = None
             self._tell(done=work.id)
 
-    def _fails(self, now: float, word: str) -> None:
+    def _take_trouble(self, now: float, word: str) -> None:
         self._news = True
         if word in (HALTED, STOPPED):
             self._trouble, self._is_homed = word, False
@@ -289,13 +296,13 @@ class MarlinMachine(Machine):
                 return  # which is what it looks for
             self._is_homed = False
         if word == HALTED:
-            self._due.clear()
-            self._asked.clear()
+            self._queue.clear()
+            self._unanswered.clear()
             if self._work is not None:
                 self._tell(failed=self._work.id, failure=word)
                 self._work = None
-            if self._halts is not None:
-                self._halted()
+            if self._open_halt is not None:
+                self._end_halt()
         elif self._work is not None:
             self._give_up(now, word)
 
@@ -323,7 +330,7 @@ class MarlinMachine(Machine):
 
     @property
     def _state(self) -> MotionState:
-        if self._halts is not None or isinstance(self._work, Move):
+        if self._open_halt is not None or isinstance(self._work, Move):
             return MotionState.MOVING
         if self._trouble:
             return MotionState.FAULT

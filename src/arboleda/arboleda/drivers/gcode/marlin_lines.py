@@ -21,10 +21,10 @@ CAPABILITY = re.compile(r"Cap:([A-Z_]+):([01])")
 BUSY = re.compile(r"(?:echo:)?busy: [a-z ]+")
 RESEND = re.compile(r"Resend: ?\d+|Error:.*Last Line: \d+")
 UNKNOWN = re.compile(r"echo:Unknown command: .*")
-FIRST = re.compile(r"echo:Home [XYZ]+ (?:Printer )?First")
+HOME_FIRST = re.compile(r"echo:Home [XYZ]+ (?:Printer )?First")
 ENDSTOP = re.compile(r"echo:endstops hit: .*")
 HALTED, STOPPED, UNHOMED = "halted", "stopped", "not_homed"
-ENDED = re.compile(rf"(?:Error:)?Printer ({HALTED}|{STOPPED})\b.*")
+PROTECTION = re.compile(rf"(?:Error:)?Printer ({HALTED}|{STOPPED})\b.*")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -115,10 +115,10 @@ def parsed(text: str) -> Line | None:
 def _trouble(text: str) -> Line | None:
     if UNKNOWN.fullmatch(text):
         return Refusal(word="unknown_command")
-    if FIRST.fullmatch(text):
+    if HOME_FIRST.fullmatch(text):
         return Refusal(word=UNHOMED)
     if ENDSTOP.fullmatch(text):
         return Trouble(word="endstop_hit")
-    if found := ENDED.fullmatch(text):
+    if found := PROTECTION.fullmatch(text):
         return Trouble(word=found[1])
     return Trouble(word="error") if text.startswith("Error:") else None

@@ -87,13 +87,13 @@ class GripperMover:
         )
         return (goal,)
 
-    def heard_since(self, at: float) -> bool:
-        return self._joint.heard_at > at
+    def has_measured_since(self, at: float) -> bool:
+        return self._joint.measured_at > at
 
     def is_at(self, goal: Width) -> bool:
         """True if the fingers are at the goal; ones that close on a part are there once they rest on it."""
         if goal.grips:
-            return self._joint.rest.holds(self._joint.heard_at) and self._holds(goal)
+            return self._joint.rest.holds(self._joint.measured_at) and self._holds(goal)
         return self._near(goal.width_mm)
 
     def rests(self, now: float, since: float = 0.0) -> bool:

@@ -58,8 +58,8 @@ class ArmMover:
         duration_s = self._settings.duration_s(self._arm, self._joints.q, command.q)
         return (Trajectory(joints=self._joints.names, q=command.q, duration_s=duration_s),)
 
-    def heard_since(self, at: float) -> bool:
-        return self._joints.heard_at > at
+    def has_measured_since(self, at: float) -> bool:
+        return self._joints.measured_at > at
 
     def is_at(self, goal: Trajectory) -> bool:
         return self._joints.q is not None and self._arm.motion.stands_at(self._joints.q, goal.q)

@@ -89,8 +89,8 @@ class ModbusDevice:
             self._written = number = self._numbers.give(command.id)
             there = sequence.write
             puts.append(WriteRequest(table="holding", address=there.address, values=there.raw(number)))
-            if command.told.effect is Effect.QUERY and verb.answer is not None:
-                self._query = (number, verb.answer, type(command.told.answers[0]))
+            if command.definition.effect is Effect.QUERY and verb.answer is not None:
+                self._query = (number, verb.answer, type(command.definition.answers[0]))
         return joined(puts)
 
     def report(self, at: float, raw: Raw) -> Report:

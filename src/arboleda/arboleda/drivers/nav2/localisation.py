@@ -39,7 +39,7 @@ class Localisation:
     """Estimate of the pose; after `far_m` without a word from localisation the base counts as lost."""
 
     def __init__(self, *, odometry: str, localisation: str, far_m: float) -> None:
-        self.heard_at = -math.inf
+        self.measured_at = -math.inf
         self.rest = Rest(STILL_M)
         self._odometry, self._localisation, self._far_m = odometry, localisation, far_m
         self._counted: deque[OdometryPose] = deque(maxlen=KEPT)
@@ -67,7 +67,7 @@ class Localisation:
         return False
 
     def missing(self, now: float) -> str:
-        if now >= self.heard_at + SILENT_S:
+        if now >= self.measured_at + SILENT_S:
             return f"{self._odometry} has said nothing new for {SILENT_S:g} s"
         if self._map is None:
             return f"{self._localisation} has not said yet where the base is"
@@ -83,7 +83,7 @@ class Localisation:
             self._gone_m += before.pose.distance(measurement.pose)
             self._turned += wrapped(measurement.pose.yaw - before.pose.yaw)
         self._counted.append(measurement)
-        self.heard_at = now
+        self.measured_at = now
         if not self._localisation:
             self._map, self._gone_m = Pose(0.0, 0.0), 0.0
         elif self._early is not None:

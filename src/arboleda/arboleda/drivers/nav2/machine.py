@@ -63,8 +63,8 @@ class BaseMover:
         here, *ahead = command.nodes
         return self._split(self._route(ahead if ahead and here == self._stands_on() else command.nodes))
 
-    def heard_since(self, at: float) -> bool:
-        return self._where.heard_at > at
+    def has_measured_since(self, at: float) -> bool:
+        return self._where.measured_at > at
 
     def is_at(self, goal: Route) -> bool:
         return self._stands_on() == goal.nodes[-1]

@@ -134,8 +134,8 @@ class Handshake:
         given = self._numbers.give(command.id)
         self._was_busy = self._busy
         answer = self._settings.verbs[command.verb].answer
-        if command.told.effect is Effect.QUERY and answer is not None:
-            self._query = (given, answer, answers(command.told))
+        if command.definition.effect is Effect.QUERY and answer is not None:
+            self._query = (given, answer, answers(command.definition))
         return given
 
     def report(self, at: float, read: Read) -> Report:

@@ -52,7 +52,7 @@ class Task:
     command: VerbCall | Stop | None
     is_work: bool = False
     over: Returned | Raised | None = None
-    seen_by: int = 0  # the first look that began after the end
+    first_look: int = 0  # the first look that began after the end
 
 
 class Machine:
@@ -70,7 +70,7 @@ class Machine:
         self._numbers, self._looks = 0, 0
         self._boot, self._boot_shown = 0, None  # type: int, object
         self._latched = False
-        self._told: dict[str, object] = {}
+        self._receipts: dict[str, object] = {}
         self._reported_at = -math.inf
         self._forget(0.0)
 
@@ -108,7 +108,7 @@ class Machine:
             self._forget(now)
             self._open, self._open_until = True, math.inf
             self._boot += 1
-            self._told = {}
+            self._receipts = {}
         elif isinstance(event, Closed):
             self._shut(now, event.why)
         elif isinstance(event, Looked | LookFailed):
@@ -195,7 +195,7 @@ class Machine:
             return  # the event loop runs, and a call hangs
         self._up, self._look_at = True, now + self._settings.poll_s
         for number, task in list(self._tasks.items()):
-            if task.over is not None and self._is_full_look and task.seen_by <= event.number:
+            if task.over is not None and self._is_full_look and task.first_look <= event.number:
                 del self._tasks[number]
                 self._settle(task, task.over)
         if self._may_read and self._tasks:
@@ -212,7 +212,7 @@ class Machine:
         boot = None if self._settings.boot is None else str(values.get(self._settings.boot))
         if self._boot_shown is not None and boot != self._boot_shown:
             self._boot += 1
-            self._told = {}
+            self._receipts = {}
             self._stops.clear()
             for task in self._tasks.values():
                 task.command = None
@@ -307,7 +307,7 @@ class Machine:
         if isinstance(task.command, Stop):
             self._stop_ended(now, task, task.command, event)
             return
-        task.seen_by = self._looks + 1
+        task.first_look = self._looks + 1
         self._look_at = now
 
     def _stop_ended(self, now: float, task: Task, stop: Stop, event: Returned | Raised) -> None:
@@ -327,28 +327,28 @@ class Machine:
         if isinstance(event, Raised):
             word = plain(f"{event.name}: {event.text}" if event.text else event.name, LONGEST)
             if event.first and event.name in self._settings.refusals:
-                self._told |= {"rejected": command.id, "refusal": word}
+                self._receipts |= {"rejected": command.id, "refusal": word}
             else:
-                self._told |= {"failed": command.id, "failure": word}
+                self._receipts |= {"failed": command.id, "failure": word}
             return
-        self._told["accepted"] = command.id
+        self._receipts["accepted"] = command.id
         answer = self._settings.verbs[command.verb].answer
-        if command.told.effect is not Effect.QUERY or answer is None:
-            self._told["done"] = command.id
+        if command.definition.effect is not Effect.QUERY or answer is None:
+            self._receipts["done"] = command.id
             return
         try:
-            self._told |= {
+            self._receipts |= {
                 "answered": command.id,
-                "answer": answer.value(event.result, answers(command.told)),
+                "answer": answer.value(event.result, answers(command.definition)),
             }
         except UnreadableValue as error:
-            self._told |= {"failed": command.id, "failure": plain(str(error), LONGEST)}
+            self._receipts |= {"failed": command.id, "failure": plain(str(error), LONGEST)}
 
     # What the plant hears.
 
     def _tell(self, now: float, **ids: str) -> None:
         if all(ids.values()):
-            self._told |= ids
+            self._receipts |= ids
             self._report(now)
 
     def _state(self) -> MotionState:
@@ -358,8 +358,8 @@ class Machine:
 
     def _report(self, now: float) -> None:
         self._reported_at = now
-        said = Report(at=now, robot=self._device.name, boot_id=self._boot, state=self._state())
-        self._out.append(said.again(now, facts=self._facts, **self._told))
+        report = Report(at=now, robot=self._device.name, boot_id=self._boot, state=self._state())
+        self._out.append(report.again(now, facts=self._facts, **self._receipts))
 
 
 def _finishes(task: Task) -> bool:

@@ -27,7 +27,7 @@ class Joints:
     def __init__(self, names: Sequence[str], topic: str, *, rest: float = REST) -> None:
         self.names = tuple(names)
         self.q: tuple[float, ...] | None = None
-        self.heard_at = -math.inf
+        self.measured_at = -math.inf
         self.rest = Rest(rest)
         self._topic = topic
         self._stamp: tuple[int, int] | None = None
@@ -39,11 +39,11 @@ class Joints:
         q = tuple(at.get(name, math.nan) for name in self.names)
         if event.stamp == self._stamp or not all(abs(value) < FAR for value in q):
             return False
-        self.q, self._stamp, self.heard_at = q, event.stamp, now
+        self.q, self._stamp, self.measured_at = q, event.stamp, now
         self.rest.look(now, q)
         return True
 
     def missing(self, now: float) -> str:
-        if now < self.heard_at + SILENT_S:
+        if now < self.measured_at + SILENT_S:
             return ""
         return f"{self._topic} has said nothing new of {', '.join(self.names)} for {SILENT_S:g} s"

@@ -130,7 +130,7 @@ class Machine:
 
         The plant compares positions and facts in any case, and says that the goal was not reached.
         """
-        if not self._mover.heard_since(since):
+        if not self._mover.has_measured_since(since):
             return
         there = self._mover.is_at(goal.what)
         if not there and not self._mover.rests(now, since):

@@ -28,7 +28,7 @@ class Mover(Protocol):
     def goals(self, command: Command) -> tuple[Any, ...]:
         """The goals to send for a command, in order; raises NoGoal if the action cannot express it."""
 
-    def heard_since(self, at: float) -> bool:
+    def has_measured_since(self, at: float) -> bool:
         """True if a measurement came after that time."""
 
     def is_at(self, goal: Any) -> bool:

@@ -91,7 +91,7 @@ class Machine:
         self._marked: set[int] = set()
         self._latched = self._left_at_work = self._news = False
         self._reported_at = -math.inf
-        self._told: dict[str, str] = {}
+        self._receipts: dict[str, str] = {}
         self._forget_link(0.0)
 
     @property
@@ -115,9 +115,9 @@ class Machine:
         self._packets = PacketReader(self._maker.framing, replies=True)
         self._writes: deque[bytes] = deque()
         self._question: Question | None = None
-        self._asked, self._round_at, self._opened_at = len(self._ids), now, now
+        self._question_count, self._round_at, self._opened_at = len(self._ids), now, now
         self._modes: set[int] | None = set()  # None: all are known
-        self._heard: dict[int, float] = {}
+        self._answered_at: dict[int, float] = {}
         self._readings: dict[int, Reading] = {}  # of this round
         self._latest: dict[int, Reading] = {}
         self._picture: Picture | None = None
@@ -160,9 +160,9 @@ class Machine:
         while self._open and self._question is None:
             if self._writes:
                 self._out.append(Write(data=self._writes.popleft()))
-            elif self._asked < len(self._ids):
-                self._ask(now, self._ids[self._asked])
-                self._asked += 1
+            elif self._question_count < len(self._ids):
+                self._ask(now, self._ids[self._question_count])
+                self._question_count += 1
             elif now >= self._round_at:
                 self._end_round(now)
             else:
@@ -177,7 +177,7 @@ class Machine:
         question = self._question
         if question is None or packet.id != question.id or len(packet.data) != question.length:
             return  # the echo of a question, or an answer that came too late
-        self._question, self._heard[packet.id] = None, now
+        self._question, self._answered_at[packet.id] = None, now
         if self._modes is None:
             self._readings[packet.id] = self._latest[packet.id] = self._maker.reading(now, packet)
         elif packet.data[0] in self._maker.mode[1]:
@@ -188,7 +188,7 @@ class Machine:
 
     def _end_round(self, now: float) -> None:
         """Judge a round in which all servos answered, and begin the next one."""
-        self._asked, self._round_at = 0, now + self._settings.poll_s
+        self._question_count, self._round_at = 0, now + self._settings.poll_s
         readings, self._readings = self._readings, {}
         if self._modes is not None:
             self._modes = None if len(self._modes) == len(self._ids) else self._modes
@@ -198,7 +198,7 @@ class Machine:
         patience_s = max(SILENT_S, len(self._ids) * self._settings.reply_s + self._settings.poll_s)
         if isinstance(self._work, Readying) and self._maker.reboots:
             patience_s = max(patience_s, BOOT_S)
-        silent = [id for id in self._ids if now - self._heard.get(id, self._opened_at) > patience_s]
+        silent = [id for id in self._ids if now - self._answered_at.get(id, self._opened_at) > patience_s]
         if silent and self._open:
             self._give_up(now, silent)
 
@@ -342,7 +342,7 @@ class Machine:
         self._marked = (self._marked - booted) | {id for id, each in readings.items() if each.marked}
         if booted and not isinstance(self._work, Readying):  # then it was told to
             self._boot += 1
-            self._told, self._work, self._switching, self._stopping_at = {}, None, None, None
+            self._receipts, self._work, self._switching, self._stopping_at = {}, None, None, None
             self._left_at_work, self._news = False, True
 
     def _see_hold(self, now: float, picture: Picture) -> None:
@@ -409,7 +409,7 @@ class Machine:
     # What the plant hears.
 
     def _tell(self, **ids: str) -> None:
-        self._told |= {name: id for name, id in ids.items() if id}
+        self._receipts |= {name: id for name, id in ids.items() if id}
         self._news = True
 
     def _reject(self, id: str, word: str) -> None:
@@ -446,7 +446,7 @@ class Machine:
             effector=self._effector(picture),
             facts=self._facts(picture),
         )
-        return report.again(now, **self._told)
+        return report.again(now, **self._receipts)
 
     def _facts(self, picture: Picture) -> Facts:
         readings = picture.readings.values()

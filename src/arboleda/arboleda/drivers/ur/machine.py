@@ -270,7 +270,7 @@ class Machine(TcpArm):
         if before is not None and frame.timestamp_s == before.timestamp_s:
             return  # the same frame again is no news from the arm
         self._see_boot(now, frame)
-        self._heard_at, self._frame = now, frame
+        self._last_data_at, self._frame = now, frame
         if before is None:
             self._stop_what_was_left(now)
         self._see_stop(now, frame)

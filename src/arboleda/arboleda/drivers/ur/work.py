@@ -77,7 +77,7 @@ class Readying:
         self.id = id
         self.reply = ""  # the dashboard's last one
         self._step: tuple[int, int, int] | None = None
-        self._since = self._asked_at = now
+        self._since = self._requested_at = now
 
     def look(self, now: float, frame: Frame) -> Look:
         step = (frame.safety, frame.mode, frame.runtime)
@@ -85,7 +85,7 @@ class Readying:
         if changed:
             self._step, self._since = step, now
         if frame.safety == PROTECTIVE_STOP:
-            again = changed or now - self._asked_at > AGAIN_S
+            again = changed or now - self._requested_at > AGAIN_S
             return self._say(now, UNLOCK) if again and not self._is_late(now) else self._wait(now, frame)
         if word := safety_word(frame):
             return Look(failed=word)  # a person ends it, at the robot
@@ -103,7 +103,7 @@ class Readying:
         return now - self._since > STEP_S
 
     def _say(self, now: float, lines: tuple[str, ...]) -> Look:
-        self._asked_at = now
+        self._requested_at = now
         return Look(lines=lines)
 
     def _wait(self, now: float, frame: Frame) -> Look:

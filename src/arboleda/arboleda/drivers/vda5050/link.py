@@ -21,7 +21,7 @@ class Link:
         self._settings = settings
         self._broker = False
         self._word: str | None = None  # the last connection state
-        self._heard_at = -math.inf
+        self._last_message_at = -math.inf
         self._silent = False
         self._refused = ""  # reason why its last state did not count; "" once one did
         self._last: VehicleState | None = None
@@ -70,7 +70,7 @@ class Link:
         """Take the vehicle's connection state; after a new connection its headers may count anew."""
         if word != "ONLINE" or self._word != "ONLINE":
             self._begin_anew()
-        self._word, self._heard_at, self._first = word, now, True
+        self._word, self._last_message_at, self._first = word, now, True
 
     def takes(self, now: float, state: VehicleState) -> bool:
         """True if a state is newer than the last, and so counts; notes a reboot if its headers begin anew."""
@@ -87,7 +87,7 @@ class Link:
                 return False
             self.has_booted = 0 < behind < WRAP  # some vehicles never count: their timestamps do
             self.boots += self.has_booted
-        self._last, self._heard_at, self._silent, self._first = state, now, False, False
+        self._last, self._last_message_at, self._silent, self._first = state, now, False, False
         self._refused = ""
         return True
 
@@ -102,7 +102,7 @@ class Link:
 
     def falls_silent(self, now: float) -> bool:
         """True at the moment at which the last state has become too old."""
-        before, self._silent = self._silent, now - self._heard_at > self._settings.silent_after_s
+        before, self._silent = self._silent, now - self._last_message_at > self._settings.silent_after_s
         return self._silent and not before and self.is_online
 
     def _begin_anew(self) -> None:

@@ -434,7 +434,7 @@ WORDS = {"rejected": "refusal", "failed": "failure", "answered": "answer"}
 
 def _answer(command: Query, result: str | None) -> Value:
     """The answer of the kind that these words mean, else the words."""
-    known = command.told.answers if isinstance(command, VerbCall) else ()
+    known = command.definition.answers if isinstance(command, VerbCall) else ()
     return next((each for each in known if shown(each) == result), result or "")
 
 

@@ -23,8 +23,8 @@ def facts(found: Incident, cause: Cause) -> dict[str, Any] | None:
         "cell": found.cell,
         "ended_s": found.unix_ns / 1e9,
         "reason": found.failure.reason.value,
-        "failure": _said(found.failure.sentence),
-        "cause": {"kind": cause.kind, "robot": cause.robot, **_said(cause.sentence)},
+        "failure": _sentence_row(found.failure.sentence),
+        "cause": {"kind": cause.kind, "robot": cause.robot, **_sentence_row(cause.sentence)},
         "evidence": {
             "troubles": [
                 {
@@ -52,7 +52,7 @@ def facts(found: Incident, cause: Cause) -> dict[str, Any] | None:
     }
 
 
-def _said(sentence: Sentence | str) -> dict[str, Any]:
+def _sentence_row(sentence: Sentence | str) -> dict[str, Any]:
     """A sentence as its text, and as data where it is more than a text."""
     data = sentence.data() if isinstance(sentence, Sentence) and sentence.phrase is not OWN else {}
     return {"sentence": str(sentence), "key": data.get("key"), "values": data.get("values")}

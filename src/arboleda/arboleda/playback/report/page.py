@@ -56,9 +56,9 @@ def _parts(report: Report, *, has_twin: bool) -> Iterator[str]:
     when = datetime.fromtimestamp(found.unix_ns / 1e9).isoformat(" ", "seconds")
     yield f"<h1>{_each('title', task=found.task)}</h1>"
     yield f"<p class=quiet>{escape(found.text)} · {escape(found.cell)} · {when}</p>"
-    yield f"<section class=cause><h2>{_each('cause')}</h2><p class=big>{_said(cause.sentence)}</p>"
+    yield f"<section class=cause><h2>{_each('cause')}</h2><p class=big>{_sentence_spans(cause.sentence)}</p>"
     own = report.incident.failure.sentence if report.incident.failure else ""
-    yield f"<p class=quiet>{_each('cause_note')} {_said(own)}</p></section>"
+    yield f"<p class=quiet>{_each('cause_note')} {_sentence_spans(own)}</p></section>"
     yield f"<section><h2>{_each('evidence')}</h2><ul>{''.join(_evidence(found))}</ul></section>"
     if has_twin:
         yield f"<section><h2>{_each('twin')}</h2><svg id=twin></svg>"
@@ -94,7 +94,7 @@ def _each(key: str, **values: Any) -> str:
     return "".join(_span(language, text.format(**values) if values else text) for language, text in rows)
 
 
-def _said(sentence: Sentence | str) -> str:
+def _sentence_spans(sentence: Sentence | str) -> str:
     """A sentence of the plant in every language."""
     return "".join(_span(language, words(language).say(sentence)) for language in LANGUAGES)
 

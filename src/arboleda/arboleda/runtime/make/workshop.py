@@ -53,14 +53,14 @@ class Workshop:
 
     def palette(self, base: PlantFiles, files: PlantFiles, cell: str, words: Mapping[str, str]) -> list[Row]:
         """As `PlantApi.palette`, of the draft."""
-        found: list[Row] = self._asked(base, files, "palette", cell, dict(words))
+        found: list[Row] = self._answer(base, files, "palette", cell, dict(words))
         return found
 
     def drawn(
         self, base: PlantFiles, files: PlantFiles, cell: str, text: str, operation: Operation | None
     ) -> Row:
         """As `PlantApi.drawn`, of the draft."""
-        found: Row = self._asked(base, files, "drawn", cell, text, operation)
+        found: Row = self._answer(base, files, "drawn", cell, text, operation)
         return found
 
     def shown(self, base: PlantFiles, files: PlantFiles, cell: str, recipe: str) -> str:
@@ -73,7 +73,7 @@ class Workshop:
         self, base: PlantFiles, files: PlantFiles, cell: str, name: str, way: Mapping[str, str]
     ) -> str:
         """A tree in which a part is carried; `way` has `robot`, `start` and `end`."""
-        return str(self._asked(base, files, "carrying", cell, name, way["robot"], way["start"], way["end"]))
+        return str(self._answer(base, files, "carrying", cell, name, way["robot"], way["start"], way["end"]))
 
     def copied(self, base: PlantFiles, files: PlantFiles, cell: str, recipe: str, name: str) -> str:
         """As `PlantApi.copied`, of the draft."""
@@ -83,14 +83,14 @@ class Workshop:
 
     def drivers(self, base: PlantFiles, files: PlantFiles, words: Mapping[str, str]) -> list[Row]:
         """The drivers that a device of a declared kind can have, with a field for each setting."""
-        found: list[Row] = self._asked(base, files, "drivers", dict(words))
+        found: list[Row] = self._answer(base, files, "drivers", dict(words))
         return found
 
     def driver(self, base: PlantFiles, files: PlantFiles, name: str, texts: Mapping[str, str]) -> Any:
         """The value of the key `driver` for what was written in its fields."""
-        return self._asked(base, files, "driver", name, dict(texts))
+        return self._answer(base, files, "driver", name, dict(texts))
 
-    def _asked(self, base: PlantFiles, files: PlantFiles, name: str, *values: Any) -> Any:
+    def _answer(self, base: PlantFiles, files: PlantFiles, name: str, *values: Any) -> Any:
         with self._turns:
             if not self._has_devices_of(files):
                 self._load(base, files)

@@ -38,7 +38,7 @@ class AlarmsPart:
         self._failed: deque[TaskChanged] = deque()  # from another thread
         self._paces: deque[Pace] = deque()  # from slow to fast and back, from another thread
         self._slow: str | None = None  # the alarm that stands of the memory
-        self._seen = -1
+        self._last_version = -1
         self._stepped_at: float | None = None
         self._open: dict[str, tuple[str, alarms.Need]] = {}  # by cell: the alarm that stands, and its cause
         self._blocked: dict[str, float] = {}  # by cell: since when, as long as nobody was told
@@ -78,9 +78,9 @@ class AlarmsPart:
             self._slow = id if pace.is_slow else None
         while self._failed:
             self._tell(plant, alarms.of_task(plant, self._failed.popleft()), None)
-        if plant.intake.closed or (plant.version == self._seen and not self._blocked):
+        if plant.intake.closed or (plant.version == self._last_version and not self._blocked):
             return  # a person who ends a plant knows that it stands
-        self._seen = plant.version
+        self._last_version = plant.version
         for name in plant.cells:
             self._look(plant, name)
 
@@ -141,7 +141,7 @@ class OnTopic:
             self._client = MqttClient(
                 f"arboleda_alarms_{uuid4().hex[:8]}",
                 self._broker.address,
-                on_event=self._heard,
+                on_event=self._note_connection,
                 credentials=self._broker.credentials,
                 version=self._model.mqtt_version,
                 announce=False,
@@ -158,7 +158,7 @@ class OnTopic:
         if self._client is not None:
             self._client.close()
 
-    def _heard(self, event: Delivery | Connection) -> None:
+    def _note_connection(self, event: Delivery | Connection) -> None:
         if isinstance(event, Connection):
             (self._up.set if event.up else self._up.clear)()
 

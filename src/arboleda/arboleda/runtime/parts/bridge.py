@@ -89,7 +89,7 @@ class BridgePart:
                 f"arboleda_bridge_{uuid4().hex[:8]}",
                 self._broker.address,
                 subscriptions=self._bridge.subscriptions,
-                on_event=self._heard,
+                on_event=self._post,
                 credentials=self._broker.credentials,
                 version=self._version,
             )
@@ -123,7 +123,7 @@ class BridgePart:
         if self._client is not None:
             self._client.close()
 
-    def _heard(self, event: Delivery | Connection) -> None:
+    def _post(self, event: Delivery | Connection) -> None:
         if isinstance(event, Connection):
             self._tell_link(event.up, str(self._broker.address))
         self.loop.post(event)

@@ -30,7 +30,7 @@ class BrokerSurvey:
             f"arboleda_lookout_{uuid4().hex[:8]}",
             broker.address,
             subscriptions=[topic(board, Channel.TELEMETRY) for board in boards],
-            on_event=self._heard,
+            on_event=self._note,
             credentials=broker.credentials,
         )
 
@@ -42,7 +42,7 @@ class BrokerSurvey:
             self._timer.cancel()
         self._client.close()
 
-    def _heard(self, event: Delivery | Connection) -> None:
+    def _note(self, event: Delivery | Connection) -> None:
         if isinstance(event, Delivery):
             self._found.add(event.topic.split("/")[0])
         elif event.up and self._timer is None:

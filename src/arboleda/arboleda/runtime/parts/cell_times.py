@@ -32,12 +32,12 @@ class CellTimes:
         self._history_days = history_days
         self._clock = clock
         self._version = -1
-        self._seen_s = 0.0
+        self._noted_s = 0.0
         self._down: dict[str, CellState] = {}
         self._keeps = False
 
     def start(self) -> None:
-        self._seen_s = now_s = self._clock()
+        self._noted_s = now_s = self._clock()
         self._keeps = True
         self._kept(lambda store: store.began(now_s, now_s - self._history_days * DAY_S))
 
@@ -46,9 +46,9 @@ class CellTimes:
         if not self._keeps:
             return
         now_s = self._clock()
-        if not 0 <= now_s - self._seen_s < SEEN_S:
-            self._seen_s = now_s
-            self._kept(lambda store: store.seen(now_s))
+        if not 0 <= now_s - self._noted_s < SEEN_S:
+            self._noted_s = now_s
+            self._kept(lambda store: store.note_run(now_s))
         if plant.version == self._version:
             return
         self._version = plant.version
@@ -62,7 +62,7 @@ class CellTimes:
 
     def stop(self) -> None:
         """Keep that the plant was ended on purpose, so that the time after it is not planned; idempotent."""
-        self._kept(lambda store: store.seen(self._clock(), ended=True))
+        self._kept(lambda store: store.note_run(self._clock(), ended=True))
         self._keeps = False
 
     def _kept(self, keep: Callable[[PlantMemory], None]) -> None:

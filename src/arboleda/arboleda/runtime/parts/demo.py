@@ -61,7 +61,7 @@ class DemoPart:
         if isinstance(message, Task):
             self._submit(message.text, DEMO).add_done_callback(_look_at)
         else:
-            LOG.info("demonstration: %s", _said(message))
+            LOG.info("demonstration: %s", _sentence(message))
             self._befall(message)
 
 
@@ -73,7 +73,7 @@ def _look_at(answer: Future[TaskChanged]) -> None:
         LOG.debug("the plant took no task of the demonstration: %s", error)
 
 
-def _said(fault: Reboot | Alarm) -> str:
+def _sentence(fault: Reboot | Alarm) -> str:
     if isinstance(fault, Reboot):
         return f"the board {fault.board} loses its power, and has it back at once"
     return f"the driver of {fault.board} reports an alarm" + ("" if fault.is_on else " no more")

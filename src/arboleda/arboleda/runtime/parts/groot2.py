@@ -33,7 +33,7 @@ class Groot2Part(ViewerProcess):
         self._cells = cells
         self._options = options
         self._tasks: dict[str, str] = {}  # the one whose tree each cell showed last
-        self._told: dict[str, bytes] = {}
+        self._last_lines: dict[str, bytes] = {}
 
     def start(self) -> None:
         """Start the process; StartError if a named port is taken, or a library is missing."""
@@ -62,8 +62,8 @@ class Groot2Part(ViewerProcess):
             has_succeeded = self._tasks.get(cell["name"]) in done
             shown = {**cell_for_viewers(cell), "has_succeeded": has_succeeded}
             line = json.dumps(shown, default=str).encode()
-            if self._told.get(cell["name"]) != line:
-                self._told[cell["name"]] = line
+            if self._last_lines.get(cell["name"]) != line:
+                self._last_lines[cell["name"]] = line
                 yield b'{"at_us": %d, %s\n' % (at_us, line[1:])
 
 

@@ -39,7 +39,7 @@ class OpcUaViewPart(ViewerProcess):
         self._ended, self._failed = Counter[str](), Counter[str]()
         self._figures_of = -1  # ended tasks, when the figures were last asked for
         self._figures: dict[str, Mapping[str, Any]] = {}
-        self._told: dict[str, list[Any]] = {}
+        self._last_rows: dict[str, list[Any]] = {}
 
     def start(self) -> None:
         """Start the server, and wait for nothing: whatever becomes of it, the plant goes on."""
@@ -73,8 +73,8 @@ class OpcUaViewPart(ViewerProcess):
         counts = {name: Counts(ended=self._ended[name], failed=self._failed[name]) for name in cells}
         for cell, found in tags(snapshot, counts, self._figures).items():
             rows = [row(tag) for tag in found]
-            if self._told.get(cell) != rows:
-                self._told[cell] = rows
+            if self._last_rows.get(cell) != rows:
+                self._last_rows[cell] = rows
                 yield json.dumps({"at_us": at_us, "cell": cell, "tags": rows}).encode() + b"\n"
 
     def _look_up_figures(self) -> None:

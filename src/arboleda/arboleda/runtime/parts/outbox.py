@@ -121,7 +121,7 @@ class Outbox:
             self._tell(error)
             return False
         else:
-            self._told(alarm["dropped"])
+            self._note_delivery(alarm["dropped"])
         with self._news:
             if self._waiting and self._waiting[0]["id"] == alarm["id"]:
                 self._waiting.popleft()
@@ -134,7 +134,7 @@ class Outbox:
             LOG.warning("alarms do not reach %s (%s); they wait, trying again", self._receiver, error)
         self._blocked = True
 
-    def _told(self, dropped: int) -> None:
+    def _note_delivery(self, dropped: int) -> None:
         """Note that an alarm has arrived, and with it the number of those dropped before it."""
         if self._blocked:
             LOG.warning("alarms reach %s again", self._receiver)

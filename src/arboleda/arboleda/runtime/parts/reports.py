@@ -166,7 +166,7 @@ class ReportsPart:
                 text=True,
                 umask=0o077,
             )
-        output = _said(run)
+        output = _output(run)
         if run.returncode != 0:
             made.unlink(missing_ok=True)
             return plain(output.strip().rpartition("\n")[2].removeprefix("arboleda: "), 300)
@@ -175,7 +175,7 @@ class ReportsPart:
         return None
 
 
-def _said(run: subprocess.Popen[str]) -> str:
+def _output(run: subprocess.Popen[str]) -> str:
     """The output of the process until its end; it is killed if it takes too long."""
     try:
         return run.communicate(timeout=AT_MOST_S)[0]

@@ -29,7 +29,7 @@ class Urgency:
 
     def __init__(self, plant: Plant) -> None:
         self._ledger = plant.dispatcher.ledger
-        self._said: dict[str, tuple[object, ...]] = {}
+        self._last_words: dict[str, tuple[object, ...]] = {}
         self._state: dict[str, MotionState] = {}
         self._last: dict[str, tuple[object, ...]] = {}
         self._runs = {
@@ -59,7 +59,7 @@ class Urgency:
     def _is_news(self, report: Report) -> bool:
         """True if a report says more than the robot's position, and something else than the one before."""
         words = _words(report)
-        if words == _NOTHING or words == self._said.get(report.robot):
+        if words == _NOTHING or words == self._last_words.get(report.robot):
             return False
-        self._said[report.robot] = words
+        self._last_words[report.robot] = words
         return True

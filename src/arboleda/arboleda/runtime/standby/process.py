@@ -99,18 +99,18 @@ class _StandbyNotices:
 
     def __init__(self, room: WaitingRoom, voice: Any | None, tell: Callable[[str], None]) -> None:
         self._room, self._voice, self._tell = room, voice, tell
-        self._said, self._said_at = "", 0.0
+        self._last_notice, self._last_notice_at = "", 0.0
 
     def waits(self, sentence: str, level: int, led: LeaderInfo | None = None) -> None:
         """Publish the sentence on which this process waits; `led` is the leader, None if nobody knows it."""
         self._room.show(sentence, led)
         now = time.monotonic()
-        if self._voice is not None and (sentence != self._said or now - self._said_at > SAY_S):
+        if self._voice is not None and (sentence != self._last_notice or now - self._last_notice_at > SAY_S):
             self._voice.say(level, sentence, {"leader": led.url if led else ""})
-            self._said_at = now
-        if sentence != self._said:
+            self._last_notice_at = now
+        if sentence != self._last_notice:
             self._tell(f"standby: {sentence}")
-            self._said = sentence
+            self._last_notice = sentence
 
 
 def _until_free(others: Leadership, plant: str, own: Callable[[], str], notices: _StandbyNotices) -> None:

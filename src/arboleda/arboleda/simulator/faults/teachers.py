@@ -86,7 +86,7 @@ class Teacher:
     def _press(self) -> None:
         self.number += 1
         robot = self.dice.pick(
-            [each for each in self.world.model.cell(self.cell).reached if not each.is_asked]
+            [each for each in self.world.model.cell(self.cell).reached if not each.is_person]
         )
         self.robot = robot.name
         self.word, self.goal = _what(robot, self.dice)
@@ -138,7 +138,7 @@ def _what(robot: Robot, dice: Dice) -> tuple[str, Position | None]:
 
 
 def _cells(model: PlantModel) -> Sequence[str]:
-    return tuple(cell.name for cell in model.cells if any(not each.is_asked for each in cell.reached))
+    return tuple(cell.name for cell in model.cells if any(not each.is_person for each in cell.reached))
 
 
 @kind(targets=_cells, words=words(ENDS, LOST, LATE), amount=(1.0, MOST_S), weight=0.0)

@@ -21,38 +21,38 @@ class LeaderRow:
     """The leader's number, and the time of its last renewal; all times are of the store's clock, s."""
 
     epoch: int
-    seen: float | None = None
+    renewed_at: float | None = None
     wanted: float | None = None  # when somebody asked for another leader
     going: tuple[str, ...] = ()  # the cells that the last leader held for the change alone
 
     @property
-    def last_seen(self) -> tuple[int, float | None]:
+    def lease_state(self) -> tuple[int, float | None]:
         """A value that changes with every statement of a leader."""
-        return self.epoch, self.seen
+        return self.epoch, self.renewed_at
 
     def leads(self, now: float) -> bool:
         """True if a leader has renewed its lease lately, as a process sees it that only looks."""
-        return self.seen is not None and abs(now - self.seen) < LEASE_S
+        return self.renewed_at is not None and abs(now - self.renewed_at) < LEASE_S
 
-    def end_lease(self, last_seen: tuple[int, float | None]) -> None:
+    def end_lease(self, lease_state: tuple[int, float | None]) -> None:
         """End the lease of a leader if it has not renewed it since then."""
-        if last_seen == self.last_seen:
-            self.seen = None
+        if lease_state == self.lease_state:
+            self.renewed_at = None
 
     def lead(self, proposed: int, now: float) -> tuple[int, tuple[str, ...]] | None:
         """Lead under this number or a higher one; return it and what is to go on; None if another leads."""
-        if self.seen is not None:
+        if self.renewed_at is not None:
             return None
         going = self.going if self._is_wanted(now) else ()
-        self.epoch, self.seen = max(self.epoch + 1, proposed), now
+        self.epoch, self.renewed_at = max(self.epoch + 1, proposed), now
         self.wanted, self.going = None, ()
         return self.epoch, going
 
     def renew(self, epoch: int, now: float) -> bool | None:
         """Renew the lease; return whether another leader is wanted, or None if this number leads no more."""
-        if epoch != self.epoch or self.seen is None:
+        if epoch != self.epoch or self.renewed_at is None:
             return None
-        self.seen = now
+        self.renewed_at = now
         return self._is_wanted(now)
 
     def hand_over(self, epoch: int, going: Sequence[str]) -> None:
@@ -63,7 +63,7 @@ class LeaderRow:
     def give_back(self, epoch: int) -> None:
         """Give up the lease, so that a waiting process can lead at once."""
         if epoch == self.epoch:
-            self.seen = None
+            self.renewed_at = None
 
     def is_fenced(self, epoch: int) -> bool:
         """True if the leader with this number may write."""

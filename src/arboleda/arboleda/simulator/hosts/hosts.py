@@ -102,7 +102,7 @@ class Hosts:
     def _look(self, host: Host) -> None:
         if not host.hears:
             return
-        looked_at, lease = host.clock(self.world.now), self.disk.row.last_seen
+        looked_at, lease = host.clock(self.world.now), self.disk.row.lease_state
         if host.silence.ends_lease(looked_at, lease) or lease[1] is None:
             self.world.at(self.world.now + host.delay_s, lambda _: self._lead(host, looked_at, lease))
 
@@ -128,9 +128,9 @@ class Hosts:
             self.world.stall(process, STARTS_S)
         self._go_on(epoch, [*going], now + HEARD_S)
 
-    def _new_leader(self, host: Host, epoch: int, asked_at: float) -> Process:
+    def _new_leader(self, host: Host, epoch: int, requested_at: float) -> Process:
         leader = Process(host, epoch)
-        leader.lease.renewed(asked_at)
+        leader.lease.renewed(requested_at)
         self.disk.writer = leader
         return leader
 
@@ -172,8 +172,8 @@ class Hosts:
             return
         if world.plant_process.has_stepped and not world.is_stalled(PLANT):
             for name in list(cells):
-                asked = OperatorRequest(at=world.now, verb=Verb.RESUME, scope=name)
-                if world.plant.refusal(asked) is None:
+                request = OperatorRequest(at=world.now, verb=Verb.RESUME, scope=name)
+                if world.plant.refusal(request) is None:
                     world.request_verb(Verb.RESUME, name)
                     cells.remove(name)
         world.at(world.now + LOOKS_S, lambda _: self._go_on(epoch, cells, until))

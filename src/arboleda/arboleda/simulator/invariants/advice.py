@@ -23,11 +23,11 @@ def advice_leads_out(look: Look) -> Iterator[str]:
 @invariant(Trigger.ASKED)
 def refusals_are_foretold(look: Look) -> Iterator[str]:
     """The refusal of a verb, or that it is not refused, is foretold just as it is answered then."""
-    for request, foretold in look.record.asked.foretold:
+    for request, foretold in look.record.before_requests.foretold:
         (answer,) = look.record.answers
         if answer.refusal != foretold:
-            said = f"{request.verb.value} {request.scope!r}"
-            yield f"{said} was answered with {answer.refusal!r}, foretold was {foretold!r}"
+            verb = f"{request.verb.value} {request.scope!r}"
+            yield f"{verb} was answered with {answer.refusal!r}, foretold was {foretold!r}"
 
 
 @invariant(Trigger.END)

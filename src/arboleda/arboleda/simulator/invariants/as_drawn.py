@@ -42,16 +42,16 @@ class DrawnTasks:
 
     def look(self, look: Look) -> Iterator[str]:
         """Take in a step: each breach in a sentence."""
-        asked = [each for each in look.moment.asked if isinstance(each, OperatorRequest)]
-        self._is_disturbed |= any(each.verb not in HARMLESS for each in asked)
+        requests = [each for each in look.moment.requests if isinstance(each, OperatorRequest)]
+        self._is_disturbed |= any(each.verb not in HARMLESS for each in requests)
         if self._is_disturbed or look.world.last_fault_at > -math.inf:
             return
         for sent in look.record.commands.new:
             if sent.entry is not None and isinstance(sent.command, VerbCall):
                 self._sent.setdefault(sent.entry.cell, []).append(sent)
         for change in look.record.tasks.changes:
-            if not change.answer and change.said.state in ENDS:
-                yield from self._ended(look, change.said)
+            if not change.answer and change.message.state in ENDS:
+                yield from self._ended(look, change.message)
 
     def _ended(self, look: Look, change: TaskChanged) -> Iterator[str]:
         cell, task = look.world.model.cell(change.cell or ""), look.world.plant.intake.tasks.get(change.task)
@@ -75,7 +75,7 @@ class DrawnTasks:
             yield f"{change.task} of {task.order.recipe} is called done, and was drawn to fail"
         tools = {space.tool.name for space in cell.spaces if space.tool is not None}  # told by grips
         roles = [role for role, robot in cell.roles.items() if robot.name not in tools]
-        yield from _differences(change.task, roles, _told(cell, sent), drawn.orders)
+        yield from _differences(change.task, roles, _calls(cell, sent), drawn.orders)
         took_s = (task.ended_at or 0.0) - (task.started_at or 0.0)
         if took_s < drawn.seconds - JITTER_S:
             least = f"was drawn to wait {drawn.seconds:g} s"
@@ -91,15 +91,15 @@ def _meaning(
     for each in task.answers:
         answers.setdefault(roles.get(each.by, each.by), []).append(plain(each.answer))
 
-    def takes_s(role: str, told: Told) -> float:
+    def takes_s(role: str, call: Told) -> float:
         mine = [each.command for each in sent if roles[each.robot] == role]
-        alike = (each for each in mine if isinstance(each, VerbCall) and _order(each) == told)
+        alike = (each for each in mine if isinstance(each, VerbCall) and _order(each) == call)
         return max((each.takes_s for each in alike), default=0.0)
 
     return Meaning(recipes, answers, takes_s, pauses=pauses)
 
 
-def _told(cell: Cell, sent: Sequence[SentCommand]) -> dict[str, list[Told]]:
+def _calls(cell: Cell, sent: Sequence[SentCommand]) -> dict[str, list[Told]]:
     """The calls to each role, in that order."""
     roles = {robot.name: role for role, robot in cell.roles.items()}
     found: dict[str, list[Told]] = {}
@@ -109,11 +109,11 @@ def _told(cell: Cell, sent: Sequence[SentCommand]) -> dict[str, list[Told]]:
 
 
 def _differences(
-    task: str, roles: Sequence[str], told: dict[str, list[Told]], drawn: dict[str, list[Told]]
+    task: str, roles: Sequence[str], calls: dict[str, list[Told]], orders: dict[str, list[Told]]
 ) -> Iterator[str]:
     for role in roles:
-        if (said := told.get(role, [])) != (wanted := drawn.get(role, [])):
-            yield f"{task} is called done; {role} was told {said}, and {wanted} was drawn"
+        if (given := calls.get(role, [])) != (wanted := orders.get(role, [])):
+            yield f"{task} is called done; {role} was told {given}, and {wanted} was drawn"
 
 
 def _order(command: Command) -> Told:

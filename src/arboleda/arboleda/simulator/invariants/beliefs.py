@@ -16,7 +16,7 @@ from .invariant import Look, Trigger, invariant
 EVERY_S = 2.0
 FIELDS = ("state", "homed", "effector", "piece", "boot_id", "epoch", "plant", "q", "node")
 _believed = attrgetter(*FIELDS)
-_said = attrgetter(*("boot" if field == "boot_id" else field for field in FIELDS))
+_values = attrgetter(*("boot" if field == "boot_id" else field for field in FIELDS))
 
 
 @invariant(Trigger.SAID, every_s=EVERY_S)
@@ -31,7 +31,7 @@ def _unlike(look: Look, robots: set[str]) -> Iterator[str]:
         known, belief = look.record.robots[name], look.world.plant.dispatcher.beliefs[name]
         if known.robot.link in UNSENT:
             continue
-        if (believed := _believed(belief)) != (said := _said(known)):
+        if (believed := _believed(belief)) != (said := _values(known)):
             for field, taken, word in zip(FIELDS, believed, said, strict=True):
                 if taken != word:
                     yield f"{name}: its {field} is taken for {taken}, its word was {word}"

@@ -18,28 +18,30 @@ def tasks_go_to_the_best_cell(look: Look) -> Iterator[str]:
     """
     promises = look.record.choices.promises
     for change in look.record.tasks.changes if promises else ():
-        said = change.said
-        if said.request is None or said.state is not TaskState.QUEUED or change.answer:
+        message = change.message
+        if message.request is None or message.state is not TaskState.QUEUED or change.answer:
             continue
-        if said.cell not in promises:
-            yield f"task {said.task} was for {', '.join(promises)}, and went to {said.cell}"
+        if message.cell not in promises:
+            yield f"task {message.task} was for {', '.join(promises)}, and went to {message.cell}"
             continue
-        chosen = promises[said.cell]
+        chosen = promises[message.cell]
         for cell, promise in promises.items():
             full, hindered, seconds = promise.rank
             if (full, hindered, seconds + ROUNDING_S) < chosen.rank:
-                yield f"task {said.task} went to {said.cell} ({chosen}), and {cell} is better ({promise})"
-        if not said.choice:
-            yield f"task {said.task} went to {said.cell}, and nobody says why"
+                went = f"task {message.task} went to {message.cell} ({chosen})"
+                yield f"{went}, and {cell} is better ({promise})"
+        if not message.choice:
+            yield f"task {message.task} went to {message.cell}, and nobody says why"
 
 
 @invariant(Trigger.TOLD)
 def tasks_stay_in_their_cell(look: Look) -> Iterator[str]:
     """A task that was taken in by a cell begins and ends in that cell."""
     for change in look.record.tasks.changes:
-        known = look.record.tasks.known(change.said.task)
-        if known is not None and change.said.cell != known.cell:
-            yield f"task {known.id} was in {known.cell}, and {change.said.state.value} in {change.said.cell}"
+        known = look.record.tasks.known(change.message.task)
+        state, cell = change.message.state, change.message.cell
+        if known is not None and cell != known.cell:
+            yield f"task {known.id} was in {known.cell}, and {state.value} in {cell}"
 
 
 @invariant(Trigger.TOLD)
@@ -48,11 +50,11 @@ def courses_are_as_seen(look: Look) -> Iterator[str]:
     seen; of a task that an earlier start has begun nothing is learned.
     """
     for change in look.record.tasks.changes:
-        said, seen = change.said, look.record.courses.ended.get(change.said.task)
-        if said.state is not TaskState.DONE or change.answer or seen is None:
+        message, course = change.message, look.record.courses.ended.get(change.message.task)
+        if message.state is not TaskState.DONE or change.answer or course is None:
             continue
-        if seen.differs(said.course):
-            yield f"task {said.task} did not go as it is told: {said.course}"
+        if course.differs(message.course):
+            yield f"task {message.task} did not go as it is told: {message.course}"
 
 
 CHOICES = (tasks_go_to_the_best_cell, tasks_stay_in_their_cell, courses_are_as_seen)

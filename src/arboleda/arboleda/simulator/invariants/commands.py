@@ -196,8 +196,8 @@ def _too_many_turns(cell: KnownCell, leaf: Behaviour) -> Iterator[str]:
 
 def _rounds(loop: Loop) -> float:
     """The number that a loop of a file says of its rounds; without end where that is a variable, or -1."""
-    said = loop.ports.texts[loop.port]
-    return int(said) if said.isdecimal() else math.inf
+    text = loop.ports.texts[loop.port]
+    return int(text) if text.isdecimal() else math.inf
 
 
 @invariant(Trigger.NEWS)
@@ -239,7 +239,7 @@ def _known_still(look: Look, sent: SentCommand) -> bool:
     failure = sent.entry.failure if sent.entry else None
     if failure is None or failure.reason not in KNOWN_STILL:
         return False
-    codes = [report.state for report in look.moment.heard if report.robot == sent.robot]
+    codes = [report.state for report in look.moment.reports if report.robot == sent.robot]
     return any(code is not MotionState.MOVING for code in (*codes, look.record.robots[sent.robot].state))
 
 

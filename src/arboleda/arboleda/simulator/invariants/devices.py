@@ -158,11 +158,11 @@ def nothing_is_dropped(look: Look) -> Iterator[str]:
                 continue
             places = carrier.here | carrier.stood if carrier in truth.changed else carrier.here
             excused = carrier.taken_away or truth.released(space.hand.name) or truth.mistaken(carrier)
-            if not places and not excused and not _is_said_too_early(truth, hand):
+            if not places and not excused and not _is_done_by_a_lie(truth, hand):
                 yield f"{space.hand.name} lets go, and {space.robot.name} stands at no target"
 
 
-def _is_said_too_early(truth: Truth, hand: RobotTruth) -> bool:
+def _is_done_by_a_lie(truth: Truth, hand: RobotTruth) -> bool:
     """True if the last command of a tool is called done because of a lie about what it holds."""
     booked = truth.last_done(hand.robot.name)
     return booked is not None and truth.deceived_since(hand.robot.mqtt, hand.PLACE, booked.sent_at)
@@ -176,18 +176,18 @@ def an_answer_is_to_its_question(look: Look) -> Iterator[str]:
         if not booked.done or not isinstance(booked.command, Query):
             continue
         board = look.world.model.robots[booked.command.robot].mqtt
-        told = booked.entry.answer
-        if told not in truth.answers(booked.command.id) and not truth.deceived_since(
+        answer = booked.entry.answer
+        if answer not in truth.answers(booked.command.id) and not truth.deceived_since(
             board, "answer", booked.sent_at
         ):
-            yield f"{booked.command.robot} has not answered {told!r} to {booked.command.id}"
+            yield f"{booked.command.robot} has not answered {answer!r} to {booked.command.id}"
 
 
 @invariant(Trigger.ASKED)
 def offered_answers_are_accepted(look: Look) -> Iterator[str]:
     """An answer that a question offers is accepted from whoever gives it while that question is open."""
     refused = {each.scope for each in look.record.answers if each.verb is Verb.ANSWER and each.refusal}
-    for request in look.moment.asked if refused else ():
+    for request in look.moment.requests if refused else ():
         if not isinstance(request, OperatorRequest) or request.verb is not Verb.ANSWER:
             continue
         entry = look.world.plant.dispatcher.question(request.scope)
@@ -252,24 +252,24 @@ def _truly_holds(look: Look, body: RobotTruth) -> bool:
     return not lies and look.world.plant.dispatcher.memory.value(Fact.EMPTIED, body.robot.name) is None
 
 
-def _gives_back(said: Remember) -> bool:
-    return said.fact is Fact.QUARANTINE and said.value is None
+def _gives_back(message: Remember) -> bool:
+    return message.fact is Fact.QUARANTINE and message.value is None
 
 
 @invariant(Trigger.TOLD)
 def numbers_lie_within_their_limits(look: Look) -> Iterator[str]:
     """A task is accepted only with numbers within the limits of its recipe."""
     for change in look.record.tasks.changes:
-        known = look.world.plant.intake.tasks.get(change.said.task)
-        if change.said.state is not TaskState.QUEUED or change.answer or known is None:
+        known = look.world.plant.intake.tasks.get(change.message.task)
+        if change.message.state is not TaskState.QUEUED or change.answer or known is None:
             continue
         cell = look.world.model.cell(known.order.cell)
         found = [each for each in cell.recipes if each.name == known.order.recipe]
         for parameter in (each for recipe in found for each in recipe.parameters):
             limits, value = parameter.limits(cell), known.order.values.get(parameter.name)
             if limits and isinstance(value, int | float) and not limits.lower <= value <= limits.upper:
-                said = f"task {known.id} was accepted with {parameter.name} {value:g}"
-                yield f"{said}, allowed is {limits.lower:g} to {limits.upper:g}"
+                task = f"task {known.id} was accepted with {parameter.name} {value:g}"
+                yield f"{task}, allowed is {limits.lower:g} to {limits.upper:g}"
 
 
 DEVICES = (

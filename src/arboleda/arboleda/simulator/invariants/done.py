@@ -23,7 +23,7 @@ def done_is_true(look: Look) -> Iterator[str]:
     """A command that the plant takes for done is truly done: the robot stands there, the effector is so."""
     for booked in look.truth.books.ended:
         if booked.done and (why := _untrue(look.truth, booked)):
-            yield f"{_told(booked.command)} is called done, but {why}"
+            yield f"{_name(booked.command)} is called done, but {why}"
 
 
 @invariant(Trigger.BOOKED)
@@ -32,7 +32,7 @@ def tiny_moves_succeed(look: Look) -> Iterator[str]:
     for booked in look.truth.books.ended:
         if not booked.done and _undisturbed(look.truth, booked):
             failure = booked.entry.failure
-            yield f"{_told(booked.command)} failed untouched: {failure.sentence if failure else 'no cause'}"
+            yield f"{_name(booked.command)} failed untouched: {failure.sentence if failure else 'no cause'}"
 
 
 def _undisturbed(truth: Truth, booked: EndedCommand) -> bool:
@@ -42,7 +42,7 @@ def _undisturbed(truth: Truth, booked: EndedCommand) -> bool:
     return robot.homed and not robot.latched and truth.books.calm_since(booked.sent_at)
 
 
-def _told(command: Command) -> str:
+def _name(command: Command) -> str:
     return f"{type(command).__name__} {command.id} of {command.robot}"
 
 

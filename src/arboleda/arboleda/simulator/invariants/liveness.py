@@ -91,8 +91,8 @@ def _is_stopped_with_another_cell(look: Look, person: str) -> bool:
 def _is_busy(look: Look, cell: KnownCell) -> bool:
     """True while one of its robots may not have done yet what an operator told it."""
     robots = {robot.name for robot in cell.cell.robots}
-    asked = any(entry.command.robot in robots for entry in look.record.questions)
-    return asked or any(sent.robot in robots for sent in look.record.commands.open.values())
+    has_question = any(entry.command.robot in robots for entry in look.record.questions)
+    return has_question or any(sent.robot in robots for sent in look.record.commands.open.values())
 
 
 def _outside(look: Look, cell: KnownCell) -> bool:

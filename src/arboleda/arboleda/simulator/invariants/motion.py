@@ -40,7 +40,7 @@ def nothing_moves_unasked(look: Look) -> Iterator[str]:
         yield from _moves_unasked(robot)
     for cell in look.truth.storage.cells.values():
         switch = cell.switch
-        if switch is not None and not (switch.asked or switch.lost_power or switch.by_others):
+        if switch is not None and not (switch.by_command or switch.lost_power or switch.by_others):
             yield f"the effector of {switch.arm} goes {'on' if switch.on else 'off'} unasked"
 
 

@@ -37,7 +37,7 @@ def oee_is_as_seen(look: Look) -> Iterator[str]:
 def _work(task: KnownTask) -> Work:
     return Work(
         cell=task.cell,
-        order=task.said.text.partition(" #")[0],
+        order=task.message.text.partition(" #")[0],
         state=task.state.value,
         accepted_s=task.accepted,
         started_s=task.began,
@@ -114,16 +114,16 @@ class _Interval:
         return run, lasts or at < run.seen_s
 
 
-def _unlike(told: Oee, seen: _Interval) -> Iterator[str]:
-    begin, until_s = max(told.since_s, seen.since_s), told.until_s
-    items = seen.items(begin)
+def _unlike(oee: Oee, interval: _Interval) -> Iterator[str]:
+    begin, until_s = max(oee.since_s, interval.since_s), oee.until_s
+    items = interval.items(begin)
     states = Counter(work.state for work in items)
-    timed = [(best_s, work) for work in items if (best_s := seen.best_s(work)) is not None]
-    took_s = sum(seen.took_s(work) for _, work in timed)
+    timed = [(best_s, work) for work in items if (best_s := interval.best_s(work)) is not None]
+    took_s = sum(interval.took_s(work) for _, work in timed)
     compared = items and len(timed) >= ENOUGH * len(items) and took_s > 0
-    planned = [(at, seconds) for at, seconds in seen.pieces(begin, until_s) if seen.is_planned(at)]
+    planned = [(at, seconds) for at, seconds in interval.pieces(begin, until_s) if interval.is_planned(at)]
     planned_s = sum([seconds for _, seconds in planned])
-    worked_s = sum([seconds for at, seconds in planned if seen.is_at_work(at)])
+    worked_s = sum([seconds for at, seconds in planned if interval.is_at_work(at)])
     availability = worked_s / planned_s if planned_s else None
     performance = sum(best_s for best_s, _ in timed) / took_s if compared else None
     quality = states[TaskState.DONE] / len(items) if items else None
@@ -141,11 +141,11 @@ def _unlike(told: Oee, seen: _Interval) -> Iterator[str]:
         "oee": (availability or 0.0) * (performance or 0.0) * (quality or 0.0) if known else None,
     }
     for key, value in expected.items():
-        shown = getattr(told, key)
+        shown = getattr(oee, key)
         if (shown is None) is not (value is None) or abs((shown or 0.0) - (value or 0.0)) > EXACT:
-            yield f"{told.cell}: {key} is told as {shown}, it was {value}"
-    if (told.missing is None) is not known:
-        yield f"{told.cell}: {told.missing!r} is told to be missing of {expected}"
+            yield f"{oee.cell}: {key} is told as {shown}, it was {value}"
+    if (oee.missing is None) is not known:
+        yield f"{oee.cell}: {oee.missing!r} is told to be missing of {expected}"
 
 
 OEE = (oee_is_as_seen,)

@@ -11,7 +11,7 @@ from arboleda.model.messages import Reason
 from arboleda.model.plant_model import Evidence
 
 from ..recorded.commands import SentCommand
-from ..recorded.proofs import Proof, told
+from ..recorded.proofs import Proof, cause_text
 from .invariant import Look, Trigger, invariant
 
 NOTHING_SAID = Proof()
@@ -40,7 +40,7 @@ def ends_are_proven(look: Look) -> Iterator[str]:
     for sent, before in record.commands.moved:
         proof = record.proofs.of.get(sent.command.id, NOTHING_SAID)
         if sent in record.commands.new:
-            if sent.state in ANSWERED and not _said_since(look, sent):
+            if sent.state in ANSWERED and not _has_reported_since(look, sent):
                 yield f"{sent} is {_word(sent)} in the step that sent it, and nobody has said so"
         elif sent.state is State.RUNNING and before is State.SENT and not proof.named:
             yield f"{sent} is taken for accepted, which nobody has said"
@@ -57,8 +57,8 @@ def _is_forgotten(sent: SentCommand) -> bool:
     return isinstance(sent.command, Query)
 
 
-def _said_since(look: Look, sent: SentCommand) -> bool:
-    return any(each.robot == sent.robot and each.at >= sent.at for each in look.moment.heard)
+def _has_reported_since(look: Look, sent: SentCommand) -> bool:
+    return any(each.robot == sent.robot and each.at >= sent.at for each in look.moment.reports)
 
 
 def _word(sent: SentCommand) -> str:
@@ -83,7 +83,7 @@ def _wrong_cause(look: Look, sent: SentCommand, proof: Proof) -> Iterator[str]:
     if failure is None:
         yield f"{sent} failed without a cause"
     elif failure.reason not in proof.causes | _by_time(look, sent):
-        yield f"{sent} failed for {told(failure)}, which is not what happened"
+        yield f"{sent} failed for {cause_text(failure)}, which is not what happened"
 
 
 def _by_time(look: Look, sent: SentCommand) -> set[Reason]:

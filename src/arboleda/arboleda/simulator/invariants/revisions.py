@@ -38,8 +38,8 @@ def tasks_that_wait_are_offered(look: Look) -> Iterator[str]:
         return
     for cell, queue in look.record.tasks.queues.items():
         for task in queue.values():
-            if not is_offered(look.world.offers, task.said.text):
-                yield f"{task.id} waits in {cell}, which does not offer {task.said.text!r} any more"
+            if not is_offered(look.world.offers, task.message.text):
+                yield f"{task.id} waits in {cell}, which does not offer {task.message.text!r} any more"
 
 
 @invariant(Trigger.END)

@@ -55,10 +55,10 @@ def line(change: TaskChanged) -> Row:
 
 def task(known: KnownTask) -> Row:
     """The row of a task as it was told, without its times."""
-    said = known.said
-    expected: Row = {"text": said.text, "cell": known.cell, "state": known.state.value}
+    change = known.message
+    expected: Row = {"text": change.text, "cell": known.cell, "state": known.state.value}
     if known.state in ENDED:  # a recovering task has its reason before that is told
-        expected |= {"reason": said.reason.value if said.reason else None, "sentence": said.sentence}
+        expected |= {"reason": change.reason.value if change.reason else None, "sentence": change.sentence}
     return expected
 
 
@@ -108,8 +108,10 @@ def _progress(cell: KnownCell, row: Row) -> Iterator[str]:
     elif done and ((shown > 0) is not any(done) or (shown == 1) is not all(done) or not 0 <= shown <= 1):
         yield f"{cell.name}: {shown} of the work is shown as done, of its {len(done)} steps {sum(done)} are"
     runs = [node.name for node in nodes_of(tree) if node.status is Status.RUNNING]
-    said = row["step"]
-    step = str(said.values["step"] if said is not None and said.phrase is IN_RECOVERY else said or "")
+    sentence = row["step"]
+    step = str(
+        sentence.values["step"] if sentence is not None and sentence.phrase is IN_RECOVERY else sentence or ""
+    )
     if bool(runs) is not bool(step) or (step and step not in runs):
         yield f"{cell.name}: {row['step']!r} is shown as the step, {runs} run"
 
@@ -191,20 +193,20 @@ def stands(row: Row) -> str:
 def obstacle(known: KnownRobot, now: float, plant: int) -> tuple[Phrase, ...] | None:
     """The phrases for why a robot takes no command; empty if nothing is in its way, None if unsure."""
     if known.stop is StopProgress.LATCHED:
-        return (STOPPED.said,)
+        return (STOPPED.phrase,)
     if known.offline(now):
-        return (OFFLINE.said,) if known.heard_at is not None else (UNHEARD.said,)
+        return (OFFLINE.phrase,) if known.heard_at is not None else (UNHEARD.phrase,)
     if known.robot.link.value == "mqtt" and known.epoch is not None and known.plant != plant:
-        return (UNANSWERED.said, FENCED.said)
+        return (UNANSWERED.phrase, FENCED.phrase)
     if known.state in (MotionState.FAULT, MotionState.STOP_LATCHED):
-        return (FAULTY.said,) if known.state is MotionState.FAULT else (STOPPED.said,)
+        return (FAULTY.phrase,) if known.state is MotionState.FAULT else (STOPPED.phrase,)
     if known.barred and known.state is not MotionState.MOVING:
-        return (STOPPED.said,)
+        return (STOPPED.phrase,)
     if known.unhomed:
-        return (UNHOMED.said,)
+        return (UNHOMED.phrase,)
     if not known.robot.says_homed:
         return None  # it may have lost its place as only its joints show
-    return (MOVING.said,) if known.state is MotionState.MOVING else ()
+    return (MOVING.phrase,) if known.state is MotionState.MOVING else ()
 
 
 def of_robot(row: Row, values: dict[str, str]) -> Iterator[str]:

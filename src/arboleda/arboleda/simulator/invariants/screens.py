@@ -67,7 +67,9 @@ def _is_own(look: Look, cell: KnownCell) -> bool:
 
 def _lines(look: Look) -> Iterator[str]:
     for change in look.record.tasks.changes:
-        yield from _unlike(f"task {change.said.task}", view.change(change.said), rows.line(change.said))
+        yield from _unlike(
+            f"task {change.message.task}", view.change(change.message), rows.line(change.message)
+        )
 
 
 def _shown(look: Look) -> Iterator[str]:
@@ -236,9 +238,9 @@ def _tasks(look: Look, shown: Row) -> Iterator[str]:
 
 def _obstacle(look: Look, known: KnownRobot, row: Row) -> Iterator[str]:
     allowed = rows.obstacle(known, look.record.stepped_at, look.world.plant.epoch)
-    said = row["obstacle"]
-    if allowed is not None and (said.phrase not in allowed if said else allowed):
-        yield f"{known.robot.name}: {said!r} is shown as what is in its way, it is one of {allowed}"
+    sentence = row["obstacle"]
+    if allowed is not None and (sentence.phrase not in allowed if sentence else allowed):
+        yield f"{known.robot.name}: {sentence!r} is shown as what is in its way, it is one of {allowed}"
     last = look.record.commands.last.get(known.robot.name)
     expected = rows.command(last, look.record.stepped_at)
     if expected is None or expected["state"] is None:
@@ -320,21 +322,21 @@ def _goal(last: SentCommand | None) -> Row | None:
 
 
 def _diagnoses(shown: Row) -> Iterator[str]:
-    told = {each[0]: each[1:] for each in diagnostics.diagnostics(shown)}
+    diagnoses = {each[0]: each[1:] for each in diagnostics.diagnostics(shown)}
     for robot in shown["robots"]:
-        whose, level, message, values = told.pop(f"arboleda: {robot['name']}", (None, None, "", {}))
+        whose, level, message, values = diagnoses.pop(f"arboleda: {robot['name']}", (None, None, "", {}))
         yield from rows.of_robot(robot, values)
         bad = robot["state"] not in (None, 0, 1)
         expected = STALE if not robot["online"] else ERROR if bad else OK
         if (whose, level, message) != (robot["mqtt"], expected, str(robot["obstacle"] or "ready")):
             yield f"{robot['name']} has the diagnosis {level} {message!r}"
     for cell in shown["cells"]:
-        _, level, message, values = told.pop(f"arboleda: {cell['name']}", (None, None, "", {}))
+        _, level, message, values = diagnoses.pop(f"arboleda: {cell['name']}", (None, None, "", {}))
         well = cell["state"] in ("idle", "execute") and not cell["paused"] and not cell["not_ready"]
         if level != (OK if well else WARN) or not message or values != rows.of_cell(cell):
             yield f"{cell['name']} has the diagnosis {level} {message!r} {values}"
-    if told:
-        yield f"there are diagnoses of {sorted(told)}"
+    if diagnoses:
+        yield f"there are diagnoses of {sorted(diagnoses)}"
 
 
 def _drawn(look: Look, drawn: Row) -> Iterator[str]:
@@ -357,7 +359,7 @@ def _drawn(look: Look, drawn: Row) -> Iterator[str]:
         running = look.record.tasks.open.get(look.record.tasks.running.get(name, ""))
         own = _is_own(look, look.record.cells[name])
         if not own and kept == "off" and running is not None and look.record.cells[name].run.tree is not None:
-            yield from rows.waits_at(look.record.cells[name], running.said.text, part)
+            yield from rows.waits_at(look.record.cells[name], running.message.text, part)
 
 
 def _in_hands(name: str, part: Row | None, carriers: dict[str, bool], kept: str) -> Iterator[str]:
@@ -410,12 +412,12 @@ def _carried(look: Look) -> Iterator[str]:
             continue
         try:
             sent = status.to_status(robot, report)
-            heard = status.from_status(report.at, robot, sent)
+            received = status.from_status(report.at, robot, sent)
         except Exception as error:  # noqa: BLE001 - whatever it is, the report does not arrive
             yield f"{report} cannot be told over ROS 2: {error}"
             continue
-        if heard != report:
-            yield f"{report} arrives over ROS 2 as {heard}"
+        if received != report:
+            yield f"{report} arrives over ROS 2 as {received}"
         refused = sent.message == "command refused"
         if sent.hardware_id != robot.mqtt or refused is not (report.state is None):
             yield f"{report} is told over ROS 2 as {sent.message!r} of {sent.hardware_id}"
@@ -437,10 +439,10 @@ def _broken(look: Look) -> Iterator[str]:
     alone = {key: value for key, value in sent.values.items() if key != "reason"} | {"rejected": "1-1"}
     for each in (*garbled, replace(sent, name=f"arboleda: {robot.name}2"), replace(sent, values=alone)):
         try:
-            heard = status.from_status(report.at, robot, each)
+            received = status.from_status(report.at, robot, each)
         except PayloadError:
             continue
-        yield f"{each} is taken for {heard}"
+        yield f"{each} is taken for {received}"
 
 
 @invariant(Trigger.END)

@@ -34,12 +34,17 @@ def accepted_is_found_again(look: Look) -> Iterator[str]:
 def asked_again_is_the_same_task(look: Look) -> Iterator[str]:
     """Whoever asks again for an id that was accepted gets that task, in whichever start."""
     answers = {each.request: each for each in look.moment.sent if isinstance(each, TaskChanged)}
-    for request in look.moment.asked:
+    for request in look.moment.requests:
         if not isinstance(request, TaskRequest) or "#" not in request.text or request.request not in answers:
             continue
         id, answer = request.text.rpartition("#")[2], answers[request.request]
-        said = look.record.starts.changes.get(id)
-        if said is not None and answer.task != id and not answer.for_now and _asks_for(look, request, said):
+        change = look.record.starts.changes.get(id)
+        if (
+            change is not None
+            and answer.task != id
+            and not answer.for_now
+            and _asks_for(look, request, change)
+        ):
             yield f"task {id} was accepted, and is now {answer.state.value}: {answer.sentence}"
 
 

@@ -72,9 +72,9 @@ TECHNICAL = ("Traceback", "object at 0x", "\n", "Error(")
 def each_task_ends_once(look: Look) -> Iterable[str]:
     """Each accepted task is told to have ended once, and only after it was accepted."""
     for change in look.record.tasks.changes:
-        if not change.answer and change.said.state in ENDED and change.before in (None, *ENDED):
+        if not change.answer and change.message.state in ENDED and change.before in (None, *ENDED):
             was = change.before.value if change.before else "never accepted"
-            yield f"task {change.said.task} ended as {change.said.state.value}, and was {was}"
+            yield f"task {change.message.task} ended as {change.message.state.value}, and was {was}"
 
 
 @invariant(Trigger.TOLD)
@@ -82,14 +82,14 @@ def nothing_of_an_ended_task_moves(look: Look) -> Iterable[str]:
     """All work for a task that has ended is over or was told to halt, but for what has to finish."""
     commands = look.record.commands
     for change in look.record.tasks.changes:
-        if change.answer or change.before is not TaskState.RUNNING or change.said.state not in ENDED:
+        if change.answer or change.before is not TaskState.RUNNING or change.message.state not in ENDED:
             continue
         for sent in commands.open.values():
             entry = sent.entry
-            if entry is None or entry.cell != change.said.cell or sent in commands.new:
+            if entry is None or entry.cell != change.message.cell or sent in commands.new:
                 continue
             if sent.can_be_halted and not sent.verbs and entry.cancelled_at is None:
-                yield f"{change.said.task} has ended, and {sent} is under way"
+                yield f"{change.message.task} has ended, and {sent} is under way"
 
 
 @invariant(Trigger.TOLD)
@@ -97,7 +97,7 @@ def ended_tasks_stay_ended(look: Look) -> Iterable[str]:
     """A task that has ended never changes, and to cancel it is refused."""
     for change in look.record.tasks.changes:
         if not change.answer and change.before in ENDED:
-            yield f"task {change.said.task} had ended, and became {change.said.state.value}"
+            yield f"task {change.message.task} had ended, and became {change.message.state.value}"
     for answer in look.record.answers:
         if answer.verb is Verb.CANCEL and answer.refusal is None and _had_ended(look, answer):
             yield f"to cancel {answer.scope}, which had ended, was not refused"
@@ -115,17 +115,21 @@ def _had_ended(look: Look, answer: OperatorAnswer) -> bool:
 def only_legal_task_states(look: Look) -> Iterable[str]:
     """A task is queued, then runs, then ends; only a queued one may be cancelled before it runs."""
     for change in look.record.tasks.changes:
-        if not change.answer and change.said.state not in LEGAL.get(change.before, NONE):
+        if not change.answer and change.message.state not in LEGAL.get(change.before, NONE):
             was = change.before.value if change.before else "unknown"
-            yield f"task {change.said.task} became {change.said.state.value}, and was {was}"
+            yield f"task {change.message.task} became {change.message.state.value}, and was {was}"
 
 
 @invariant(Trigger.TOLD)
 def first_come_first_served(look: Look) -> Iterable[str]:
     """The task of a cell that starts is the one that has waited longest."""
     for change in look.record.tasks.changes:
-        if change.said.state is TaskState.RUNNING and not change.answer and change.first != change.said.task:
-            yield f"task {change.said.task} started before {change.first}"
+        if (
+            change.message.state is TaskState.RUNNING
+            and not change.answer
+            and change.first != change.message.task
+        ):
+            yield f"task {change.message.task} started before {change.first}"
 
 
 @invariant(Trigger.TOLD)
@@ -135,19 +139,19 @@ def tasks_start_where_all_is_ready(look: Look) -> Iterable[str]:
     """
     record, zones = look.record, look.world.plant.zones
     for change in record.tasks.changes:
-        if change.said.state is not TaskState.RUNNING or change.answer or change.said.cell is None:
+        if change.message.state is not TaskState.RUNNING or change.answer or change.message.cell is None:
             continue
-        cell = record.cells[change.said.cell].cell
+        cell = record.cells[change.message.cell].cell
         for robot in cell.robots:
             known = record.robots[robot.name]
             if robot.link not in UNSENT and known.is_unfit(record.stepped_at, look.world.plant.epoch):
-                yield f"task {change.said.task} starts, and {robot.name} takes no command"
+                yield f"task {change.message.task} starts, and {robot.name} takes no command"
         keepers = {name: zones.holder(name) or look.world.model.cell_of[name].name for name in cell.shared}
         with_others = {name for name, keeper in keepers.items() if keeper != cell.name}
         for name in (each for each in cell.holders if each not in with_others):
             kept = record.kept.get(Fact.EFFECTOR, {}).get(name, "off")
             if "off" not in (kept, record.effector_of(name)) and not _let_go(look, name):
-                yield f"task {change.said.task} starts, and the effector of {name} is {kept}"
+                yield f"task {change.message.task} starts, and the effector of {name} is {kept}"
 
 
 def _let_go(look: Look, name: str) -> bool:
@@ -160,23 +164,24 @@ def _let_go(look: Look, name: str) -> bool:
 def cancelled_tasks_end_cancelled(look: Look) -> Iterable[str]:
     """A task ends as cancelled where an operator has cancelled it, as failed with a reason, or as done."""
     for change in look.record.tasks.changes:
-        if change.said.state not in ENDED or change.answer:
+        if change.message.state not in ENDED or change.answer:
             continue
-        cancelled = change.said.state is TaskState.CANCELLED
-        known = change.cancelled is not None and not (cancelled and _asked_to_cancel(look))
-        if cancelled and look.world.versions and not is_offered(look.world.offers, change.said.text):
+        cancelled = change.message.state is TaskState.CANCELLED
+        known = change.cancelled is not None and not (cancelled and _cancel_is_requested(look))
+        if cancelled and look.world.versions and not is_offered(look.world.offers, change.message.text):
             continue  # another version was put to work, which has no such task
         if known and cancelled is not change.cancelled:
             word = "cancelled" if change.cancelled else "never cancelled"
-            yield f"task {change.said.task} was {word}, and ended as {change.said.state.value}"
-        if (change.said.reason is None) is not (change.said.state is TaskState.DONE):
-            yield f"task {change.said.task} ended as {change.said.state.value} for {change.said.reason}"
+            yield f"task {change.message.task} was {word}, and ended as {change.message.state.value}"
+        ended = change.message
+        if (ended.reason is None) is not (ended.state is TaskState.DONE):
+            yield f"task {ended.task} ended as {ended.state.value} for {ended.reason}"
 
 
-def _asked_to_cancel(look: Look) -> bool:
+def _cancel_is_requested(look: Look) -> bool:
     """True if somebody asks for a cancel in this step: the plant reports the task before it answers."""
-    asked = (each for each in look.moment.asked if isinstance(each, OperatorRequest))
-    return any(each.verb is Verb.CANCEL for each in asked)
+    requests = (each for each in look.moment.requests if isinstance(each, OperatorRequest))
+    return any(each.verb is Verb.CANCEL for each in requests)
 
 
 @invariant(Trigger.NEWS)
@@ -198,11 +203,11 @@ def _unkept(look: Look) -> Iterator[str]:
         if len(run.queue) != len(queue) or (tasks.changes and [each.id for each in run.queue] != list(queue)):
             yield f"{name} has {len(run.queue)} tasks in its queue; by what was told {len(queue)}, or others"
     for change in tasks.changes:
-        known = look.world.plant.intake.tasks.get(change.said.task)
-        told = tasks.known(change.said.task)
-        if known is not None and told is not None and known.state is not told.state:
-            yield f"task {known.id} is {known.state.value}, and was told to be {told.state.value}"
-        retried = look.world.plant_process.starts > 1 or look.record.cells[change.said.cell or ""].retries
+        known = look.world.plant.intake.tasks.get(change.message.task)
+        recorded = tasks.known(change.message.task)
+        if known is not None and recorded is not None and known.state is not recorded.state:
+            yield f"task {known.id} is {known.state.value}, and was told to be {recorded.state.value}"
+        retried = look.world.plant_process.starts > 1 or look.record.cells[change.message.cell or ""].retries
         if known is not None and not retried and known.attempts != (known.started_at is not None):
             yield f"task {known.id} began at {known.started_at}, and that was attempt {known.attempts}"
 
@@ -280,14 +285,14 @@ def rejected_input_changes_nothing(look: Look) -> Iterable[str]:
 @invariant(Trigger.ASKED)
 def every_request_is_answered(look: Look) -> Iterable[str]:
     """Each task text and each verb has its answer in the step that takes it in."""
-    record, asked = look.record, look.moment.asked
-    verbs = sum(isinstance(each, OperatorRequest) for each in asked)
+    record, requests = look.record, look.moment.requests
+    verbs = sum(isinstance(each, OperatorRequest) for each in requests)
     if verbs != len(record.answers):
         yield f"{verbs} verbs were asked for, {len(record.answers)} answered"
-    tokens = [each.request for each in asked if isinstance(each, TaskRequest) and each.request is not None]
-    told = [each.request for each in look.moment.sent if isinstance(each, TaskChanged)]
-    if tokens != [token for token in told if token is not None]:
-        yield f"task requests {tokens} were answered as {told}"
+    tokens = [each.request for each in requests if isinstance(each, TaskRequest) and each.request is not None]
+    answered = [each.request for each in look.moment.sent if isinstance(each, TaskChanged)]
+    if tokens != [token for token in answered if token is not None]:
+        yield f"task requests {tokens} were answered as {answered}"
 
 
 @invariant(Trigger.COMMANDED)
@@ -314,8 +319,8 @@ def nothing_late_leaves(look: Look) -> Iterator[str]:
 def no_internal_failure(look: Look) -> Iterable[str]:
     """No task fails, and no cell is held, for a defect of the plant itself."""
     for change in look.record.tasks.changes:
-        if change.said.reason is Reason.INTERNAL:
-            yield f"task {change.said.task}: {change.said.sentence}"
+        if change.message.reason is Reason.INTERNAL:
+            yield f"task {change.message.task}: {change.message.sentence}"
     for defect in look.record.errors:
         yield f"{defect.cell or 'the plant'} raised {type(defect.error).__name__}: {defect.error}"
     for cell, _, after in look.record.transitions:
@@ -335,8 +340,8 @@ def no_task_fails_without_a_fault(look: Look) -> Iterable[str]:
     if world.last_fault_at > -math.inf or world.recipes or not record.undisturbed:
         return
     for change in record.tasks.changes:
-        if change.said.state is TaskState.FAILED and not _may_fail(look, change.said):
-            yield f"task {change.said.task} ({change.said.text}) failed: {change.said.sentence}"
+        if change.message.state is TaskState.FAILED and not _may_fail(look, change.message):
+            yield f"task {change.message.task} ({change.message.text}) failed: {change.message.sentence}"
 
 
 def _may_fail(look: Look, change: TaskChanged) -> bool:

@@ -68,10 +68,10 @@ def _alone(look: Look) -> Iterator[tuple[OperatorRequest, OperatorAnswer]]:
     """The verb of a step and its answer, if nothing but an absence came before it in that step. A plant's
     first step has none, as the plant looks there first what became of the tasks that it found.
     """
-    asked, answers = look.moment.asked, look.record.answers
-    alone = len(asked) == len(answers) == 1 and not look.moment.heard and not look.record.begins
-    if alone and isinstance(asked[0], OperatorRequest) and not _is_shared(look, asked[0]):
-        yield asked[0], answers[0]
+    requests, answers = look.moment.requests, look.record.answers
+    alone = len(requests) == len(answers) == 1 and not look.moment.reports and not look.record.begins
+    if alone and isinstance(requests[0], OperatorRequest) and not _is_shared(look, requests[0]):
+        yield requests[0], answers[0]
 
 
 def _is_shared(look: Look, request: OperatorRequest) -> bool:
@@ -81,7 +81,7 @@ def _is_shared(look: Look, request: OperatorRequest) -> bool:
 
 def _found(look: Look) -> list[CellSnapshot]:
     """The cells as the verb found them: a plant that was away first holds those at work."""
-    cells = look.record.asked.cells
+    cells = look.record.before_requests.cells
     return [_held_after_absence(cell) for cell in cells] if look.record.away else cells
 
 
@@ -98,11 +98,13 @@ def _refused(look: Look, request: OperatorRequest) -> bool | None:
         return None
     if verb is Verb.UNLOAD:
         named = record.scopes.parts(request)
-        return not any(cell.parts[place] for cell in record.asked.cells for place in named.get(cell.name, ()))
+        return not any(
+            cell.parts[place] for cell in record.before_requests.cells for place in named.get(cell.name, ())
+        )
     if verb is Verb.OVERRIDE:
-        quarantined = record.asked.quarantined.get(scope.strip().lower())
+        quarantined = record.before_requests.quarantined.get(scope.strip().lower())
         return True if quarantined is None else None
-    task = record.asked.tasks.get(scope.strip().lstrip("#")) if verb is Verb.CANCEL else None
+    task = record.before_requests.tasks.get(scope.strip().lstrip("#")) if verb is Verb.CANCEL else None
     if task is not None:
         return None if task is TaskState.RUNNING else False
     if scope not in record.scopes:
@@ -140,8 +142,8 @@ def _not_so(look: Look, request: OperatorRequest) -> bool:
 @invariant(Trigger.ASKED)
 def verbs_do_what_they_say(look: Look) -> Iterator[str]:
     """A verb that is not refused is in the journal and has done its work, in its scope and nowhere else."""
-    told = (each for each in look.moment.sent if isinstance(each, Journal) and each.verb is not None)
-    journalled = sum(each.outcome is None for each in told)
+    entries = (each for each in look.moment.sent if isinstance(each, Journal) and each.verb is not None)
+    journalled = sum(each.outcome is None for each in entries)
     done = sum(answer.refusal is None for answer in look.record.answers)
     if journalled != done:
         yield f"{done} verbs were done, {journalled} are in the journal"
@@ -159,8 +161,8 @@ def _is_task(look: Look, request: OperatorRequest) -> bool:
 def _cells(look: Look, request: OperatorRequest, can: Can) -> list[tuple[CellSnapshot, KnownCell]]:
     """The cells of its scope in which the verb could be done."""
     names = look.record.scopes.cells(request.scope)
-    asked = [cell for cell in _found(look) if cell.name in names and can(cell)]
-    return [(cell, look.record.cells[cell.name]) for cell in asked]
+    cells = [cell for cell in _found(look) if cell.name in names and can(cell)]
+    return [(cell, look.record.cells[cell.name]) for cell in cells]
 
 
 def _kept_stopped(look: Look, request: OperatorRequest) -> set[str]:
@@ -282,7 +284,7 @@ def _homed(look: Look, request: OperatorRequest) -> Iterator[str]:
 
 def _booked(look: Look, request: OperatorRequest) -> Iterator[str]:
     named = with_common_places(look.record.scopes.parts(request), look.world.model.cells)
-    for before in look.record.asked.cells:
+    for before in look.record.before_requests.cells:
         wanted = before.parts | named.get(before.name, {})
         booked = look.record.cells[before.name].context.places.counts
         if booked != wanted:
@@ -314,9 +316,9 @@ EFFECTS: dict[Verb, Effect] = {
 @invariant(Trigger.SENT)
 def acts_end_as_told(look: Look) -> Iterator[str]:
     """An act of devices for an operator is told when it has ended, and as done if each device has done it."""
-    told = [each for each in look.moment.sent if isinstance(each, Journal) and each.outcome is not None]
+    ends = [each for each in look.moment.sent if isinstance(each, Journal) and each.outcome is not None]
     ended = [sent for sent, _ in look.record.commands.moved if sent.state not in OPEN]
-    for end in told:
+    for end in ends:
         scope = look.record.scopes.robots(end.scope)
         mine = [sent for sent in ended if sent.robot in scope and end.verb and _is_of(sent, end.verb)]
         undone = [str(sent) for sent in mine if sent.state is not State.DONE]
@@ -327,7 +329,7 @@ def acts_end_as_told(look: Look) -> Iterator[str]:
     for sent in ended:
         for verb in (Verb.RELEASE, Verb.HOME):
             waits = any(_is_of(other, verb) for other in look.record.commands.open.values())
-            if _is_of(sent, verb) and not waits and not any(end.verb is verb for end in told):
+            if _is_of(sent, verb) and not waits and not any(end.verb is verb for end in ends):
                 yield f"{sent} has ended, and nobody is told what became of {verb.value}"
 
 

@@ -64,7 +64,7 @@ def commands_say_what_was_heard(look: Look) -> Iterable[str]:
     """A command names telemetry that the plant had just heard of its board: in this step, or last before."""
     for sent in look.record.commands.new:
         robot, command = look.record.robots[sent.command.robot], sent.command
-        now = sum(said.robot == command.robot and said.number is not None for said in look.moment.heard)
+        now = sum(said.robot == command.robot and said.number is not None for said in look.moment.reports)
         if not isinstance(command, Stop) and command.heard not in [*robot.numbers][-now - 1 :]:
             yield f"{sent} names telemetry {command.heard}, and the last was {robot.numbers[-1]}"
 
@@ -163,7 +163,7 @@ def payload_size(look: Look) -> Iterable[str]:
 def published_joints_are_reported(look: Look) -> Iterable[str]:
     """A position that the plant shows is the last one it heard, and its board told it lately."""
     shown = look.record.shown
-    for report in look.moment.heard:
+    for report in look.moment.reports:
         if report.robot in shown:
             known, _, belief = shown[report.robot]
             if belief.q != known.q or belief.node != known.node:
@@ -179,7 +179,7 @@ def _untold(look: Look) -> Iterator[str]:
         if where is None or report.robot not in record.shown:
             continue
         _, board, _ = record.shown[report.robot]
-        if board.said(report.q, report.node, record.reports_from_s(report.at)):
+        if board.has_reported(report.q, report.node, record.reports_from_s(report.at)):
             continue
         if board.remembers(report.at - SLOW_S):  # else the plant waited longer for its disk than that
             yield f"{report.robot} is reported at {where}, which its board has not told lately"
@@ -190,10 +190,10 @@ def nothing_shown_before_heard(look: Look) -> Iterable[str]:
     """A plant that starts shows no position of a robot that it has not heard."""
     beliefs, robots = look.world.plant.dispatcher.beliefs, look.record.robots
     wrong = (name for name, belief in beliefs.items() if belief.position is not None)
-    return [f"{name} is shown without a word of it" for name in wrong if not _heard(robots[name])]
+    return [f"{name} is shown without a word of it" for name in wrong if not _has_place(robots[name])]
 
 
-def _heard(known: Any) -> bool:
+def _has_place(known: Any) -> bool:
     return known.q is not None or known.node is not None
 
 

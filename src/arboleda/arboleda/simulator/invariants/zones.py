@@ -6,11 +6,11 @@ from collections.abc import Iterator
 
 from py_trees.common import Status
 
+from arboleda.core.cell import CellRun
 from arboleda.core.cell_states import CellState
 from arboleda.model.sentence import Sentence
 from arboleda.trees.leaves import TakeDevices, TakeZones
 
-from ..recorded.cells import KnownCell
 from .invariant import Look, Trigger, invariant
 
 EVERY_S = 1.0
@@ -47,21 +47,22 @@ def zone_entered_only_when_held(look: Look) -> Iterator[str]:
 @invariant(Trigger.FREED, every_s=EVERY_S)
 def a_wait_names_its_cause(look: Look) -> Iterator[str]:
     """A step that waits for zones or for shared devices says why, and names who has one of them now."""
-    for cell in look.record.cells.values():
-        if cell.tree is not None and cell.state is CellState.EXECUTE:
-            yield from _silent_waits(look, cell)
+    for run in look.world.plant.cells.values():
+        if run.tree is not None and run.state is CellState.EXECUTE:
+            yield from _silent_waits(look, run)
 
 
-def _silent_waits(look: Look, cell: KnownCell) -> Iterator[str]:
-    for node in cell.run.run.nodes:
+def _silent_waits(look: Look, run: CellRun) -> Iterator[str]:
+    name = run.cell.name
+    for node in run.run.nodes:
         if node.status is not Status.RUNNING or not isinstance(node, TakeZones | TakeDevices):
             continue
-        asks = (node.robot, node.zones) if isinstance(node, TakeZones) else (cell.name, node.devices)
+        asks = (node.robot, node.zones) if isinstance(node, TakeZones) else (name, node.devices)
         holders = {look.world.plant.zones.holder(each) for each in asks[1]} - {None, asks[0]}
         if not node.feedback:
-            yield f"{cell.name} waits in {node.name} and does not say for what"
+            yield f"{name} waits in {node.name} and does not say for what"
         elif holders and holders.isdisjoint(_named(node.feedback)):
-            yield f"{cell.name} {node.feedback}, and {', '.join(sorted(map(str, holders)))} has it"
+            yield f"{name} {node.feedback}, and {', '.join(sorted(map(str, holders)))} has it"
 
 
 def _named(sentence: Sentence) -> set[object]:

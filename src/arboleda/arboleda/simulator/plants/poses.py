@@ -76,14 +76,14 @@ class Poses:
             section["deg"] = [value for axis, value in rows if not axis.slides]
         heights = [(axis, value) for axis, value in rows if axis.slides]
         if heights:
-            section["mm"] = told_mm([value for _, value in heights])
+            section["mm"] = in_file_mm([value for _, value in heights])
         for room in [axis.room(value) for axis, value in heights if axis.up][-1:]:
             if approach and room >= 1 and self._dice.chance(0.5):
                 section["approach_mm"] = _down(room * self._dice.pick((0.1, 0.5, 1.0)))
         return section
 
 
-def told_mm(values: Sequence[float]) -> float | list[float]:
+def in_file_mm(values: Sequence[float]) -> float | list[float]:
     """The values of the sliding joints in the form of a file: a single one needs no list."""
     return values[0] if len(values) == 1 else list(values)
 
@@ -104,7 +104,7 @@ def draw_rack(dice: Dice, axes: Sequence[Axis]) -> tuple[Section, int]:
     slides = [axis for axis in rest if axis.slides]
     if slides and dice.chance(0.7):
         heights = [_inside(axis, dice.between(axis.lower, axis.upper)) for axis in slides]
-        section["mm"] = told_mm(heights)
+        section["mm"] = in_file_mm(heights)
         lifting = [(axis, value) for axis, value in zip(slides, heights, strict=True) if axis.up]
         for room in [axis.room(value) for axis, value in lifting][-1:]:
             if room >= 1 and dice.chance(0.5):

@@ -10,7 +10,7 @@ from arboleda.kinds.joints import Joint
 from arboleda.model.plant_model import Evidence, Link
 
 from ..chance import Dice
-from .poses import Axis, Section, told_mm
+from .poses import Axis, Section, in_file_mm
 
 LINKS = (*(Link.MQTT.value,) * 3, Link.ROS.value, Link.NONE.value)
 LEVELS = tuple(level.value for level in Evidence)
@@ -98,14 +98,14 @@ def _common(dice: Dice, name: str) -> Section:
 def _axis(joint: Joint) -> Axis:
     slides = joint.unit == "m"
 
-    def told(value: float) -> float:
+    def in_file_units(value: float) -> float:
         return value * 1000 if slides else math.degrees(value)
 
     return Axis(
         slides=slides,
-        lower=math.ceil(told(joint.lower) * 10) / 10,
-        upper=math.floor(told(joint.upper) * 10) / 10,
-        tolerance=told(joint.step / 2 + 1e-5) * TOLERANCE_SLACK,
+        lower=math.ceil(in_file_units(joint.lower) * 10) / 10,
+        upper=math.floor(in_file_units(joint.upper) * 10) / 10,
+        tolerance=in_file_units(joint.step / 2 + 1e-5) * TOLERANCE_SLACK,
         up=joint.up,
     )
 
@@ -143,7 +143,7 @@ def _tolerance(dice: Dice, axes: Sequence[Axis]) -> tuple[Section, tuple[Axis, .
     if turning := [axis.tolerance for axis in wide if not axis.slides]:
         section["deg"] = turning
     if sliding := [axis.tolerance for axis in wide if axis.slides]:
-        section["mm"] = told_mm(sliding)
+        section["mm"] = in_file_mm(sliding)
     return section, wide
 
 

@@ -23,7 +23,7 @@ class KnownLink:
         self.patience_s = math.inf if robot.evidence is Evidence.STATE else stale_after_s
         self.up = self.is_open = self.fell = self.rose = self.is_boot = False
         self.was_down = True
-        self.heard_at = -math.inf
+        self.telemetry_at = -math.inf
         self.silent_at = math.inf
         self.number: int | None = None
         self.least = self.least_before = -1
@@ -34,7 +34,7 @@ class KnownLink:
         """Begin with what the plant believes."""
         self.connect(True)
         self._boot = belief.boot_id
-        self.up, self.heard_at = belief.heard_at is not None, now
+        self.up, self.telemetry_at = belief.heard_at is not None, now
         self.silent_at = now + self.patience_s if self.up else math.inf
         self.was_down = not self.up
 
@@ -61,7 +61,7 @@ class KnownLink:
             return False
         self.is_boot = boot is not None and self._boot is not None and boot != self._boot
         self.rose |= not self.up or self.is_boot
-        self.up, self.heard_at, self.number = True, at, number
+        self.up, self.telemetry_at, self.number = True, at, number
         self.silent_at = at + self.patience_s
         self._boot = fields.get("arranque", self._boot)
         self.least = max(fields.get("epoca_ack", -1), fields.get("epoca_min", -1))

@@ -117,7 +117,7 @@ class KnownBoard:
         if can_follow(epoch, max(known, default=None)):
             self.beat = max(epoch, self.beat or 0)
 
-    def said(self, q: tuple[float, ...] | None, node: int | None, since: float) -> bool:
+    def has_reported(self, q: tuple[float, ...] | None, node: int | None, since: float) -> bool:
         """True if valid telemetry with this place reached the bridge at `since` or later."""
         if not self.telemetry:
             return False

@@ -71,7 +71,7 @@ class BridgedBoard:
         self._telemetry.is_new_plant |= epoch != self._telemetry.plant
         self._telemetry.plant = epoch
         self._telemetry.plants.add(epoch)
-        self._beats.heard = True
+        self._beats.has_arrived = True
         self.touched |= self._motion.number is not None
 
     def hear_again(self, delivery: Delivery, now: float, reports: list[Report]) -> bool:
@@ -90,7 +90,7 @@ class BridgedBoard:
             if link.number is None or int(number) <= link.number:
                 return False
             link.number = int(number)
-        link.heard_at, self._beats.heard = delivery.at, False
+        link.telemetry_at, self._beats.has_arrived = delivery.at, False
         link.silent_at = delivery.at + link.patience_s
         telemetry.last = (before, after, report)
         return True
@@ -139,7 +139,7 @@ class BridgedBoard:
         counted = bool(telemetry.counted and reports) and not new
         if commands.orders or published or commands.rejections or new:
             self._forget_commands()
-        if link.up and link.heard_at + link.patience_s <= now:
+        if link.up and link.telemetry_at + link.patience_s <= now:
             link.lose()  # what counted only in hindsight may be too old by now
         link.was_down, link.fell, link.rose, link.least_before = not link.up, False, False, link.least
         telemetry.counted, telemetry.maybe, telemetry.plants = [], [], {telemetry.plant}

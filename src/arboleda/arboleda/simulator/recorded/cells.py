@@ -70,11 +70,11 @@ class KnownCell:
         self.follow()
 
     def follow(self) -> None:
-        """Take over the present state of the cell, of which `signs` got another one than what was `seen`, or
+        """Take over the present state of the cell, of which `signs` got another one than `last_signs`, or
         in whose queue is another number of tasks.
         """
         run = self.run
-        self.seen = self.state, tree, self.task, self.paused = self.signs(run)
+        self.last_signs = self.state, tree, self.task, self.paused = self.signs(run)
         self.queued = len(run.queue)
         if tree is not self.tree:
             self.tree = tree

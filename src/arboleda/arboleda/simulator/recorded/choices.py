@@ -52,8 +52,8 @@ class Choices:
     def look(self, world: World) -> None:
         """Take down the promises of all cells before the plant hears the request."""
         self.promises = {}
-        plant, requests = world.plant, world.moment.asked
-        alone = len(requests) == 1 and not world.moment.heard and world.now < plant.next_deadline
+        plant, requests = world.plant, world.moment.requests
+        alone = len(requests) == 1 and not world.moment.reports and world.now < plant.next_deadline
         if not alone or not isinstance(requests[0], TaskRequest):
             return
         try:

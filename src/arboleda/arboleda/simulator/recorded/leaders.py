@@ -32,7 +32,7 @@ class Leaders:
         self._world, self._hosts, self._boards = world, hosts, boards
         self._known = 0  # how many of the numbers have been looked at
         self._boots: dict[str, int] = {}
-        self._heard: dict[str, int] = {}
+        self._epochs: dict[str, int] = {}
         self._beats: dict[str, tuple[int, int]] = {}  # boot and newest beat of each board before this step
         self._states: dict[str, TaskState] = {}
         self._last: Write | None = None
@@ -77,12 +77,12 @@ class Leaders:
         boot = self._world.boards[board].boot_id
         if self._boots.get(board) != boot:
             self._boots[board] = boot
-            self._heard.pop(board, None)
+            self._epochs.pop(board, None)
         of_boot, beat = self._beats.get(board, (boot, 0))
-        epoch = max(self._heard.get(board, 0), beat if of_boot == boot else 0)
+        epoch = max(self._epochs.get(board, 0), beat if of_boot == boot else 0)
         if goal.epoch < epoch:
             self.old.append(f"{board} was led under number {epoch}, and carries out {goal}")
-        self._heard[board] = max(epoch, goal.epoch)
+        self._epochs[board] = max(epoch, goal.epoch)
 
     def _wrote(self, write: Write) -> None:
         if write.epoch != write.leads:

@@ -56,12 +56,12 @@ class KnownMotion:
 
 
 class Beats:
-    """Beats to one board; `heard`: the plant's reached the bridge in this step."""
+    """Beats to one board; `has_arrived`: the plant's reached the bridge in this step."""
 
     def __init__(
         self, robot: Robot, motion: KnownMotion, *, by_ids: bool, wrong: defaultdict[str, list[str]]
     ) -> None:
-        self.heard = False
+        self.has_arrived = False
         self._name = robot.name
         self._motion = motion
         self._by_ids = by_ids
@@ -70,17 +70,17 @@ class Beats:
     def compare(self, published: list[Publication], link: KnownLink, *, begins: bool, late: bool) -> None:
         """Compare what left in a step with what had to; `begins`: a motion was given in it."""
         motion = self._motion
-        heard, self.heard = self.heard, False
+        arrived, self.has_arrived = self.has_arrived, False
         ended = not motion.is_open
         if motion.still_since is not None and not self._by_ids:
-            ended |= link.heard_at >= motion.still_since + LINGER_S + EXACT
+            ended |= link.telemetry_at >= motion.still_since + LINGER_S + EXACT
         before, motion.had_ended = motion.had_ended, ended
-        if not (published or heard):
+        if not (published or arrived):
             return
         beats = [each for each in published if each.topic.endswith("/latido")]
         if ended and before and not begins and beats and not self._fences(beats, link):
             self._wrong[BEATS].append(f"{self._name} is told that somebody is there, and need not move")
-        if heard and motion.number is not None and not beats and not late:
+        if arrived and motion.number is not None and not beats and not late:
             self._wrong[BEATS].append(f"{self._name} moves, and is not told that somebody is there")
 
     def _fences(self, beats: list[Publication], link: KnownLink) -> bool:

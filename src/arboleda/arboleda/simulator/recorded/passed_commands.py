@@ -56,7 +56,7 @@ class PassedCommands:
         self._link, self._motion, self._numbers = link, motion, numbers
         self._wrong = wrong
         self._latched = False
-        self._seen: set[str] = set()  # ids of commands
+        self._ids: set[str] = set()  # ids of commands
 
     @property
     def begins(self) -> bool:
@@ -65,12 +65,12 @@ class PassedCommands:
 
     def take(self, command: Command, plant: int | None) -> None:
         """Take a command with an id; `plant` is the one that the bridge hears."""
-        if command.id in self._seen:
+        if command.id in self._ids:
             return
         if not is_stop(command) and command.id.partition("-")[0] != str(plant or 0):
             self.orders.append((command, "old_epoch"))
             return
-        self._seen.add(command.id)
+        self._ids.add(command.id)
         self.orders.append((command, self._word_against(command)))
 
     def take_unnamed(self, at: float, command: Command, *, is_alone: bool) -> None:

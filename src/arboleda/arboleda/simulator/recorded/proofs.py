@@ -116,7 +116,7 @@ class Proofs:
         node = known.node if report.node is None else report.node
         shown = self._shown[sent.command.id]
         _see(shown, sent, report)
-        _said(proof, sent, report)
+        _note_state(proof, sent, report)
         off = _off(sent, known.robot, q, node) if sent.way else _off_facts(sent, report, known)
         _moved(proof, sent, shown, report, known.robot, off)
 
@@ -161,7 +161,7 @@ def _see(shown: ReportEvidence, sent: SentCommand, report: Report) -> None:
     shown.unhomed |= report.homed is False
 
 
-def _said(proof: Proof, sent: SentCommand, report: Report) -> None:
+def _note_state(proof: Proof, sent: SentCommand, report: Report) -> None:
     """Note what state codes prove by themselves."""
     if report.state is MotionState.FAULT:
         _must(proof, Reason.DEVICE_FAULT, "its board reports a fault")
@@ -254,5 +254,5 @@ def _off_path(nodes: tuple[int, ...], node: int) -> float:
     return 0.0 if node in nodes[:-1] else -1.0
 
 
-def told(failure: Failure | None) -> str:
+def cause_text(failure: Failure | None) -> str:
     return f"{failure.reason.value} ({failure.sentence})" if failure else "no cause"

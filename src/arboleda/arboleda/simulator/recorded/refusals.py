@@ -24,7 +24,7 @@ def _only_refused(record: Record) -> bool:
     moment, tasks = record.world.moment, record.tasks
     refused = sum(answer.refusal is not None for answer in record.answers)
     repeated = sum(change.answer for change in tasks.changes)
-    return not moment.heard and refused + repeated + tasks.refused == len(moment.asked)
+    return not moment.reports and refused + repeated + tasks.refused == len(moment.requests)
 
 
 def _something_was_due(record: Record) -> bool:

@@ -21,7 +21,7 @@ class KnownTask:
     """A task that was accepted; `number` counts the accepted ones; `cancelled`: an operator has cancelled it,
     None if that may have meant this task.
 
-    `said` is the last word on it; `accepted` is when it was first heard of, `began` when it was told to run.
+    `message` is the last word on it; `accepted` is when it first came, `began` when it was told to run.
     """
 
     id: str
@@ -29,7 +29,7 @@ class KnownTask:
     number: int
     state: TaskState
     since: float
-    said: TaskChanged
+    message: TaskChanged
     accepted: float
     cancelled: bool | None = False
     began: float | None = None
@@ -42,7 +42,7 @@ class Change:
     `first` is the task that was first in the queue of its cell.
     """
 
-    said: TaskChanged
+    message: TaskChanged
     before: TaskState | None
     answer: bool
     first: str | None
@@ -75,9 +75,9 @@ class Tasks:
     def _take_back(self, row: KeptTask, task: KnownTask | None, now: float) -> None:
         if task is None:
             self._accepted += 1
-            task = KnownTask(row.id, row.cell, self._accepted, row.state, now, _said(row), now)
+            task = KnownTask(row.id, row.cell, self._accepted, row.state, now, _last_change(row), now)
         if task.state is not row.state:
-            task.said = _said(row)
+            task.message = _last_change(row)
         task.state, task.began = row.state, row.started_at
         if row.state is TaskState.RUNNING and task.cancelled:
             task.cancelled = None  # the plant that was to halt it is gone
@@ -127,7 +127,7 @@ class Tasks:
         if task is None or change.state is TaskState.QUEUED:
             self._accepted += 1
             task = KnownTask(change.task, change.cell or "", self._accepted, change.state, now, change, now)
-        task.state, task.since, task.said = change.state, now, change
+        task.state, task.since, task.message = change.state, now, change
         task.began = now if change.state is TaskState.RUNNING else task.began
         queue = self.queues[task.cell]
         queue.pop(task.id, None)
@@ -149,7 +149,7 @@ class Tasks:
             self.ended.popitem(last=False)
 
 
-def _said(row: KeptTask) -> TaskChanged:
+def _last_change(row: KeptTask) -> TaskChanged:
     """The last word on a task that would have been told, from its row on the disk."""
     remark = UNCHECKED[row.unchecked]() if row.unchecked else NOTHING
     return TaskChanged(

@@ -31,14 +31,14 @@ class TimeLine:
         self.foreign = 0
         self.whole = True
         self._chronicle = Chronicle()
-        self._seen = 0  # events
+        self._last_number = 0  # events
 
     def see(self, shown: Row) -> None:
         self._chronicle.see(shown, UNIX_S + shown["at"])
         self.received |= changed(self.received, shown)
-        new = [each for each in self._chronicle.events if each["number"] > self._seen]
-        self.whole = self.whole and (not new or new[0]["number"] == self._seen + 1)
-        self._seen += len(new)
+        new = [each for each in self._chronicle.events if each["number"] > self._last_number]
+        self.whole = self.whole and (not new or new[0]["number"] == self._last_number + 1)
+        self._last_number += len(new)
         for event in new:
             self.last[event["kind"], event["subject"]] = event
             self.foreign += event["kind"] == "foreign"

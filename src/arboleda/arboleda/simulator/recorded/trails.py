@@ -33,11 +33,11 @@ class Trails:
         self._robots = robots
         self.found: dict[str, Trail] = {}
         self._holders: Mapping[str, str] = {}  # of zones and shared devices, when it started
-        self._said: dict[str, Sentence | None] = {}  # by cell, why its task does not go on
+        self._sentences: dict[str, Sentence | None] = {}  # by cell, why its task does not go on
 
     def restart(self, kept: Kept, running: Mapping[str, str]) -> None:
         """Begin another start of the plant, with what it found of the tasks that were at work, by cell."""
-        self._said.clear()
+        self._sentences.clear()
         steps, self._holders = kept.get(Fact.STEP, {}), kept.get(Fact.QUARANTINE, {})
         self.found = {cell: Trail.read(steps[task]) for cell, task in running.items() if task in steps}
 
@@ -63,7 +63,7 @@ class Trails:
         for each in kept:
             if each.value is not None and each.name in at_work:
                 cell, trail, is_last = at_work[each.name], Trail.read(each.value), each is last[each.name]
-                self.wrong += _said_otherwise(cell, trail, commands, is_last=is_last)
+                self.wrong += _contradictions(cell, trail, commands, is_last=is_last)
 
     def _devices(self, cell: KnownCell) -> list[str]:
         """The devices of a cell, of shared ones those that it held when the plant started."""
@@ -73,8 +73,8 @@ class Trails:
     def _more_commands(self, cell: KnownCell) -> Iterator[str]:
         """Sentences on a device that has booted, of which it is said now that it was told more."""
         trouble = cell.run.trouble
-        sentence, before = trouble.sentence if trouble else None, self._said.get(cell.name)
-        self._said[cell.name] = sentence
+        sentence, before = trouble.sentence if trouble else None, self._sentences.get(cell.name)
+        self._sentences[cell.name] = sentence
         if sentence is None or before is not None or sentence.phrase is not MORE:
             return
         robot = str(sentence.values["robot"])
@@ -88,7 +88,7 @@ class Trails:
         return numbers and known is not None and None not in (known.boot, now.boot) and known.boot != now.boot
 
 
-def _said_otherwise(cell: KnownCell, trail: Trail, commands: Commands, *, is_last: bool) -> Iterator[str]:
+def _contradictions(cell: KnownCell, trail: Trail, commands: Commands, *, is_last: bool) -> Iterator[str]:
     """Sentences on steps under way of which a trail does not say whether their last command is done.
 
     One that was cancelled, or that a hold lets end, and then ended in this very step may be kept as not

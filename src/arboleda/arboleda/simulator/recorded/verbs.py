@@ -44,8 +44,8 @@ class EarlierState:
 
     def look(self, cells: Iterable[KnownCell], tasks: Tasks, world: World) -> None:
         """Take all down before the plant hears the request."""
-        plant, requests = world.plant, world.moment.asked
-        alone = len(requests) == 1 and not world.moment.heard and world.now < plant.next_deadline
+        plant, requests = world.plant, world.moment.requests
+        alone = len(requests) == 1 and not world.moment.reports and world.now < plant.next_deadline
         verbs = [each for each in requests if isinstance(each, OperatorRequest)] if alone else []
         self.foretold = [(each, plant.refusal(each)) for each in verbs]
         self.tasks = {id: task.state for id, task in tasks.open.items()}

@@ -22,7 +22,7 @@ KEPT = 50  # switches of one task
 class Switch:
     """A change of an effector, at the named poses where its arm stood still.
 
-    `by_others`: somebody else than the plant opened it; `asked`: the board carried out a command for it;
+    `by_others`: somebody else than the plant opened it; `by_command`: the board carried out a command for it;
     `released`: an operator had it opened; `taken_away`: somebody had put the arm elsewhere by hand; `legal`:
     at the pick-up or palletizing pick or, opened, where the part of the cell's last task belongs or at the
     palletizing place.
@@ -34,7 +34,7 @@ class Switch:
     poses: frozenset[str]
     lost_power: bool
     by_others: bool
-    asked: bool
+    by_command: bool
     released: bool
     taken_away: bool
     legal: bool
@@ -233,7 +233,7 @@ class CellTruth:
             poses=arm.stood,
             lost_power=arm.lost_power,
             by_others=arm.opened,
-            asked=any(isinstance(goal, EffectorGoal) and goal.on == arm.on for goal in goals),
+            by_command=any(isinstance(goal, EffectorGoal) and goal.on == arm.on for goal in goals),
             released=self.released,
             taken_away=arm.taken_away,
             legal=at_pick if arm.on else self.legal_to_open(arm),

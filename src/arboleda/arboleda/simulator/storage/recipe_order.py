@@ -31,7 +31,7 @@ def recovery_takes_its_zones(look: Look) -> Iterator[str]:
         cell = look.record.cells[sent.entry.cell] if sent.entry else None
         if cell is None or not isinstance(sent.command, MoveJoints) or not _at_storage(look, cell):
             continue
-        if cell.run.run.recovering and _sets_out(cell, sent) and not _is_seen(look, cell.layout):
+        if cell.run.run.recovering and _sets_out(cell, sent) and not _is_known_outside(look, cell.layout):
             yield from _lacking(look, cell, sent)
 
 
@@ -80,7 +80,7 @@ def _goal(sent: SentCommand) -> Position:
     return sent.command.q
 
 
-def _is_seen(look: Look, cell: StorageLayout) -> bool:
+def _is_known_outside(look: Look, cell: StorageLayout) -> bool:
     """True if the arm was last seen at, or above, a pose outside of all zones; at `state` nobody sees it."""
     arm, q = cell.arm, look.record.robots[cell.arm.name].q
     if arm.evidence is Evidence.STATE:

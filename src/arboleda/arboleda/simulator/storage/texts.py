@@ -20,10 +20,10 @@ ID = re.compile(r"#(?!t-)[A-Za-z0-9_.-]{1,64}", re.ASCII)
 @invariant(Trigger.ASKED)
 def texts_mean_what_they_say(look: Look) -> Iterator[str]:
     """A task text is taken where it names what the plant has and its cell has room, and only there."""
-    requests, record = look.moment.asked, look.record
+    requests, record = look.moment.requests, look.record
     if len(requests) != 1 or not isinstance(requests[0], TaskRequest) or requests[0].trigger:
         return
-    changes = [change.said for change in record.tasks.changes if change.before is None or change.answer]
+    changes = [change.message for change in record.tasks.changes if change.before is None or change.answer]
     refused = record.tasks.refused > 0
     meant = _all_meant(look.world.offers, requests[0].text)
     if not meant and not all(map(only_stores, look.world.offers.cells)):
@@ -33,10 +33,10 @@ def texts_mean_what_they_say(look: Look) -> Iterator[str]:
             yield f"{requests[0].text[:60]!r} means nothing, and was taken"
         yield from _unhelpful(look)
         return
-    queued = {each.name: each.queued for each in record.asked.cells}
+    queued = {each.name: each.queued for each in record.before_requests.cells}
     full = [cell for cell, _, _ in meant if queued[cell] >= look.world.offers.cell(cell).queue_limit]
     id = meant[0][2]
-    known = id is not None and id in record.asked.ids
+    known = id is not None and id in record.before_requests.ids
     if not known and refused is not (len(full) == len(meant)):
         word = "refused" if refused else "taken"
         yield f"{requests[0].text!r} was {word}, so many tasks wait: {queued}"

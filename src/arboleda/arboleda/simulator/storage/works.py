@@ -69,7 +69,7 @@ class Works:
     def follow(self, tasks: Tasks, new: list[SentCommand], now: float) -> None:
         """Take over what this step began, commanded and ended."""
         for change in tasks.changes:
-            report = change.said
+            report = change.message
             if report.state is TaskState.RUNNING and not change.answer and report.cell in self._cells:
                 cell = self._cells[report.cell].layout
                 if not is_storage_task(cell.cell, report.text):
@@ -80,7 +80,7 @@ class Works:
             if sent.entry is not None and sent.entry.cell in self._works and not _by_operator(sent):
                 self._take(sent.entry.cell, sent)
         for change in tasks.changes:
-            report = change.said
+            report = change.message
             if report.cell is not None and not change.answer and report.state in ENDED:
                 work = self._works.get(report.cell)
                 if work is not None and work.task == report.task:

@@ -48,7 +48,7 @@ class ArmTruth(RobotTruth):
         self.zones = NOWHERE
         self.true, self.counted = self.body.true_position, self.body.position
         self._shift = tuple(map(sub, self.true, self.counted))  # of the counters, by boots alone
-        self._told: dict[Position, Steps] = {}  # of the poses
+        self._known_steps: dict[Position, Steps] = {}  # of the poses
         self._names: dict[Steps, frozenset[str]] = {}
         self._spots: dict[Steps, frozenset[str]] = {}  # with the points above poses
         space = cell.workspaces.get(robot.name)
@@ -218,12 +218,12 @@ class ArmTruth(RobotTruth):
     def _enter(self, pose: Pose) -> None:
         for book, q in ((self._names, pose.q), (self._spots, pose.q), (self._spots, pose.above)):
             if q is not None:
-                place = self._told[q] = self._steps(q)
+                place = self._known_steps[q] = self._steps(q)
                 book[place] = book.get(place, NOWHERE) | {pose.name}
 
     def _steps(self, q: Position) -> Steps:
-        if q in self._told:
-            return self._told[q]
+        if q in self._known_steps:
+            return self._known_steps[q]
         assert isinstance(q, tuple)
         return tuple(joint.steps(value) for joint, value in zip(self.arm.joints, q, strict=True))
 

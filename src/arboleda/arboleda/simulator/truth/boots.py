@@ -18,18 +18,18 @@ class Boots:
     def __init__(self, robots: Iterable[RobotTruth]) -> None:
         self.mute = {each.robot.name: each for each in robots if _boots_show(each.robot)}
         self._last: dict[str, tuple[int | None, int | None]] = {}
-        self._told: set[str] = set()
+        self._reported: set[str] = set()
         self._known: set[str] = set()  # those told before any command of this step
 
     def look(self, reports: Iterable[Report], *, is_question: bool) -> None:
-        """Take in what the plant heard in this step; what was `asked` in it may have come before that."""
-        before = self._told.copy() if is_question else None
+        """Take in what the plant heard in this step; what it was asked in it may have come before that."""
+        before = self._reported.copy() if is_question else None
         for report in reports:
             if report.robot in self.mute and report.boot_id is not None:
                 self._hear(report)
-        if self._told:
-            self._told = {name for name in self._told if not self.mute[name].homed}
-        self._known = self._told if before is None else self._told & before
+        if self._reported:
+            self._reported = {name for name in self._reported if not self.mute[name].homed}
+        self._known = self._reported if before is None else self._reported & before
 
     def _hear(self, report: Report) -> None:
         boot, last = (report.epoch, report.boot_id), self._last.get(report.robot, NEVER)
@@ -38,7 +38,7 @@ class Boots:
             known = last is not NEVER and self.mute[report.robot].robot.evidence is Evidence.IDS
             put_right = report.at < self.mute[report.robot].put_right_at  # it booted before it was put right
             if not put_right and (boot[0] == last[0] or (known and boot[1] != last[1])):
-                self._told.add(report.robot)
+                self._reported.add(report.robot)
 
     def restart(self) -> None:
         """Begin anew with a plant that starts: what an earlier one heard of a bridge is nothing to it."""

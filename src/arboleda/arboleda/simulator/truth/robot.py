@@ -44,7 +44,7 @@ class Act:
 class RobotTruth:
     """One robot, followed step by step.
 
-    `again`: it is to be looked at, even if what `signs` gets of its body is as `seen` last, and so is `boot`.
+    `again`: it is to be looked at, even if what `signs` gets of its body is `last_signs`, and so is `boot`.
     `stopping`: from a stop or halt that its board heard until it stands still or gets a new goal. Of one
     step, until `forget`: `acts` and `lost_power`; `started`, `swerved`, `jumped`: it began to move, changed
     its way or is elsewhere, and nothing that it heard explains it; `sped_up`, `runs_on`: it was told to stop
@@ -87,7 +87,7 @@ class RobotTruth:
         self.taken_away = False  # somebody has moved it by hand since it was last told to move
         self.put_right_at = -math.inf  # when somebody put it at its reference last, s
         self._arrived = not self.moving  # it stood still at some time in this step
-        self.seen: object = ()
+        self.last_signs: object = ()
         self._due: int | None = None  # when its motion was to end
         self._was_due: int | None = None  # the same, before this step
         self.forget()
@@ -147,7 +147,7 @@ class RobotTruth:
         self.again = bool(self._ahead) or self._slows_down
 
     def _take_in(self, now_us: int) -> None:
-        due, self._due, self.seen = self._due, self.body.next_change_us, self.signs(self.body)
+        due, self._due, self.last_signs = self._due, self.body.next_change_us, self.signs(self.body)
         self._was_due = due
         turned = due != self._due
         if self.board.boot_id != self.boot:

@@ -145,7 +145,7 @@ class RobotsTruth:
         now_us = round(self.world.now * 1e6)
         for robot in self._robots:
             news = robot.again or robot.board.boot_id != robot.boot
-            if news or robot.signs(robot.body) != robot.seen:
+            if news or robot.signs(robot.body) != robot.last_signs:
                 robot.look(now_us)
                 self.changed.append(robot)
         if self.changed:
@@ -154,8 +154,8 @@ class RobotsTruth:
     def _look_at_plant(self) -> None:
         """Take in what the plant heard, was deceived about and sent."""
         world, moment = self.world, self.world.moment
-        if moment.heard or self.boots.mute:
-            self._listen(moment.heard)
+        if moment.reports or self.boots.mute:
+            self._listen(moment.reports)
         if world.deceptions and world.now >= self._sampled_at + SAMPLE_S:
             self._sampled_at = world.now
             self._deceived.update({key: world.now for key, number in world.deceptions.items() if number})
@@ -167,7 +167,7 @@ class RobotsTruth:
     def _listen(self, reports: list[Report]) -> None:
         """Take in what the plant hears."""
         if self.boots.mute:
-            self.boots.look(reports, is_question=bool(self.world.moment.asked))
+            self.boots.look(reports, is_question=bool(self.world.moment.requests))
 
     def _revise(self) -> None:
         """Know the places of what cells work by now."""

@@ -39,7 +39,7 @@ class Truth(RobotsTruth):
         self._left: dict[tuple[str, object], float] = {}  # when a fact ceased to be so, a target was left
         self._released: dict[str, float] = {}  # when an operator had a robot let go
         self._last: dict[str, EndedCommand] = {}  # the last command of each robot, if it is called done
-        self._asked: dict[tuple[str, int, int], str] = {}  # (robot, epoca, seq) -> the question
+        self._questions: dict[tuple[str, int, int], str] = {}  # (robot, epoca, seq) -> the question
         self._answers: dict[str, set[Value]] = {}  # what was truly answered to it
         self._began: dict[str, float] = {}
         robots = [each.robot for each in self.robots.values()]
@@ -140,13 +140,13 @@ class Truth(RobotsTruth):
             for question in [each for each in questions if each.robot == name]:
                 if isinstance(goal, OrderGoal) and is_order_of(goal, self.robots[name].robot, question):
                     questions.remove(question)
-                    self._asked[name, goal.epoch or 0, goal.seq or 0] = question.id
+                    self._questions[name, goal.epoch or 0, goal.seq or 0] = question.id
                     break
 
     def _hear_answer(self, robot: str, payload: bytes) -> None:
         """Take in the answer in a board's telemetry; it belongs to the question with this number."""
         fields = json.loads(payload)
-        question = self._asked.get((robot, fields.get("epoca_ack"), fields.get("respuesta_seq")))
+        question = self._questions.get((robot, fields.get("epoca_ack"), fields.get("respuesta_seq")))
         if question is not None:
             self._answers.setdefault(question, set()).add(fields["respuesta"])
 

@@ -84,7 +84,7 @@ class PostgresMemory(PlantMemory):
 
     def lead(self, epoch: int) -> int:
         """Take the lead, as in every memory; a killed leader is waited for as long as its lease lasts."""
-        silence, first = Silence(), self._last_seen()
+        silence, first = Silence(), self._lease_row()
         while True:
             sent_at = clock.seconds()
             me = plain(socket.gethostname()), os.getpid()
@@ -95,7 +95,7 @@ class PostgresMemory(PlantMemory):
                 self.going = tuple(json.loads(row[1]))
                 self._query("UPDATE leader SET going = '[]' WHERE epoch = %s RETURNING epoch", self._epoch)
                 return self._epoch
-            lease = self._last_seen()
+            lease = self._lease_row()
             if lease != first and lease[1] is not None:
                 self._refuse_second()
             if silence.ends_lease(clock.seconds(), lease):
@@ -198,7 +198,7 @@ class PostgresMemory(PlantMemory):
         with explained(self.name, StartError):
             return self._connection().execute(statement, values).fetchone()
 
-    def _last_seen(self) -> tuple[Any, ...]:
+    def _lease_row(self) -> tuple[Any, ...]:
         row = self._query(LAST_SEEN)
         if row is None:
             raise self._damaged()

@@ -38,7 +38,7 @@ class Server(TcpServer):
     def _joined(self, client: int, port: str) -> list[ClientText]:
         return []
 
-    def _heard(self, client: int, port: str, data: bytes) -> list[ClientText]:
+    def _events_of(self, client: int, port: str, data: bytes) -> list[ClientText]:
         is_text = bool(data) and port == DASHBOARD
         return [ClientText(client=client, text=data.decode("utf-8", "replace"))] if is_text else []
 

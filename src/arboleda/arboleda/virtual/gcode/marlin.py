@@ -204,7 +204,7 @@ class VirtualMarlin(VirtualMachine):
         if line.startswith("G1"):
             return self._move(now, line)
         if line == "M114":
-            return [self._shown(), "ok"]
+            return [self._position_line(), "ok"]
         if line == "M115":
             parser = 0 if "no_parser" in self.faults else 1
             return ["FIRMWARE_NAME:Marlin 2.1.2 (virtual)", f"Cap:EMERGENCY_PARSER:{parser}", "ok"]
@@ -230,7 +230,7 @@ class VirtualMarlin(VirtualMachine):
             self._goal = self._path.goal
         return [] if "no_ok" in self.faults else ["ok"]
 
-    def _shown(self) -> str:
+    def _position_line(self) -> str:
         self._answers += 1
         x, y, z = self._goal
         text = f"X:{x:.2f} Y:{y:.2f} Z:{z:.2f} E:0.00"

@@ -340,6 +340,6 @@ class VirtualServos:
             return b""
         return data
 
-    def seen(self) -> Mapping[int, int]:
+    def positions(self) -> Mapping[int, int]:
         """The true position of each servo (ticks)."""
         return {id: round(servo.at) for id, servo in self.servos.items()}

@@ -35,7 +35,7 @@ class Server(TcpServer):
     def _joined(self, client: int, port: str) -> list[Event]:
         return [Joined(client=client, port=port)]
 
-    def _heard(self, client: int, port: str, data: bytes) -> list[Event]:
+    def _events_of(self, client: int, port: str, data: bytes) -> list[Event]:
         return [ClientData(client=client, port=port, data=data)]
 
     def _do(self, message: Message) -> None:

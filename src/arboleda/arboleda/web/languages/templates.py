@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterator, Mapping
-from functools import cache, cached_property
+from functools import cached_property
 from string import Formatter
-from typing import Any
 
 from . import FIRST, contents
 
@@ -45,8 +44,12 @@ class Template:
     def _pattern(self) -> re.Pattern[str]:
         punctuated = any(sign in text for text in self._literals for sign in ",;:()")
         slot = WORDS if 0 < self.letters < FEW and not punctuated else ANYTHING
-        found = (f"{re.escape(text)}{f'(?P<_{name}>{slot})' if name else ''}" for text, name in self._english)
-        return re.compile("".join(found))
+        found, named = "", set[str]()
+        for text, name in self._english:
+            again = f"(?P=_{name})" if name in named else f"(?P<_{name}>{slot})"
+            found += f"{re.escape(text)}{again if name else ''}"
+            named.add(name)
+        return re.compile(found)
 
     def slots(self, text: str) -> dict[str, str] | None:
         """The words in the slots of a text of this template; None: it is of another."""
@@ -59,7 +62,7 @@ class Template:
         """True if a slot stands in quotes, in which nothing is said in another language."""
         return any(words[-1:] in QUOTES and slot == name for words, name in self._english if words)
 
-    def said(self, parts: Mapping[str, str]) -> str:
+    def fill(self, parts: Mapping[str, str]) -> str:
         """The text in the other language, with these in its slots."""
         return "".join(f"{words}{parts[slot] if slot else ''}" for words, slot in self._other)
 
@@ -99,14 +102,14 @@ class Templates:
                 continue
             if self._part is not None:
                 parts = {slot: self._part(slot, value) for slot, value in slots.items()}
-                yield each.letters, each.said(parts)
+                yield each.letters, each.fill(parts)
                 continue
             found = {
                 slot: (0, value) if each.verbatim(slot) else self._best(value, depth + 1)
                 for slot, value in slots.items()
             }
             letters = each.letters + sum(letters for letters, _ in found.values())
-            yield letters, each.said({slot: words for slot, (_, words) in found.items()})
+            yield letters, each.fill({slot: words for slot, (_, words) in found.items()})
 
     def _joined(self, text: str, depth: int) -> Iterator[tuple[int, str]]:
         """The text as two that stand beside each other: behind a place, a subject, or a sentence.
@@ -126,19 +129,11 @@ class Templates:
             yield one[0] + other[0], f"{one[1]}{between}{other[1]}"
 
 
-@cache
-def findings(language: str) -> Templates:
-    """The templates of what is found wrong in files and runs; in English there are none."""
-    return Templates(_words(language).get("sentences", {}))
-
-
 def heading(language: str, text: str) -> str:
     """The heading of a column of what is found."""
-    return str(_words(language).get("headings", {}).get(text, text))
-
-
-def _words(language: str) -> dict[str, Any]:
-    return {} if language == FIRST else contents(language, "findings")
+    if language == FIRST:
+        return text
+    return str(contents(language, "findings").get("headings", {}).get(text, text))
 
 
 def _pieces(text: str) -> list[tuple[str, str]]:

@@ -163,18 +163,18 @@ class Blocks:
         *before, told = made[0]
         return [*before, self._by_name(device, told)]
 
-    def _by_name(self, device: Device, told: Tell) -> Tell:
+    def _by_name(self, device: Device, tell: Tell) -> Tell:
         """The verb, now and then with a parameter of the recipe for a value that sets nothing."""
-        verb = device.kind.verb(told.verb)
+        verb = device.kind.verb(tell.verb)
         if verb.sets or not self._dice.chance(0.4):
-            return told
+            return tell
         for name, type in verb.parameters:
             if isinstance(type, tuple | Span):
                 make = partial(_choice, type) if isinstance(type, tuple) else partial(_limits, type)
                 made = self._parameter(make)
-                rest = tuple(each for each in told.values if each[0] != name)
-                return replace(told, values=(*rest, (name, made)))
-        return told
+                rest = tuple(each for each in tell.values if each[0] != name)
+                return replace(tell, values=(*rest, (name, made)))
+        return tell
 
     def _clamped(self, device: Device) -> list[Step]:
         """A block while something is clamped, and let go of after it."""
@@ -216,14 +216,14 @@ class Blocks:
             return []
         dice, answer = self._dice, self._variable()
         words = dice.pick(PEOPLE_SAY)
-        asked = Ask(
+        question = Ask(
             role=dice.pick(people),
             question=dice.pick(QUESTIONS),
             answers=words,
             at_most_s=PATIENCE_S,
             answer=answer,
         )
-        return [asked, *self._chosen(answer, words)]
+        return [question, *self._chosen(answer, words)]
 
     def _chosen(self, answer: str, words: tuple[Value, ...]) -> list[Step]:
         """A way for each of the answers, or nothing that depends on it."""
@@ -420,8 +420,8 @@ class Blocks:
         device, verb = self._dice.pick(verbs)
         answer = self._variable() if verb.effect == "query" else ""
         values = self._planner.values(verb)
-        told = Tell(role=device.role, verb=verb.name, values=values, answer=answer, refused=True)
-        return [Invert(step=told)]
+        tell = Tell(role=device.role, verb=verb.name, values=values, answer=answer, refused=True)
+        return [Invert(step=tell)]
 
     def _is_unmet(self, device: Device, verb: Verb) -> bool:
         """True where it is known that a fact which a verb needs is another one, or that it has no part."""

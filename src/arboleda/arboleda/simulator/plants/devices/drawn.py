@@ -33,8 +33,8 @@ class DrawnDevices:
     @property
     def refused(self) -> frozenset[tuple[str, str]]:
         """The verbs, by role and name, that the plant has to refuse somewhere."""
-        told = (each for recipe in self.recipes for each in walk(recipe.step) if isinstance(each, Tell))
-        return frozenset((each.role, each.verb) for each in told if each.refused)
+        calls = (each for recipe in self.recipes for each in walk(recipe.step) if isinstance(each, Tell))
+        return frozenset((each.role, each.verb) for each in calls if each.refused)
 
     @property
     def file(self) -> Section:

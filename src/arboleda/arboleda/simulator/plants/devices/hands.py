@@ -19,17 +19,17 @@ class Hand:
     @property
     def grip(self) -> tuple[Step, list[Need]]:
         """The step, and its needs."""
-        return self._told("close" if self._kind == "gripper" else "grip", Grip(role=self.role))
+        return self._with_tool("close" if self._kind == "gripper" else "grip", Grip(role=self.role))
 
     @property
     def let_go(self) -> tuple[Step, list[Need]]:
-        return self._told("open" if self._kind == "gripper" else "let_go", LetGo(role=self.role))
+        return self._with_tool("open" if self._kind == "gripper" else "let_go", LetGo(role=self.role))
 
     @property
     def _kind(self) -> str:
         return self._layout.device(self.tool).kind.name if self.tool else ""
 
-    def _told(self, verb: str, own: Step) -> tuple[Step, list[Need]]:
+    def _with_tool(self, verb: str, own: Step) -> tuple[Step, list[Need]]:
         if not self.tool:
             return own, []
         known = self._layout.device(self.tool).kind.verb(verb)

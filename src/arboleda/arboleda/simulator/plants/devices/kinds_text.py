@@ -60,20 +60,20 @@ def {kind.name}(settings: {settings}) -> Kind:
 def _verb(kind: Kind, verb: Verb) -> str:
     """The call that makes a verb; its time is computed of the settings."""
     given = "".join(f", {name}" for name, _ in verb.parameters)
-    said = [f"parameters={{{_types(verb.parameters)}}}"] if verb.parameters else []
-    said += [
+    words = [f"parameters={{{_types(verb.parameters)}}}"] if verb.parameters else []
+    words += [
         f"{key}={dict(values)!r}" for key, values in (("sets", verb.sets), ("needs", verb.needs)) if values
     ]
     if verb.takes_s:
-        said.append(f"takes_s=lambda{given[1:]}: {verb.takes_s} * settings.pace")
+        words.append(f"takes_s=lambda{given[1:]}: {verb.takes_s} * settings.pace")
     if verb.takes_s or verb.at_most_s is not None:
-        said.append(f"at_most_s={verb.at_most_s or round(verb.takes_s * 3 + LEAST_S, 3)}")
-    said += [word for word, is_so in _words(verb) if is_so]
+        words.append(f"at_most_s={verb.at_most_s or round(verb.takes_s * 3 + LEAST_S, 3)}")
+    words += [word for word, is_so in _words(verb) if is_so]
     if verb.answers:
-        said.append(f"answers={list(verb.answers)!r}")
+        words.append(f"answers={list(verb.answers)!r}")
     if _counts(kind, verb):
-        said.append(f"virtual=lambda facts{given}: {{'count': facts['count'] + 1}}")
-    return f"{verb.effect}({', '.join(said)})"
+        words.append(f"virtual=lambda facts{given}: {{'count': facts['count'] + 1}}")
+    return f"{verb.effect}({', '.join(words)})"
 
 
 def _words(verb: Verb) -> tuple[tuple[str, bool], ...]:

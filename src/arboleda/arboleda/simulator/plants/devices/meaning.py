@@ -39,8 +39,8 @@ class Scope:
     values: Mapping[str, object] = field(default_factory=dict)
     answers: dict[str, Value] = field(default_factory=dict)
 
-    def value(self, said: object) -> object:
-        return self.values[said.name] if isinstance(said, Param) else said
+    def value(self, written: object) -> object:
+        return self.values[written.name] if isinstance(written, Param) else written
 
 
 class Meaning:

@@ -55,11 +55,11 @@ def python_of(recipes: Sequence[Recipe]) -> str:
 
 def _recipe(recipe: Recipe) -> str:
     given = ", ".join(["cell", *map(_parameter, recipe.parameters)])
-    asked = [each for each in walk(recipe.step) if isinstance(each, Ask) or getattr(each, "answer", None)]
-    asked = [each for each in asked if not isinstance(each, Choose)]
+    calls = [each for each in walk(recipe.step) if isinstance(each, Ask) or getattr(each, "answer", None)]
+    calls = [each for each in calls if not isinstance(each, Choose)]
     roles = dict.fromkeys(str(each.role) for each in walk(recipe.step) if hasattr(each, "role"))
     lines = [f"    {role} = cell.device({role!r})" for role in roles]
-    lines += [f"    {each.answer} = {_call(each)}" for each in asked if isinstance(each, Ask | Tell)]
+    lines += [f"    {each.answer} = {_call(each)}" for each in calls if isinstance(each, Ask | Tell)]
     head = f"@recipe({recipe.name!r})\ndef {recipe.name}({given}):\n"
     return head + "\n".join([*lines, f"    return {_text(_whole(recipe.step), 1)}"])
 
