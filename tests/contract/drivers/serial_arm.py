@@ -66,10 +66,21 @@ class PlayedServos(VirtualServos):
             servo.put(servo.layout.acceleration, 50)  # it has been made ready before
         self._told = told
         self.lock = threading.RLock()
+        self._asked = threading.Condition(self.lock)
+        self._answers = 0
 
     def step(self, now: float, data: bytes = b"") -> bytes:
         with self.lock:
-            return super().step(now, data)
+            answer = super().step(now, data)
+            self._answers += bool(answer)
+            self._asked.notify_all()
+            return answer
+
+    def show(self) -> None:
+        """Wait until the driver has asked each servo again, and with the next question taken that in."""
+        with self.lock:
+            enough = self._answers + 2 * len(self.servos)
+            assert self._asked.wait_for(lambda: self._answers >= enough, PATIENCE_S)
 
     def take(self, data: bytes) -> None:
         """Take the goals that were written."""
@@ -108,6 +119,7 @@ class PlayedArm:
     def accepts(self, ref: Ref) -> None:
         with self._servos.lock:
             self._servos.take(self._of(ref)[1])
+        self._servos.show()
 
     def finishes(self, ref: Ref, *, there: bool = True) -> None:
         if there:
