@@ -14,8 +14,10 @@ from arboleda.runtime.state import find_running
 from arboleda_kills.deeds import Did
 from arboleda_kills.processes import Boards, Plant
 
+from .. import patience
+
 TASK = {"text": "sis_a 0B 7 #lot-1"}
-PATIENCE_S = 75.0
+PATIENCE_S = max(75.0, patience.PATIENCE_S)
 
 
 class Hosts:
@@ -49,11 +51,11 @@ class Hosts:
     def cell(self, name: str) -> dict[str, Any]:
         return next((row for row in self.ask(name).get("cells", ()) if row["name"] == "sis_a"), {})
 
-    def until(self, true: Callable[[], Any]) -> None:
-        """Wait for what another process does."""
+    def until(self, true: Callable[[], Any], about: Callable[[], object] = lambda: None) -> None:
+        """Wait for what another process does; where it never does, `about` is in the error."""
         ends = time.monotonic() + PATIENCE_S
         while not true():
-            assert time.monotonic() < ends
+            assert time.monotonic() < ends, about()
             time.sleep(0.02)
 
     def led_by_a(self, ports: Sequence[int] = ()) -> None:
@@ -88,7 +90,7 @@ class Hosts:
         self.done_with(name)
 
     def done_with(self, name: str) -> None:
-        self.until(lambda: self.cell(name).get("state") == "idle")
+        self.until(lambda: self.cell(name).get("state") == "idle", lambda: self.cell(name))
         assert self.plants[name].await_api(time.time() + PATIENCE_S)
         kept = {row["id"]: row["state"] for row in self.plants[name].ask("GET", "/api/history")[1]}
         assert kept["lot-1"] == "done"
