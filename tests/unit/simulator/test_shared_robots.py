@@ -33,6 +33,6 @@ def test_it_bites_where_the_robot_is_left_anywhere(monkeypatch: pytest.MonkeyPat
 
 
 def test_it_bites_where_the_tool_is_left_with_a_part(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(CellDevices, "_may_hold", lambda self, device: False)
+    monkeypatch.setattr(CellDevices, "may_hold", lambda self, device: False)
     with pytest.raises(BrokenInvariant, match=f"{RULE}.*jaw is given back, and holds a part"):
         two_tasks("left keep")
