@@ -119,7 +119,6 @@ class PlayedArm:
     def accepts(self, ref: Ref) -> None:
         with self._servos.lock:
             self._servos.take(self._of(ref)[1])
-        self._servos.show()
 
     def finishes(self, ref: Ref, *, there: bool = True) -> None:
         if there:
@@ -130,6 +129,7 @@ class PlayedArm:
         return "(goal_not_taken"
 
     def gives_up(self, ref: Ref) -> str:
+        self._servos.show()  # it was at work before
         with self._servos.lock:
             servo = self._servos.servos[2]
             servo.put(servo.layout.status, OVERLOAD)
