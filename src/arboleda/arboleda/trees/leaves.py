@@ -487,7 +487,7 @@ class TakeZones(Await):
         return self.access.take(self.robot, self.zones, inside=self.recovers)
 
     def _awaited(self) -> Sentence:
-        """What it waits for; NOTHING where that is not known."""
+        """The cause of its waiting; NOTHING where that is not known."""
         if (kept := self.access.kept_by_machine(self.robot, self.zones)) is not None:
             machine, facts = kept
             return WAITS_FOR_MACHINE(device=machine, facts=facts)

@@ -98,7 +98,7 @@ class Machine(ABC):
 
     @abstractmethod
     def _report(self, now: float) -> Report:
-        """What it is like now, without the ends of commands."""
+        """The report of its present state, without the ends of commands."""
 
     # The connection.
 
