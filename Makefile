@@ -1,6 +1,6 @@
 # Everything a person types here; what each target does is in `make help`.
 .DEFAULT_GOAL := help
-.PHONY: run test pinned-test integration-test test-tools judge-test ros-test kilted-test wheel-check aarch64-check images nightly campaign drawn-campaign devices-campaign crash-campaign standby-campaign kills hosts mutants exercises cost performance firmware firmware-test firmware-robot fuzz install lint diagrams reference proof shots example-pictures moving-picture gallery clean help docs playground
+.PHONY: run test pinned-test integration-test test-tools judge-test ros-test ros-build kilted-test wheel-check aarch64-check images nightly campaign drawn-campaign devices-campaign crash-campaign standby-campaign kills hosts mutants exercises cost performance firmware firmware-test firmware-robot fuzz install lint diagrams reference proof shots example-pictures moving-picture gallery clean help docs playground
 
 export PYTHON
 export PYTHONDONTWRITEBYTECODE := # what a target here runs hundreds of times is compiled once
@@ -53,6 +53,10 @@ ros-test:  ## build and test the ROS 2 packages with colcon, in .colcon
 	@scripts/install colcon
 	@.colcon/venv/bin/python scripts/ros-test
 
+ros-build:  ## build the ROS 2 packages with colcon, in .colcon, which ros-test does, too
+	@scripts/install colcon
+	@.colcon/venv/bin/python scripts/ros-test build
+
 kilted-test:  ## run the tests of ROS 2 on the wheels of Kilted, in an environment of their own, .kilted; KILTED_TESTS=... for others
 	@scripts/install kilted
 	.kilted/bin/python -m pytest $(KILTED_TESTS) $(INTEGRATION_ARGS)
@@ -67,7 +71,7 @@ images:  ## build the image of a container for amd64 and arm64, arboleda:VERSION
 	@scripts/images
 
 nightly: install  ## the long form of what .ci/run has in short: tests as a whole, all seeds, kills, 100 mutants; hours
-	ARBOLEDA_LENGTH=whole $(MAKE) test judge-test
+	ARBOLEDA_LENGTH=whole $(MAKE) test judge-test integration-test # with what `make pinned-test` runs
 	$(MAKE) campaign drawn-campaign exercises
 	$(MAKE) devices-campaign DEVICE_SEEDS=100
 	$(MAKE) crash-campaign CRASH_SEEDS=50
@@ -153,6 +157,7 @@ lint:  ## check style, format, types and the import rules
 	$(BIN)/ruff check
 	$(BIN)/ruff format --check
 	$(BIN)/mypy
+	$(BIN)/mypy --config-file tests/mypy.ini
 	$(BIN)/mypy --explicit-package-bases firmware/test/*.py
 	$(BIN)/mypy --scripts-are-modules $$(grep -lE '^#!.*python' scripts/* 2>/dev/null) scripts/*.py
 	@PYTHONPATH=src/arboleda_bringup $(BIN)/lint-imports # pip does not install that one

@@ -5,17 +5,18 @@
 #   second() { step make campaign; }
 #   side_by_side first second
 #
-# A step's output is shown whole when it has ended. The first step that fails is named and ends all lanes.
+# A step's output is shown whole when it has ended, with the seconds that it took, and those of a processor. The first
+# step that fails is named and ends all lanes.
 
 step() {
-    local log began=$SECONDS status=0
+    local log used status=0 TIMEFORMAT='%0R s, %0U + %0S s of a processor'
     log=$(mktemp -p "$logs")
-    "$@" >"$log" 2>&1 </dev/null || status=$?
+    used=$({ time "$@" >"$log" 2>&1 </dev/null; } 2>&1) || status=$?
     (
         flock 9
         printf '==== %s\n' "$*"
         cat "$log"
-        printf '==== %s: %s after %s s\n' "$*" "$( ((status)) && echo FAILED || echo done)" $((SECONDS - began))
+        printf '==== %s: %s after %s\n' "$*" "$( ((status)) && echo FAILED || echo done)" "$used"
     ) 9>>"$logs/lock"
     return "$status"
 }

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import gc
 import importlib.util
-import itertools
 import os
 import shutil
 import signal
@@ -31,6 +30,7 @@ from . import forked
 from .dealing import dealt
 from .lengths import length
 from .patience import PATIENCE_S
+from .ports import unused_port
 from .postgres import PASSWORD, Server
 
 # How fast a machine is does not decide a test.
@@ -53,11 +53,6 @@ def pytest_configure() -> None:
     """
     if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
         signal.signal(signal.SIGINT, signal.default_int_handler)
-
-
-# Below those of outgoing connections (32768 and up on Linux); each worker begins elsewhere.
-PORTS = range(20_000, 32_000)
-_ports = itertools.cycle([*PORTS[os.getpid() * 37 % len(PORTS) :], *PORTS])
 
 
 def folder(item: pytest.Item | pytest.Module) -> str:
@@ -207,11 +202,6 @@ def no_thread_left() -> Iterator[None]:
     assert not left, f"threads left behind: {', '.join(left)}"
 
 
-def unused_port() -> int:
-    """A TCP port that nothing has, and that the system gives to no outgoing connection meanwhile."""
-    return next(port for port in _ports if _is_free(port))
-
-
 @pytest.fixture
 def free_port() -> int:
     return unused_port()
@@ -222,15 +212,6 @@ def page_ports() -> tuple[int, int]:
     """Ports of two pages that stay open when their plants end: the usual one is taken by the next plant of
     any test, and they would show that one."""
     return unused_port(), unused_port()
-
-
-def _is_free(port: int) -> bool:
-    with socket.socket() as probe:
-        try:
-            probe.bind(("", port))
-        except OSError:
-            return False
-    return True
 
 
 @pytest.fixture(scope="session")

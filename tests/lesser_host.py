@@ -45,11 +45,16 @@ LIBRARIES = (
 )
 
 
-def pretend(platform: str) -> None:
-    """Take away what `platform` (win32, darwin) has not, for all of Arboleda that is imported from now on."""
+def load_libraries() -> None:
+    """Import what Arboleda uses of others, for which nothing is taken away."""
     for library in LIBRARIES.split():
         with suppress(ImportError):  # an optional one that is not installed
             __import__(library)
+
+
+def pretend(platform: str) -> None:
+    """Take away what `platform` (win32, darwin) has not, for all of Arboleda that is imported from now on."""
+    load_libraries()
     asyncio.new_event_loop().close()
     _import_without(MODULES[platform], {"msvcrt": _msvcrt()} if platform == "win32" else {})
     for module, names in NOWHERE[platform].items():

@@ -6,7 +6,7 @@ Where tests run only while nothing else wants the processor, ARBOLEDA_PATIENCE_S
 
 import os
 
-PATIENCE_S = float(os.environ.get("ARBOLEDA_PATIENCE_S", "60"))
+PATIENCE_S = float(os.environ.get("ARBOLEDA_PATIENCE_S", "90"))
 PATIENCE_MS = 1000 * PATIENCE_S
 LONG_S = 4 * PATIENCE_S  # a page with Python in it computes for a minute where all processors are busy
 LONG_MS = 1000 * LONG_S

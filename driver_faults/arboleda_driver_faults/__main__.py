@@ -18,7 +18,7 @@ from pathlib import Path
 from arboleda.plant_file.loader import load
 
 from .dobot import DobotRig
-from .gcode import GantryRig, MarlinRig
+from .gcode import GantryRig, MarlinRig, MoonrakerRig
 from .gripper import CarryRig
 from .modbus import ModbusRig
 from .nav2 import RoundRig, WaypointsRig
@@ -42,6 +42,7 @@ RIGS: dict[str, tuple[Path | None, Callable[..., Rig]]] = {
     "follow_waypoints": (EXAMPLES / "nav2/plant.yaml", WaypointsRig),
     "gcode-grbl": (EXAMPLES / "gantry/bench.yaml", GantryRig),
     "gcode-marlin": (EXAMPLES / "gantry/marlin.yaml", MarlinRig),
+    "gcode-moonraker": (EXAMPLES / "gantry/moonraker.yaml", MoonrakerRig),
     "pylabrobot": (EXAMPLES / "plate_bench/bench.yaml", ShakerRig),
     "pylabrobot-side_by_side": (EXAMPLES / "plate_bench/bench.yaml", SIDE_BY_SIDE),
     "serial_arm-dynamixel": (EXAMPLES / "serial_arm/desk.yaml", partial(ServoRig, maker="dynamixel")),

@@ -1,4 +1,4 @@
-"""Campaigns of the example's gantries with GRBL and with Marlin under faults: two spots, and home."""
+"""Campaigns of the example's gantries with GRBL, Marlin and Klipper under faults: two spots, and home."""
 
 from __future__ import annotations
 
@@ -6,12 +6,13 @@ import re
 from collections.abc import Mapping, Sequence
 
 from arboleda.drivers.gcode.dialects import machine
-from arboleda.drivers.gcode.settings import Settings
+from arboleda.drivers.gcode.settings import MM, Settings
 from arboleda.model.messages import Reason
 from arboleda.model.plant_model import PlantModel, Robot
-from arboleda.virtual.gcode.faults import GRBL_FAULTS, MARLIN_FAULTS
+from arboleda.virtual.gcode.faults import GRBL_FAULTS, MARLIN_FAULTS, MOONRAKER_FAULTS
 from arboleda.virtual.gcode.grbl import VirtualGrbl
 from arboleda.virtual.gcode.marlin import VirtualMarlin
+from arboleda.virtual.gcode.moonraker import VirtualMoonraker
 
 from .rig import Causes, Hear, Rig
 from .stream_loopback import Loopback
@@ -74,6 +75,32 @@ MARLIN_CAUSES: Causes = {
 }
 
 
+MOONRAKER_CAUSES: Causes = {
+    "shutdown": NO_WORK,
+    "error": NO_WORK,
+    "boot": {Reason.REBOOTED, *NO_LINK, *NO_WORK},
+    "unplugged": NO_LINK,
+    "mute": NO_LINK,
+    "no_key": NO_LINK,
+    "no_ok": {Reason.DEADLINE, *NO_WORK},
+    "refuses": NO_WORK,
+    "motors_off": NO_WORK,
+    "busy_elsewhere": {Reason.DEADLINE, *NO_WORK},
+    "second_client": {Reason.NOT_REACHED, *NO_WORK},
+    "offset": NO_WORK,  # set under way, it leads elsewhere
+    "torn": {*NO_LINK, *NO_WORK},
+    "noise": set(),
+    "garbled": NO_LINK,
+    "no_position": NO_LINK,
+    "lie": {Reason.NOT_REACHED},
+    "short": {Reason.NOT_REACHED},
+    "stall": {Reason.DEADLINE, *NO_WORK},
+    "slow": {Reason.DEADLINE, *NO_WORK},
+    "deaf": {Reason.STOP_UNCONFIRMED},
+    "homing_fails": NO_WORK,
+}
+
+
 class GantryRig(Rig):
     """Test with a gantry that goes round; it sees where the machine truly is."""
 
@@ -95,7 +122,7 @@ class GantryRig(Rig):
         (cell,) = example.cells
         self._spots = {name: pose.joints for name, pose in cell.reach[self._gantry.name].targets.items()}
 
-    def _controller(self) -> VirtualGrbl | VirtualMarlin:
+    def _controller(self) -> VirtualGrbl | VirtualMarlin | VirtualMoonraker:
         return VirtualGrbl(self.faults, homed=True)
 
     @property
@@ -120,6 +147,32 @@ class GantryRig(Rig):
         if self._driver is None:
             return (0, 0)
         return (len(MOVE.findall(b"".join(self._driver.written))), self._driver.given)
+
+
+class MoonrakerRig(GantryRig):
+    """Test with a gantry that is told its moves in pieces, of which the last one leads to the spot."""
+
+    causes = MOONRAKER_CAUSES
+    known = MOONRAKER_FAULTS
+    tells_homing = False  # nobody homes it at its own page here
+
+    def _controller(self) -> VirtualMoonraker:
+        self._moonraker = VirtualMoonraker(self.faults)
+        return self._moonraker
+
+    def by_hand(self) -> None:
+        """Restart its firmware, where that is what it waits for."""
+        if self._moonraker.needs_reset:
+            self._moonraker.press_reset()
+
+    def moves(self) -> tuple[int, int]:
+        if self._driver is None:
+            return (0, 0)
+        said = b"".join(self._driver.written)
+        ends = (
+            "".join(f"{a}{at * MM:.4f}" for a, at in zip("XYZ", q, strict=True)) for q in self._spots.values()
+        )
+        return (sum(said.count(b"G1" + end.encode("ascii")) for end in ends), self._driver.given)
 
 
 class MarlinRig(GantryRig):

@@ -208,6 +208,7 @@ MESSAGES = {
     "s7": "arboleda.drivers.s7.machine.S7Device.report",
     "gcode": "arboleda.drivers.gcode.lines.LineReader.feed",
     "gcode_marlin": "arboleda.drivers.gcode.lines.LineReader.feed",
+    "gcode_moonraker": "arboleda.drivers.gcode.lines.LineReader.feed",
     "serial_arm": "arboleda.drivers.serial_arm.servos.Feetech.reading",
 }
 """Where each driver takes what its device says."""

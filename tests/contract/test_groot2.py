@@ -25,6 +25,7 @@ from arboleda.runtime.parts.groot2 import Groot2Options, Groot2Part
 from arboleda.testing import shipped
 
 from ..patience import PATIENCE_S
+from ..ports import is_free, unused_port
 
 MOST_BYTES = 1 << 16
 
@@ -105,18 +106,9 @@ def viewer() -> Iterator[Callable[..., Viewer]]:
 
 
 @pytest.fixture
-def port(free_port: int) -> int:
+def port() -> int:
     """The first of four that are free in a row."""
-    return next(port for port in range(free_port, 32_000, 4) if all(map(is_free, range(port, port + 4))))
-
-
-def is_free(port: int) -> bool:
-    with socket.socket() as probe:
-        try:
-            probe.bind(("", port))
-        except OSError:
-            return False
-    return True
+    return unused_port(in_a_row=4)
 
 
 def children() -> set[int]:

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 ROOT = Path(__file__).parents[2]
-UNSEEN = shutil.ignore_patterns("__pycache__", "test")
+UNSEEN = shutil.ignore_patterns("test")
 
 
 class CopiedTree:

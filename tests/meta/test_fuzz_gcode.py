@@ -7,7 +7,15 @@ from typing import Any
 
 import pytest
 
-from arboleda.drivers.gcode import grbl, grbl_lines, lines, marlin, marlin_lines
+from arboleda.drivers.gcode import (
+    grbl,
+    grbl_lines,
+    lines,
+    marlin,
+    marlin_lines,
+    moonraker,
+    moonraker_lines,
+)
 
 from ..scripts import load
 
@@ -27,13 +35,20 @@ def test_nothing_is_raised_and_nothing_refused_counts(fuzz: Any) -> None:
     ), seen
 
 
-@pytest.mark.parametrize(("dialect", "ok"), [(grbl, grbl_lines.Answer()), (marlin, marlin_lines.Ok())])
+OKS = [
+    (grbl, [grbl_lines.Answer()]),
+    (marlin, [marlin_lines.Ok()]),
+    (moonraker, [moonraker_lines.Answer(number=number) for number in range(3, 12)]),
+]
+
+
+@pytest.mark.parametrize(("dialect", "oks"), OKS)
 def test_a_driver_that_takes_ok_from_anything_would_be_found(
-    fuzz: Any, monkeypatch: pytest.MonkeyPatch, dialect: ModuleType, ok: object
+    fuzz: Any, monkeypatch: pytest.MonkeyPatch, dialect: ModuleType, oks: list[object]
 ) -> None:
     class Lenient(lines.LineReader[object]):
         def feed(self, data: bytes) -> list[object]:
-            return [*super().feed(data), *([ok] if b"o" in data else [])]
+            return [*super().feed(data), *(oks if b"o" in data else [])]
 
     monkeypatch.setattr(dialect, "LineReader", Lenient)
     with pytest.raises(AssertionError, match="of seed 1"):

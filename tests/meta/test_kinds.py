@@ -40,6 +40,7 @@ NAMED_AS_ROLES = {
 REGISTRY = "plant_file/registry.py"  # where kinds that come with it get their names
 DRAWN = "simulator/plants/devices/"  # plant files, which name the kinds of their devices
 FACT = "effector"  # also what an arm says of itself
+KINDS = COME_WITH_IT.keys() - {FACT}
 
 
 def _concrete() -> set[str]:
@@ -60,6 +61,8 @@ def _nodes(code: str) -> list[ast.AST]:
 
 def _questions(code: str, names: set[str]) -> Iterator[str]:
     """Each place where a value is compared with one of these classes."""
+    if not any(name in code for name in names):
+        return
     for node in _nodes(code):
         asks = isinstance(node, ast.Call) and getattr(node.func, "id", "") in ("isinstance", "issubclass")
         compares = isinstance(node, ast.Compare) and "type(" in ast.unparse(node)
@@ -101,11 +104,12 @@ def _names_of_kinds(package: str) -> dict[str, set[str]]:
     names = {
         str(path.relative_to(ROOT)): {
             node.value
-            for node in _nodes(path.read_text())
+            for node in _nodes(code)
             if isinstance(node, ast.Constant) and isinstance(node.value, str)
         }
-        & (COME_WITH_IT.keys() - {FACT})
+        & KINDS
         for path in sorted((ROOT / package).rglob("*.py"))
+        if (code := path.read_text()) and any(name in code for name in KINDS)
     }
     return {
         file: found

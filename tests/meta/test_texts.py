@@ -12,8 +12,11 @@ from PIL import Image
 
 ROOT = Path(__file__).parents[2]
 FORBIDDEN = {
-    # A key of VDA 5050 3.0, "active" and this, is of the vehicle's own button.
-    "a software stop is no safety function and is not called one": r"(?i)(?<!active)emergency[\s_-]*stop",
+    # A key of VDA 5050 3.0, "active" and this, is of the vehicle's own button; a method of Moonraker,
+    # "printer." and this, shuts Klipper down.
+    "a software stop is no safety function and is not called one": (
+        r"(?i)(?<!active)(?<!printer\.)emergency[\s_-]*stop"
+    ),
     "a path of somebody's machine": r"(?<![\w.$}])/(?:work|root)/",
     "a host of a package index": r"(?i)\b(?:pypi|pythonhosted|debian|npmjs|ubuntu)\.(?:org|com|net)\b",
 }

@@ -210,7 +210,7 @@ STOP = (
         "speed_never_rises_after_stop",
         "A stop leaves out the first axis.",
         edit(ArmBody.stop, "for axis in self._axes:", "for axis in self._axes[1:]:"),
-        likely=14,
+        likely=10,
     ),
 )
 

@@ -9,7 +9,8 @@ from arboleda.core.plant import Plant
 from arboleda.dispatch import evidence
 from arboleda.dispatch.dispatcher import Dispatcher
 from arboleda.simulator.run import NO_EXCEPTION
-from arboleda.trees import paths
+from arboleda.trees import paths, steps
+from arboleda.trees.cell_time import CellTime
 from arboleda.trees.leaves import Dwell, TakeZones
 from arboleda.trees.tree_run import TreeRun
 from arboleda.wire import strict
@@ -179,6 +180,25 @@ LIVENESS = (
         "A cell that is stopped while it is held never gets its time back.",
         edit(CellRun.stop, "self.context.time.go_on()", ""),
         weather={"operator_hold": 5.0, "operator_stop": 5.0},
+    ),
+    mutant(
+        "time_stands_still_where_held",
+        "The time of a cell goes on while it is held.",
+        edit(CellTime.pause, "if self._paused_at is None:", "if self._paused_at is not None:"),
+        weather={"operator_hold": 10.0},
+    ),
+    mutant(
+        "held_cells_stand_still",
+        "A cell counts as held while its robots still move.",
+        edit(CellRun._halted, "if any(entry.halts", "if False and any(entry.halts"),
+        weather={"operator_hold": 10.0},
+    ),
+    mutant(
+        "low_robots_rise_first",
+        "A recovery goes home from where the robot stands.",
+        edit(steps._way_home, "*_rise(context, robot)", ""),
+        seeds=SHARED,
+        weather={"operator_cancel": 10.0},
     ),
     mutant(
         "no_tree_outlives_its_work",

@@ -149,8 +149,8 @@ OF_PLACES = (
     bug(
         PLACES,
         "A part that was let go of lies nowhere.",
-        "                self._move(held.back(here), +1, hand)\n        if self._places",
-        "                pass\n        if self._places",
+        "                self._move(back, +1, hand)\n",
+        "                self._move(back, 0, hand)\n",
     ),
     bug(
         PLACES,

@@ -102,8 +102,8 @@ XML_BUGS = (
     bug(
         DECORATORS,
         "One round too many.",
-        "        while self.rounds < most or most == -1:\n            was_idle",
-        "        while self.rounds <= most or most == -1:\n            was_idle",
+        "        while self.rounds < most or most == -1:\n            if self.child",
+        "        while self.rounds <= most or most == -1:\n            if self.child",
     ),
     bug(
         DECORATORS,
@@ -114,8 +114,8 @@ XML_BUGS = (
     bug(
         DECORATORS,
         "A loop without an end ends at once.",
-        "        while self.rounds < most or most == -1:\n            was_idle",
-        "        while self.rounds < most:\n            was_idle",
+        "        while self.rounds < most or most == -1:\n            if self.child",
+        "        while self.rounds < most:\n            if self.child",
     ),
     bug(
         DECORATORS,

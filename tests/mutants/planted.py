@@ -45,7 +45,7 @@ PLANTED = (
             "if report.state is MotionState.FAULT and entry.is_work:",
         ),
         weather={"driver_alarm": 60.0},
-        likely=28,
+        likely=34,
     ),
     mutant(
         "verbs_do_what_they_say",
@@ -98,7 +98,7 @@ PLANTED = (
         "What a board never took counts as done after a restart.",
         edit(fate, "return Fate.UNTAKEN", "return Fate.DONE"),
         weather={**DIES, "loss": 20.0},
-        likely=5,
+        likely=6,
     ),
     mutant(
         "books_of_parts_are_true",

@@ -130,7 +130,8 @@ class Looking:
         self._reach_file = state / "engine-reach.json"
         self._sources = BugSources(ROOT)
         self.book = Book(state / "engine.jsonl")
-        weathers = Path(__file__).with_name("engine_weathers.py").read_bytes()
+        files = [Path(__file__).with_name(name) for name in ("engine_weathers.py", "themes.py")]
+        weathers = b"".join(each.read_bytes() for each in files)
         engine = fingerprint(ROOT, (*FOLDERS[SIMULATOR], str(PACKAGE / "bt_xml")))
         runs = fingerprint(ROOT, [*(str(PACKAGE / each) for each in LAYERS), *map(str, _worlds())])
         self._run_by = sha256(runs.encode() + weathers).hexdigest()[:16]

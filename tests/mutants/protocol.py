@@ -34,7 +34,7 @@ COMMANDS = (
         "no_command_to_unfit",
         "A robot that is not homed takes any command, not only to home.",
         edit(Dispatcher._obstacle_to, "isinstance(command, Home) and obstacle", "obstacle"),
-        likely=6,
+        likely=5,
     ),
     mutant(
         "stops_are_cleared_by_operators",

@@ -7,6 +7,7 @@ from collections import Counter
 import pytest
 
 from arboleda.simulator.invariants.devices import DEVICES
+from arboleda.simulator.invariants.kinds import KINDS
 from arboleda.simulator.invariants.part_places import PLACES
 from arboleda.simulator.run import NO_EXCEPTION
 
@@ -26,7 +27,7 @@ def test_a_bug_is_found_by_the_invariant_that_it_breaks(mutant: Mutant) -> None:
 
 
 def test_every_invariant_has_one_mutant() -> None:
-    """Those of devices and places have theirs in test_general_invariants.py, on a plant of devices."""
+    """Those of devices, kinds and places have theirs in test_general_invariants.py, on a plant of devices."""
     names = Counter(mutant.invariant for mutant in MUTANTS)
-    judged = [each.name for each in JUDGES if each not in (*DEVICES, *PLACES)]
+    judged = [each.name for each in JUDGES if each not in (*DEVICES, *KINDS, *PLACES)]
     assert names == Counter([*judged, NO_EXCEPTION])

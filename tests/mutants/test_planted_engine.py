@@ -11,7 +11,7 @@ import pytest
 from ..lengths import length
 
 ROOT = Path(__file__).parents[2]
-A_FEW = ("--only", "recipes/decorators.py", "--sample", "2", "--seeds", "2", "--simulator-alone")
+A_FEW = ("--only", "bt_xml/running/leaves.py", "--sample", "2", "--seeds", "4", "--simulator-alone")
 LEAST = 0.25  # what it found of 42 with twelve seeds of 30 s; these here are longer, and more
 
 

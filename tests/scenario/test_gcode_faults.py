@@ -1,6 +1,6 @@
-"""Plants with a gantry behind GRBL and behind Marlin under their faults.
+"""Plants with a gantry behind GRBL, Marlin and Moonraker under their faults.
 
-`scripts/driver-faults gcode-grbl` and `gcode-marlin` run more seeds.
+`scripts/driver-faults gcode-grbl`, `gcode-marlin` and `gcode-moonraker` run more seeds.
 """
 
 from __future__ import annotations
@@ -11,12 +11,19 @@ from pathlib import Path
 
 import pytest
 
-from arboleda.drivers.gcode import grbl, marlin
+from arboleda.drivers.gcode import grbl, marlin, moonraker, moonraker_work
 from arboleda.drivers.gcode.grbl_lines import Status
 from arboleda.kinds.joints.motion import JointMotion
 from arboleda.plant_file.loader import load
-from arboleda.virtual.gcode.faults import GRBL_FAULTS, MARLIN_FAULTS
-from arboleda_driver_faults.gcode import GRBL_CAUSES, MARLIN_CAUSES, GantryRig, MarlinRig
+from arboleda.virtual.gcode.faults import GRBL_FAULTS, MARLIN_FAULTS, MOONRAKER_FAULTS
+from arboleda_driver_faults.gcode import (
+    GRBL_CAUSES,
+    MARLIN_CAUSES,
+    MOONRAKER_CAUSES,
+    GantryRig,
+    MarlinRig,
+    MoonrakerRig,
+)
 from arboleda_driver_faults.rig import TASKS, Rig, run
 
 from ..lengths import sample
@@ -24,6 +31,7 @@ from ..lengths import sample
 EXAMPLES = Path(__file__).parents[2] / "examples/gantry"
 GRBL = partial(GantryRig, load(EXAMPLES / "bench.yaml"))
 MARLIN = partial(MarlinRig, load(EXAMPLES / "marlin.yaml"))
+MOONRAKER = partial(MoonrakerRig, load(EXAMPLES / "moonraker.yaml"))
 SEEDS = 8
 FEW = 1  # task, in which a fault comes by itself
 
@@ -32,7 +40,7 @@ def breaches(seed: int, *names: str, tasks: int = TASKS, rig: Callable[[], Rig] 
     return run(rig(), seed, names, tasks).breaches
 
 
-@pytest.mark.parametrize("rig", [GRBL, MARLIN])
+@pytest.mark.parametrize("rig", [GRBL, MARLIN, MOONRAKER])
 @pytest.mark.parametrize("seed", sample(range(SEEDS), every=4))
 def test_no_false_success_no_hang_and_the_right_cause(seed: int, rig: Callable[[], Rig]) -> None:
     assert breaches(seed, rig=rig) == []
@@ -46,6 +54,11 @@ def test_every_fault_by_itself(fault: str) -> None:
 @pytest.mark.parametrize("fault", sample(MARLIN_FAULTS, every=3))
 def test_every_fault_of_marlin_by_itself(fault: str) -> None:
     assert breaches(1, fault, tasks=FEW, rig=MARLIN) == []
+
+
+@pytest.mark.parametrize("fault", sample(MOONRAKER_FAULTS, every=3))
+def test_every_fault_of_moonraker_by_itself(fault: str) -> None:
+    assert breaches(1, fault, tasks=FEW, rig=MOONRAKER) == []
 
 
 def test_a_machine_that_is_believed_anywhere_would_be_found(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -70,6 +83,19 @@ def test_a_switch_at_an_end_that_is_not_heard_would_be_found(monkeypatch: pytest
     )
 
 
+def test_pieces_that_are_sent_twice_would_be_found(monkeypatch: pytest.MonkeyPatch) -> None:
+    send = moonraker.MoonrakerMachine._script
+
+    def twice(self: moonraker.MoonrakerMachine, ask: moonraker_work.Ask, *lines: str) -> None:
+        send(self, ask, *lines)
+        if ask is moonraker_work.Ask.PIECE:
+            send(self, ask, *lines)
+
+    monkeypatch.setattr(moonraker.MoonrakerMachine, "_script", twice)
+    assert any("moves were said" in each for each in breaches(3, "noise", tasks=2, rig=MOONRAKER))
+
+
 def test_every_fault_has_the_reasons_that_it_may_give() -> None:
     assert set(GRBL_CAUSES) == set(GRBL_FAULTS)
     assert set(MARLIN_CAUSES) == set(MARLIN_FAULTS)
+    assert set(MOONRAKER_CAUSES) == set(MOONRAKER_FAULTS)

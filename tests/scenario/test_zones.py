@@ -245,6 +245,25 @@ def test_a_crash_of_the_plant_keeps_the_zones_of_an_arm_inside(zoned: Plants, ev
     honest(witness)
 
 
+def test_an_arm_outside_for_which_only_a_part_of_its_zones_was_kept_asks_for_all_of_them(
+    zoned: Plants,
+) -> None:
+    """The plant dies as it keeps who holds them."""
+    rig, witness = start(zoned(Evidence.IDS))
+    rig.submit("sis_a 0B 7")
+    rig.submit("sis_b 0B 4")
+    rig.wait_for("sis_b", "take zones")
+    rig.disk.facts[Fact.QUARANTINE] |= {"rack": "ra2"}
+    rig.crash()
+    rig.wait(2.0)
+    assert zone(rig, "rack") == ("quarantined", "ra2")
+    for name in ("sis_a", "sis_b"):
+        assert rig.operate(Verb.RESUME, name) is None
+    assert rig.wait(WAIT_S, until=lambda: at_rest(rig))
+    assert {change.state for change in rig.outcomes().values()} == {TaskState.DONE}
+    honest(witness)
+
+
 @levels
 def test_after_a_crash_an_empty_arm_is_homed_out_of_the_zones(zoned: Plants, evidence: Evidence) -> None:
     rig, witness = start(zoned(evidence, 6.0))

@@ -27,6 +27,7 @@ from ..chromium import browsers
 from ..conftest import need_tool
 from ..patience import PATIENCE_S
 from ..postgres import Server
+from ..workers import shared_between_workers
 from .playground_site import playground as playground
 from .two_hosts import Hosts
 
@@ -240,12 +241,6 @@ def _compiled(tmp_path_factory: pytest.TempPathFactory, target: str) -> str:
         fcntl.flock(lock, fcntl.LOCK_EX)
         subprocess.run(["make", "-C", str(ROOT / "firmware"), target, f"B={folder}"], check=True)
     return str(folder / target)
-
-
-def shared_between_workers(factory: pytest.TempPathFactory) -> Path:
-    """A folder of this run; pytest-xdist gives each worker a folder of its own below it."""
-    own = factory.getbasetemp()
-    return own.parent if "PYTEST_XDIST_WORKER" in os.environ else own
 
 
 @pytest.fixture

@@ -1,7 +1,8 @@
 """Arms that are not ours: `foreign_arms.py ros|mqtt PLANT [BROKER_PORT]` plays every arm of a plant file.
 
 Each drives its joints at a constant speed, behind glue that reads and tells state and position on their own:
-every word is up to two telemetry periods late, so either may come first. On ROS 2 they are two topics, the
+every word is up to two telemetry periods late, so either may come first. They tell the time by their own
+ticks: a busy machine makes these late, and no word later than two periods. On ROS 2 they are two topics, the
 state told at changes; over MQTT one message holds what was read last of each. Of a move of no length some say
 moving for a period, some nothing. Effectors tell nothing.
 """
@@ -10,7 +11,6 @@ from __future__ import annotations
 
 import sys
 import threading
-import time
 from collections import deque
 from contextlib import suppress
 from pathlib import Path
@@ -39,42 +39,43 @@ class Glued:
         self.state = STOPPED
         self.changed = True  # whether the state that is told is another one
         self._q = self._goal = arm.reference
-        self._moves_until = 0.0
+        self._now = self._moves_until = 0.0
         self._is = STOPPED
         self._silent = number % 2 == 1
         self._random = Random(number)
         self._places: deque[tuple[float, tuple[float, ...]]] = deque()
         self._states: deque[tuple[float, MotionState]] = deque()
 
-    def goal(self, now: float, q: tuple[float, ...]) -> None:
+    def goal(self, q: tuple[float, ...]) -> None:
         """Drive there."""
         self._goal = self.arm.quantised(q)
         rows = zip(self.arm.joints, self._q, self._goal, strict=True)
         travel_s = max(abs(goal - q) / (joint.speed * SPEED) for joint, q, goal in rows)
-        self._moves_until = now + (travel_s or (0.0 if self._silent else PERIOD_S))
+        self._moves_until = self._now + (travel_s or (0.0 if self._silent else PERIOD_S))
 
     def stop(self) -> None:
         """Stay where it is."""
         self._goal, self._moves_until = self._q, 0.0
 
-    def pass_to(self, now: float, *, read: bool) -> None:
-        """One tick; `read`: the joints are read in it."""
+    def tick(self, *, read: bool) -> None:
+        """TICK_S of its time; `read`: the joints are read in it."""
+        self._now += TICK_S
         rows = zip(self.arm.joints, self._q, self._goal, strict=True)
         self._q = tuple(q + _within(goal - q, joint.speed * SPEED * TICK_S) for joint, q, goal in rows)
-        state = MOVING if now < self._moves_until or self._q != self._goal else STOPPED
+        state = MOVING if self._now < self._moves_until or self._q != self._goal else STOPPED
         if state is not self._is:
             self._is = state
-            self._states.append((self._later(now, self._states), state))
+            self._states.append((self._later(self._states), state))
         if read:
-            self._places.append((self._later(now, self._places), self._q))
-        while self._places and self._places[0][0] <= now:
+            self._places.append((self._later(self._places), self._q))
+        while self._places and self._places[0][0] <= self._now:
             self.place = self._places.popleft()[1]
-        if self._states and self._states[0][0] <= now:
+        if self._states and self._states[0][0] <= self._now:
             self.state, self.changed = self._states.popleft()[1], True
 
-    def _later(self, now: float, queue: deque[Any]) -> float:
+    def _later(self, queue: deque[Any]) -> float:
         """When a word of now is told: not before those that came before it."""
-        return max(now + self._random.uniform(0.0, LATE_S), queue[-1][0] if queue else 0.0)
+        return max(self._now + self._random.uniform(0.0, LATE_S), queue[-1][0] if queue else 0.0)
 
 
 def _within(way: float, most: float) -> float:
@@ -98,7 +99,7 @@ def play_ros(arms: list[Glued]) -> None:
         node.create_subscription(
             Float32MultiArray,
             f"{each.arm.name}/joint_goals_q",
-            lambda goal, each=each: each.goal(time.monotonic(), tuple(goal.data)),
+            lambda goal, each=each: each.goal(tuple(goal.data)),
             qos.COMMAND,
         )
         node.create_subscription(
@@ -110,7 +111,7 @@ def play_ros(arms: list[Glued]) -> None:
         nonlocal ticks
         ticks += 1
         for number, each in enumerate(arms):
-            each.pass_to(time.monotonic(), read=ticks % 10 == number % 10)
+            each.tick(read=ticks % 10 == number % 10)
             if each.changed or ticks % 100 == number % 100:  # who listens late hears it within a second
                 each.changed = False
                 states[number].publish(UInt8(data=each.state.value))
@@ -142,7 +143,7 @@ def play_mqtt(arms: list[Glued], port: int) -> None:
         with lock:
             if isinstance(said, JointsGoal):
                 rows = zip(each.arm.joints, said.q, strict=True)
-                each.goal(time.monotonic(), tuple(from_wire(joint, value) for joint, value in rows))
+                each.goal(tuple(from_wire(joint, value) for joint, value in rows))
             elif isinstance(said, StopGoal) and said.mode:
                 each.stop()
 
@@ -158,7 +159,7 @@ def play_mqtt(arms: list[Glued], port: int) -> None:
         ticks += 1
         for number, each in enumerate(arms):
             with lock:
-                each.pass_to(time.monotonic(), read=ticks % 10 == number % 10)
+                each.tick(read=ticks % 10 == number % 10)
             if each.changed or ticks % 10 == number % 10:
                 each.changed = False
                 rows = zip(each.arm.joints, each.place, strict=True)

@@ -75,7 +75,7 @@ def test_a_running_plant_takes_tasks_tells_its_state_and_ends_cleanly_on_ctrl_c(
 ) -> None:
     up = arboleda("up", "--no-ros", "--rate", "10")
     up.wait_for("HTTP API")
-    submit = arboleda("submit", "SIS_B  1c 3")
+    submit = arboleda("submit", "SIS_B", "1c", "3")
     assert submit.wait() == 0 and "sis_b 1C 3" in submit.output
     refused = arboleda("submit", "sis_b 1D 3")
     assert refused.wait() == 2 and "'1D' is not a path of sis_b" in refused.output

@@ -14,9 +14,10 @@ from arboleda.plant_file.loader import load
 from arboleda.plant_file.versions import Versions
 
 from ..chromium import leave
-from ..conftest import unused_port
 from ..contract.drivers.modbus import ModbusWire
+from ..lengths import sample
 from ..patience import PATIENCE_MS, PATIENCE_S
+from ..ports import unused_port
 from .page import connected, running
 from .test_accessible import Eye
 
@@ -178,6 +179,16 @@ def test_a_recipe_is_made_tried_proved_mended_and_put_to_work(
     assert me.presses <= 40
 
 
+def test_what_is_wrong_is_said_in_the_language_of_the_page(browser: Any, address: str) -> None:
+    me = Person(browser, address, **{**LAPTOP, "locale": "es"})
+    editor = {"editor": "test-of-ana", "name": "Ana"}
+    httpx.post(f"{address}/api/draft/take", json=editor, timeout=PATIENCE_S).raise_for_status()
+    wrong = {"editor": "test-of-ana", "place": ["cells", "cell", "queue_limit"], "value": "five"}
+    httpx.post(f"{address}/api/draft/set", json=wrong, timeout=PATIENCE_S).raise_for_status()
+    me.sees("#make-problems", "debe ser un número entero; es")
+    me.go()
+
+
 def test_a_tryout_is_looked_at_as_a_record_and_the_way_leads_back(browser: Any, address: str) -> None:
     me = Person(browser, address, **LAPTOP)
     me.panel("try")
@@ -304,7 +315,7 @@ def test_the_second_person_sees_who_edits_and_takes_over(browser: Any, address: 
 
 
 @pytest.mark.requires("axe_playwright_python")
-@pytest.mark.parametrize("screen", [LAPTOP, PHONE], ids=["laptop", "phone"])
+@pytest.mark.parametrize("screen", sample([PHONE, LAPTOP], every=2), ids=lambda each: each["locale"])
 def test_axe_finds_nothing_in_any_panel(browser: Any, address: str, screen: dict[str, Any]) -> None:
     me = Person(browser, address, **screen)
     eye = Eye(me.page)
@@ -332,7 +343,7 @@ def proposed(address: str, tree: str, **more: Any) -> str:
     return str(answer["hash"])
 
 
-@pytest.mark.parametrize("screen", [LAPTOP, PHONE], ids=["laptop", "phone"])
+@pytest.mark.parametrize("screen", sample([LAPTOP, PHONE], every=2), ids=lambda each: each["locale"])
 def test_a_person_looks_at_proposals_of_an_assistant_and_decides(
     browser: Any, folder: Path, screen: dict[str, Any]
 ) -> None:

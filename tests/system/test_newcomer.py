@@ -90,7 +90,7 @@ def lead(me: Person, address: str, button: str, joint: int, far: float) -> None:
     me.page.wait_for_selector(f"{button}:not([disabled])")
     before = at()
     me.presses += 1
-    hold(me.page, button, lambda: abs(at() - before) > far)
+    hold(me.page, address, button, lambda: abs(at() - before) > far)
     me.page.mouse.up()
     until(lambda: not device(address)["moves"])
 

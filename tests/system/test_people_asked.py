@@ -25,6 +25,7 @@ cells:
     devices:
       ana: {kind: person}
     queue_limit: 5
+    on_absence: go_on
 """
 RECIPES = f'''\
 from arboleda.recipes import recipe, work

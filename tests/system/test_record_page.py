@@ -22,7 +22,7 @@ from ..chromium import leave
 from ..patience import PATIENCE_MS, PATIENCE_S
 from .conftest import Process, paths
 from .page import connected, running, show, until
-from .test_accessible import Eye, eye
+from .test_accessible import Eye, eye, views_from
 
 __all__ = ["eye"]  # a fixture
 
@@ -188,6 +188,7 @@ def test_events_that_no_button_sends_change_nothing(tab: Any, replay: str, event
 
 
 @pytest.mark.requires("axe_playwright_python")
+@views_from(1)
 def test_axe_finds_nothing_on_a_record(replay: str, eye: Callable[[str], Eye]) -> None:
     eyes = eye(f"{replay}&cell=sis_c")
     eyes.page.wait_for_selector(FAILED)

@@ -15,7 +15,7 @@ from ..chromium import leave
 from ..patience import PATIENCE_MS
 from .conftest import Process, paths
 from .page import connected, running, until
-from .test_accessible import Eye, eye
+from .test_accessible import Eye, eye, views_from
 
 __all__ = ["eye"]  # a fixture
 
@@ -93,6 +93,7 @@ def test_a_task_is_given_to_a_plant_and_a_wrong_one_says_why(page: Any, state: P
     page.wait_for_selector("#answer[data-s=bad]:has-text('sis_z')")
 
 
+@views_from(0)
 def test_axe_finds_nothing(eye: Callable[[str], Eye], site: str) -> None:
     eyes = eye(site)
     eyes.page.wait_for_selector("[data-rows=plants] [data-row=arboleda]")

@@ -12,6 +12,7 @@ import pytest
 from arboleda.bt_xml.editing.tree_text import TreeText, walk
 
 from ..chromium import leave
+from ..lengths import sample
 from ..patience import PATIENCE_MS, PATIENCE_S
 from .page import connected, running
 from .test_accessible import Eye
@@ -287,7 +288,7 @@ def test_by_touch_a_node_is_dragged_at_its_grip(editor: Open) -> None:
 
 
 @pytest.mark.requires("axe_playwright_python")
-@pytest.mark.parametrize("screen", [LAPTOP, PHONE], ids=["laptop", "phone"])
+@pytest.mark.parametrize("screen", sample([LAPTOP, PHONE], every=2), ids=lambda each: each["locale"])
 def test_axe_finds_nothing_on_the_editor(editor: Open, screen: dict[str, Any]) -> None:
     page = editor(**screen)
     eye = Eye(page)

@@ -354,6 +354,17 @@ def test_the_view_is_turned_with_keys_and_put_back(plant: Plant, look: Any) -> N
     page.wait_for_function(f"before => {label} !== before", arg=before)
 
 
+def test_a_cell_of_which_nothing_is_drawn_has_the_whole_plant_seen(plant: Plant, look: Any) -> None:
+    page = look(plant.page)
+    label = "document.querySelector('.twin-labels span')?.style.transform"
+    before = page.wait_for_function(label).json_value()
+    page.click("[data-twin-cell=sis_b]")
+    page.wait_for_function(f"before => {label} !== before", arg=before)
+    page.evaluate("document.querySelector('[data-twin-cell=sis_b]').dataset.twinCell = 'office'")
+    page.click("[data-twin-cell=office]")
+    page.wait_for_function(f"before => {label} === before", arg=before)
+
+
 def test_what_is_drawn_is_read_in_spanish_too(plant: Plant, look: Any) -> None:
     page = look(plant.page, locale="es")
     page.wait_for_function("document.querySelector('#twin-robots').textContent.includes('ra1: medido')")

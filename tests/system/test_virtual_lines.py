@@ -58,3 +58,21 @@ def test_a_task_is_done_at_a_serial_line(
     assert run.wait() == 0, run.output
     assert controller.interrupt() == 0 and "Traceback" not in run.output + controller.output
     assert not line.is_symlink()
+
+
+def test_a_task_is_done_at_a_websocket(
+    start: Callable[..., Any], arboleda: Callable[..., Any], tmp_path: Path
+) -> None:
+    played = ("virtual", "gcode", "--dialect", "moonraker", "--port", "0", "--fault-port", "0")
+    controller = start(sys.executable, "-c", COMMAND, *played)
+    controller.wait_for("faults are switched on ")
+    taken = re.search(r"is at ws://127.0.0.1:(\d+)/websocket", controller.output)
+    assert taken
+    plant = (EXAMPLES / "gantry/moonraker.yaml").read_text("utf-8")
+    assert "port: 7125" in plant
+    (tmp_path / "plant.yaml").write_text(plant.replace("port: 7125", f"port: {taken[1]}"), "utf-8")
+    (tmp_path / "recipes.py").symlink_to(EXAMPLES / "gantry/recipes.py")
+    where = ("--plant", str(tmp_path / "plant.yaml"), "--boards", "drivers", "--no-ros")
+    run = arboleda("run", "bench visit rack drill", *where)
+    assert run.wait() == 0, run.output
+    assert controller.interrupt() == 0 and "Traceback" not in run.output + controller.output

@@ -13,6 +13,8 @@ from arboleda.model.plant_model import MotionState
 from arboleda_kills.deeds import Did
 from arboleda_kills.processes import PATIENCE_S, Boards, Plant
 
+from .patient_plant import patient_plant
+
 pytestmark = pytest.mark.system
 
 TASK = {"text": "sis_a 0B 7 #lot-1"}
@@ -22,7 +24,7 @@ class Site:
     """A plant that is killed and started again, and its boards."""
 
     def __init__(self, folder: Path, *options: str) -> None:
-        self._options = options
+        self._options = ("--plant", str(patient_plant(folder)), *options)
         self.boards = Boards(1.0, folder / "boards.log")
         self._folder = folder
         self.moves = False  # whether a robot of the cell does

@@ -18,8 +18,9 @@ from arboleda.web.languages import contents
 
 from ..chromium import leave
 from ..exercises.works import Sample, samples
+from ..lengths import sample
 from ..patience import LONG_MS
-from .test_accessible import SCREENS, Eye
+from .test_accessible import SCREENS, VIEWS, Eye
 
 pytestmark = [
     pytest.mark.system,
@@ -28,8 +29,17 @@ pytestmark = [
 ]
 WORDS = {language: contents(language, "workbook") for language in ("en", "es")}
 LOOP = "while True:\n    pass\n"
-WITH_A_PLANT = "11_first_recipe", "12_own_arm", "13_declared_device", "16_drawn_tree"
-WORKS_JUDGED = ("query_first", "night", "tree_xml", "two_arms")
+LESSONS = [
+    "01_paths",
+    "03_fsm_vs_tree",
+    "04_recovery",
+    "05_retry_and_conditions",
+    "11_first_recipe",
+    "12_own_arm",
+    "13_declared_device",
+    "16_drawn_tree",
+]
+WORKS_JUDGED = sample(["query_first", "night", "tree_xml", "two_arms"], every=2)
 Open = Callable[..., Any]
 
 
@@ -88,9 +98,7 @@ def plant(page: Any) -> Any:
     return frame
 
 
-@pytest.mark.parametrize(
-    "name", ["01_paths", "03_fsm_vs_tree", "04_recovery", "05_retry_and_conditions", *WITH_A_PLANT]
-)
+@pytest.mark.parametrize("name", sample(LESSONS, every=3))
 def test_a_lesson_prints_in_the_tab_what_its_page_says(opened: Open, name: str) -> None:
     page = opened(f"lesson={name}")
     wanted = page.inner_text("#book-text pre:has-text('$') >> nth=0").splitlines()[1:]
@@ -113,6 +121,16 @@ def test_a_lesson_runs_on_its_plant_as_it_is_written(opened: Open) -> None:
     page.click("[data-does=run]")
     page.wait_for_function("document.getElementById('book-output').textContent.includes('done: bench')")
     page.frame_locator("#book-frame").locator("h1:has-text('mine')").wait_for()
+
+
+def test_what_is_wrong_in_a_plant_is_said_in_the_language_of_the_page(opened: Open) -> None:
+    page = opened("plant=own_tree&lang=es")
+    said(page, "built", "es")
+    turn(page, "plant.yaml")
+    write(page, f"{text_of(page)}\nnome: x\n")
+    page.click("[data-does=run]")
+    page.wait_for_selector(".book-problem")
+    assert 'la clave "nome" no se conoce' in page.inner_text("#book-said")
 
 
 def test_a_program_is_changed_breaks_is_interrupted_survives_a_reload_and_is_reset(opened: Open) -> None:
@@ -207,12 +225,12 @@ def _members(content: bytes) -> dict[str, bytes]:
 def test_the_judge_says_the_same_in_a_browser_as_here(opened: Open) -> None:
     page = opened("exercise=night")
     plant(page)
-    for sample in _few():
-        files = {name: content.decode() for name, content in sample.files.items()}
-        request = {"exercise": sample.exercise, "files": files}
+    for work in _few():
+        files = {name: content.decode() for name, content in work.files.items()}
+        request = {"exercise": work.exercise, "files": files}
         found = page.evaluate("request => arboledaPython.ask('judge', request)", request)
-        assert found.pop("film") is bool(found["findings"] and found["runs"]), sample
-        assert found == Judge(exercise(sample.exercise), sample.files).judge().plain, sample
+        assert found.pop("film") is bool(found["findings"] and found["runs"]), work
+        assert found == Judge(exercise(work.exercise), work.files).judge().plain, work
 
 
 def _few() -> Iterator[Sample]:
@@ -223,20 +241,20 @@ def _few() -> Iterator[Sample]:
         yield from [each for each in every if not each.right][:2]
 
 
-def test_the_record_of_an_exercise_is_played_and_every_exercise_opens(opened: Open) -> None:
+def test_the_record_of_an_exercise_is_played_and_exercises_open(opened: Open) -> None:
     page = opened("exercise=night")
     plant(page)
     page.click("[data-does=record]")
     frame = page.frame_locator("#book-frame")
     frame.locator("#play:not(:has(#play-mishaps)) #play-slider").wait_for()
-    for each in catalog().values():
+    for each in sample(catalog().values(), every=9):
         page.select_option("#book-choice", f"exercise={each.name}")
         page.wait_for_function("title => document.title === title", arg=f"{each.number}. {each.title['en']}")
         said(page, "built")
 
 
 @pytest.mark.requires("axe_playwright_python")
-@pytest.mark.parametrize(("language", "screen"), [*zip(WORDS, SCREENS, strict=False)])
+@pytest.mark.parametrize(("language", "screen"), sample(VIEWS, every=2))
 def test_axe_finds_nothing_in_a_workbook_and_nobody_scrolls_sideways(
     opened: Open, language: str, screen: str
 ) -> None:

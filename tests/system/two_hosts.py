@@ -1,4 +1,4 @@
-"""Two processes of one plant, their boards, their broker."""
+"""Two processes of the shipped plant, their boards, their broker."""
 
 from __future__ import annotations
 
@@ -15,6 +15,7 @@ from arboleda_kills.deeds import Did
 from arboleda_kills.processes import Boards, Plant
 
 from .. import patience
+from .patient_plant import patient_plant
 
 TASK = {"text": "sis_a 0B 7 #lot-1"}
 PATIENCE_S = max(75.0, patience.PATIENCE_S)
@@ -27,7 +28,14 @@ class Hosts:
         self._folder = folder
         self._broker = EmbeddedBroker(port=port)
         self._broker.start()
-        self._options = ("--store", database, "--broker", f"127.0.0.1:{port}")
+        self._options = (
+            "--plant",
+            str(patient_plant(folder)),
+            "--store",
+            database,
+            "--broker",
+            f"127.0.0.1:{port}",
+        )
         self.boards = Boards(1.0, folder / "boards.log")
         self.boards.broker("127.0.0.1", port)
         self.plants: dict[str, Plant] = {}
@@ -51,11 +59,13 @@ class Hosts:
     def cell(self, name: str) -> dict[str, Any]:
         return next((row for row in self.ask(name).get("cells", ()) if row["name"] == "sis_a"), {})
 
-    def until(self, true: Callable[[], Any], about: Callable[[], object] = lambda: None) -> None:
-        """Wait for what another process does; where it never does, `about` is in the error."""
+    def until(self, true: Callable[[], Any]) -> None:
+        """Wait for what another process does; where it never does, the error has what each of them says."""
         ends = time.monotonic() + PATIENCE_S
         while not true():
-            assert time.monotonic() < ends, about()
+            assert time.monotonic() < ends, {
+                name: (self.cell(name), self._log_of(name)) for name in self.plants
+            }
             time.sleep(0.02)
 
     def led_by_a(self, ports: Sequence[int] = ()) -> None:
@@ -90,11 +100,14 @@ class Hosts:
         self.done_with(name)
 
     def done_with(self, name: str) -> None:
-        self.until(lambda: self.cell(name).get("state") == "idle", lambda: self.cell(name))
+        self.until(lambda: self.cell(name).get("state") == "idle")
         assert self.plants[name].await_api(time.time() + PATIENCE_S)
-        kept = {row["id"]: row["state"] for row in self.plants[name].ask("GET", "/api/history")[1]}
-        assert kept["lot-1"] == "done"
+        kept = {row["id"]: row for row in self.plants[name].ask("GET", "/api/history")[1]}
+        assert kept["lot-1"]["state"] == "done", (kept, self._log_of(name))
         assert self.parts() == [(Did.PICKED, "pick-up"), (Did.LET_GO, "station 7")]
+
+    def _log_of(self, name: str) -> str:
+        return (self._folder / f"{name}.log").read_text(encoding="utf-8", errors="replace")
 
     def end(self) -> None:
         for each in self.plants.values():

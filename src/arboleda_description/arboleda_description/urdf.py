@@ -44,7 +44,7 @@ def render(model: str, *, prefix: str, limits: Mapping[str, Limits] | None = Non
             raise ValueError(f"urdf/{model}{ENDING} cannot be processed: {why}") from error
 
 
-@lru_cache(maxsize=32)  # xacro takes a twentieth of a second, for the same robot each time a plant is drawn
+@lru_cache(maxsize=128)  # xacro takes a twentieth of a second, for the same robot each time a plant is drawn
 def _processed(file: Path, prefix: str, limits: str) -> str:
     import xacro
 

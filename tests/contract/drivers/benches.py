@@ -36,6 +36,7 @@ BENCHES: dict[str, Bench] = {
     "dobot": dobot.BENCH,
     "gcode": gcode.BENCH,
     "gcode_marlin": gcode.MARLIN_BENCH,
+    "gcode_moonraker": gcode.MOONRAKER_BENCH,
     "ur": ur.BENCH,
     "vda5050": vda5050.BENCH,
 }

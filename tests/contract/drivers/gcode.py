@@ -11,11 +11,13 @@ from pathlib import Path
 from arboleda.plant_file.loader import load
 from arboleda.runtime.build import App, Options, build
 from arboleda.virtual.faults import Faults
-from arboleda.virtual.gcode.faults import GRBL_FAULTS, MARLIN_FAULTS
+from arboleda.virtual.gcode.faults import GRBL_FAULTS, MARLIN_FAULTS, MOONRAKER_FAULTS
 from arboleda.virtual.gcode.grbl import BANNER, BEYOND, HARD_LIMIT, HOLD_BYTE, VirtualGrbl
 from arboleda.virtual.gcode.machine import Place, words_of
 from arboleda.virtual.gcode.marlin import VirtualMarlin
+from arboleda.virtual.gcode.moonraker import ERROR, VirtualMoonraker, answered, refused
 from arboleda.virtual.pty_line import PtyLine
+from arboleda.virtual.web_socket_line import WebSocketLine
 
 from ...patience import PATIENCE_S
 from .bench import HALT, LATCH, OTHER, WORK, Bench, Device, Ref
@@ -29,7 +31,7 @@ uses: [recipes.py]
 cells:
   shop:
     devices:
-      gantry: {{kind: gantry, home_at_start: true, driver: {{gcode: {{serial: {line}, {keys}}}}}}}
+      gantry: {{kind: gantry, home_at_start: true, driver: {{gcode: {{{line}, {keys}}}}}}}
     targets:
       home: {{gantry: {{mm: [0, 0, 0]}}}}
       a: {{gantry: {{mm: [30, 20, 5]}}}}
@@ -41,7 +43,7 @@ from arboleda.recipes import recipe
 
 @moving_kind("gantry")
 def gantry():
-    return Axes(*(Axis(name, unit="mm", lower=-5, upper=300, speed=60, step=0.02) for name in "xyz"))
+    return Axes(*(Axis(name, unit="mm", lower=-5, upper=300, speed={speed}, step=0.02) for name in "xyz"))
 
 @recipe("work")
 def work_(cell):
@@ -150,6 +152,67 @@ class PlayedMarlin(VirtualMarlin):
         return []
 
 
+class PlayedMoonraker(VirtualMoonraker):
+    """Klipper that answers no move by itself, and goes nowhere; it stands at once where it is stopped."""
+
+    def __init__(self, told: Callable[[Place | None], bool]) -> None:
+        self.switched = Faults(MOONRAKER_FAULTS)
+        super().__init__(self.switched)
+        self._told = told
+        self._waits: list[int] = []  # moves without an answer, by the numbers of their requests
+        self._due: list[str] = []
+        self._holds = self._was_stopped = False
+        self.lock = threading.RLock()
+
+    def step(self, now: float, data: bytes = b"") -> bytes:
+        with self.lock:
+            if b"M400" in data:
+                self.rest(None)
+                self._was_stopped = True
+                self._told(None)
+            due, self._due = self._due, []
+            return self._sent(due) + super().step(now, data)
+
+    def says(self, refusal: str | None) -> None:
+        """Answer the moves that wait: they run, and lead nowhere, or they are refused."""
+        self._klipper.stalls = refusal is None and not self._was_stopped
+        answers = [
+            answered(each, "ok") if refusal is None else refused(each, 400, refusal) for each in self._waits
+        ]
+        self._due, self._waits = [*self._due, *answers], []
+
+    def rest(self, place: Place | None) -> None:
+        """Stand, at this place if there is one."""
+        self._klipper.stalls = False
+        if place is not None:
+            self._stand(place)
+        self._klipper.planned = self._klipper.place
+
+    def dies(self) -> None:
+        """Be in error, until its firmware is restarted."""
+        self.rest(None)
+        self._klipper.state = ERROR
+
+    def _run(self, now: float) -> list[str]:
+        before = [each.number for each in self._klipper.scripts]
+        out, holds = super()._run(now), self._holds
+        self._holds = False
+        if holds:
+            self._waits.append(before[0])
+        return out[1:] if holds else out
+
+    def _do(self, now: float, line: str) -> str | None:
+        if not line.startswith("G1"):
+            return super()._do(now, line)
+        words = words_of(line)
+        self._klipper.ordered = goal = (words["X"], words["Y"], words["Z"])
+        if self._told(goal):
+            self.rest(goal)
+        else:
+            self._holds, self._was_stopped = True, False
+        return None
+
+
 class PlayedGantry:
     """It answers what it is asked; moves wait for the test, but those home, which it does at once."""
 
@@ -157,17 +220,20 @@ class PlayedGantry:
         self._orders: queue.Queue[tuple[str, Ref]] = queue.Queue()
         self._goals: list[Place] = []
         self._homes, self._stop_word = True, HALT  # one word of G-code is both
-        self._controller: PlayedGrbl | PlayedMarlin
+        self._controller: PlayedGrbl | PlayedMarlin | PlayedMoonraker
 
-    def begin(self, line: Path) -> None:
+    def begin(self, line: Path) -> str:
+        """Be at a line; returns the keys of its address."""
         # By name: once it was pulled, its number may be that of another test's line.
-        self._line = PtyLine(self._controller, link=str(line))
+        self._line: PtyLine | WebSocketLine = PtyLine(self._controller, link=str(line))
         self._line.start()
+        return f"serial: {line}"
 
     def told(self) -> tuple[str, Ref]:
         return self._orders.get(timeout=PATIENCE_S)
 
     def accepts(self, ref: Ref) -> None:
+        assert not isinstance(self._controller, PlayedMoonraker)
         with self._controller.lock:
             self._controller.runs = True
             self._controller.says("ok")
@@ -264,15 +330,58 @@ class MarlinGantry(PlayedGantry):
             self._marlin.press_reset()
 
 
-def _open(folder: Path, state: Path, *, gantry: type[GrblGantry | MarlinGantry], keys: str) -> Opened:
+class MoonrakerGantry(PlayedGantry):
+    """Gantry with Klipper behind Moonraker."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._controller = self._moonraker = PlayedMoonraker(self._hear)
+
+    def begin(self, line: Path) -> str:
+        self._line = WebSocketLine(self._moonraker)
+        self._line.start()
+        return f"host: 127.0.0.1, port: {self._line.port}"
+
+    def accepts(self, ref: Ref) -> None:
+        with self._moonraker.lock:
+            self._moonraker.says(None)
+
+    def finishes(self, ref: Ref, *, there: bool = True) -> None:
+        assert isinstance(ref, int)
+        with self._moonraker.lock:
+            self._moonraker.rest(self._goals[ref - 1] if there else None)
+
+    def rejects(self, ref: Ref) -> str:
+        with self._moonraker.lock:
+            self._moonraker.says("Move out of range: 30.000 20.000 5.000 [0.000]")
+        return "(beyond_travel"
+
+    def gives_up(self, ref: Ref) -> str:
+        with self._moonraker.lock:
+            self._moonraker.dies()
+        return "gave up (error"
+
+    def boots(self) -> None:
+        with self._moonraker.lock:
+            self._moonraker.press_reset()
+
+
+Gantry = type[GrblGantry | MarlinGantry | MoonrakerGantry]
+
+
+def _open(folder: Path, state: Path, *, gantry: Gantry, keys: str, speed: int = 60) -> Opened:
     folder.mkdir()
     played = gantry()
-    played.begin(folder / "line")
-    (folder / "plant.yaml").write_text(PLANT.format(line=folder / "line", keys=keys), "utf-8")
-    (folder / "recipes.py").write_text(RECIPES, "utf-8")
+    line = played.begin(folder / "line")
+    (folder / "plant.yaml").write_text(PLANT.format(line=line, keys=keys), "utf-8")
+    (folder / "recipes.py").write_text(RECIPES.format(speed=speed), "utf-8")
     app = build(load(folder / "plant.yaml"), ("orchestrator",), Options(state_dir=state))
     return app, lambda app: played
 
 
 BENCH = Bench(open=partial(_open, gantry=GrblGantry, keys="dialect: grbl"))
 MARLIN_BENCH = Bench(open=partial(_open, gantry=MarlinGantry, keys="dialect: marlin, stop_keeps_place: true"))
+MOONRAKER_BENCH = Bench(
+    # So fast that a move is one piece.
+    open=partial(_open, gantry=MoonrakerGantry, keys="dialect: moonraker", speed=600)
+)

@@ -53,11 +53,16 @@ def other(cell):
     return cell.device("arm").go("b")
 """
 ACCELERATION_AT, HOLD_UNITS = 3, 100  # of the first servo; a hold has more, a move less
+STRIDE, STRIDES = 5, 100  # ticks of a servo at work for each answer, and how many until it is where it was
 Goals = tuple[int, ...]
 
 
 class PlayedServos(VirtualServos):
-    """Servos that go nowhere by themselves, and take no goal but where they stand."""
+    """Servos that go nowhere by themselves, and take no goal but where they stand.
+
+    `restless`: they are at work, and stand elsewhere in each round of questions, however slow that is: two
+    rounds that find them at one place, a second apart, are an arm that gets no further.
+    """
 
     def __init__(self, told: Callable[[Goals, bytes], None]) -> None:
         self.switched = Faults(FAULTS)
@@ -68,11 +73,19 @@ class PlayedServos(VirtualServos):
         self.lock = threading.RLock()
         self._asked = threading.Condition(self.lock)
         self._answers = 0
+        self.restless = False
+        self._strides = 0  # since then, of one round
 
     def step(self, now: float, data: bytes = b"") -> bytes:
         with self.lock:
             answer = super().step(now, data)
             self._answers += bool(answer)
+            if not self.restless:
+                self._strides = 0
+            elif answer:
+                self._strides = (self._strides + 1) % STRIDES
+                for servo in self.servos.values():
+                    servo.at += STRIDE if self._strides else STRIDE * (1 - STRIDES)
             self._asked.notify_all()
             return answer
 
@@ -119,10 +132,12 @@ class PlayedArm:
     def accepts(self, ref: Ref) -> None:
         with self._servos.lock:
             self._servos.take(self._of(ref)[1])
+            self._servos.restless = True
 
     def finishes(self, ref: Ref, *, there: bool = True) -> None:
-        if there:
-            with self._servos.lock:
+        with self._servos.lock:
+            self._servos.restless = False
+            if there:
                 self._servos.put(self._of(ref)[0])
 
     def rejects(self, ref: Ref) -> str:
@@ -146,6 +161,7 @@ class PlayedArm:
 
     def boots(self) -> None:
         with self._servos.lock:
+            self._servos.restless = False
             for servo in self._servos.servos.values():
                 servo.boot()
 
@@ -169,6 +185,7 @@ class PlayedArm:
     def _hear(self, goals: Goals, data: bytes) -> None:
         """Take what is written to the servos: a hold at once, a move when the test says so."""
         if data[ACCELERATION_AT] > HOLD_UNITS:
+            self._servos.restless = False
             self._servos.take(data)
             self._orders.put((self._stop_word, None))
             self._stop_word = HALT if self._homes else LATCH

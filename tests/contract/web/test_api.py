@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import asyncio
 import threading
 from concurrent.futures import ThreadPoolExecutor
 from urllib.parse import quote
 
 import pytest
+from starlette.requests import Request
 
 from arboleda.core.leaving import STILL_WAITS, stop_left
 from arboleda.model.errors import ArboledaError, QueueFull, TextError
@@ -14,6 +16,7 @@ from arboleda.model.messages import OperatorAnswer, Outcome, Verb
 from arboleda.model.sentence import Phrase
 from arboleda.store.oee_rows import OeeQuery
 from arboleda.store.task_rows import TaskQuery
+from arboleda.web.api import own_up
 
 from ...patience import PATIENCE_S
 from .conftest import LATE, OFFER, OFFERS, QUEUED, TASK, VIEW
@@ -395,6 +398,19 @@ def test_an_unknown_path_of_the_api_is_a_404_in_json(serve, mount, method, path)
     assert answer.json() == {"sentence": "There is nothing here; /api/docs lists what there is."}
 
 
+@pytest.mark.parametrize(
+    ("path", "sentence"),
+    [
+        ("acts/x", "'number' is 'x': input should be a valid integer, unable to parse string as an integer."),
+        ("draft/trees", "'file' is missing; /api/docs says what to give."),
+        ("promises", "'text' is missing; /api/docs says what to give."),
+    ],
+)
+def test_a_wrong_part_of_an_address_is_named(web, path, sentence):
+    answer = web.get(f"/api/{path}")
+    assert (answer.status_code, answer.json()) == (422, {"sentence": sentence})
+
+
 def test_an_error_of_ours_is_one_sentence_and_one_line(web, plant, caplog, capfd):
     plant.view = RuntimeError("boom")
     answer = web.get("/api/plant")
@@ -406,6 +422,19 @@ def test_an_error_of_ours_is_one_sentence_and_one_line(web, plant, caplog, capfd
         "GET /api/plant failed: RuntimeError('boom')"
     ]
     assert "Traceback" not in capfd.readouterr().err
+
+
+def test_what_fails_because_its_caller_has_gone_is_not_logged(caplog):
+    async def gone():
+        return {"type": "http.disconnect"}
+
+    request = Request(
+        {"type": "http", "method": "GET", "path": "/", "headers": [], "query_string": b""}, gone
+    )
+    asyncio.run(own_up(request, RuntimeError("No response returned.")))
+    assert not caplog.records
+    asyncio.run(own_up(request, RuntimeError("boom")))
+    assert [record.getMessage() for record in caplog.records] == ["GET / failed: RuntimeError('boom')"]
 
 
 def test_what_devices_do_is_answered_as_under_way_with_the_number_that_tells_its_end(web, plant):

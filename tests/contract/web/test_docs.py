@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 
 import httpx
@@ -85,6 +86,12 @@ def test_the_description_has_every_route_and_what_it_takes_and_gives(web: httpx.
     assert {"202", "403", "422", "503", "default"} <= set(posted["responses"])
     assert {"Snapshot", "Cell", "Robot", "Task", "Done", "Sentence"} <= set(api["components"]["schemas"])
     assert not [name for name in api["components"]["schemas"] if "Validation" in name]
+
+
+def test_each_reference_leads_to_a_shape(web: httpx.Client) -> None:
+    text = web.get("/api/openapi.json").text
+    named = {f"#/components/schemas/{name}" for name in json.loads(text)["components"]["schemas"]}
+    assert set(re.findall(r'"\$ref": ?"([^"]+)"', text)) <= named and "$defs" not in text
 
 
 def test_the_page_for_people_loads_nothing_and_links_lead_somewhere(web: httpx.Client) -> None:

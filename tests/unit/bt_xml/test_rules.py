@@ -66,7 +66,7 @@ class Clock:
         """Every tick comes anyway."""
 
 
-def ticks(trees: str, many: int) -> list[str]:
+def ticks(trees: str, many: int, *, between_s: float = BETWEEN_S) -> list[str]:
     findings = Findings()
     head = HEAD.replace(">", ' main_tree_to_execute="Main">')
     forest = reading.read("t.xml", f"{head}{trees}</root>".encode(), findings)
@@ -77,7 +77,7 @@ def ticks(trees: str, many: int) -> list[str]:
     tree = Builder(forest, leaf, clock).tree("Main", scope)
     said = []
     for number in range(many):
-        clock.now = number * BETWEEN_S
+        clock.now = number * between_s
         result = tree.execute()
         if result in ENDED:
             tree.status = Status.INVALID
@@ -89,6 +89,21 @@ def ticks(trees: str, many: int) -> list[str]:
 def test_a_tree_comes_to_the_same_at_every_tick(part: int) -> None:
     for trees, expected in [*CASES, *TIMED][part::10]:
         assert ticks(trees, 12) == expected.split(), trees
+
+
+@pytest.mark.parametrize(
+    "tree",
+    [
+        '<RetryUntilSuccessful num_attempts="3">{step}</RetryUntilSuccessful>',
+        '<RecoveryNode number_of_retries="2">{step}<AlwaysSuccess/></RecoveryNode>',
+    ],
+)
+def test_a_round_that_has_taken_several_ticks_and_no_time_is_followed_by_a_pause(tree: str) -> None:
+    step = '<T plan="RF" _onFailure="n += 1"/>'
+    trees = f'<BehaviorTree ID="Main">{tree.format(step=step)}</BehaviorTree>'
+    assert {each.rpartition(":")[2] for each in ticks(trees, 12, between_s=0.0)[1:]} == {"1"}
+    end = next(each for each in ticks(trees, 12) if each[0] == "F")
+    assert end.rpartition(":")[2] == "3"
 
 
 def test_there_are_many_trees_and_every_kind_of_node_is_in_some() -> None:

@@ -36,7 +36,12 @@ WRONG = (
     (CLOSE, '<mill_close speed="1"/>', "11:19: mill_close has no port 'speed'"),
     (CLOSE, f'<Precondition if="{{seen}}">{CLOSE}</Precondition>', "if of Precondition is a variable"),
     (CLOSE, f'<Precondition if="true" else="RUNNING">{CLOSE}</Precondition>', "would never end"),
-    (CLOSE, f"<Parallel>{CLOSE}<mill_open/></Parallel>", "has mill do two things at once"),
+    (
+        CLOSE,
+        f"<Parallel>{CLOSE}<mill_open/></Parallel>",
+        AT_CLOSE
+        + "tend has mill do two things at once, in a parallel; it does one after the other: a Sequence",
+    ),
     (CLOSE, "<Script code=\"blank := 'slot_2'\"/>", "which the tree changes while it runs"),
     (
         'name="program">',

@@ -12,8 +12,11 @@ from typer.testing import CliRunner
 from arboleda.campaigns.exercises import judge_process
 from arboleda.campaigns.exercises.exercise import LANGUAGES, Exercise, catalog, exercise
 from arboleda.campaigns.exercises.work import SHEET, Work, packed, works
+from arboleda.campaigns.proof.outcome import End
+from arboleda.campaigns.words import task_is, task_is_to
 from arboleda.cli.main import cli
 from arboleda.model.errors import ConfigError
+from arboleda.model.messages import TaskState
 from arboleda.simulator.faults import KINDS
 
 from ...exercises.works import Sample, samples
@@ -189,3 +192,17 @@ def test_a_work_of_ones_own_is_told_with_its_story(tmp_path: Path) -> None:
     status, output = check("check", str(folder), "--lang", "es")
     assert status == 1 and "aún no aprueba" in output and "camera look" in output
     assert (folder / "story.mcap").stat().st_size > 1000
+
+
+def test_every_state_and_end_of_a_task_has_a_sentence_of_its_own() -> None:
+    ends = dict.fromkeys(each.value for kind in (TaskState, End) for each in kind)
+    open_ends = [each for each in ends if task_is("it", each) == "it has not ended"]
+    assert open_ends == [End.UNFINISHED.value]
+    assert len({task_is("it", each) for each in ends}) == len(ends)
+
+
+def test_every_end_that_an_exercise_allows_can_be_said() -> None:
+    for each in catalog().values():
+        allowed = [*(words for trial in each.trials for words in trial.ends)]
+        allowed += [words for proving in each.proving for words in proving.ends.values()]
+        assert all(task_is_to(words).startswith("it is to ") for words in allowed), each.name

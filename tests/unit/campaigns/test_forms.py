@@ -22,7 +22,7 @@ def blinking(times: int) -> DrawnDevices:
     )
 
 
-@pytest.mark.parametrize("seed", [1, 14, 20])
+@pytest.mark.parametrize("seed", [1, 11, 15])
 def test_both_forms_do_the_same(seed: int) -> None:
     plant = devices.draw(seed)
     assert all(map(can_be_xml, plant.recipes)), "there is something to compare"

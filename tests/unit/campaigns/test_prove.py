@@ -3,17 +3,21 @@
 from __future__ import annotations
 
 import json
+import os
+import re
 from collections.abc import Callable
 from dataclasses import replace
 from functools import cache, partial
 from pathlib import Path
 from typing import Any
+from unittest.mock import Mock
 from xml.etree import ElementTree as Xml
 
 import pytest
 
 from arboleda.campaigns.mending.mend import Edit, edited
 from arboleda.campaigns.plants import Plant
+from arboleda.campaigns.proof import forks
 from arboleda.campaigns.proof.between_steps import gaps, other_facts
 from arboleda.campaigns.proof.calm import Calm, calm_run, calm_runs
 from arboleda.campaigns.proof.changed_recipe import noticed_with, with_check
@@ -25,6 +29,7 @@ from arboleda.campaigns.proof.proof import Proof, Proved
 from arboleda.campaigns.proof.scenario import scenarios
 from arboleda.campaigns.proof.single_faults import single_faults
 from arboleda.cli.main import main
+from arboleda.host import abilities
 from arboleda.model.errors import ArboledaError
 from arboleda.model.plant_model import PlantModel
 from arboleda.plant_file import loader
@@ -227,13 +232,31 @@ def test_forks_do_the_same_as_runs_from_the_beginning(plant: Path) -> None:
     assert faults and forked == run_all(proof.model, calm, faults, lambda: None, forks=False)
 
 
+def test_what_took_less_than_a_fork_takes_is_done_anew_in_this_process(
+    plant: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    model = Plant(declared=loader.load(plant)).model
+    calm = calm_run(model, next(scenarios(model)))
+    parts = single_faults(model, model.cells[0], calm.instants[-1], only=("refuses",))
+    faults = [each for part in parts for each in part]
+    forked, told = Mock(wraps=os.fork), Mock()
+    monkeypatch.setattr(forks, "CAN_FORK", True)
+    monkeypatch.setattr("os.fork", forked)
+    monkeypatch.setattr(forks, "FORK_TAKES_S", 3600.0)
+    cheap = run_all(model, calm, faults, told)
+    assert not forked.called and told.call_count == len(faults) > 1
+    monkeypatch.setattr(forks, "FORK_TAKES_S", 0.0)
+    if abilities.FORKS:
+        assert run_all(model, calm, faults, told) == cheap and forked.call_count == len(faults)
+
+
 @pytest.mark.parametrize(
     ("file", "recipe", "every"),
     sample(
         [
-            (PRESS, STAMP.replace("press.lift()", "cell.wait(8), press.lift()"), 9),
+            (PRESS, STAMP.replace("press.lift()", "cell.wait(8), press.lift()"), 19),
             (PRESS, STAMP, 9),
-            (CARRY, CARRIED, 83),
+            (CARRY, CARRIED, 131),
         ],
         every=2,
     ),
@@ -307,6 +330,7 @@ def test_the_page_and_the_junit_file_say_what_broke_and_what_nobody_notices(
     said = html.read_text()
     assert "<span lang=en>What nobody notices</span><span lang=es>Lo que nadie nota</span>" in said
     assert "recipes_end_as_they_say" in said and "sim.submit(" in said
+    assert re.search("<span lang=en>[^<]+ is called done[^<]+</span><span lang=es>[^<]+ se da por", said)
     assert "http://" not in said and "https://" not in said
     suite = Xml.parse(junit).getroot()[0]
     assert [case.get("name") for case in suite] == ["without faults: bench", "refuses", "lying_fact"]

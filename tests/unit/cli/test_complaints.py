@@ -44,3 +44,36 @@ def test_a_plant_file_reaches_no_terminal_as_it_is(
     (tmp_path / f"plant{EVIL}.yaml").write_text(written)
     said = complained(["check", str(tmp_path / f"plant{EVIL}.yaml")], monkeypatch, capsys)
     assert all(line.isprintable() and len(line) <= 1000 for line in said.splitlines())
+
+
+@pytest.mark.parametrize("command", ["simulate", "up", "run", "status", "tree", "submit", "apply"])
+def test_a_plant_file_in_the_place_of_something_else_is_told_its_option(
+    command: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    said = complained([command, f"my{EVIL}.yaml"], monkeypatch, capsys)
+    assert "a plant file is named with --plant: --plant my" in said
+    assert all(line.isprintable() for line in said.splitlines())
+
+
+@pytest.mark.parametrize("command", ["check", "prove"])
+def test_where_the_plant_file_is_an_argument_the_option_does_too(
+    command: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    said = complained([command, "--plant", "mine.yaml"], monkeypatch, capsys)
+    assert said == "arboleda: mine.yaml: there is no such file\n"
+
+
+def test_of_two_plant_files_to_prove_none_is_taken(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    said = complained(["prove", "mine.yaml", "--plant", "yours.yaml"], monkeypatch, capsys)
+    assert "two plant files are named, mine.yaml and yours.yaml; name one" in said
+
+
+@pytest.mark.parametrize("command", ["up", "run"])
+def test_a_task_without_quotes_is_shown_with_them(
+    command: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    said = complained([command, "--state", str(tmp_path), "sis_a", "0B", "7"], monkeypatch, capsys)
+    assert said == "arboleda: a task of several words needs quotes: 'sis_a 0B 7'\n"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from string import Formatter
 
 import pytest
@@ -30,6 +31,56 @@ def test_each_sentence_has_the_values_of_its_english() -> None:
     ("english", "spanish"),
     [
         (
+            "nest is no place, so nobody counts its parts; there are to be 0 at the end; "
+            "box is no place, so nobody counts its parts; there are to be 2 at the end",
+            "nest no es un lugar, así que nadie cuenta sus piezas; al final debe haber 0; "
+            "box no es un lugar, así que nadie cuenta sus piezas; al final debe haber 2",
+        ),
+        (
+            "  bench fill: forgets jaw: the place of arm is (1.0, 0.0), not (2.0, 0.0); "
+            "4 runs, e.g. just before arm: moving to nest (3.200 s)",
+            "  bench fill: forgets jaw: el lugar de arm es (1.0, 0.0), no (2.0, 0.0); "
+            "4 ejecuciones, como justo antes de arm: yendo a nest (3.200 s)",
+        ),
+        (
+            "  begins     in the middle after arm: moving to nest (3.200 s)",
+            "  empieza        a mitad de camino tras arm: yendo a nest (3.200 s)",
+        ),
+        (
+            "  begins     just before the request (2.000 s)",
+            "  empieza        justo antes de la petición (2.000 s)",
+        ),
+        (
+            "cell fetch has failed: jaw let go of the part that it held, not commanded by this plant; "
+            "it is to be done",
+            "cell fetch ha fallado: jaw soltó la pieza que sujetaba, sin que lo mandara esta planta; "
+            "debe hacerse",
+        ),
+        (
+            "in cell lab: home lies in zone centre",
+            "en la celda lab: home está en la zona centre",
+        ),
+        (
+            "lab weigh was cancelled (part_lost); the reason is to be deadline",
+            "lab weigh se canceló (pieza perdida); el motivo debe ser: fuera de plazo",
+        ),
+        (
+            "lab weigh: failed: rejected without any fault: no",
+            "lab weigh: falló: rechazada sin ningún fallo: no",
+        ),
+        ("FAULT: gives_up jaw rejected for 3.000 s", "FALLO: gives_up jaw rejected durante 3.000 s"),
+        ("    a question may: wheel.gauge()", "    una pregunta puede notarlo: wheel.gauge()"),
+        ("Page: http://127.0.0.1:8080", "Página: http://127.0.0.1:8080"),
+        (
+            "HTTP API: http://127.0.0.1:41/api/plant (port 8080 is taken)",
+            "API HTTP: http://127.0.0.1:41/api/plant (el puerto 8080 está ocupado)",
+        ),
+        (
+            "The certificate a.pem expires on 2027-01-01; make a new one, e.g. by `arboleda certs`",
+            "El certificado a.pem vence el 2027-01-01; haga uno nuevo, p. ej. con `arboleda certs`",
+        ),
+        ("OPC UA: opc.tcp://127.0.0.1:4840, read only", "OPC UA: opc.tcp://127.0.0.1:4840, solo lectura"),
+        (
             'plant.yaml:25:18: cells.studio.queue_limit: must be a whole number, is "five"',
             'plant.yaml:25:18: cells.studio.queue_limit: debe ser un número entero; es "five"',
         ),
@@ -41,11 +92,46 @@ def test_each_sentence_has_the_values_of_its_english() -> None:
             "2 seeds (1 to 2), 38 cycles, 0 faults, 203 s of plant time in 2 s (a, b)",
             "2 semillas (1 a 2), 38 ciclos, 0 fallos, 203 s de tiempo de la planta en 2 s (a, b)",
         ),
+        (
+            'it should refuse {"paro": 0, "seq": 3} with viejo; it says nothing about it',
+            'debería rechazar {"paro": 0, "seq": 3} con viejo; su respuesta: ninguna',
+        ),
+        (
+            "  was seen   MoveJoints 1-7 of ra1 was sent while SetEffector 1-6 of ra1 was open",
+            "  se vio         se envió MoveJoints 1-7 de ra1 mientras SetEffector 1-6 de ra1 estaba abierta",
+        ),
+        (
+            "  was seen   ra1 is not online by what the plant believes",
+            "  se vio         según cree la planta, ra1 no está en línea",
+        ),
+        (
+            "  was seen   ra1 begins to move unasked",
+            "  se vio         ra1 empieza a moverse sin que nadie lo pida",
+        ),
+        ("836 runs", "836 ejecuciones"),
+        (
+            "'camera look' is done once; it is to be done 2 to 3 times",
+            "'camera look' se hace una vez; debe hacerse de 2 a 3 veces",
+        ),
+        (
+            "bench has failed: camera: gave up (jam) while doing look; it is to fail or it is to be held",
+            "bench ha fallado: camera: se dio por vencido (jam) mientras estaba con la orden «look»; "
+            "debe fallar o debe quedar retenida",
+        ),
+        (
+            "afterwards it was not seen standing still within 30 s",
+            "después, no se la vio quieta en 30 s",
+        ),
     ],
 )
 def test_a_finding_is_said_in_spanish(english: str, spanish: str) -> None:
     assert findings("es")(english) == spanish
     assert findings("en")(english) == english
+
+
+def test_no_finding_can_be_read_as_for_or_as_stops() -> None:
+    """In Spanish "para" is both: "Para todos los robots"."""
+    assert [each for each in SENTENCES.values() if re.match(r"\W*para\b", each, re.IGNORECASE)] == []
 
 
 def test_a_line_of_no_template_stays_as_it_is() -> None:
@@ -60,6 +146,27 @@ def test_what_is_quoted_stays_as_it_is() -> None:
 def test_the_template_with_most_letters_is_taken() -> None:
     templates = Templates({"{0} is {1}": "{0} es {1}", "{0} is too long: {1}": "{0} es demasiado largo: {1}"})
     assert templates("name is too long: 40") == "name es demasiado largo: 40"
+
+
+@pytest.mark.parametrize(
+    ("english", "spanish", "text", "said"),
+    [
+        ("{{{0}}} is open", "{{{0}}} está abierta", "{door} is open", "{door} está abierta"),
+        ("ra{0}: {1}s wait", "ra{0}: esperan {1}", "ra7: parts wait", "ra7: esperan part"),
+        ("({0} mm)", "[{0} mm]", "(7 a mm)", "[7 a mm]"),
+    ],
+)
+def test_a_template_is_found_whatever_words_its_slots_go_on_with(
+    english: str, spanish: str, text: str, said: str
+) -> None:
+    assert Templates({english: spanish, "open": "abierto"})(text) == said
+
+
+def test_of_ways_that_say_as_much_that_of_the_fewest_templates_is_taken() -> None:
+    templates = Templates(
+        {"{0} is {1}": "{0} está {1}", "{0} is {1}; on {2}": "{0} es {1}; en {2}", "on": "en"}
+    )
+    assert templates("door is open; on top") == "door es open; en top"
 
 
 def test_values_of_a_part_are_left_to_it() -> None:

@@ -120,6 +120,7 @@ def test_no_english_is_left_in_the_help_of_a_command(
         (["answer"], "Falta el argumento 'PERSONA'."),
         (["FILE"], "No existe la orden 'FILE'."),
         (["stop", "a", "b"], "Sobra en los argumentos: b"),
+        (["simulate", "a.yaml"], "un archivo de planta se nombra con --plant: --plant a.yaml"),
         (["up", "--port"], "La opción '--port' necesita un valor."),
         (["up", "--demo=3"], "La opción '--demo' no lleva valor."),
     ],

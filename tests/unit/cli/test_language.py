@@ -8,6 +8,7 @@ import typer.testing
 from arboleda.cli.language import VARIABLES, language, say_error, say_row
 from arboleda.cli.main import cli
 from arboleda.cli.overview import SECTIONS
+from arboleda.cli.screen import says
 from arboleda.client.errors import Conflict
 from arboleda.model.errors import ArboledaError
 from arboleda.runtime.fault_desk import AN_INSTANT
@@ -66,3 +67,8 @@ def test_a_task_is_told_in_it(spanish: None) -> None:
     assert say_row({"sentence": str(sentence), **sentence.data()}).startswith("jam termina al instante")
     assert say_row({"sentence": None}) == ""
     assert say_row({"sentence": "broken", "key": "fault.an_instant", "values": {"kind": None}}) == "broken"
+
+
+def test_facts_that_every_arm_has_are_named_in_it(spanish: None) -> None:
+    robot = {"q": None, "node": None, "facts": {"effector": False, "piece": True, "door": "open"}}
+    assert says(robot) == "efector apagado, pieza sí, door open"

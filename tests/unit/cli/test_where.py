@@ -250,3 +250,27 @@ def test_the_plant_of_the_working_directory_is_simulated_unless_a_file_of_faults
     of_shipped.write_text(yaml.safe_dump({"plant": "arboleda", "faults": []}), "utf-8")
     request = Request(plant_here=here, faults=str(of_shipped))
     assert [plant.name for plant in request.plants.plants] == ["arboleda"]
+
+
+@pytest.fixture
+def lab(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """The plant file that the environment names; other.yaml stands beside it."""
+    for name in ("lab", "other"):
+        (tmp_path / f"{name}.yaml").write_text(SHIPPED.read_text("utf-8").replace("arboleda", name), "utf-8")
+    monkeypatch.setenv("ARBOLEDA_PLANT", str(tmp_path / "lab.yaml"))
+    return tmp_path / "lab.yaml"
+
+
+def test_the_plant_of_the_environment_is_checked_where_none_is_named(lab: Path, typed: Typed) -> None:
+    other = str(lab.with_name("other.yaml"))
+    for words, file in (((), str(lab)), ((other,), other), (("--plant", other), other)):
+        status, out, complaint = typed("check", *words)
+        assert (status, out.split(": good")[0]) == (0, file), complaint
+
+
+def test_an_option_is_no_second_plant_file_beside_that_of_the_environment(lab: Path, typed: Typed) -> None:
+    for words in (("--plant", "nowhere.yaml"), ("nowhere.yaml",)):
+        _, _, complaint = typed("prove", *words, "--budget", "1s")
+        assert "nowhere.yaml" in complaint and "two plant files" not in complaint
+    _, _, complaint = typed("prove", "nowhere.yaml", "--plant", str(lab))
+    assert "two plant files are named, nowhere.yaml and" in complaint

@@ -291,8 +291,8 @@ def test_a_plant_ends_though_a_cell_raises(hand: Make, monkeypatch: pytest.Monke
     plant = driving(hand)
     sound = CellRun.close
 
-    def broken(run: CellRun) -> None:
-        return broken_rule() if run.cell.name == "sis_a" else sound(run)
+    def broken(run: CellRun, *, drops_waiting: bool) -> None:
+        return broken_rule() if run.cell.name == "sis_a" else sound(run, drops_waiting=drops_waiting)
 
     monkeypatch.setattr(CellRun, "close", broken)
     plant._step([Shutdown(at=plant.now)])

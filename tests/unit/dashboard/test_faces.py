@@ -116,7 +116,10 @@ def test_a_task_that_never_ran_or_is_not_known_says_so(told: Callable[..., Any])
     _, second = (rig.submit(text).task for text in ("sis_a 0B 7", "sis_a 0B 3"))
     rig.operate(Verb.CANCEL, second)
     face = rig.story.task_face(second, "en")
-    assert face["text/task.state"][1] == "cancelled" and "before it had a tree" in face["text/task.note"][0]
+    assert (
+        face["text/task.state"][1] == "cancelled"
+        and "before a tree of it was seen" in face["text/task.note"][0]
+    )
     unknown = rig.story.task_face("nix", "en")
     assert unknown["text/task.title"][0] == "#nix" and "knows no such task" in unknown["text/task.note"][0]
 

@@ -10,17 +10,19 @@ from arboleda.campaigns.request import Request
 from arboleda.core import text
 from arboleda.core.cell_states import CellState
 from arboleda.core.plant import Plant
-from arboleda.dashboard.wording import LANGUAGES, SENTENCES, flat, tree_of, words
+from arboleda.dashboard.wording import LANGUAGES, REASONS, SENTENCES, flat, tree_of, words
 from arboleda.dispatch import belief, dispatcher, evidence, zones
 from arboleda.dispatch.ledger import State
+from arboleda.drivers.supervisor import FAILED, NOT_SENT
 from arboleda.model.messages import Reason, TaskState, Verb
-from arboleda.model.sentence import Sentence
+from arboleda.model.sentence import OWN, Sentence
 from arboleda.plant_file.poses import HOME, STATION
 from arboleda.recipes import storage
 from arboleda.simulator.run import Simulation
 from arboleda.trees import paths, steps
 from arboleda.trees.tree_run import IN_RECOVERY
 from arboleda.views.tree_view import KINDS
+from arboleda.web.languages import contents
 
 from ...lengths import length
 
@@ -135,6 +137,43 @@ def run(seed: int, said: set[Sentence]) -> None:
 
 def test_what_is_no_sentence_stays_as_it_is() -> None:
     assert words("es").say("polish the part") == "polish the part"
+
+
+@pytest.mark.parametrize(
+    ("said", "spanish"),
+    [
+        (
+            FAILED(driver="pylabrobot", error="its setup has not come back for 30 s"),
+            "su controlador pylabrobot falló (su setup no ha vuelto en 30 s) y se inicia de nuevo",
+        ),
+        (
+            NOT_SENT(driver="vda5050", error=OWN(text="the vehicle is still at its order a-1")),
+            "su controlador vda5050 no pudo enviar una orden (el vehículo sigue con su orden a-1)",
+        ),
+        (
+            OWN(text="10.0.0.7: its feedback has stood still for 1 s"),
+            "10.0.0.7: sus datos no cambian desde hace 1 s",
+        ),
+        (OWN(text="10.0.0.7:502 is not there"), "10.0.0.7:502 no está"),
+        (OWN(text="the plate is not there"), "the plate is not there"),
+        (
+            OWN(text="10.0.0.7: port 29999: [Errno 111] Connection refused"),
+            "10.0.0.7: puerto 29999: [Errno 111] conexión rechazada",
+        ),
+    ],
+)
+def test_what_a_driver_says_is_said_in_spanish_and_a_users_words_stay(said: Sentence, spanish: str) -> None:
+    assert words("es").say(said) == spanish
+    assert words("en").say(said) == str(said)
+
+
+@pytest.mark.parametrize("language", LANGUAGES)
+def test_reasons_of_drivers_have_the_values_of_their_english(language: str) -> None:
+    def fields(text: str) -> list[str]:
+        return sorted(field for _, field, _, _ in Formatter().parse(text) if field is not None)
+
+    rows = contents(language, REASONS).items()
+    assert [english for english, other in rows if fields(english) != fields(other)] == []
 
 
 def test_an_unknown_language_is_english() -> None:

@@ -83,6 +83,24 @@ def test_at_joints_a_switch_of_a_fact_that_is_told_does_not_settle(make: type, *
     assert (entry.state is State.DONE) is settles
 
 
+@pytest.mark.parametrize("failed", [False, True])
+def test_after_a_failed_one_a_switch_is_done_once_its_board_names_it(
+    dispatcher: Dispatcher, *, failed: bool
+) -> None:
+    switch = partial(SetEffector, robot="ra1", on=True)
+    if failed:
+        dispatcher.send(switch, "sis_a", "switching", 100.1)
+        dispatcher.expire(110.0, 110.0)
+    dispatcher.report(Report(at=110.0, **STILL), 110.0)
+    entry = dispatcher.send(switch, "sis_a", "switching", 110.1)
+    states = []
+    for number, accepted in ((5, None), (6, entry.command.id), (7, None)):
+        said = Report(at=110.0 + number / 10, **STILL, effector=True, number=number, accepted=accepted)
+        dispatcher.report(said, said.at)
+        states.append(entry.state is State.DONE)
+    assert states == [not failed, True, True]
+
+
 @pytest.mark.parametrize("late_s", [1.0, 20.0])  # the second is past the deadline
 def test_what_left_late_settles_from_when_it_left(late_s: float) -> None:
     dispatcher = Dispatcher(shipped("sis_a", evidence=Evidence.JOINTS), EPOCH, {})

@@ -2,10 +2,16 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
+import pytest
+
 from arboleda.campaigns.request import shared
 from arboleda.dispatch.evidence import QUIET_S
-from arboleda.dispatch.underway import PATIENCE_S, UnderWay, UnnamedCommands
+from arboleda.dispatch.underway import PATIENCE_S, UnderWay, Unfinished, UnnamedCommands
+from arboleda.kinds.arm import SetEffector
 from arboleda.kinds.joints import MoveJoints
+from arboleda.model.commands import Switch
 from arboleda.model.messages import Report
 from arboleda.model.plant_model import Evidence
 from arboleda.recipes.storage_layout import StorageLayout
@@ -69,3 +75,31 @@ def test_who_numbers_nothing_has_nothing_to_name() -> None:
     unnamed = UnnamedCommands(MODEL)
     unnamed.left(MoveJoints(id="7-1", robot=MUTE, q=(0.0, 0.0, 0.0)))
     assert unnamed.of(MUTE) == 0
+
+
+def clamp(number: int, *, on: bool) -> Switch:
+    return SetEffector(id=f"7-{number}", robot=ARM, on=on)
+
+
+def unfinished(command: Switch) -> Unfinished:
+    """A command to a hand that cells share has failed at 1.0, and may take 2 s."""
+    (first, *more) = MODEL.cells
+    cells = tuple(replace(cell, shared=(ARM,)) if ARM in cell.holders else cell for cell in (first, *more))
+    found = Unfinished(replace(MODEL, cells=cells))
+    found.expect(command, 2.0, 1.0)
+    return found
+
+
+@pytest.mark.parametrize("on", [True, False])
+def test_a_hand_that_cells_share_may_grip_on_a_command_to_grip_that_has_failed(*, on: bool) -> None:
+    assert unfinished(clamp(1, on=on)).may_grip(ARM) is on
+
+
+def test_a_hand_may_grip_for_as_long_as_that_takes_from_when_it_has_named_the_command() -> None:
+    found = unfinished(clamp(1, on=True))
+    for at in (4.0, 5.0):
+        assert not found.hear(Report(at=at, robot=ARM), at, is_well=True, unnamed=["7-1"])
+    assert not found.hear(Report(at=6.9, robot=ARM), 6.9, is_well=True, unnamed=())
+    assert found.may_grip(ARM)
+    assert found.hear(Report(at=7.0, robot=ARM), 7.0, is_well=True, unnamed=())
+    assert not found.may_grip(ARM)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import json
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from pathlib import Path
@@ -15,9 +16,10 @@ from arboleda.model.messages import Report
 from arboleda.model.plant_model import Robot
 from arboleda.plant_file.loader import load
 from arboleda.virtual.faults import Faults
-from arboleda.virtual.gcode.faults import GRBL_FAULTS, MARLIN_FAULTS
+from arboleda.virtual.gcode.faults import GRBL_FAULTS, MARLIN_FAULTS, MOONRAKER_FAULTS
 from arboleda.virtual.gcode.grbl import VirtualGrbl
 from arboleda.virtual.gcode.marlin import VirtualMarlin
+from arboleda.virtual.gcode.moonraker import VirtualMoonraker
 from arboleda_driver_faults.stream_loopback import Loopback
 
 EXAMPLES = Path(__file__).parents[3] / "examples/gantry"
@@ -47,7 +49,7 @@ class GcodeRig(ABC):
         self.wait(0.5)
 
     @abstractmethod
-    def controller(self) -> VirtualGrbl | VirtualMarlin:
+    def controller(self) -> VirtualGrbl | VirtualMarlin | VirtualMoonraker:
         """The virtual machine at the other end."""
 
     @property
@@ -128,3 +130,26 @@ class MarlinRig(GcodeRig):
     def controller(self) -> VirtualMarlin:
         self.marlin = VirtualMarlin(self.faults)
         return self.marlin
+
+
+class MoonrakerRig(GcodeRig):
+    """Machine with Klipper behind Moonraker; `homed`: the plant has homed it."""
+
+    example = "moonraker.yaml"
+    known = MOONRAKER_FAULTS
+
+    def __init__(self, *on: str, homed: bool = True, **changes: object) -> None:
+        super().__init__(*on, **changes)
+        if homed:
+            self.until(done=self.home(), homed=True)
+
+    def controller(self) -> VirtualMoonraker:
+        self.moonraker = VirtualMoonraker(self.faults)
+        return self.moonraker
+
+    @property
+    def pieces(self) -> list[str]:
+        """The lines of moves that were sent."""
+        requests = map(json.loads, self.written.splitlines())
+        scripts = [each["params"].get("script", "") for each in requests]
+        return [line for script in scripts for line in script.split("\n") if line.startswith("G1")]

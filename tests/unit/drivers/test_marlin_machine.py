@@ -183,6 +183,24 @@ def test_a_stop_that_comes_before_the_move_is_read_is_said_again_after_it() -> N
     assert talk.report.accepted == "1-3"
 
 
+@pytest.mark.parametrize("stopped", [False, True])
+def test_a_machine_that_divides_its_moves_is_shut_down(stopped: bool) -> None:
+    """Marlin itself went on to the end of such a move after M410."""
+    talk = Talk()
+    talk.greet()
+    talk.ask(Home(id="1-1", robot=GANTRY.name))
+    talk.hear("echo:busy: processing", "ok", AT_ZERO, "ok")
+    talk.ask(MoveJoints(id="1-2", robot=GANTRY.name, q=(0.1, 0.0, 0.0)))
+    assert talk.hear("ok", "ok", "echo:busy: paused for user")[-1].startswith("G1X100")
+    if stopped:
+        talk.ask(Stop(id="1-3", robot=GANTRY.name, mode=StopMode.HALT))
+    assert talk.hear("echo:busy: processing") == ["M112"]
+    assert (talk.report.failed, talk.report.done) == (None if stopped else "1-2", "1-1")
+    assert talk.report.state is MotionState.MOVING and talk.report.homed is False
+    assert talk.hear("echo:busy: processing", "Error:Printer halted. kill() called!") == []
+    assert talk.report.accepted == "1-1"  # it moves on for a while
+
+
 def test_a_stop_after_a_boot_leaves_the_motors_on() -> None:
     """What has them stay on is still said."""
     talk = Talk()
@@ -203,9 +221,30 @@ def test_homing_is_stopped_by_a_shutdown() -> None:
     rig.wait(0.3)
     id = rig.stop()
     assert b"M112\n" in rig.line.written and rig.line.written[-1] != b"M410\n"
+    rig.wait(1.0)
+    assert (
+        rig.report.accepted != id and rig.report.state is MotionState.MOVING
+    )  # nor does it say that it stands
     assert rig.until(accepted=id).state is MotionState.FAULT
-    assert ("health", "halted") in (rig.report.facts or ())
+    assert rig.report.q is None and ("health", "halted") in (rig.report.facts or ())
     rig.until(accepted=rig.stop())  # nothing moves any more
+
+
+def test_a_machine_that_is_halted_stands_some_time_after_it_said_so() -> None:
+    """Marlin waits for its message to get out before it stops its motors."""
+    rig = MarlinRig()
+    id = rig.move(200, 0, 0)
+    rig.wait(1.0)
+    rig.faults.switch("killed", on=True)
+    assert rig.told("failure") == "halted"
+    there, at = rig.marlin.place, rig.line.now
+    stop = rig.stop()
+    assert rig.report.accepted != stop
+    rig.until(accepted=stop, state=MotionState.FAULT, failed=id)
+    stood = rig.marlin.place
+    assert there[0] + 10 < stood[0] and rig.line.now - at > 1.0
+    rig.wait(2.0)
+    assert rig.marlin.place == stood and rig.report.q is None
 
 
 def test_a_stop_that_waits_behind_its_move_is_not_confirmed_before_it() -> None:
@@ -213,7 +252,7 @@ def test_a_stop_that_waits_behind_its_move_is_not_confirmed_before_it() -> None:
     rig.move(200, 0, 0)
     rig.wait(1.0)
     id = rig.stop()
-    rig.wait(3.0)
+    rig.wait(3.5)
     assert rig.report.accepted != id and rig.report.state is MotionState.MOVING
     assert rig.written.count(b"M410") == 2
     rig.until(accepted=id)
@@ -311,6 +350,33 @@ def test_a_move_that_is_left_at_work_is_stopped_when_the_line_is_back() -> None:
     assert b"M410\n" in rig.line.written and rig.report.done != "7-2"
 
 
+def test_a_machine_that_is_busy_when_its_line_is_back_reads_the_greeting_at_once() -> None:
+    """Marlin counts lines anew when it does M110, which is after it has read the next one."""
+    rig = MarlinRig()
+    rig.move(290, 0, 0)
+    rig.wait(1.0)
+    rig.faults.switch("unplugged", on=True)
+    rig.until(state=MotionState.NO_LINK)
+    before = len(rig.reports)
+    rig.faults.switch("unplugged", on=False)
+    rig.until(state=MotionState.NOT_HOMED)
+    assert not any("none is sent again" in str(each.lost) for each in rig.reports[before:])
+
+
+def test_a_line_that_was_torn_takes_no_stop_with_it() -> None:
+    rig = MarlinRig()
+    rig.move(290, 0, 0)
+    rig.wait(1.0)
+    rig.faults.switch("unplugged", on=True)
+    rig.until(state=MotionState.NO_LINK)
+    assert rig.marlin.step(rig.line.now, b"M4") == b""
+    rig.faults.switch("unplugged", on=False)
+    rig.until(state=MotionState.NOT_HOMED)
+    there = rig.marlin.place
+    rig.wait(1.0)
+    assert rig.marlin.place == there
+
+
 def test_a_move_without_an_answer_ends_the_line() -> None:
     rig = MarlinRig()
     rig.faults.switch("no_ok", on=True)
@@ -344,7 +410,7 @@ def test_a_controller_that_answers_otherwise_loses_the_line(lines: list[str], sa
 
 def test_a_board_that_boots_when_its_line_is_opened_is_greeted_again() -> None:
     talk = Talk()
-    assert talk.hear("start", "echo:Marlin 2.1.2") == ["M110 N0", "M115"]
+    assert talk.hear("start", "echo:Marlin 2.1.2") == ["", "M110 N0", "M115"]
     talk.hear(*HELLO, "ok", "ok", AT_ZERO, "ok")
     assert (talk.report.state, talk.report.boot_id) == (MotionState.NOT_HOMED, 1)
 
@@ -356,7 +422,8 @@ def test_a_board_that_boots_when_its_line_is_opened_is_greeted_again() -> None:
         ("ok N12 P15 B3", Ok()),
         ("X:0.00 Y:127.00 Z:145.00 E:0.00 Count X: 0 Y:10160 Z:116000", Place(position=(0.0, 127.0, 145.0))),
         ("X:350.0000 Y:-1.5000 Z:20.0000 Count A:28000B:12000 Z:4000", Place(position=(350.0, -1.5, 20.0))),
-        ("echo:busy: processing", Busy()),
+        ("echo:busy: processing", Busy(word="processing")),
+        ("busy: paused for user", Busy(word="paused for user")),
         ("start", Start()),
         ("Resend: 12", Resend()),
         ("Error:checksum mismatch, Last Line: 11", Resend()),

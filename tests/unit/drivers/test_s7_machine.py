@@ -11,6 +11,7 @@ from arboleda.drivers.plc.plc_snapshot import UnreadableValue
 from arboleda.drivers.s7.machine import LEAST_PDU, S7Device, Writing
 from arboleda.drivers.s7.settings import Settings
 from arboleda.kinds.declared import Device
+from arboleda.model.plant_model import MotionState
 from arboleda.plant_file.loader import load
 from arboleda.virtual.faults import Faults
 from arboleda.virtual.s7.memory import FAULTS, BeltMemory
@@ -26,7 +27,9 @@ def belt() -> Device:
 
 
 class Wire:
-    """The driver's machine and the belt's data blocks, under time moved by hand."""
+    """The driver's machine and the belt's data blocks, under time moved by hand; a request may take some."""
+
+    request_s = 0.0
 
     def __init__(self, belt: Device, *faults: str) -> None:
         assert belt.driver is not None and isinstance(belt.driver.settings, Settings)
@@ -49,8 +52,11 @@ class Wire:
         return self.machine.report(self.now, self.machine.values(self._raw()))
 
     def _raw(self) -> dict[object, bytes]:
-        blocks = self.machine.blocks(LEAST_PDU)
-        return {each: self.memory.read(each.db)[each.byte : each.byte + each.length] for each in blocks}
+        raw: dict[object, bytes] = {}
+        for each in self.machine.blocks(LEAST_PDU):
+            raw[each] = self.memory.read(each.db)[each.byte : each.byte + each.length]
+            self.now += self.request_s
+        return raw
 
 
 def test_an_order_is_its_values_and_then_its_number(belt: Device) -> None:
@@ -63,6 +69,15 @@ def test_an_order_is_its_values_and_then_its_number(belt: Device) -> None:
         ("DB2.DBW8", b"\0\1"),
     ]
     assert writing.begins_last
+
+
+def test_a_belt_that_gives_up_between_two_requests_has_not_just_stopped(belt: Device) -> None:
+    wire = Wire(belt, "gives_up")
+    wire.write(wire.order("load"))
+    wire.request_s = 0.3
+    reports = [wire.after(0.0) for _ in range(3)]
+    stopped = next(each for each in reports if each.state is MotionState.STOPPED)
+    assert (stopped.failed, stopped.failure) == ("c1", "jam")
 
 
 def test_a_part_is_loaded_and_the_echo_says_so(belt: Device) -> None:

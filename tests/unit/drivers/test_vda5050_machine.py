@@ -217,6 +217,24 @@ def test_a_latch_pauses_and_cancels_and_its_clear_ends_the_pause(rig: Rig) -> No
     assert rig.reports["cart"].state is MotionState.STOPPED
 
 
+@pytest.mark.parametrize("modes", [[StopMode.LATCH], [StopMode.LATCH, StopMode.HALT]])
+def test_a_vehicle_that_has_ended_a_pause_and_is_not_paused_is_told_so_again(
+    rig: Rig, modes: list[StopMode]
+) -> None:
+    rig.drive(0, 3, 6)
+    rig.run(0.5)
+    for mode in modes:
+        rig.stop(mode)
+    rig.run(0.5)
+    rig.agv.paused = False  # a cancelled order has ended the pause, too
+    rig.run(AGAIN_S + 0.5)
+    assert rig.reports["cart"].state is MotionState.STOP_LATCHED
+    rig.run(AGAIN_S)
+    rig.agv.paused = False  # once it was, somebody at the vehicle may end that
+    rig.run(AGAIN_S + 0.5)
+    assert rig.reports["cart"].state is MotionState.STOPPED
+
+
 def test_instant_actions_of_2_0_are_under_both_keys_that_its_vehicles_read() -> None:
     rig = Rig("2.0")
     rig.run(0.5)

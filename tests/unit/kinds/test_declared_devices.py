@@ -13,6 +13,7 @@ from arboleda.core import reasons
 from arboleda.core.cell_states import CellState
 from arboleda.dispatch.ledger import State
 from arboleda.kinds.declared import Device, DeviceKind, DeviceVerb, Effect, FactType, UseError
+from arboleda.model.grips import Grip
 from arboleda.model.messages import Reason, TaskState, Verb
 from arboleda.model.plant_model import Evidence, Link, PlantModel
 from arboleda.model.recipe import Recipe
@@ -64,6 +65,29 @@ def test_what_a_verb_needs_is_refused_where_it_is_not_so() -> None:
     assert (ended.state, ended.reason) == (TaskState.FAILED, Reason.PRECONDITION)
     assert str(ended.sentence) == "oven needs lid to be closed, and said open: no doing bake 5"
     assert "oven bake" not in here.told
+
+
+def test_what_a_verb_needs_is_refused_while_its_device_goes_on_with_work_that_was_given_up() -> None:
+    @recipe("airs")
+    def airs(cell: Kit):  # type: ignore[no-untyped-def]
+        oven = cell.device("oven")
+        bake, air = oven.bake(dose=5), oven.air()
+        return work(oven.clamp(on=True), oven.close(), cell.fallback(bake, air))
+
+    air = DeviceVerb(name="air", effect=Effect.PROCESS, needs=(("lid", "open"),), takes_s=1.0, at_most_s=5.0)
+    kind = replace(OVEN, verbs={**OVEN.verbs, "air": air})
+    (bench,) = model(airs).cells
+    members = tuple(
+        (role, replace(each, kind=kind) if role == "oven" and isinstance(each, Device) else each)
+        for role, each in bench.members
+    )
+    here = Bench(replace(model(airs), cells=(replace(bench, members=members),)))
+    here.machines["oven"].lasts = lambda goal: 1000.0 if goal.verb == "bake" else 0.0
+    here.submit("bench airs")
+    ended = here.outcome()
+    assert ended.reason is Reason.PRECONDITION
+    assert str(ended.sentence) == "oven needs lid to be open, and said closed: no doing air"
+    assert "oven air" not in here.told
 
 
 @pytest.mark.parametrize("shut", [True, False])
@@ -127,6 +151,20 @@ def test_a_process_that_finishes_goes_on_through_a_stop_and_keeps_the_cell_from_
     assert str(reasons.of_waiting(here.plant.cells["bench"])) == "oven is still doing bake 10"
     assert here.wait(60.0, lambda: not here.machines["oven"].moving)
     assert here.machines["oven"].facts["dose"] == 10
+
+
+@pytest.mark.parametrize("evidence", [Evidence.IDS, Evidence.JOINTS], ids=lambda level: level.value)
+def test_a_step_waits_for_a_process_that_finishes_and_that_the_recipe_has_left(evidence: Evidence) -> None:
+    @recipe("hurry")
+    def hurry(cell: Kit):  # type: ignore[no-untyped-def]
+        oven = cell.device("oven")
+        baking = cell.fallback(cell.timeout(oven.bake(dose=10), 3.0), cell.wait(0.1))
+        return work(oven.clamp(on=True), oven.close(), baking, oven.open(), oven.clamp(on=False))
+
+    here = Bench(model(hurry, evidence=evidence))
+    here.submit("bench hurry")
+    assert here.outcome().state.value == "done"
+    assert here.machines["oven"].facts == {"lid": "open", "clamped": False, "dose": 10}
 
 
 @pytest.mark.parametrize("evidence", list(Evidence), ids=lambda level: level.value)
@@ -318,6 +356,19 @@ def test_a_device_cannot_say_what_its_kind_does_not_have() -> None:
     assert counted.refused > 0
     assert str(counted.last) == "oven/sensores: datos.lid is 'ajar'; allowed: open, closed"
     assert here.plant.dispatcher.beliefs["oven"].fact("lid") == "open"
+
+
+def test_a_link_that_is_lost_tells_nothing_of_what_a_device_holds() -> None:
+    here = Bench(model())
+    here.machines["oven"].lasts = lambda goal: 60.0
+    here.submit("bench bake 5")
+    assert here.wait(5.0, lambda: here.told[-1:] == ["oven clamp"])
+    here.power_off("oven")
+    assert here.outcome().reason is Reason.LINK_LOST
+    assert here.plant.dispatcher.effectors.grips["oven"] is Grip.SWITCHING
+    here.power_on("oven")
+    here.wait(2.0)
+    assert here.plant.dispatcher.effectors.grips["oven"] is Grip.OFF
 
 
 def test_a_second_switch_of_a_fact_is_refused_while_the_first_is_open() -> None:

@@ -6,16 +6,19 @@ from dataclasses import replace
 from typing import Any
 
 from arboleda.kinds.declared import Device, DeviceKind, DeviceVerb, Effect, FactType
+from arboleda.model.commands import FRESH_S, OnStop
 from arboleda.model.messages import Fact, Reason, Verb
-from arboleda.model.plant_model import Cell, Interlock, PlantModel
+from arboleda.model.plant_model import Cell, Interlock, MotionState, PlantModel
 from arboleda.model.recipe import Recipe
 from arboleda.recipes import Kit, parallel, recipe, work
 from arboleda.testing.following import advised, follow
+from arboleda.wire.transport import Publication
 
 from .lab import Bench
 from .tending import IDS, LAMP, plant
 
 DOOR = FactType(type=str, words=("open", "closed"), first="open")
+SHUT_S = 0.6
 MILL = DeviceKind(
     name="mill",
     facts={"door": DOOR},
@@ -25,6 +28,17 @@ MILL = DeviceKind(
         ),
         "close": DeviceVerb(
             name="close", effect=Effect.MOTION, sets=(("door", "closed"),), takes_s=2.0, at_most_s=8.0
+        ),
+        "shut": DeviceVerb(
+            name="shut", effect=Effect.SWITCH, sets=(("door", "closed"),), takes_s=0.1, at_most_s=SHUT_S
+        ),
+        "seal": DeviceVerb(
+            name="seal",
+            effect=Effect.PROCESS,
+            sets=(("door", "closed"),),
+            takes_s=0.1,
+            at_most_s=SHUT_S,
+            on_stop=OnStop.FINISH,
         ),
     },
 )
@@ -96,6 +110,101 @@ def test_a_silent_machine_keeps_its_zone() -> None:
     here.machines["mill"].facts["door"] = "open"
     here.power_on("mill")
     here.wait(5.0)
+    assert here.plant.zones.holder("vise") is None
+
+
+def test_a_machine_keeps_its_zone_as_long_as_it_may_obey_an_order_that_is_still_on_its_way() -> None:
+    @recipe("shut")
+    def shut(cell: Kit):  # type: ignore[no-untyped-def]
+        return work(cell.device("mill").shut())
+
+    here = Bench(with_mill(shut))
+    late: list[Publication] = []
+
+    def is_held_up(publication: Publication) -> bool:
+        if publication.topic == "mill/orden":
+            late.append(publication)
+        return publication.topic == "mill/orden"
+
+    here.lost = is_held_up
+    here.submit("tending shut")
+    assert here.outcome().reason is Reason.DEADLINE
+    [order] = late
+    here.wait(FRESH_S - 0.3 - SHUT_S)
+    assert here.plant.zones.holder("vise") == "mill"
+    here.lost = lambda _: False
+    here.inject(order)
+    here.wait(0.2)
+    assert here.machines["mill"].facts["door"] == "closed"
+    assert here.plant.zones.holder("vise") == "mill"
+
+
+def test_a_machine_that_was_told_to_halt_keeps_its_zone_while_its_next_order_is_on_its_way() -> None:
+    """It moves still, on its last order."""
+
+    @recipe("other")
+    def other(cell: Kit):  # type: ignore[no-untyped-def]
+        mill = cell.device("mill")
+        return cell.fallback(mill.close(), mill.open())
+
+    here = Bench(with_mill(other))
+    here.machines["mill"].lasts = lambda goal: 60.0
+    here.submit("tending other")
+    assert here.wait(20.0, lambda: len(here.plant.dispatcher.ledger.of_robot("mill")) == 1)
+    first = here.plant.dispatcher.work_of("mill")
+    here.lost = lambda publication: publication.topic in ("mill/paro", "mill/orden")
+    assert here.wait(20.0, lambda: here.plant.dispatcher.work_of("mill") not in (first, None))
+    here.wait(0.3)
+    assert here.plant.dispatcher.beliefs["mill"].state is MotionState.MOVING
+    assert here.plant.zones.holder("vise") == "mill"
+
+
+def order_lost(verb: str) -> Bench:
+    """A task tells the mill something that never comes to it."""
+
+    @recipe("told")
+    def told(cell: Kit):  # type: ignore[no-untyped-def]
+        return work(getattr(cell.device("mill"), verb)())
+
+    here = Bench(with_mill(told))
+    here.lost = lambda publication: publication.topic == "mill/orden"
+    here.submit("tending told")
+    return here
+
+
+def test_reports_that_do_not_name_an_order_free_no_zone_once_it_was_called_off() -> None:
+    """They may be of before it came: on a slow line the mill closes its door meanwhile."""
+    here = order_lost("close")
+    here.wait(0.3)
+    assert here.operate(Verb.CANCEL, "tending") is None
+    here.wait(0.6)
+    assert not here.plant.dispatcher.ledger.of_robot("mill"), "two reports have shown it at rest"
+    assert here.plant.zones.holder("vise") == "mill"
+    here.wait(FRESH_S)
+    assert here.plant.zones.holder("vise") is None
+
+
+def test_work_that_no_stop_ends_keeps_the_zone_of_its_machine_past_its_deadline() -> None:
+    """Nothing halts it, and what is reported may be of before it came."""
+
+    @recipe("seal")
+    def seal(cell: Kit):  # type: ignore[no-untyped-def]
+        return work(cell.device("mill").seal())
+
+    here = Bench(with_mill(seal))
+    here.lost = lambda publication: publication.topic == "mill/orden"
+    here.submit("tending seal")
+    assert here.outcome().reason is Reason.DEADLINE
+    here.wait(SHUT_S)
+    assert here.plant.zones.holder("vise") == "mill"
+    here.wait(FRESH_S + SHUT_S)
+    assert here.plant.zones.holder("vise") is None
+
+
+def test_an_order_that_never_came_frees_the_zone_of_its_machine_in_the_end() -> None:
+    here = order_lost("shut")
+    assert here.outcome().reason is Reason.DEADLINE
+    here.wait(FRESH_S + SHUT_S)
     assert here.plant.zones.holder("vise") is None
 
 

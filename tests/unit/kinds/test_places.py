@@ -11,11 +11,14 @@ from rich.console import Console
 from arboleda.cli import screen
 from arboleda.core.advice import in_words
 from arboleda.dispatch.belief import Belief
+from arboleda.model.commands import FRESH_S
 from arboleda.model.errors import ConfigError
 from arboleda.model.messages import Reason, TaskState
 from arboleda.model.verbs import Verb
 from arboleda.plant_file.loader import load
+from arboleda.simulator.world import PLANT as PLANT_PROCESS
 from arboleda.views import view
+from arboleda.wire.transport import Publication
 
 from .lab import Bench
 
@@ -26,7 +29,7 @@ kinds:
   hand:
     facts: {closed: bool}
     verbs:
-      close: {effect: switch, sets: {closed: true}, holds: part, takes_s: 0.2}
+      close: {effect: switch, sets: {closed: true}, holds: part, takes_s: 0.2, at_most_s: 1}
       open:  {effect: switch, sets: {closed: false}, holds: part, takes_s: 0.2}
   oven:
     facts: {clamped: bool}
@@ -170,6 +173,43 @@ def test_a_part_is_brought_back_where_it_was_taken(tmp_path: Path) -> None:
     lab.bench.submit("lab try")
     assert lab.bench.outcome(300.0).state.value == "failed"
     assert lab.places.counts["rack_1"] == 1 and lab.places.counts["nest"] == 0
+
+
+def test_a_hand_that_closes_after_it_was_given_up_has_taken_the_part(tmp_path: Path) -> None:
+    lab = Lab(tmp_path, 'take("rack_1")')
+    late: list[Publication] = []
+
+    def is_held_up(publication: Publication) -> bool:
+        if publication.topic == "hand/orden":
+            late.append(publication)
+        return publication.topic == "hand/orden"
+
+    lab.bench.lost = is_held_up
+    lab.bench.submit("lab try")
+    assert lab.bench.wait(60.0, lambda: bool(late))
+    lab.bench.stall(PLANT_PROCESS, 1.2)  # then it gives up what was under way
+    assert lab.bench.wait(FRESH_S, lambda: lab.places.counts["rack_1"] == 1)
+    lab.bench.lost = lambda _: False
+    lab.bench.inject(late[0])
+    lab.bench.wait(1.0)
+    assert lab.bench.machines["hand"].facts["closed"]
+    assert lab.places.counts["rack_1"] == 0
+
+
+@pytest.mark.parametrize("restarts", [False, True])
+def test_a_part_lies_where_the_hand_was_told_to_let_go_if_its_robot_is_not_heard(
+    tmp_path: Path, restarts: bool
+) -> None:
+    lab = Lab(tmp_path, 'take("rack_1"), put("nest")')
+    lab.bench.submit("lab try")
+    assert lab.bench.wait(60.0, lambda: lab.bench.told[-1:] == ["hand open"])
+    lab.bench.lost = lambda publication: publication.topic.startswith(("hand/", "mover/"))
+    assert lab.bench.outcome().reason is Reason.LINK_LOST
+    if restarts:
+        lab.bench.crash()
+    lab.bench.lost = lambda publication: publication.topic.startswith("mover/")
+    lab.bench.wait(1.0)
+    assert lab.bench.plant.cells["lab"].context.places.counts["nest"] == 1
 
 
 def test_a_person_says_what_lies_where(tmp_path: Path) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from itertools import pairwise
 from typing import Any
 
@@ -11,9 +12,13 @@ from py_trees.behaviours import Success
 from py_trees.common import Status
 
 from arboleda.core.text import parse
+from arboleda.kinds.arm import Arm
+from arboleda.kinds.joints import MoveJoints
 from arboleda.model.commands import Command
 from arboleda.model.errors import TextError
-from arboleda.model.messages import Reason, Verb
+from arboleda.model.messages import Reason, TaskState, Verb
+from arboleda.model.plant_model import PlantModel, Retry, Robot
+from arboleda.model.recipe import Recipe
 from arboleda.recipes import Choice, Kit, Number, RecipeError, Target, parallel, recipe, work
 from arboleda.recipes.decorators import Inverted
 
@@ -301,3 +306,95 @@ def test_a_held_task_of_robots_goes_on_where_it_was() -> None:
     assert here.operate(Verb.RESUME, "tending") is None
     assert here.outcome().state.value == "done"
     assert moved(here).count("jaw close") == moved(here).count("jaw open") == 1
+
+
+def lifting(*recipes: Recipe) -> PlantModel:
+    """The plant with arms whose second joint slides up and down."""
+
+    def lifted(robot: Robot) -> Robot:
+        if not isinstance(robot, Arm):
+            return robot
+        turning, other = robot.joints
+        return replace(robot, joints=(turning, replace(other, pinion_radius_m=0.01)))
+
+    model = plant(*recipes)
+    (cell,) = model.cells
+    return replace(model, cells=(cell.with_robots(lifted),))
+
+
+def path(bench: Bench) -> list[tuple[float, ...]]:
+    """The joints to which the left arm was sent, in order, to a tenth."""
+    goals = [each.q for each in bench.sent if isinstance(each, MoveJoints) and each.robot == "left"]
+    return [tuple(round(value, 1) for value in goal) for goal in goals]
+
+
+ABOVE, DOWN = (0.5, 0.0), (0.5, 0.2)
+
+
+@pytest.mark.parametrize(("goal", "there"), [("vise", (-0.5, 0.3)), ("feed_2", (0.5, 0.4)), ("home", (0, 0))])
+def test_an_arm_rises_where_its_work_failed_before_it_goes_elsewhere(goal: str, there: object) -> None:
+    @recipe("anyway")
+    def anyway(cell: Kit):  # type: ignore[no-untyped-def]
+        left = cell.device("left")
+        return cell.fallback(left.visit("feed", cell.fail("no blanks")), left.go(goal))
+
+    here = Bench(lifting(anyway))
+    here.submit("tending anyway")
+    assert here.outcome().state is TaskState.DONE
+    assert path(here)[:4] == [ABOVE, DOWN, ABOVE, there]
+
+
+def test_an_arm_rises_where_it_was_halted_on_its_way_down() -> None:
+    @recipe("hurries")
+    def hurries(cell: Kit):  # type: ignore[no-untyped-def]
+        left = cell.device("left")
+        return cell.fallback(cell.timeout(left.go("feed"), 1.0), left.go("feed_2"))
+
+    here = Bench(lifting(hurries))
+    here.submit("tending hurries")
+    assert here.outcome().state is TaskState.DONE
+    assert path(here)[:4] == [ABOVE, DOWN, ABOVE, (0.5, 0.4)]
+
+
+def test_an_arm_that_was_silent_when_its_work_failed_rises_once_it_is_heard() -> None:
+    @recipe("patient")
+    def patient(cell: Kit):  # type: ignore[no-untyped-def]
+        left = cell.device("left")
+        blanks = left.visit("feed", [cell.wait(6.0), cell.fail("no blanks")])
+        return cell.fallback(blanks, left.go("feed_2"))
+
+    model = lifting(patient)
+    (tending,) = model.cells
+    here = Bench(replace(model, cells=(replace(tending, retry=Retry(times=9, backoff_s=1.0)),)))
+    here.submit("tending patient")
+    assert here.wait(10.0, lambda: path(here) == [ABOVE, DOWN])
+    here.wait(2.0)
+    here.carry = lambda said: [] if said.topic.startswith("left/") else [said]
+    here.wait(8.0)
+    here.carry = lambda said: [said]
+    assert here.outcome().state is TaskState.DONE
+    assert path(here)[2:4] == [ABOVE, (0.5, 0.4)]
+
+
+def test_an_arm_goes_up_once_where_its_work_is_tried_again() -> None:
+    @recipe("again")
+    def again(cell: Kit):  # type: ignore[no-untyped-def]
+        left = cell.device("left")
+        return cell.retry(left.visit("feed", cell.fail("no blanks")), times=1)
+
+    here = Bench(lifting(again))
+    here.submit("tending again")
+    assert here.outcome().state is TaskState.FAILED
+    assert path(here)[:5] == [ABOVE, DOWN, ABOVE, DOWN, ABOVE]
+
+
+def test_an_arm_whose_work_is_done_does_not_rise_once_more() -> None:
+    @recipe("rounds")
+    def rounds(cell: Kit):  # type: ignore[no-untyped-def]
+        left = cell.device("left")
+        return work(left.visit("feed", cell.wait(1.0)), left.visit("feed_2"), left.home())
+
+    here = Bench(lifting(rounds))
+    here.submit("tending rounds")
+    assert here.outcome().state is TaskState.DONE
+    assert path(here) == [ABOVE, DOWN, ABOVE, (0.5, 0.4), (0, 0)]

@@ -235,6 +235,18 @@ def test_two_stops_keep_it_until_both_are_cleared() -> None:
     assert follow(here, "below") == ["reset above", "resume below"]
 
 
+def test_a_cell_is_cleared_robot_by_robot_though_another_one_keeps_what_they_share_stopped() -> None:
+    here = Bench(plant())
+    here.wait(1.0)
+    here.operate(Verb.STOP, "below")
+    here.operate(Verb.STOP, "above")
+    here.wait(1.0)
+    assert here.operate(Verb.CLEAR, "below_lamp") is None
+    assert here.plant.cells["below"].state is CellState.STOPPED
+    assert here.plant.cells["above"].state is CellState.ABORTED
+    assert "lift" in here.plant.dispatcher.latched
+
+
 def test_a_clear_that_got_lost_is_given_again(monkeypatch: pytest.MonkeyPatch) -> None:
     here = Bench(plant())
     here.wait(1.0)

@@ -10,7 +10,7 @@ from arboleda.core.cell_states import CellState
 from arboleda.core.plant import Plant
 from arboleda.kinds.declared import Device
 from arboleda.model.messages import Reason, TaskState, Verb
-from arboleda.model.plant_model import Cell, PlantModel, Pose, Workspace
+from arboleda.model.plant_model import Cell, Interlock, PlantModel, Pose, Workspace
 from arboleda.model.recipe import Recipe
 from arboleda.model.whole_cells import whole_cell
 from arboleda.recipes import Kit, recipe, work
@@ -197,6 +197,40 @@ def test_homing_is_for_the_cell_that_has_it_and_keeps_others_off_meanwhile() -> 
     )
     refusal = "robot, which cells share, is with left now"
     assert str(here.operate(Verb.HOME, "right")) == refusal
+
+
+def without_zones_on_the_left() -> PlantModel:
+    """The plant with a vise on the right alone, which lies in a zone; a lamp that is out keeps that."""
+    model = plant()
+    left, right = model.cells
+    (space,) = left.spaces
+    poses = tuple(pose for pose in space.poses if pose.name != "vise")
+    lock = Interlock(device="right_lamp", zone="vise", free_while=(("lit", True),))
+    left = replace(left, spaces=(replace(space, poses=poses),))
+    return replace(model, cells=(left, replace(right, interlocks=(lock,))))
+
+
+def test_homing_for_a_cell_without_zones_ends_outside_those_of_the_other_one() -> None:
+    model = without_zones_on_the_left()
+    left, right = model.cells
+    here = Bench(replace(model, cells=(left, replace(right, interlocks=()))))
+    here.wait(2.0)
+    assert here.operate(Verb.HOME, "robot") is None
+    assert holder(here) == "left" and here.plant.zones.holder("vise") == "robot"
+    assert here.wait(30.0, lambda: holder(here) is None)
+    assert here.plant.zones.holder("vise") is None
+    assert here.plant.cells["left"].not_ready is None
+
+
+def test_the_advice_for_a_cell_without_zones_names_the_machine_of_the_other_one_in_the_way() -> None:
+    here = Bench(without_zones_on_the_left())
+    here.wait(2.0)
+    here.power_off("robot")
+    here.wait(3.0)
+    here.power_on("robot")
+    here.wait(3.0)
+    ways = ["get right_lamp out of the way by its own controls", "home robot"]
+    assert advised(here, "left") == advised(here, "right") == ways
 
 
 def test_release_is_for_the_cell_that_has_it() -> None:

@@ -448,6 +448,18 @@ def test_check_says_which_cell_offers_what_and_why_not_the_rest(tmp_path: Path) 
     ]
 
 
+def test_a_cell_without_the_device_that_lists_the_values_of_a_tree_is_told_of_its_node(
+    tmp_path: Path,
+) -> None:
+    body = '<BehaviorTree ID="Warm"><oven_heat celsius="{celsius}"/></BehaviorTree>'
+    ports = '<SubTree ID="Warm"><input_port name="celsius"/></SubTree>'
+    tree = f'<root BTCPP_format="4">{body}<TreeNodesModel>{ports}</TreeNodesModel></root>'
+    (tmp_path / "warm.xml").write_text(tree, "utf-8")
+    file = write(tmp_path, GOOD, (PLANT + SECOND).replace("recipes.py", "warm.xml"))
+    (found,) = refused(file)
+    assert found.endswith("(no device of shelf makes a node oven_heat; there are lamp_look)")
+
+
 def test_a_recipe_without_targets_to_choose_from_is_told_which_group_its_cell_lacks(tmp_path: Path) -> None:
     (found,) = problems(tmp_path, PALLET)
     assert 'slot of lay has no value to choose; bench has no targets "slots"' in found

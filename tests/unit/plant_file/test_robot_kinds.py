@@ -116,6 +116,14 @@ def test_a_kind_of_a_file_with_a_problem_is_not_taken_for_another(tmp_path: Path
     assert found == "plant.yaml:6:13: cells.bay.devices.cart: mm_s must be at most 200, is 900"
 
 
+def test_a_mistake_of_a_recipe_says_nothing_of_what_such_a_robot_carries(tmp_path: Path) -> None:
+    """Until the recipe is right, no kind of a file is known."""
+    file = write(tmp_path, PLANT.replace("eye: {kind: camera}", "jaw: {kind: gripper, tool_of: cart}"))
+    assert loader.load(file).robots["jaw"]
+    (tmp_path / "recipes.py").write_text(RECIPES.replace("visit(at)", "visit(at, at)"), "utf-8")
+    assert {each.partition(": ")[0] for each in problems(file)} == {"recipes.py:6:1"}
+
+
 def test_what_goes_may_be_shared_whosever_kind_it_is_if_it_says_where_it_is(tmp_path: Path) -> None:
     shared = PLANT.replace("cart: {kind: cart, loaded: true, mm_s: 100}", "cart: {shared: wagon}")
     told = problems(

@@ -45,6 +45,19 @@ def test_a_plant_is_built_from_texts_and_stays_where_others_are_none(ask: Ask) -
     assert "lab_bench" in ask("open", plant="work", **OPENED)["html"]
 
 
+def test_what_is_wrong_is_said_in_the_language_of_the_page(ask: Ask) -> None:
+    plant, files = plants.texts("lab_bench")
+    wrong = {"plant": plant, "files": {**files, plant: f"{files[plant]}\nnome: x\n"}}
+    [english] = ask("build", **wrong)["problems"]
+    [spanish] = ask("build", **wrong, language="es")["problems"]
+    assert english["text"].startswith('the key "nome" is not known; did you mean "name"?')
+    assert spanish["text"].startswith('la clave "nome" no se conoce')
+    assert {**spanish, "text": ""} == {**english, "text": ""}
+    printed = {"files": {"mine.py": "while True:\n    print('x' * 999)\n"}, "program": "mine.py"}
+    found = ask("program", **printed, arguments="", typed="", language="es")
+    assert found["problem"]["text"] == "el programa escribió más de 200000 caracteres"
+
+
 @pytest.mark.parametrize("name", plants.FILES)
 def test_the_texts_of_every_plant_build_it(ask: Ask, name: str) -> None:
     plant, files = plants.texts(name)
@@ -84,7 +97,8 @@ def test_a_work_is_judged_and_what_is_not_so_can_be_gone_through(ask: Ask) -> No
     shares: list[float] = []
     wrong = next(each for each in samples("query_first") if not each.right)
     files = {name: content.decode() for name, content in wrong.files.items()}
-    verdict = ask("judge", shares.append, exercise="query_first", files=files)
+    verdict = ask("judge", shares.append, exercise="query_first", files=files, language="es")
+    assert verdict["findings"][0]["seen"] == "'pump dispense' se hace una vez; debe hacerse 0 veces"
     assert not verdict["passes"] and verdict["film"] and shares == sorted(shares)
     assert "play-mishaps" not in ask("open", plant="story", **OPENED)["html"]
     clock = ask("step")["frame"]["clock"]

@@ -57,10 +57,12 @@ def garbage(collections: Collections) -> Iterator[Garbage]:
 
 
 @pytest.fixture
-def thawed() -> Iterator[None]:
-    """Nothing is left out, as where a plant is a process of its own."""
+def thawed() -> Iterator[mock.Mock]:
+    """Nothing is left out, as where a plant is a process of its own; what collects everything is called and
+    does not look at all that other tests have made."""
     gc.unfreeze()
-    yield
+    with mock.patch.object(gc, "collect") as collect:
+        yield collect
     gc.freeze()
 
 
@@ -108,9 +110,10 @@ def test_collections_of_everything_take_a_small_share_of_the_time(
     assert collections.found.count(2) == 2
 
 
-def test_what_was_there_before_is_left_out_until_the_end(collections: Collections, thawed: None) -> None:
+def test_what_was_there_before_is_left_out_until_the_end(collections: Collections, thawed: mock.Mock) -> None:
     garbage = Garbage()
     garbage.start(has_steps=False)
+    thawed.assert_called_once_with()
     assert gc.get_freeze_count() > 0
     assert gc.get_threshold() == OFTEN
     garbage.stop()

@@ -2,16 +2,23 @@
 
 from __future__ import annotations
 
+import subprocess
+import threading
 from collections.abc import Iterator
+from contextlib import suppress
 from pathlib import Path
+from queue import SimpleQueue
+from typing import Any, TypeAlias
 
 import pytest
 
+from arboleda.model.errors import ArboledaError
 from arboleda.recorder.preamble import PlantFiles
-from arboleda.runtime.make.workshop import Workshop
+from arboleda.runtime.make.workshop import ENDING, Workshop
 from arboleda.web.desks.draft import DraftRefused
 from arboleda.web.languages import texts
 
+Processes: TypeAlias = "SimpleQueue[subprocess.Popen[bytes]]"
 OWN_TREE = Path(__file__).parents[3] / "examples/own_tree/plant.yaml"
 BASE = PlantFiles(
     plant="plant.yaml",
@@ -31,6 +38,13 @@ def changed(name: str, before: bytes, after: bytes) -> PlantFiles:
     text = BASE.contents[name]
     assert before in text
     return PlantFiles(plant=BASE.plant, contents={**BASE.contents, name: text.replace(before, after)})
+
+
+def test_what_was_found_is_said_in_another_language(workshop: Workshop) -> None:
+    assert workshop.translate("es", ["the draft cannot be read yet", 'the key "a" is missing']) == [
+        "the draft cannot be read yet",
+        'falta la clave "a"',
+    ]
 
 
 def test_a_new_target_is_one_of_the_draft_at_once(workshop: Workshop) -> None:
@@ -58,10 +72,48 @@ def test_a_draft_that_cannot_be_read_is_shown_as_it_was_with_its_problems(worksh
     assert workshop.cells(BASE, BASE)["problems"] == []
 
 
-def test_a_process_that_ended_begins_again(workshop: Workshop) -> None:
+@pytest.fixture
+def begun(monkeypatch: pytest.MonkeyPatch) -> Processes:
+    """The processes of workshops, in the order in which they begin."""
+    found: Processes = SimpleQueue()
+    popen = subprocess.Popen
+
+    def begin(*args: Any, **options: Any) -> Any:
+        found.put(run := popen(*args, **options))
+        return run
+
+    monkeypatch.setattr(subprocess, "Popen", begin)
+    return found
+
+
+def test_a_process_that_ended_begins_again(begun: Processes) -> None:
+    workshop = Workshop(lambda: OWN_TREE)
+    assert "BehaviorTree" in workshop.shown(BASE, BASE, "cell", "tend")
+    begun.get().kill()
+    with suppress(ArboledaError):  # the first request may meet it before it has ended
+        workshop.shown(BASE, BASE, "cell", "tend")
     assert "BehaviorTree" in workshop.shown(BASE, BASE, "cell", "tend")
     workshop.stop()
-    assert "BehaviorTree" in workshop.shown(BASE, BASE, "cell", "tend")
+
+
+def test_at_its_end_whoever_waits_is_refused_and_no_process_begins(begun: Processes) -> None:
+    workshop = Workshop(lambda: OWN_TREE)
+    refused: SimpleQueue[str] = SimpleQueue()
+
+    def ask() -> None:
+        with pytest.raises(ArboledaError) as error:
+            workshop.shown(BASE, BASE, "cell", "tend")
+        refused.put(str(error.value))
+
+    waiting = [threading.Thread(target=ask) for _ in range(3)]
+    for each in waiting:
+        each.start()
+    run = begun.get()
+    workshop.stop()
+    for each in waiting:
+        each.join()
+    assert run.poll() is not None and begun.empty()
+    assert [refused.get() for _ in waiting] == [ENDING] * len(waiting)
 
 
 def test_what_is_not_there_is_refused_with_a_sentence(workshop: Workshop) -> None:

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import pytest
 
+from arboleda.bt_xml.running.device_steps import DeviceStep
 from arboleda.campaigns.random_plants import of_devices
 from arboleda.campaigns.setting import Setting
 from arboleda.recipes.decorators import Times
@@ -38,6 +39,8 @@ OPEN, CLOSE = Tell(role="oven", verb="open"), Tell(role="oven", verb="close")
 REFUSED = Tell(role="oven", verb="open", refused=True)
 ASKED = Ask(role="ana", question="Again?", answers=("yes", "no"), at_most_s=9.0, answer="a1")
 BY_ANSWER = Choose(answer="a1", ways=(("yes", OPEN), ("no", Fail(sentence="no"))))
+FAILING = Work(steps=(OPEN, Fail(sentence="so")))
+TOO_LATE = Work(steps=(OPEN, Timeout(step=Wait(seconds=2), seconds=1)))
 FOUR_S = {("open", ()): 4.0}
 
 
@@ -53,8 +56,11 @@ def told(step: Step, **answers: Sequence[Value]) -> tuple[bool, list[str]]:
         (Work(steps=(OPEN, Wait(seconds=1), CLOSE)), True, ["open", "close"]),
         (Work(steps=(OPEN, Fail(sentence="so"), CLOSE)), False, ["open"]),
         (Repeat(step=OPEN, times=3), True, ["open"] * 3),
-        (Retry(step=Work(steps=(OPEN, Fail(sentence="so"))), times=2, pause_s=0), False, ["open"] * 3),
+        (Retry(step=FAILING, times=2, pause_s=0), False, ["open"] * 3),
         (Retry(step=OPEN, times=2, pause_s=0), True, ["open"]),
+        (Retry(step=FAILING, times=2, pause_s=0, causes=("deadline",)), False, ["open"]),
+        (Retry(step=FAILING, times=2, pause_s=0, causes=("deadline", "rejected")), False, ["open"] * 3),
+        (Retry(step=TOO_LATE, times=1, pause_s=0, causes=("deadline",)), False, ["open"] * 2),
         (Fallback(steps=(Timeout(step=OPEN, seconds=2), CLOSE)), True, ["open", "close"]),
         (Timeout(step=OPEN, seconds=2), False, ["open"]),
         (Timeout(step=OPEN, seconds=9), True, ["open"]),
@@ -90,7 +96,10 @@ def test_each_turn_goes_by_its_own_answer() -> None:
     assert told(again, ana=["no", "no", "yes"]) == (True, ["close", "close", "close", "open"])
 
 
-@pytest.mark.parametrize("step", [ASKED, Parallel(branches=(OPEN, Fail(sentence="so")))])
+@pytest.mark.parametrize(
+    "step",
+    [ASKED, Parallel(branches=(OPEN, Fail(sentence="so"))), Timeout(step=OPEN, seconds=FOUR_S["open", ()])],
+)
 def test_what_nobody_can_say_is_not_judged(step: Step) -> None:
     with pytest.raises(Unsure):
         told(step)
@@ -121,6 +130,14 @@ def test_a_recipe_that_does_other_than_was_drawn_is_found() -> None:
     setting = Setting(plants=_Devices(), cycles=2, level="none")
     with pytest.MonkeyPatch.context() as patch:
         edit(Times.update, "self.done >= self.times", "self.done >= self.times - 1").make(patch)
-        broken = setting.run(6).broken
+        broken = setting.run(8).broken
     assert broken is not None and broken.invariant == NAME
-    assert setting.run(6).broken is None
+    assert setting.run(8).broken is None
+
+
+def test_a_verb_with_values_that_no_recipe_has_is_found_whatever_goes_wrong() -> None:
+    setting = Setting(plants=_Devices(), cycles=4, level="many")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(DeviceStep, "prepare", lambda self: None)  # it keeps the values it was built with
+        broken = setting.run(112).broken
+    assert broken is not None and "no recipe has" in broken.sentence

@@ -114,6 +114,11 @@ CASES = {
     "work that finishes is stopped": Case(
         plant=BAKERY, recipes=(bake,), weather={"operator_stop": 4.0, "ends_late": 2.0}
     ),
+    "a person is stopped, and their oven is cleared": Case(
+        plant=BAKERY.replace("{oven: {kind: oven}}", "{oven: {kind: oven}, ana: {kind: person}}"),
+        recipes=(bake,),
+        weather={"operator_stop": 6.0, "operator_clear": 12.0, "operator_reset": 3.0},
+    ),
     "nobody is in the zone": Case(
         plant=WASHER, recipes=(wash,), weather={"operator_stop": 3.0, "never_ends": 1.0, "reboot": 1.0}
     ),

@@ -70,3 +70,38 @@ def test_a_step_that_began_twice_in_one_turn_and_was_reset_each_time_may_have_be
     task.ended_at = 6.0
     assert not task.differs(Course(seconds=6.0, begun={"leave #1": 5.0}))
     assert task.differs(Course(seconds=6.0, begun={"leave #1": 5.5}))
+
+
+def test_a_step_that_failed_at_once_may_have_been_tried_again_as_the_task_ended() -> None:
+    step = Leaving()
+    turns = Turns(step)
+    task = TaskInProgress("t", [turns, step], 0.0, whole=True)
+    step.status, turns.done = Status.FAILURE, 1  # what tries again has counted this one
+    task.look(1.0, 1.0)
+    task.ended_at = 2.0
+    assert not task.differs(Course(seconds=2.0, begun={"leave #1": 2.0}))
+    assert task.differs(Course(seconds=2.0, begun={"leave #1": 1.5}))
+
+
+def test_a_step_that_was_at_work_was_not_tried_again_where_its_turn_is_the_same() -> None:
+    step = Leaving()
+    task = TaskInProgress("t", [Turns(step), step], 0.0, whole=True)
+    for now, status in ((1.0, Status.RUNNING), (1.5, Status.SUCCESS)):
+        step.status = status
+        task.look(now, now)
+    task.ended_at = 2.0
+    assert not task.differs(Course(seconds=2.0, begun={"leave #1": 1.0}))
+    assert task.differs(Course(seconds=2.0, begun={"leave #1": 2.0}))
+
+
+def test_a_step_is_known_by_the_name_that_it_has_at_the_end() -> None:
+    """A step of a tree as XML has values of a script in its name once it knows them."""
+    first, second = Leaving(), Leaving()
+    first.began = second.began = 0.0
+    task = TaskInProgress("t", [first, second], 0.0, whole=True)
+    assert "leave #2" in task.steps
+    second.name = "leave now"
+    second.status = Status.RUNNING
+    task.look(1.0, 1.0)
+    task.ended_at = 2.0
+    assert not task.differs(Course(seconds=2.0, begun={"leave now #1": 1.0}))

@@ -2,20 +2,35 @@
 
 from __future__ import annotations
 
+import os
+import subprocess
+import sys
+from collections.abc import Callable
+from itertools import islice
 from pathlib import Path
 from typing import get_args
+from xml.etree import ElementTree
 
 import pytest
 
+from arboleda.bt_xml.running import controls
+from arboleda.bt_xml.running.node import Node, Result
 from arboleda.campaigns.plants import Plant
 from arboleda.campaigns.random_plants import RandomPlants, keep, loaded, of_devices
 from arboleda.campaigns.setting import Setting
 from arboleda.plant_file import loader
 from arboleda.simulator.plants import devices
 from arboleda.simulator.plants.devices import DrawnDevices, Form, steps
-from arboleda.simulator.plants.devices.kinds import Span
+from arboleda.simulator.plants.devices.kinds import SPARE, Span
 
 SEEDS = range(150)
+ONLY_IN_XML = (
+    *("AsyncFallback", "AsyncSequence", "Delay", "ForEach", "ForceSuccess", "IfThenElse", "LoopInt"),
+    *("ParallelAll", "Precondition", "ReactiveFallback", "ReactiveSequence", "RecoveryNode", "RunOnce"),
+    *("Script", "ScriptCondition", "SequenceWithMemory", "SubTree", "Switch3", "TryCatch", "WhileDoElse"),
+)
+FAILS_ON_PURPOSE = 78  # has a rescue that fails, and a grip that is refused
+SCRIPTS = ("_failureIf", "_onFailure", "_onSuccess", "_post", "_skipIf", "_successIf", "_while")
 
 
 @pytest.fixture(scope="module")
@@ -26,6 +41,21 @@ def drawn() -> list[DrawnDevices]:
 def test_a_seed_draws_the_same_and_another_something_else() -> None:
     assert devices.draw(7) == devices.draw(7) != devices.draw(8)
     assert devices.draw(7, 1) != devices.draw(7)
+
+
+def test_a_seed_draws_the_same_in_every_process() -> None:
+    """Python orders sets of words otherwise in each process, unless PYTHONHASHSEED says how."""
+    code = "from arboleda.simulator.plants import devices\nfor seed in range(60): print(devices.draw(seed))"
+    once, again = (
+        subprocess.run(
+            [sys.executable, "-c", code],
+            env={**os.environ, "PYTHONHASHSEED": order, "PYTHONPATH": os.pathsep.join(sys.path)},
+            capture_output=True,
+            check=True,
+        ).stdout
+        for order in "12"
+    )
+    assert once == again and len(once.splitlines()) == 60
 
 
 def test_half_of_the_plants_have_cells_of_devices() -> None:
@@ -45,6 +75,50 @@ def test_every_step_is_drawn_and_nested(drawn: list[DrawnDevices]) -> None:
     }
     assert (steps.Timeout, steps.Retry) in inside and (steps.Retry, steps.Parallel) in inside
     assert (steps.Parallel, steps.Choose) in inside
+
+
+def test_recipes_end_with_checks_of_two_facts_and_tries_for_some_causes(drawn: list[DrawnDevices]) -> None:
+    found = [step for each in drawn for recipe in each.recipes for step in steps.walk(recipe.step)]
+    assert {steps.Says, steps.Becomes} <= {type(each) for each in found if getattr(each, "also", ())}
+    causes = {each.causes for each in found if isinstance(each, steps.Retry)}
+    assert {("rejected",), ("deadline",), ("deadline", "device_fault")} < causes
+
+
+def test_recipes_end_with_verbs_of_two_facts_rescues_that_fail_and_grips_that_are_refused(
+    drawn: list[DrawnDevices],
+) -> None:
+    found = [each for plant in drawn for recipe in plant.recipes for each in steps.walk(recipe.step)]
+    tells = [each for each in found if isinstance(each, steps.Tell)]
+    assert any(each.verb == SPARE for each in tells)
+    assert any(plant.failing_rescues for plant in drawn)
+    refused = {each.verb for each in tells if each.refused and each.role.endswith("_tool")}
+    assert refused & {"close", "grip"} and refused & {"open", "let_go"}
+
+
+def test_trees_have_the_nodes_and_scripts_that_only_xml_has(drawn: list[DrawnDevices]) -> None:
+    trees = [text for each in drawn if each.form is Form.XML for text in each.beside.values()]
+    nodes = [
+        node for text in trees if text.startswith("<root") for node in ElementTree.fromstring(text).iter()
+    ]
+    assert set(ONLY_IN_XML) <= {node.tag for node in nodes}
+    assert set(SCRIPTS) <= {name for node in nodes for name in node.attrib}
+
+
+@pytest.mark.parametrize(
+    ("node", "work"),
+    [
+        (controls.Switch, lambda self: self.below[-2].execute()),
+        (controls.WhileDoElse, lambda self: self.below[1].execute()),
+    ],
+    ids=["switch", "while_do_else"],
+)
+def test_a_node_of_xml_that_goes_the_wrong_way_is_found(
+    monkeypatch: pytest.MonkeyPatch, node: type[Node], work: Callable[[Node], Result]
+) -> None:
+    monkeypatch.setattr(node, "work", work)
+    trees = (seed for seed in SEEDS if devices.draw(seed).form is Form.XML)
+    results = (Setting(plants=OfDevices(), cycles=12, level="none").run(seed) for seed in trees)
+    assert any(each.broken or each.findings for each in islice(results, 8))
 
 
 def test_kinds_have_every_effect_and_type_of_fact(drawn: list[DrawnDevices]) -> None:
@@ -118,9 +192,9 @@ def test_both_forms_of_recipes_are_drawn_and_read_by_the_ordinary_reader(tmp_pat
 
 
 def test_a_plant_is_read_again_from_what_json_has_of_it() -> None:
-    plain = of_devices(2).plain
+    plain = of_devices(5).plain
     again = loaded(plain["plant_file"], plain["plant_files"])
-    assert again.declared.name == "drawn_2" and again.files.contents.keys() == {"drawn_2.yaml", "recipes.py"}
+    assert again.declared.name == "drawn_5" and again.files.contents.keys() == {"drawn_5.yaml", "recipes.py"}
 
 
 def test_smaller_plants_have_a_recipe_a_step_or_a_key_less() -> None:
@@ -145,3 +219,9 @@ class OfDevices:
 
     def of(self, seed: int) -> Plant:
         return of_devices(seed)
+
+
+def test_what_a_drawn_recipe_has_fail_on_purpose_is_no_finding() -> None:
+    result = Setting(plants=OfDevices(), cycles=12, level="none").run(FAILS_ON_PURPOSE)
+    assert result.outcomes["rejected"] and result.broken is None
+    assert not result.findings

@@ -8,17 +8,19 @@ from typing import Any
 
 import pytest
 
+from arboleda.core.cell import WAITS
+from arboleda.core.cell_states import Cause, CellState
 from arboleda.core.plant import Plant
 from arboleda.dispatch import evidence
 from arboleda.dispatch.dispatcher import Dispatcher
 from arboleda.dispatch.effectors import Effectors
 from arboleda.dispatch.evidence import Verdict
 from arboleda.dispatch.ledger import Feed
-from arboleda.kinds.declared import Device, DeviceKind, DeviceVerb, Effect, FactType
+from arboleda.kinds.declared import Device, DeviceKind, DeviceVerb, Effect, FactType, VerbCall, WorkCall
 from arboleda.kinds.person import person
-from arboleda.model.commands import OnStop, Query
-from arboleda.model.messages import Verb
-from arboleda.model.plant_model import Cell, Evidence, Interlock, Need, Place, PlantModel
+from arboleda.model.commands import OnStop, Process, Query, StopMode
+from arboleda.model.messages import Failure, Reason, Report, Verb
+from arboleda.model.plant_model import Cell, Evidence, Interlock, MotionState, Need, Place, PlantModel
 from arboleda.recipes import Choice, Kit, parallel, recipe, work
 from arboleda.sim.board import Board
 from arboleda.sim.machine import MachineBody
@@ -32,8 +34,10 @@ from arboleda.simulator.invariants.part_places import PLACES
 from arboleda.simulator.judged import INVARIANTS, judged_by
 from arboleda.simulator.judged_world import BrokenInvariant, JudgedWorld
 from arboleda.simulator.run import Simulation
+from arboleda.trees import steps
 from arboleda.trees.cell_commands import CellCommands
 from arboleda.trees.cell_devices import CellDevices
+from arboleda.trees.cell_time import CellTime
 from arboleda.trees.cell_zones import CellZones
 from arboleda.trees.interlocks import Interlocks
 from arboleda.trees.needs import CellNeeds
@@ -368,6 +372,71 @@ def stops_what_should_finish(patch: Patch) -> None:
     patch.setattr(Board, "_stop", stop)
 
 
+def halts_what_should_finish(patch: Patch) -> None:
+    """The plant takes all work for work that a stop ends."""
+    patch.setattr(WorkCall, "on_stop", OnStop.HALT)
+
+
+def halts_nothing_of_a_machine(patch: Patch) -> None:
+    """The plant takes all work for work that goes on through a stop."""
+    patch.setattr(WorkCall, "on_stop", OnStop.FINISH)
+
+
+def needs_nothing(patch: Patch) -> None:
+    """No command needs what its verb needs."""
+    patch.setattr(VerbCall, "needs", ())
+
+
+def starts_from_anywhere(patch: Patch) -> None:
+    """Nobody asks where the robots of a cell stand before its task begins."""
+    patch.setattr(CellZones, "astray", lambda zones: None)
+
+
+def lets_time_pass(patch: Patch) -> None:
+    """The time of a cell that is held goes on."""
+    patch.setattr(CellTime, "pause", lambda time, at=None: None)
+
+
+def lets_time_pass_in_the_end(patch: Patch) -> None:
+    """The time in which a cell was held has passed for it once it goes on."""
+
+    def go_on(time: CellTime) -> None:
+        time._paused_at = None
+        time._plan()
+
+    patch.setattr(CellTime, "go_on", go_on)
+
+
+def holds_what_moves(patch: Patch) -> None:
+    """A cell counts as held as soon as somebody asks for it."""
+    patch.setitem(WAITS, CellState.HOLDING, lambda run: run.become(Cause.HALTED) or True)
+
+
+def says_halt_to_what_finishes(patch: Patch) -> None:
+    """Work that is to finish stays open, and its device is told to halt."""
+    cancel = Dispatcher.cancel
+
+    def harsh(self: Dispatcher, entry: Any, now: float) -> None:
+        if entry.finishes:
+            self._stop(entry.command.robot, StopMode.HALT)
+        cancel(self, entry, now)
+
+    patch.setattr(Dispatcher, "cancel", harsh)
+
+
+def gives_up_what_finishes(patch: Patch) -> None:
+    """A stopped device is taken to have ended whatever it did."""
+    device = evidence._device
+
+    def lax(entry: Any, belief: Any, report: Report) -> Any:
+        if entry.finishes and report.state is MotionState.STOP_LATCHED:
+            stopped = evidence.STOPPED(robot=entry.command.robot, doing=entry.doing)
+            return Verdict(feed=Feed.HALTED, failure=Failure(reason=Reason.STOPPED, sentence=stopped))
+        return device(entry, belief, report)
+
+    patch.setattr(evidence, "_device", lax)
+
+
 def runs_through_a_stop(patch: Patch) -> None:
     """A stopped machine finishes whatever it does."""
     patch.setattr(MachineBody, "stop", lambda self, now_us: None)
@@ -467,13 +536,24 @@ def at_work(watched: JudgedWorld, verb: str) -> None:
     watched.world.advance(1.0)
 
 
-def stopped_at(verb: str) -> Scenario:
+def asked_at(verb: str, asked: Verb) -> Scenario:
+    """A scenario: an operator asks for this while the mill carries out its verb."""
+
     def scenario(watched: JudgedWorld) -> None:
         at_work(watched, verb)
-        watched.world.request_verb(Verb.STOP)
+        watched.world.request_verb(asked, "tending")
         watched.world.advance(10.0)
 
     return scenario
+
+
+def held_for_a_while(watched: JudgedWorld) -> None:
+    """A cell is held at work for some seconds, and goes on."""
+    at_work(watched, "close")
+    watched.world.request_verb(Verb.HOLD, "tending")
+    watched.world.advance(5.0)
+    watched.world.request_verb(Verb.RESUME, "tending")
+    watched.world.advance(5.0)
 
 
 def ordered_while_stopped(watched: JudgedWorld) -> None:
@@ -483,6 +563,17 @@ def ordered_while_stopped(watched: JudgedWorld) -> None:
     goal = OrderGoal(verb="close", values=(), seq=1, epoch=4_000_000_000)
     watched.world.publish(Publication(topic="mill/orden", payload=encode(goal)))
     watched.world.advance(1.0)
+
+
+def stopped_inside(watched: JudgedWorld) -> None:
+    """An arm is stopped in a shared zone and stays there, and the next task comes."""
+    watched.world.request_task("tending both")
+    assert watched.world.advance(30.0, lambda: bool(watched.truth.robots["left"].zones))
+    for verb in (Verb.STOP, Verb.CLEAR, Verb.RESET, Verb.RESUME):
+        watched.world.request_verb(verb, "tending")
+        watched.world.advance(5.0)
+    watched.world.request_task("tending load")
+    watched.world.advance(5.0)
 
 
 def told(text: str) -> Scenario:
@@ -519,7 +610,12 @@ BITES: list[tuple[str, Bug, Scenario | Weather]] = [
     ("done_tasks_leave_nothing_behind", no_bug, told("keeps")),
     ("books_of_parts_are_true", books_no_part, told("forgets")),
     ("parts_are_taken_and_put_where_they_can_be", knows_no_place, told("twice")),
-    ("finishing_work_is_finished", stops_what_should_finish, stopped_at("cool")),
+    ("parts_and_room_are_missed_where_there_are_none", books_no_part, told("bring")),
+    ("finishing_work_is_finished", stops_what_should_finish, asked_at("cool", Verb.STOP)),
+    ("finishing_work_is_not_halted", halts_what_should_finish, asked_at("cool", Verb.CANCEL)),
+    ("finishing_work_is_not_halted", says_halt_to_what_finishes, asked_at("cool", Verb.CANCEL)),
+    ("finishing_work_is_not_halted", gives_up_what_finishes, asked_at("cool", Verb.STOP)),
+    ("commands_are_as_declared", needs_nothing, told("load")),
     ("nothing_is_dropped", no_bug, told("drops")),
     ("nothing_is_dropped", moves_while_its_tool_may_open, {"never_ends": 10.0}),
     ("an_answer_is_to_its_question", any_answer_counts, told("looks")),
@@ -528,10 +624,15 @@ BITES: list[tuple[str, Bug, Scenario | Weather]] = [
     ("bridge_obeys_only_its_plant", obeys_anybody, {"foreign_command": 10.0}),
     ("executed_numbers_rise", takes_old_orders, {"foreign_old": 10.0}),
     ("a_shared_device_serves_one_cell", shared_with_all, "none"),
-    ("speed_never_rises_after_stop", runs_through_a_stop, stopped_at("close")),
+    ("speed_never_rises_after_stop", runs_through_a_stop, asked_at("close", Verb.STOP)),
     ("latched_board_stays_still", forgets_its_latch, ordered_while_stopped),
     ("stop_holds", forgets_its_latch, ordered_while_stopped),
+    ("time_stands_still_where_held", lets_time_pass, asked_at("close", Verb.HOLD)),
+    ("time_stands_still_where_held", lets_time_pass_in_the_end, held_for_a_while),
+    ("held_cells_stand_still", holds_what_moves, asked_at("close", Verb.HOLD)),
     ("halted_moves_sent_halt", halts_nothing, {"operator_hold": 10.0}),
+    ("halted_moves_sent_halt", halts_nothing_of_a_machine, asked_at("close", Verb.CANCEL)),
+    ("tasks_start_where_all_is_ready", starts_from_anywhere, stopped_inside),
     ("one_robot_per_zone", zones_for_all, told("both")),
     ("one_robot_per_zone", forgets_doors, told("both")),
     ("zone_entered_only_when_held", zones_for_all, told("both")),
@@ -581,12 +682,68 @@ def test_it_finds_nothing_where_there_is_no_bug(how: Scenario) -> None:
     how(JudgedWorld(peeping() if how is PEEKS else shop(*RECIPES)))
 
 
+def test_a_halt_is_none_of_the_work_that_leaves_after_it_in_the_same_step() -> None:
+    """A mill that never shuts its door is halted, and told to cool instead."""
+
+    @recipe("anyway")
+    def anyway(cell: Kit):  # type: ignore[no-untyped-def]
+        """The mill shuts its door, or cools as it is."""
+        mill = cell.device("mill")
+        return cell.fallback(mill.close(), mill.cool())
+
+    verbs = {"close": MILL.verbs["close"], "cool": replace(MILL.verbs["cool"], needs=())}
+    mill = Device(name="mill", mqtt="mill", **IDS, timeout_s=5.0, kind=replace(MILL, verbs=verbs))
+    cell = Cell(name="c", queue_limit=5, members=(("mill", mill),), recipes=(anyway,))
+    model = PlantModel(name="shop", cells=(cell,))
+    assert run(1, {"never_ends": 10.0}, only="finishing_work_is_not_halted", model=model, cycles=5) is None
+
+
+def test_a_process_that_nobody_saw_at_work_is_not_done(monkeypatch: Patch) -> None:
+    """Its facts may be older than it: the door of a mill that is told to shut it once more is shut."""
+
+    @recipe("shut")
+    def shut(cell: Kit):  # type: ignore[no-untyped-def]
+        """The mill is told twice to shut its door."""
+        return work(cell.device("mill").close(), cell.device("mill").close())
+
+    def lax(entry: Any, *_: object) -> Verdict | None:
+        return Verdict(feed=Feed.DONE) if entry.observations.on_goal_since else None
+
+    closing = replace(MILL.verbs["close"], effect=Effect.PROCESS)
+    mill = Device(
+        name="mill", mqtt="mill", **IDS, timeout_s=5.0, kind=replace(MILL, verbs={"close": closing})
+    )
+    members = (("mill", replace(mill, evidence=Evidence.JOINTS)),)
+    model = PlantModel(name="shop", cells=(Cell(name="c", queue_limit=5, members=members, recipes=(shut,)),))
+    assert run(1, model=model, cycles=3) is None
+    monkeypatch.setitem(evidence.RULES, (Process, Evidence.JOINTS), lax)
+    broken = run(1, only="ends_are_proven", model=model, cycles=3)
+    assert broken is not None and broken.invariant == "ends_are_proven"
+
+
 def test_an_answer_that_is_not_offered_may_be_refused() -> None:
     watched = JudgedWorld(staffed())
     watched.world.request_task("tending consults")
     watched.world.advance(2.0)
     watched.world.request_verb(Verb.ANSWER, "ana", arguments=(("answer", "quizá"),))
     says_yes(watched)
+
+
+def test_a_recovery_that_leaves_a_low_place_sideways_is_found(monkeypatch: Patch) -> None:
+    @recipe("rests")
+    def rests(cell: Kit):  # type: ignore[no-untyped-def]
+        return cell.device("left").visit("feed", cell.wait(5.0))
+
+    monkeypatch.setattr(steps, "_rise", lambda context, robot: [])
+    rule = [each for each in INVARIANTS if each.name == "low_robots_rise_first"]
+    watched = JudgedWorld(shop(rests), invariants=rule)
+    watched.world.request_task("tending rests")
+    arm = watched.truth.robot("left")
+    assert watched.world.advance(20.0, until=lambda: arm.here == {"feed"})
+    watched.world.advance(1.0)
+    watched.world.request_verb(Verb.CANCEL, "tending")
+    with pytest.raises(BrokenInvariant, match="left leaves feed sideways"):
+        watched.world.advance(5.0)
 
 
 def test_every_invariant_of_devices_has_a_bug() -> None:

@@ -17,7 +17,8 @@ class Net:
         self.now = 0.0
         self.delivered: list[tuple[str, Delivery]] = []
         self._agenda: list[tuple[float, int, object, object]] = []
-        self.broker = Broker(self, self._at, self.delivered)
+        self.outdated: list[Delivery] = []
+        self.broker = Broker(self, self._at, self.delivered, self.outdated)
         self.board, self.bridge = Client("ra_1", [COMMAND]), Client("bridge", [TELEMETRY, PRESENCE])
         for client in (self.board, self.bridge):
             self.broker.join(client)
@@ -188,3 +189,16 @@ def test_a_broker_that_dies_takes_everything_with_it(net):
         net.broker.tell_retained(client)
     assert net.pass_time(5.0) == []
     assert not net.broker.retained
+
+
+@pytest.mark.parametrize("line", ["up", "down"])
+def test_what_comes_of_a_client_that_was_superseded_meanwhile_is_outdated_and_what_it_says_then_is_not(
+    net, line
+):
+    net.say(b"in time")
+    {"up": net.board.up, "down": net.bridge.down}[line].troubles.append(late(1.0))
+    net.say(b"under way")
+    net.board.superseded = True
+    net.say(b"later")
+    assert net.pass_time(5.0) == [b"under way", b"later"]
+    assert [each.payload for each in net.outdated] == [b"under way"]

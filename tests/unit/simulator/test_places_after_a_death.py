@@ -2,15 +2,28 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 
-from arboleda.model.messages import Fact, Remember, TaskChanged, TaskState
+from arboleda.model.messages import Fact, Remember, TaskChanged, TaskState, Verb
 from arboleda.simulator.invariants.part_places import books_of_parts_are_true
 from arboleda.simulator.judged_world import BrokenInvariant, JudgedWorld
 from arboleda.simulator.plant_process import Fuse, Side
 from arboleda.simulator.world import PLANT, World
 
-from .test_general_invariants import storing
+from .test_general_invariants import looks, storing
+
+
+class FuseOfBooks(Fuse):
+    """Fuse that burns down once the plant has booked parts."""
+
+    def __init__(self, world: World) -> None:
+        super().__init__(1, Side.AFTER, world.plant_process.stop)
+        self._world = world
+
+    def burns(self, side: Side) -> bool:
+        return side is self.side and any(map(_books, self._world.moment.sent))
 
 
 class FuseOfADoneTask(Fuse):
@@ -51,3 +64,18 @@ def test_what_a_recipe_says_of_its_end_is_judged_though_its_plant_dies_as_it_tel
     with pytest.raises(BrokenInvariant, match="recipes_end_as_they_say"):
         world.advance(60.0)
     assert not world.is_on(PLANT)
+
+
+def test_parts_that_a_person_brought_count_though_the_plant_died_before_it_answered() -> None:
+    model = storing()
+    (cell,) = model.cells
+    model = replace(model, cells=(replace(cell, recipes=(looks,)),))
+    world = JudgedWorld(model, invariants=[books_of_parts_are_true]).world
+    world.plant_process.fuses.append(FuseOfBooks(world))
+    world.request_verb(Verb.LOAD, "tending", arguments=(("place", "vise"),))
+    assert world.advance(5.0, lambda: not world.is_on(PLANT))
+    world.plant_process.start()
+    assert world.plant.cells["tending"].context.places.counts["vise"] == 1
+    world.request_task("tending looks")
+    world.advance(30.0)
+    assert [task.state for task in world.plant.intake.tasks.values()] == [TaskState.DONE]

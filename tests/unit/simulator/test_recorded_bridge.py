@@ -8,12 +8,13 @@ from dataclasses import replace
 import pytest
 
 from arboleda.campaigns.request import Request
-from arboleda.model.messages import Report
+from arboleda.model.messages import Heartbeat, Report
 from arboleda.model.plant_model import MotionState
 from arboleda.simulator.moment import BridgeStep
 from arboleda.simulator.recorded.bridge import Bridges
 from arboleda.simulator.recorded.reported_telemetry import REPORTS
 from arboleda.simulator.world import World
+from arboleda.wire.hop import FromPlant
 from arboleda.wire.transport import Delivery
 
 SETTLED_S = 3.0
@@ -95,3 +96,17 @@ def test_retained_telemetry_is_found_if_it_is_reported(bridges: Bridges, step: B
     step.events = [each._replace(retain=each is first) for each in step.events]
     bridges.look([step])
     assert bridges.wrong[REPORTS]
+
+
+@pytest.mark.parametrize("plant", [0, 1])
+def test_a_report_names_any_plant_that_was_heard_in_its_step(
+    bridges: Bridges, step: BridgeStep, plant: int
+) -> None:
+    report = reports(step)[0]
+    assert report.plant is not None
+    heard = [report.plant, report.plant + 1]
+    beats = [FromPlant(at=step.now, message=Heartbeat(epoch=epoch)) for epoch in heard]
+    step.events = [*step.events, *beats]
+    step.out = [replace(each, plant=heard[plant]) if each is report else each for each in step.out]
+    bridges.look([step])
+    assert not bridges.wrong[REPORTS]

@@ -7,7 +7,7 @@ from pathlib import Path
 from arboleda.model.commands import Home
 from arboleda.model.messages import Verb
 from arboleda.plant_file.loader import load
-from arboleda.simulator.invariants.part_places import done_tasks_leave_nothing_behind
+from arboleda.simulator.invariants.part_places import PLACES, done_tasks_leave_nothing_behind
 from arboleda.simulator.judged_world import JudgedWorld
 
 from .test_general_invariants import storing
@@ -111,3 +111,53 @@ def test_home_of_a_plant_is_no_matter_of_devices_that_have_no_homing(tmp_path: P
     world.request_verb(Verb.HOME, "")
     world.advance(0.05)
     assert homed == ["arm"]
+
+
+READER = """
+name: two
+uses: [recipes.py]
+kinds:
+  reader:
+    facts: {clamped: bool}
+    verbs:
+      clamp: {effect: switch, with: {'on': bool}, sets: {clamped: $on}, holds: part}
+shared:
+  reader: {kind: reader}
+cells:
+  left: {devices: {reader: {shared: reader}, ana: {kind: person}}}
+  right: {devices: {reader: {shared: reader}, bob: {kind: person}}}
+"""
+CLAMPS = """
+from arboleda.recipes import recipe, work
+
+@recipe("clamp")
+def clamp(cell):
+    return work(cell.device("reader").clamp(on=True))
+
+@recipe("rest")
+def rest(cell):
+    return work(cell.wait(1.0))
+"""
+
+
+def test_what_a_shared_device_holds_is_left_by_the_cell_that_commanded_it_last(tmp_path: Path) -> None:
+    (tmp_path / "recipes.py").write_text(CLAMPS, "utf-8")
+    (tmp_path / "plant.yaml").write_text(READER, "utf-8")
+    world = JudgedWorld(load(tmp_path / "plant.yaml"), invariants=PLACES).world
+    world.request_task("left clamp")
+    world.advance(5.0)
+    world.request_task("right rest")
+    world.advance(5.0)
+    assert [task.state.value for task in world.plant.intake.tasks.values()] == ["failed", "done"]
+
+
+def test_a_run_comes_to_rest_once_its_boards_have_done_what_the_plant_has_given_up(tmp_path: Path) -> None:
+    slow = READER.replace("holds: part", "takes_s: 25")
+    (tmp_path / "recipes.py").write_text(CLAMPS, "utf-8")
+    (tmp_path / "plant.yaml").write_text(slow, "utf-8")
+    watched = JudgedWorld(load(tmp_path / "plant.yaml"))
+    watched.world.request_task("left clamp #lot-1")
+    watched.world.advance(1.0)
+    watched.world.request_verb(Verb.CANCEL, "left")
+    watched.come_to_rest()
+    assert watched.world.boards["reader"].body.facts["clamped"] is True

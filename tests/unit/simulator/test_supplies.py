@@ -5,7 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 
 from arboleda.plant_file.loader import load
+from arboleda.simulator.faults.kind import Fault
 from arboleda.simulator.invariants.part_places import PLACES
+from arboleda.simulator.judged_world import JudgedWorld
 from arboleda.simulator.run import Simulation
 
 from ..kinds.test_places import PLANT, written
@@ -26,3 +28,29 @@ def test_it_may_not_empty_a_device_that_people_do_not_fill(tmp_path: Path) -> No
     broken = result.run(cycles=2).broken
     assert broken is not None
     assert broken.invariant == "done_tasks_leave_nothing_behind"
+
+
+RESTING = """
+@recipe("rest")
+def rest(cell):
+    return work(cell.device("mover").home(), cell.wait(6))
+"""
+
+
+def test_a_task_does_not_answer_for_a_hand_that_closes_late_on_a_command_of_before_it(tmp_path: Path) -> None:
+    path = written(
+        tmp_path,
+        PLANT.replace("at_most_s: 1", "at_most_s: 6"),
+        'cell.fallback(take("rack_1"), cell.wait(0.2))',
+    )
+    with (tmp_path / "recipes.py").open("a", encoding="utf-8") as recipes:
+        recipes.write(RESTING)
+    watched = JudgedWorld(load(path), invariants=PLACES)
+    world = watched.world
+    watched.begin(Fault(at=0.0, kind="ends_late", target="hand", amount=7.3, seconds=60.0))
+    world.request_task("lab try")
+    world.request_task("lab rest")
+    world.advance(20.0)
+    assert [task.state.value for task in world.plant.intake.tasks.values()] == ["done", "done"]
+    assert watched.truth.places.cells["lab"].late_hands == {"hand"}
+    assert world.boards["hand"].body.facts["closed"]

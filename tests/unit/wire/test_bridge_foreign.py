@@ -12,6 +12,7 @@ from arboleda.kinds.mobile import FollowPath, Mobile
 from arboleda.model.commands import Command, Home, Stop, StopMode
 from arboleda.model.plant_model import Evidence, ForeignCommands, MotionState
 from arboleda.wire.bridge import PLANT_GONE_S, UNSURE_S, Bridge
+from arboleda.wire.copies import COPY_S
 from arboleda.wire.hop import FromPlant, without_id
 from arboleda.wire.payloads import StopGoal
 from arboleda.wire.rejections import ForeignCommand, Rejection
@@ -269,3 +270,57 @@ def test_a_number_that_the_plant_never_gave_halts_the_robot_and_the_next_one_is_
 def test_without_a_plant_nobody_is_halted_for_what_a_board_took(linked, sent) -> None:
     linked.tell(ack_epoch=EPOCH, ack=9999, state=MotionState.MOVING)
     assert sent(linked.wait(1.0)) == []
+
+
+def test_a_copy_that_came_too_early_hides_no_command_of_another_node_later(beaten) -> None:
+    ours = [replace(HALT, id=f"7-{number}") for number in range(3)]
+    copied(beaten, ours[0])
+    copy(beaten, ours[0])
+    copy(beaten, ours[1])
+    assert news(beaten.wait(UNSURE_S))
+    copied(beaten, ours[1])  # waits for a copy that has been
+    beaten.wait(COPY_S - 1.0)
+    copied(beaten, ours[2])
+    copy(beaten, ours[2])
+    beaten.wait(1.5)
+    beaten.heartbeat()
+    beaten.tell()
+    told = others(beaten, HALT) + beaten.wait(UNSURE_S)
+    assert news(told) == ["ra1: stop_cmd 2 of /teleop was obeyed"]
+
+
+@pytest.mark.parametrize("is_heard", [True, False])
+def test_a_copy_that_came_long_before_its_original_hides_no_command_of_another_node(
+    beaten, sent, *, is_heard: bool
+) -> None:
+    ours = replace(HALT, id="7-1")
+    beaten.presence(is_heard)
+    copy(beaten, ours)
+    beaten.wait(COPY_S / 2)
+    copied(beaten, ours)
+    beaten.heartbeat()
+    beaten.wait(COPY_S / 2)
+    link(beaten)
+    assert [address for address, _ in sent(others(beaten, HALT))] == ["ra_1/paro"]
+    assert news(list(beaten.wait(UNSURE_S))) == ["ra1: stop_cmd 2 of /teleop was obeyed"]
+
+
+def test_a_command_of_another_node_is_not_taken_for_a_copy_of_what_the_plant_gives_after_it(beaten) -> None:
+    assert len(news(others(beaten, HALT) + beaten.wait(UNSURE_S))) == 1
+    beaten.wait(1.0)
+    ours = replace(HALT, id="7-1")
+    copied(beaten, ours)
+    assert copy(beaten, ours) == []
+
+
+def test_the_original_of_a_copy_that_waited_too_long_brings_no_other_copy(beaten, sent) -> None:
+    ours, came_at = replace(GRIP, id="7-1"), beaten.now
+    beaten.wait(3.0)
+    beaten.step(FromPlant(at=came_at, message=without_id(ours)))
+    copied(beaten, ours)
+    link(beaten).heartbeat()
+    assert sent(others(beaten, GRIP)) == []
+    assert news(list(beaten.wait(UNSURE_S))) == [
+        "ra1: effector_cmd 1 of /teleop was refused (foreign): a plant commands this robot "
+        "(foreign_commands: refuse)"
+    ]

@@ -1,15 +1,19 @@
-"""The driver `gcode`: machines of axes with GRBL or Marlin on a serial line, or at a TCP port."""
+"""The driver `gcode`: machines of axes with GRBL, Marlin or Klipper, on a serial line or at a TCP port."""
 
 from __future__ import annotations
 
+import os
 from collections.abc import Sequence
 
-from arboleda.adapters.stream import StreamDriver
+from arboleda.adapters.stream import Stream, StreamDriver
 from arboleda.drivers.gcode.dialects import machine
 from arboleda.drivers.gcode.machine import Machine
 from arboleda.drivers.gcode.settings import Settings
 from arboleda.drivers.port import driver
 from arboleda.model.plant_model import Robot
+
+KEY = "ARBOLEDA_MOONRAKER_KEY"
+"""The variable of the environment with Moonraker's key, which is never in a plant file."""
 
 
 @driver("gcode", settings=Settings)
@@ -22,3 +26,12 @@ class Gcode(StreamDriver):
 
     def machine(self, devices: Sequence[Robot]) -> Machine:
         return machine(devices, self._settings)
+
+    def open(self) -> Stream:
+        if self._settings.dialect != "moonraker":
+            return super().open()
+        from .web_socket import WebSocketStream  # it takes a while to load, and only Moonraker needs it
+
+        key = os.environ.get(KEY, "")
+        headers = {"X-Api-Key": key} if key else {}
+        return WebSocketStream(self._settings.host, self._settings.port, "/websocket", headers)

@@ -209,8 +209,12 @@ class StreamDriver(MachineDriver):
     @abstractmethod
     def machine(self, devices: Sequence[Robot]) -> StreamMachine: ...
 
+    def open(self) -> Stream:
+        """The stream, open; raises OSError if it is not there."""
+        return open_stream(self._address)
+
     def connect(self) -> tuple[Opened, Streams]:
-        self._stream = open_stream(self._address)
+        self._stream = self.open()
         return Opened(), {self._stream: lambda data: Received(data=data)}
 
     def write(self, message: object) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from functools import partial
 
@@ -34,6 +34,7 @@ class TreeRecipe(Recipe):
     main tree.
 
     `own`: the nodes in Python that it may use. `groups`: the group of targets of which a parameter is one.
+    `check_devices` raises NoDeviceError if a cell has no device for a node.
     """
 
     file: str
@@ -41,6 +42,7 @@ class TreeRecipe(Recipe):
     content: bytes = field(compare=False)
     groups: Mapping[str, str] = field(compare=False)
     own: Mapping[str, WrittenNode] = field(compare=False)
+    check_devices: Callable[[Cell], None] = field(compare=False)
 
 
 def tree_recipe(
@@ -57,6 +59,9 @@ def tree_recipe(
 
     def kinds(cell: Cell) -> Mapping[str, Kind]:
         return leaves.of_cell(cell, own.values())
+
+    def check_devices(cell: Cell) -> None:
+        runnable.check_devices(forest, cell.name, kinds(cell))
 
     def build(order: Order, context: Context) -> Behaviour:
         runnable.check_in_cell(forest, context.cell.name, kinds(context.cell))
@@ -88,6 +93,7 @@ def tree_recipe(
         content=content,
         groups=groups,
         own=own,
+        check_devices=check_devices,
     )
 
 

@@ -65,10 +65,7 @@ def check_in_cell(forest: Forest, cell: str, kinds: Mapping[str, Kind]) -> None:
 
     Raises TreeMistakes with all other faults.
     """
-    for tree in forest.trees.values():
-        for node in tree.root.iterate():
-            if not node.is_subtree and nodes.built_in(node.kind) is None and node.kind not in kinds:
-                raise NoDeviceError(_nobody(node, cell, kinds), node.place)
+    check_devices(forest, cell, kinds)
     findings = Findings()
     checking.check(forest, findings, kinds)
     parameters.check(forest, forest.main or "", kinds, findings)
@@ -82,6 +79,14 @@ def check_in_cell(forest: Forest, cell: str, kinds: Mapping[str, Kind]) -> None:
         findings.mistake(place, f"the variable {quoted(name)} is read, and nothing gives it a value")
     if findings.mistakes:
         raise TreeMistakes(findings.mistakes)
+
+
+def check_devices(forest: Forest, cell: str, kinds: Mapping[str, Kind]) -> None:
+    """Raises NoDeviceError if a cell with leaves of these kinds has no device for a node."""
+    for tree in forest.trees.values():
+        for node in tree.root.iterate():
+            if not node.is_subtree and nodes.built_in(node.kind) is None and node.kind not in kinds:
+                raise NoDeviceError(_nobody(node, cell, kinds), node.place)
 
 
 def _nobody(node: Node, cell: str, kinds: Mapping[str, Kind]) -> str:

@@ -37,23 +37,31 @@ class RandomPlants:
 
 
 def loaded(drawn: dict[str, Any] | DrawnDevices, beside: Mapping[str, str] = NOTHING) -> Plant:
-    """The plant of such a content and the files beside it; ConfigError as for a user's file."""
+    """The plant of such a content and the files beside it; ConfigError as for a user's file.
+
+    Drawn recipes come to an end: they are tried in this process, so that no clock has a say in what is drawn.
+    """
     if isinstance(drawn, DrawnDevices):
-        return replace(loaded(drawn.file, drawn.beside), drawn=drawn)
-    name, content = f"{drawn.get('name', 'plant')}.yaml", as_yaml(drawn).encode()
+        return replace(_in_a_folder(drawn.file, drawn.beside, apart=False), drawn=drawn)
     if beside:
-        return _in_a_folder(drawn, name, beside)
+        return _in_a_folder(drawn, beside)
+    name, content = _name(drawn), as_yaml(drawn).encode()
     files = PlantFiles(plant=name, contents={name: content})
     return Plant(declared=loader.parse(name, content), file=drawn, files=files)
 
 
-def _in_a_folder(file: dict[str, Any], name: str, beside: Mapping[str, str]) -> Plant:
-    """The plant, read from a folder of its own as that of a person."""
+def _name(file: dict[str, Any]) -> str:
+    return f"{file.get('name', 'plant')}.yaml"
+
+
+def _in_a_folder(file: dict[str, Any], beside: Mapping[str, str], *, apart: bool = True) -> Plant:
+    """The plant, read from a folder of its own as that of a person; `apart` as of `loader.load`."""
+    name = _name(file)
     with TemporaryDirectory(prefix="arboleda-drawn-") as made:
         path = Path(made) / name
         for each, text in {name: as_yaml(file), **beside}.items():
             (path.parent / each).write_text(text, encoding="utf-8")
-        declared, files = loader.load_with_files(path)
+        declared, files = loader.load_with_files(path, apart=apart)
     return Plant(declared=declared, file=file, beside=beside, files=files)
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 
 from rich.box import SIMPLE_HEAD
 from rich.table import Table
@@ -18,11 +18,12 @@ from .words import seeds, short
 ONE_COLUMN = 8  # kinds of faults; more are drawn in two
 
 
-def tables(tally: Tally) -> Table:
-    """The tables of faults by kind and outcomes of tasks, side by side."""
+def tables(tally: Tally, end: Callable[[str], str]) -> Table:
+    """The tables of faults by kind and outcomes of tasks, side by side; `end` says an outcome."""
     faults = sorted(tally.faults.items())
     half = len(faults) if len(faults) <= ONE_COLUMN else (len(faults) + 1) // 2
-    outcomes = sorted(tally.outcomes.items(), key=lambda item: (-item[1], item[0]))
+    by_count = sorted(tally.outcomes.items(), key=lambda item: (-item[1], item[0]))
+    outcomes = [(end(name), count) for name, count in by_count]
     parts = [("fault", faults[:half]), ("fault", faults[half:]), ("task outcome", outcomes)]
     drawn = [_counts(heading, counts) for heading, counts in parts if counts]
     beside = Table.grid(padding=(0, 2, 0, 0))

@@ -13,6 +13,7 @@ from rich.table import Column, Table
 from rich.text import Text
 
 from arboleda.dashboard.findings import findings
+from arboleda.dashboard.wording import words
 from arboleda.web.languages import FIRST
 from arboleda.web.languages.templates import heading
 
@@ -31,6 +32,10 @@ class SpeakingConsole(Console):
     def say(self, text: str) -> str:
         """A line in the language."""
         return findings(self._language)(text)
+
+    def end(self, name: str) -> str:
+        """An end of a task, or its cause, in the language."""
+        return words(self._language).ends.get(name, name)
 
     def print(self, *objects: Any, **how: Any) -> None:
         super().print(*map(self._spoken, objects), **how)
@@ -54,6 +59,11 @@ def console(*, language: str = FIRST, quiet: bool = False) -> SpeakingConsole:
     if not made.is_terminal:
         made.width = max(made.width, WIDTH)
     return made
+
+
+def ends_of(console: Console) -> Callable[[str], str]:
+    """The function that says an end of a task, or its cause, in the language of this console."""
+    return console.end if isinstance(console, SpeakingConsole) else str
 
 
 @contextmanager

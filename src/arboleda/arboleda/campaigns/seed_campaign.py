@@ -14,7 +14,7 @@ from arboleda.simulator.run import Result
 from . import breach_text, report, summary
 from .campaign import Campaign
 from .request import Request
-from .screen import progress
+from .screen import ends_of, progress
 from .search import ShrunkBreach, shrunk
 from .setting import Tick
 from .tally import Tally
@@ -107,7 +107,7 @@ class SeedCampaign:
     def _report(self) -> None:
         tally = self._tally
         if tally.rows:
-            self._console.print(report.tables(tally))
+            self._console.print(report.tables(tally, ends_of(self._console)))
             self._say(f"{report.amount(tally)} {report.speed(tally, self._elapsed_s)}")
         for seed, result in sorted(tally.broken.items()):
             if self._shrunk is not None and self._shrunk.result.seed == seed:

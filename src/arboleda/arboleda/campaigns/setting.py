@@ -97,7 +97,7 @@ class Setting:
             revises=self.revises,
         )
         result = simulation.run(seconds=self.seconds, cycles=self.cycles)
-        _leave_out_drawn_refusals(result, self.plants.of(seed))
+        _leave_out_drawn_failures(result, self.plants.of(seed))
         return result
 
     def attempt(self, plant: Plant, seed: int, plan: Plan, seconds: float, *, keep: bool = False) -> Result:
@@ -124,15 +124,17 @@ class Setting:
         return (*judges, as_drawn(drawn.recipes, pauses=drawn.form is Form.PYTHON))
 
 
-def _leave_out_drawn_refusals(result: Result, plant: Plant) -> None:
-    """Leave out of the findings the commands that a drawn recipe has refused on purpose."""
-    if plant.drawn is None or not plant.drawn.refused:
+def _leave_out_drawn_failures(result: Result, plant: Plant) -> None:
+    """Leave out of the findings the commands that a drawn recipe has refused, and the rescues that it has
+    fail, on purpose.
+    """
+    if plant.drawn is None:
         return
-    cells, refused = plant.model.cells, plant.drawn.refused
+    cells, refused, rescues = plant.model.cells, plant.drawn.refused, plant.drawn.failing_rescues
     names = [f"{cell.roles[role].name}: doing {verb}" for cell in cells for role, verb in refused]
     for finding in list(result.findings):
-        is_drawn = any(finding.step == name or finding.step.startswith(f"{name} ") for name in names)
-        if finding.kind is FindingKind.COMMAND and is_drawn:
+        is_refused = any(finding.step == name or finding.step.startswith(f"{name} ") for name in names)
+        if is_refused if finding.kind is FindingKind.COMMAND else finding.sentence.endswith(rescues):
             del result.findings[finding]
 
 

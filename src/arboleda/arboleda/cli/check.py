@@ -14,7 +14,7 @@ from arboleda.plant_file.user_file import check_writable
 
 from . import apply, nodes
 from .language import finding, say
-from .plant_options import IN_FOLDER, plant_here
+from .plant_options import IN_FOLDER, PLANT_VARIABLE, is_typed, plant_here
 
 MEND_S = 120.0  # a mend is looked for so long
 TO_SCREEN = "-"
@@ -49,17 +49,22 @@ def add_to(cli: typer.Typer) -> None:
 
 
 def check(
+    context: typer.Context,
     file: Annotated[
         Path | None,
         typer.Argument(
             metavar="FILE",
-            callback=plant_here,
             help=f"The plant file to check, or a file of trees, *.xml. [default: {IN_FOLDER} of this folder]",
         ),
     ] = None,
     plant: Annotated[
         Path | None,
-        typer.Option("--plant", metavar="FILE", help="The plant whose devices a tree is to tell what to do."),
+        typer.Option(
+            "--plant",
+            metavar="FILE",
+            envvar=PLANT_VARIABLE,
+            help="The plant whose devices a tree is to tell what to do; alone, the plant to check.",
+        ),
     ] = None,
     cell: nodes.CellName = None,
     ends: Annotated[
@@ -75,6 +80,8 @@ def check(
     they have to be nodes of its devices, which `arboleda nodes` lists.
     """
     if file is None:
+        file, plant = plant_here(plant), None
+    if file is None:
         raise typer.BadParameter(say(NO_FILE(file=str(IN_FOLDER))))
     if tree_file.is_tree_file(file):
         if json is not None or mend:
@@ -82,7 +89,7 @@ def check(
         known = None if plant is None else nodes.of_plant(loader.load(plant), cell)
         print(finding("\n".join(tree_file.report(file, known))))
         return
-    if plant is not None or cell is not None:
+    if (plant is not None and is_typed(context, "plant")) or cell is not None:
         raise typer.BadParameter(say(FOR_TREES()))
     if json is not None or mend:
         _as_data(file, json, mend=mend)

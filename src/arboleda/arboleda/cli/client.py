@@ -244,9 +244,8 @@ class PlantClient:
         running = find_running(self._state)
         if running is None or running.port is None:
             return None
-        return Line(
-            endpoints.here(self._state, running), say(THE_PLANT(folder=str(self._state), process=running.pid))
-        )
+        name = THE_PLANT(folder=str(self._state), process=running.pid)
+        return Line(endpoints.here(self._state, running), name)
 
     def _beyond(self, answer: Answer) -> FarLine:
         """The line to the process that leads the plant, as a process that stands by names it."""
@@ -271,7 +270,7 @@ class PlantClient:
             if led is not None:
                 return self._elsewhere.line(led)
         except NoLeader as error:
-            both = say(TWO_SENTENCES(first=here, second=error.sentence))
+            both = TWO_SENTENCES(first=here, second=error.sentence)
             raise NoLeader(both, awaited=error.awaited or running is not None) from error
         except ArboledaError as error:
             raise ArboledaError(TWO_SENTENCES(first=here, second=error.sentence)) from error

@@ -10,9 +10,12 @@ from rich.text import Text
 
 from arboleda.adapters.broker_login import MQTT_PORT, Credentials, address, login
 from arboleda.model.errors import StartError
+from arboleda.model.outside import quoted
 from arboleda.model.plant_model import Evidence, Link, PlantModel, Robot
+from arboleda.model.sentence import Phrase, Sentence
 from arboleda.plant_file import loader
 
+from .language import allowed, finding, say, say_error
 from .plant_options import PlantFile
 
 if TYPE_CHECKING:
@@ -27,11 +30,32 @@ on the broker. A halt in software is not a safety function: have the button that
 
 Exit status: 0 it does all that belongs to the level it speaks at, 1 it does not, 2 bad input."""
 MEANING = {
-    Evidence.STATE: "0 and 1 only: moving or not",
-    Evidence.JOINTS: "joints: where it is, too",
-    Evidence.IDS: "ids: which command it accepted, refused and finished, too",
+    Evidence.STATE: Phrase("cli.conformance.state", "0 and 1 only: moving or not")(),
+    Evidence.JOINTS: Phrase("cli.conformance.joints", "joints: where it is, too")(),
+    Evidence.IDS: Phrase(
+        "cli.conformance.ids", "ids: which command it accepted, refused and finished, too"
+    )(),
 }
-DEVICE_MEANING = {**MEANING, Evidence.JOINTS: "facts: how it is, too"}
+DEVICE_MEANING = {**MEANING, Evidence.JOINTS: Phrase("cli.conformance.facts", "facts: how it is, too")()}
+MAY_IT_MOVE = Phrase("cli.conformance.may_it_move", "{name} will {deeds}. Is nobody near it?")
+TO_LIMITS = Phrase("cli.conformance.to_limits", "move from limit to limit")
+ALL_VERBS = Phrase("cli.conformance.all_verbs", "do all that a {kind} can: {verbs}")
+NO_BOARD = Phrase(
+    "cli.conformance.no_board",
+    "{name} is neither an arm nor a device of a declared kind with link mqtt; {others}",
+)
+WRONG, UNTRIED, GOOD = (
+    Phrase("cli.conformance.wrong", "WRONG")(),
+    Phrase("cli.conformance.untried", "not tried")(),
+    Phrase("cli.conformance.good", "good")(),
+)
+NO_LEVEL = Phrase("cli.conformance.no_level", "{name} reaches no level; wrong: {wrong}")
+REACHES = Phrase("cli.conformance.reaches", "{name} reaches the level {level} ({meaning})")
+MADE = Phrase("cli.conformance.made", "{reaches}; {made} of {needed} checks made")
+LESS_THAN_SPOKEN = Phrase(
+    "cli.conformance.less_than_spoken",
+    "{reaches}, speaks as one of {spoken}; {made} of {needed} checks made; wrong: {wrong}",
+)
 
 Name = Annotated[str, typer.Option(metavar="NAME", help="The robot's name on MQTT, or in the plant file.")]
 Broker = Annotated[
@@ -49,7 +73,7 @@ def add_to(cli: typer.Typer) -> None:
     ) -> None:
         tried = _named(loader.load(plant), robot)
         if not yes:
-            typer.confirm(f"{tried.mqtt} will {_deeds(tried)}. Is nobody near it?", abort=True)
+            typer.confirm(say(MAY_IT_MOVE(name=tried.mqtt, deeds=_deeds(tried))), abort=True)
         raise typer.Exit(_try(tried, broker, login()))
 
     cli.command("conformance", help=HELP, short_help=HELP.partition("\n")[0])(conformance)
@@ -59,11 +83,8 @@ def _named(model: PlantModel, name: str) -> Robot:
     robots = {robot.mqtt: robot for robot in model.robots.values() if _has_board(robot)}
     robots |= {robot.name: robot for robot in robots.values()}
     if name not in robots:
-        raise typer.BadParameter(
-            f"'{name}' is neither an arm nor a device of a declared kind with link mqtt; "
-            f"there are {', '.join(sorted(robots))}",
-            param_hint="--robot",
-        )
+        wrong = NO_BOARD(name=quoted(name), others=allowed(name, sorted(robots)))
+        raise typer.BadParameter(say(wrong), param_hint="--robot")
     return robots[name]
 
 
@@ -71,10 +92,10 @@ def _has_board(robot: Robot) -> bool:
     return robot.has_effector or (robot.link is Link.MQTT and bool(robot.verb_names))
 
 
-def _deeds(robot: Robot) -> str:
+def _deeds(robot: Robot) -> Sentence:
     if robot.joints:
-        return "move from limit to limit"
-    return f"do all that a {robot.kind_name} can: {', '.join(robot.verb_names)}"
+        return TO_LIMITS()
+    return ALL_VERBS(kind=robot.kind_name, verbs=tuple(robot.verb_names))
 
 
 def _try(robot: Robot, broker: str, credentials: Credentials | None) -> int:
@@ -86,13 +107,13 @@ def _try(robot: Robot, broker: str, credentials: Credentials | None) -> int:
     try:
         where = address(broker)
     except StartError as error:
-        raise typer.BadParameter(str(error), param_hint="--broker") from error
+        raise typer.BadParameter(say_error(error), param_hint="--broker") from error
     shown = 0
 
     def report(judge: Judge) -> None:
         nonlocal shown
-        for finding in judge.findings[shown:]:
-            console.print(_line(finding), soft_wrap=True)
+        for found in judge.findings[shown:]:
+            console.print(_line(found), soft_wrap=True)
         shown = len(judge.findings)
 
     trial = Trial(robot, where, credentials, report)
@@ -101,35 +122,39 @@ def _try(robot: Robot, broker: str, credentials: Credentials | None) -> int:
     return PASSED if trial.judge.reached is trial.judge.spoken else FAILED
 
 
-def _line(finding: Finding) -> Text:
-    name = f"{finding.check.name:18}"
-    if finding.wrong:
-        return Text(f"WRONG      {name}{finding.wrong}", style="red")
-    if finding.untried:
-        return Text(f"not tried  {name}{finding.untried}", style="yellow")
-    return Text(f"good       {name}{(finding.check.steps.__doc__ or '').strip()}")
+def _line(found: Finding) -> Text:
+    name = f"{found.check.name:18}"
+    if found.wrong:
+        return Text(f"{_result(WRONG)}{name}{finding(found.wrong)}", style="red")
+    if found.untried:
+        return Text(f"{_result(UNTRIED)}{name}{finding(found.untried)}", style="yellow")
+    return Text(f"{_result(GOOD)}{name}{finding((found.check.steps.__doc__ or '').strip())}")
+
+
+def _result(of: Sentence) -> str:
+    """The result of a check, as wide as all of them."""
+    width = max(len(say(each)) for each in (WRONG, UNTRIED, GOOD)) + 2
+    return f"{say(of):{width}}"
 
 
 def _verdict(robot: Robot, judge: Judge) -> Text:
     from arboleda.board_kit.conformance.judge import LEVELS
 
-    wrong = [finding.check.name for finding in judge.findings if finding.wrong]
+    wrong = tuple(found.check.name for found in judge.findings if found.wrong)
     if judge.reached is None:
-        return Text(f"{robot.mqtt} reaches no level; wrong: {', '.join(wrong)}", style="red")
+        return Text(say(NO_LEVEL(name=robot.mqtt, wrong=wrong)), style="red")
     meaning, level_name = _level(robot, judge.reached)
-    level = f"{robot.mqtt} reaches the level {level_name} ({meaning})"
-    made = sum(finding.untried is None for finding in judge.findings)
+    reaches = REACHES(name=robot.mqtt, level=level_name, meaning=meaning)
+    made = sum(found.untried is None for found in judge.findings)
     needed = sum(LEVELS.index(check.level) <= LEVELS.index(judge.spoken) for check in judge.checks)
-    count = f"{made} of {needed} checks made"
     if not wrong:
-        return Text(f"{level}; {count}", style="green")
-    return Text(
-        f"{level}, speaks as one of {_level(robot, judge.spoken)[1]}; {count}; wrong: {', '.join(wrong)}",
-        style="red",
-    )
+        return Text(say(MADE(reaches=reaches, made=made, needed=needed)), style="green")
+    spoken = _level(robot, judge.spoken)[1]
+    said = LESS_THAN_SPOKEN(reaches=reaches, spoken=spoken, made=made, needed=needed, wrong=wrong)
+    return Text(say(said), style="red")
 
 
-def _level(robot: Robot, level: Evidence) -> tuple[str, str]:
+def _level(robot: Robot, level: Evidence) -> tuple[Sentence, str]:
     """The meaning of a level for a robot, and the level's name in the plant file."""
     if robot.joints:
         return MEANING[level], level.value

@@ -197,8 +197,8 @@ def _row(work: Work, verdict: Verdict) -> dict[str, Any]:
 
 def _line(work: Work, verdict: Verdict, language: str) -> str:
     word = say_in(language, PASSES() if verdict.passes else FAILS())
-    finding = verdict.findings[0] if verdict.findings else None
-    why = "" if finding is None else f"  {_in(finding.says, language)}: {finding.evidence}"
+    first = verdict.findings[0] if verdict.findings else None
+    why = "" if first is None else f"  {_in(first.says, language)}: {finding_in(language, first.evidence)}"
     return f"{work.student or str(work.where):24} {work.exercise:20} {word}{why}"
 
 
@@ -207,10 +207,16 @@ def _tell(work: Work, verdict: Verdict, language: str) -> None:
         typer.echo(say_in(language, TO_BE_SO(what=_in(each.says, language))))
         typer.echo(say_in(language, SEEN(what=finding_in(language, each.evidence))) + "\n")
     if verdict.findings and verdict.findings[0].story:
-        typer.echo("\n".join(verdict.findings[0].story) + "\n")
+        typer.echo("\n".join(_in_story(each, language) for each in verdict.findings[0].story) + "\n")
     if (work.where / STORY).is_file() and not verdict.passes:
         typer.echo(f"{invocation.command()} replay {shlex.quote(str(work.where / STORY))} --page\n")
     typer.echo(f"{work.exercise}: {say_in(language, PASSES() if verdict.passes else FAILS())}")
+
+
+def _in_story(line: str, language: str) -> str:
+    """A line of a story: its time, and what happened then."""
+    time, found, what = line.partition(" s  ")
+    return f"{time}{found}{finding_in(language, what)}" if found else line
 
 
 def _in(text: Text, language: str) -> str:

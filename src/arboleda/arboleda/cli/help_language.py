@@ -13,6 +13,7 @@ from click import HelpFormatter
 from arboleda.web.languages.templates import Templates
 
 from .language import help_words
+from .misplaced_plant import advised
 
 WrongUse: type[Exception] = typer.BadParameter.__bases__[0]  # typer exports only that one of its errors
 VERBATIM = "\b"  # typer keeps the lines of such a paragraph as they are
@@ -54,8 +55,8 @@ def _slot(name: str, value: str) -> str:
 
 
 def speaking(context: Any) -> Any:
-    """The context of a command whose help is written in the language of the terminal."""
-    return _speaking(context) if help_words("help") else context
+    """The context of a command: its help and its errors are for the language of the terminal."""
+    return _speaking(context, has_words=bool(help_words("help")))
 
 
 def complain(error: Any) -> None:
@@ -121,8 +122,12 @@ def _frame(word: str) -> str:
 
 
 @cache
-def _speaking(context: Any) -> Any:
-    return type(context.__name__, (context,), {"formatter_class": HelpWriter})
+def _speaking(context: Any, *, has_words: bool) -> Any:
+    def fail(self: Any, message: str) -> None:
+        context.fail(self, advised(message, self.command))
+
+    writer = HelpWriter if has_words else context.formatter_class
+    return type(context.__name__, (context,), {"formatter_class": writer, "fail": fail})
 
 
 @cache

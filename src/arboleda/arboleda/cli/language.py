@@ -95,6 +95,15 @@ def finding_in(language: str, text: str) -> str:
     return findings(language)(text)
 
 
+def step_name(text: str) -> str:
+    """The name of a step, in this language."""
+    if language() == FIRST:
+        return text
+    from arboleda.dashboard.findings import step_names
+
+    return step_names(language())(text)
+
+
 def _of_data(english: str, key: object, values: object) -> Sentence:
     if not isinstance(key, str) or not isinstance(values, Mapping):
         return OWN(text=english)

@@ -13,10 +13,10 @@ from arboleda.client.line import events_in, stands_by
 from arboleda.client.protocol import BEAT_S, COMMAND_LINE, PLANT
 from arboleda.model.errors import ArboledaError
 from arboleda.model.outside import plain
-from arboleda.model.sentence import Phrase
+from arboleda.model.sentence import Phrase, Sentence
 from arboleda.runtime.endpoints import Place
 
-from .language import say
+from .language import finding, say, say_row
 
 LONGEST = 300  # characters of what another host says that are shown
 UNAUTHORIZED = 401
@@ -47,6 +47,13 @@ class Answer:
 
 
 SILENT = Phrase("cli.line.silent", "{name} did not answer.")
+LEADER_CHANGES = Phrase(
+    "cli.line.leader_changes",
+    "{name}, but what answers at {url} stands by: the leader changes just now, or that address leads to "
+    "another process; try again in some seconds.",
+)
+REFUSES = Phrase("cli.line.refuses", "{name}, which refuses this at {url}: {why}")
+REFUSES_TOKEN = Phrase("cli.line.refuses_token", "{refusal} {advice}")
 
 
 class Line:
@@ -55,7 +62,7 @@ class Line:
     connect_s = TIMEOUT_S
     host = "this host"
 
-    def __init__(self, place: Place, name: str) -> None:
+    def __init__(self, place: Place, name: Sentence) -> None:
         self.place = place
         self._name = name
 
@@ -118,26 +125,23 @@ class FarLine(Line):
 
     connect_s = CONNECT_S
 
-    def __init__(self, place: Place, name: str, host: str, token_advice: str) -> None:
+    def __init__(self, place: Place, name: Sentence, host: str, token_advice: Sentence) -> None:
         super().__init__(place, name)
         self.host = host
         self._token_advice = token_advice
 
     def _refusal(self, answer: Answer) -> ArboledaError:
         if answer.stands_by:
-            return ArboledaError(
-                f"{self._name}, but what answers at {self.place.url} stands by: the leader changes just now,"
-                " or that address leads to another process; try again in some seconds."
-            )
+            return ArboledaError(LEADER_CHANGES(name=self._name, url=self.place.url))
         if answer.status in OWN or (answer.is_for_now and answer.status not in BY_STATUS):
             return super()._refusal(answer)
-        sentence = f"{self._name}, which refuses this at {self.place.url}: {answer.sentence}"
-        return ArboledaError(
-            f"{sentence} {self._token_advice}" if answer.status == UNAUTHORIZED else sentence
-        )
+        refusal = REFUSES(name=self._name, url=self.place.url, why=plain(say_row(answer.body), LONGEST))
+        if answer.status == UNAUTHORIZED:
+            return ArboledaError(REFUSES_TOKEN(refusal=refusal, advice=self._token_advice))
+        return ArboledaError(refusal)
 
     def _silent(self, error: NoAnswer) -> str:
-        return f"{self._name}{error.clause}"
+        return f"{say(self._name)}{finding(error.clause)}"
 
 
 def _answer(reply: Reply) -> Answer:

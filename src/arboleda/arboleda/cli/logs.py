@@ -28,7 +28,6 @@ STEPS, EVENTS = (
     "/arboleda/steps",
     "/arboleda/events",
 )  # topics of records, written here as their module is slow to import
-STARTED = "started"
 LONGEST = 500  # characters of a line
 WHAT = "Show what became of tasks and cells and what operators did, of all starts that are recorded."
 HOW = "Times are local, with date. What a plant that runs did last is in its record after 2 s at most."
@@ -39,6 +38,8 @@ File = Annotated[
 ]
 NEWS = frozenset({"held", "stopped", "aborted"})  # states of cells that nothing else says
 Told = tuple[str, int, bytes]  # topic, ns of Unix time, content
+STARTED = Phrase("cli.logs.started", "started")
+OF_ALL = Phrase("cli.logs.of_all", "plant")  # where no cell is named
 LEFT_OUT = Phrase("cli.logs.left_out", "left out: {error}")
 NO_SUCH_CELL = Phrase("cli.logs.no_cell", "no record has a cell '{cell}'; {others}")
 WAS_AWAY = Phrase("cli.logs.was_away", "the plant was away for {seconds} s")
@@ -72,7 +73,7 @@ def logs(
             messages = _followed(path, folder(plant, state)) if goes_on else _all(reader.opened(path))
             began = reader.opened(path).first
             if cell is None:
-                _print(began.began_ns, f"{STARTED:<9} {began.beginning.plant}")
+                _print(began.began_ns, f"{say(STARTED()):<9} {began.beginning.plant}")
             for topic, unix_ns, data in messages:
                 for concerns, line in _lines(topic, json.loads(data)):
                     if cell in (None, concerns):
@@ -166,7 +167,7 @@ def _act(row: dict[str, Any]) -> str:
 
 def _refusal(row: dict[str, Any]) -> str:
     why = sentence_of(row.get("refusal"), say)
-    return say(REFUSED_VERB(verb=row["verb"], scope=row["scope"] or "plant", why=why)) if why else ""
+    return say(REFUSED_VERB(verb=row["verb"], scope=row["scope"] or OF_ALL(), why=why)) if why else ""
 
 
 def _absence(row: dict[str, Any]) -> str:
@@ -174,7 +175,7 @@ def _absence(row: dict[str, Any]) -> str:
 
 
 def _defect(row: dict[str, Any]) -> str:
-    return say(DEFECT(where=row["cell"] or "plant", error=row["error"]))
+    return say(DEFECT(where=row["cell"] or OF_ALL(), error=row["error"]))
 
 
 WRITERS = {

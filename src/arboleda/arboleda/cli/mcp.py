@@ -9,6 +9,7 @@ from typing import Annotated
 import typer
 
 from arboleda.model.errors import ArboledaError, StartError
+from arboleda.model.sentence import Phrase
 from arboleda.runtime import endpoints, invocation, tokens
 from arboleda.runtime.endpoints import Place
 from arboleda.runtime.state import find_running
@@ -22,6 +23,13 @@ machine. The plant file has to allow it (`assistants: read`, `propose` or `submi
 nothing before a person has approved it; the stop is there always. Over HTTP each call needs a token of the
 plant where the plant wants one, and has its role."""
 HOST = "127.0.0.1"
+NO_LIBRARY = Phrase(
+    "cli.mcp.no_library",
+    "The library mcp is not installed, which it needs: `{python} -m pip install 'arboleda[mcp]'`",
+)
+NONE_RUNS = Phrase(
+    "cli.mcp.none_runs", "No plant is running on {folder}; a person can start one with `arboleda up`."
+)
 Url = Annotated[
     str, typer.Option("--url", metavar="URL", help="The plant's address. [default: one that runs here]")
 ]
@@ -53,8 +61,7 @@ def mcp(
     except ImportError as error:
         if (error.name or "").partition(".")[0] not in ("mcp", "mcp_types"):
             raise
-        install = f"{invocation.python()} -m pip install 'arboleda[mcp]'"
-        raise StartError(f"The library mcp is not installed, which it needs: `{install}`") from error
+        raise StartError(NO_LIBRARY(python=invocation.python())) from error
 
     def place() -> Place:
         return _named(url, tokens) if url else _here(located(plant, state), role)
@@ -82,6 +89,6 @@ def _here(state: Path, role: Role) -> Place:
     """The plant that runs on a state directory, with the token of a role if it wants one."""
     running = find_running(state)
     if running is None or running.port is None:
-        raise ArboledaError(f"No plant is running on {state}; a person can start one with `arboleda up`.")
+        raise ArboledaError(NONE_RUNS(folder=str(state)))  # an assistant reads its English
     token = tokens.TokenFile(state)()[role] if running.guarded else ""
     return Place(url=running.url, plant=running.plant, token=token, certificate=running.certificate)

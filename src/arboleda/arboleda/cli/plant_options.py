@@ -22,7 +22,14 @@ if TYPE_CHECKING:
     from arboleda.store.task_rows import History
 
 LONGEST = 500  # characters of a line
+PLANT_VARIABLE = "ARBOLEDA_PLANT"  # of the environment, instead of --plant
 IN_FOLDER = Path("plant.yaml")  # as `arboleda new` calls it
+
+
+def is_typed(context: typer.Context, option: str) -> bool:
+    """True for an option of the command line; its variable of the environment is only a default."""
+    source = context.get_parameter_source(option)
+    return source is not None and source.name == "COMMANDLINE"
 
 
 def plant_here(named: Path | None) -> Path | None:
@@ -36,7 +43,7 @@ PlantFile = Annotated[
     typer.Option(
         "--plant",
         metavar="FILE",
-        envvar="ARBOLEDA_PLANT",
+        envvar=PLANT_VARIABLE,
         callback=plant_here,
         help=f"Plant file. [default: {IN_FOLDER} of this folder, else the shipped plant]",
     ),
@@ -46,7 +53,7 @@ RunningPlant = Annotated[
     typer.Option(
         "--plant",
         metavar="FILE",
-        envvar="ARBOLEDA_PLANT",
+        envvar=PLANT_VARIABLE,
         help=f"Plant file. [default: {IN_FOLDER} of this folder if it runs, else the plant that runs]",
     ),
 ]

@@ -14,7 +14,7 @@ from arboleda.model.sentence import Phrase
 from arboleda.plant_file.user_file import check_writable
 
 from .language import language, say
-from .plant_options import IN_FOLDER, StateFolder, folder, plant_here
+from .plant_options import IN_FOLDER, PLANT_VARIABLE, StateFolder, folder, is_typed, plant_here
 
 BUDGET = "10m"
 HELP = f"""Try every single fault at every moment of every recipe, and judge each run.
@@ -39,8 +39,16 @@ PlantArgument = Annotated[
     Path | None,
     typer.Argument(
         metavar="PLANT",
-        callback=plant_here,
         help=f"Plant file. [default: {IN_FOLDER} of this folder, else the shipped plant]",
+    ),
+]
+SamePlant = Annotated[
+    Path | None,
+    typer.Option(
+        "--plant",
+        metavar="FILE",
+        envvar=PLANT_VARIABLE,
+        help="The same as PLANT, as other commands have it.",
     ),
 ]
 Recipes = Annotated[
@@ -100,6 +108,7 @@ Jobs = Annotated[
 PAIRS_TAKE = Phrase(
     "cli.prove.pairs_take", "--pairs: all pairs take years; give a --budget that is a time, not {all}"
 )
+PLANT_TWICE = Phrase("cli.prove.plant_twice", "two plant files are named, {plant} and {other}; name one")
 NO_BUDGET = Phrase("cli.prove.no_budget", "--budget: {budget} is no time; write 30s, 10m, 2h or {all}")
 
 
@@ -109,7 +118,9 @@ def add_to(cli: typer.Typer) -> None:
 
 
 def prove(
+    context: typer.Context,
     plant: PlantArgument = None,
+    same_plant: SamePlant = None,
     recipe: Recipes = None,
     fault: Faults = None,
     budget: Budget = BUDGET,
@@ -130,6 +141,9 @@ def prove(
     from arboleda.campaigns.proof.proof_request import ProofRequest
     from arboleda.campaigns.workers import processors
 
+    if plant is not None and is_typed(context, "same_plant"):
+        raise typer.BadParameter(say(PLANT_TWICE(plant=str(plant), other=str(same_plant))))
+    plant = plant_here(plant or same_plant)
     is_read_along = json is not None and str(json) == STANDARD_OUTPUT
     json = None if is_read_along else json
     for file in (json, html, junit, tests, badge):

@@ -9,6 +9,7 @@ from functools import cached_property
 from pathlib import Path
 
 from arboleda.model.errors import ArboledaError
+from arboleda.model.sentence import Phrase, Sentence
 from arboleda.runtime import tokens
 from arboleda.runtime.endpoints import Place, with_tokens
 from arboleda.runtime.standby.leader import LeaderInfo, of_leader
@@ -17,11 +18,29 @@ from arboleda.web.access.auth import Role
 
 from .line import FarLine
 
+NOBODY_LEADS = Phrase("cli.remote.nobody_leads", "Nobody leads the plant of {plant} now.")
+LED_ON = Phrase("cli.remote.led_on", "Plant {plant} is led on {host}")
+NEAR_ONLY = Phrase(
+    "cli.remote.near_only",
+    "{led}, at {url}, which is reached from {host} alone: start both hosts with `--host ADDRESS`, 0.0.0.0 or "
+    "an address that other hosts reach.",
+)
+NO_ADDRESS = Phrase(
+    "cli.remote.no_address", "{led}, which has not said its address yet; try again in some seconds."
+)
+NOT_VALID = Phrase("cli.remote.not_valid", "the token that was shown is not valid there")
+NO_TOKEN = Phrase("cli.remote.no_token", "no token is known for it")
+TOKEN_ADVICE = Phrase(
+    "cli.remote.token_advice",
+    "({why}): copy {tokens} of the state directory there into {state}, or write `{plant} TOKEN` into a file "
+    "and name that by --tokens or $ARBOLEDA_TOKENS.",
+)
+
 
 class NoLeader(ArboledaError):
     """Nobody leads the plant; `awaited` where somebody stands by, who will."""
 
-    def __init__(self, sentence: str, *, awaited: bool) -> None:
+    def __init__(self, sentence: Sentence, *, awaited: bool) -> None:
         super().__init__(sentence)
         self.awaited = awaited
 
@@ -59,25 +78,19 @@ class RemotePlant:
         finally:
             others.close()
         if not leader.leads:
-            raise NoLeader(f"Nobody leads the plant of {others.name} now.", awaited=bool(leader.standbys))
+            raise NoLeader(NOBODY_LEADS(plant=others.name), awaited=bool(leader.standbys))
         return of_leader(plant, leader)
 
     def line(self, led: LeaderInfo) -> FarLine:
         """The line to the leader; ArboledaError if none of its addresses can be reached from here."""
-        named = f"Plant {led.plant} is led on {led.host}"
+        named = LED_ON(plant=led.plant, host=led.host)
         if led.is_far:
-            raise ArboledaError(
-                f"{named}, at {led.url}, which is reached from {led.host} alone: start both hosts with"
-                " `--host ADDRESS`, 0.0.0.0 or an address that other hosts reach."
-            )
+            raise ArboledaError(NEAR_ONLY(led=named, url=led.url, host=led.host))
         if not led.way:
-            raise ArboledaError(f"{named}, which has not said its address yet; try again in some seconds.")
+            raise ArboledaError(NO_ADDRESS(led=named))
         place = self._place(led)
-        shown = "the token that was shown is not valid there" if place.token else "no token is known for it"
-        advice = (
-            f"({shown}): copy {tokens.TOKENS} of the state directory there into {self._state}, or write"
-            f" `{led.plant} TOKEN` into a file and name that by --tokens or $ARBOLEDA_TOKENS."
-        )
+        why = NOT_VALID() if place.token else NO_TOKEN()
+        advice = TOKEN_ADVICE(why=why, tokens=tokens.TOKENS, state=str(self._state), plant=led.plant)
         return FarLine(place, named, led.host, advice)
 
     def _place(self, led: LeaderInfo) -> Place:

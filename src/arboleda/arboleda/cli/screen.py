@@ -222,7 +222,7 @@ def _devices(cells: list[dict[str, Any]], robots: dict[str, dict[str, Any]]) -> 
         words = (
             ", ".join(having),
             name,
-            device["kind"],
+            word("device_kind", device["kind"]),
             state,
             ", ".join(filter(None, [says(robot), *held])),
             _last_command(robot),
@@ -241,7 +241,7 @@ def _last_command(robot: dict[str, Any]) -> str:
 
 def says(robot: dict[str, Any]) -> str:
     """The position of a robot, and each of its facts by name."""
-    facts = [f"{name} {fact(name, value)}" for name, value in robot["facts"].items()]
+    facts = [f"{word('fact', name)} {fact(name, value)}" for name, value in robot["facts"].items()]
     return ", ".join([*place(robot), *facts])
 
 

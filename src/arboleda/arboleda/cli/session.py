@@ -24,7 +24,7 @@ from arboleda.runtime.log_queue import LogQueue, log_to
 from arboleda.runtime.waiting import interruptible, taken_from, until_interrupted
 
 from .errand import Errand
-from .language import say
+from .language import finding, say
 from .screen import LONGEST, Screen, logged, parting, summary
 
 NO_ROS = Phrase(
@@ -134,7 +134,7 @@ class Session:
 
     def _tell_notes(self) -> None:
         for line in self._app.notes:
-            self._console.print(Text(line, style="dim"))
+            self._console.print(Text(finding(line), style="dim"))
 
     def _finished(self) -> None:
         if not self._errand.texts or self._stopping:

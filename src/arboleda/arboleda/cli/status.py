@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from contextlib import suppress
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 from rich.console import Console
@@ -13,8 +13,12 @@ from rich.live import Live
 from arboleda.client.errors import NoAnswer
 
 from .client import PlantClient, PlantGone
+from .language import finding, step_name
 from .plant_options import RunningPlant, StateFolder, StoreAddress, TokensFile, client
 from .screen import table
+
+STEP = "step"  # the key of its name
+SENTENCES = frozenset({"held_by", "not_ready", "obstacle", "said", "what"})  # keys of a snapshot
 
 
 def add_to(cli: typer.Typer) -> None:
@@ -42,7 +46,7 @@ def status(
     if as_json:
         print(json.dumps(snapshot, indent=2, ensure_ascii=False))
         return
-    Console(highlight=False).print(table(snapshot))
+    Console(highlight=False).print(table(spoken(snapshot)))
 
 
 def _watch(reached: PlantClient, *, as_json: bool) -> None:
@@ -55,4 +59,15 @@ def _watch(reached: PlantClient, *, as_json: bool) -> None:
         with Live(console=Console(highlight=False), auto_refresh=False) as live:
             for _ in reached.changes():
                 with suppress(NoAnswer):  # it may end between a change and the table of it
-                    live.update(table(reached.status()), refresh=True)
+                    live.update(table(spoken(reached.status())), refresh=True)
+
+
+def spoken(told: Any, name: str = "") -> Any:
+    """The answer of a plant with its sentences in this language: over HTTP they are English."""
+    if isinstance(told, dict):
+        return {key: spoken(value, key) for key, value in told.items()}
+    if isinstance(told, list):
+        return [spoken(each, name) for each in told]
+    if not isinstance(told, str):
+        return told
+    return step_name(told) if name == STEP else finding(told) if name in SENTENCES else told

@@ -13,6 +13,7 @@ from arboleda.model.sentence import Phrase
 
 from .complaint import FAILED, LONGEST, complain
 from .language import say_row, word
+from .misplaced_plant import no_plant_file
 from .plant_options import RunningPlant, StateFolder, StoreAddress, TokensFile, client
 
 UNDONE = {TaskState.FAILED.value, TaskState.CANCELLED.value}
@@ -25,8 +26,13 @@ def add_to(cli: typer.Typer) -> None:
 
 
 def submit(
-    task: Annotated[
-        str, typer.Argument(metavar="TASK", help="The task, e.g. 'sis_a 0B 7' or 'sis_a 0B 7 #lot42'.")
+    words: Annotated[
+        list[str],
+        typer.Argument(
+            metavar="TASK",
+            callback=no_plant_file,
+            help="The task, e.g. 'sis_a 0B 7' or 'sis_a 0B 7 #lot42'; the id needs quotes.",
+        ),
     ],
     wait: Annotated[
         bool, typer.Option("--wait", help="Print what becomes of it until it has ended.")
@@ -43,7 +49,7 @@ def submit(
     plant over meanwhile, --wait goes on there.
     """
     reached = client(plant, state, store, tokens)
-    answer = reached.submit(task)
+    answer = reached.submit(" ".join(words))
     _print_task(answer)
     if answer["state"] in UNDONE:
         complain(ArboledaError(TASK_OVER(id=answer["id"])))

@@ -19,7 +19,16 @@ from rich.text import Text
 from arboleda.model.messages import TaskState
 from arboleda.model.outside import plain
 from arboleda.model.sentence import Phrase
-from arboleda.store.task_rows import History, TaskQuery, TaskRow, answers_of, choice_of, table, unchecked_of
+from arboleda.store.task_rows import (
+    History,
+    TaskQuery,
+    TaskRow,
+    answers_of,
+    choice_of,
+    sentence_of,
+    table,
+    unchecked_of,
+)
 
 from . import plant_options
 from .language import say, word
@@ -179,8 +188,8 @@ def _columns(row: TaskRow) -> tuple[str, ...]:
     took = ""
     if row.started_s is not None and row.ended_s is not None:
         took = f"{row.ended_s - row.started_s:.1f} s"
-    texts = (plain(each) for each in (row.asked_by or "", row.id, row.text))
-    why = row.sentence or str(choice_of(row) or "")
+    texts = (plain(each) for each in (word("asked_by", row.asked_by or ""), row.id, row.text))
+    why = say(sentence_of(row) if row.sentence else choice_of(row) or "")
     return (
         at,
         *texts,

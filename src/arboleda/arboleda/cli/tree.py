@@ -21,6 +21,7 @@ from arboleda.views import tree_view
 from .client import PlantClient
 from .draw import Format, draw
 from .language import allowed, say
+from .misplaced_plant import no_plant_file
 from .plant_options import PlantFile, StateFolder, StoreAddress, TokensFile, client
 
 Drawn = Annotated[
@@ -49,6 +50,7 @@ def tree(
         str,
         typer.Argument(
             metavar="RECIPE",
+            callback=no_plant_file,
             help="The recipe to draw: storage, palletizing; or a task of it, 'sis_a 0B 7'; or a file of "
             "trees, tend.xml.",
         ),

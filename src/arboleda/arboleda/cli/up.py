@@ -27,6 +27,7 @@ from arboleda.runtime.web_options import WebOptions
 from arboleda.web.access.names import DEFAULT_PORT
 
 from .language import say
+from .misplaced_plant import no_plant_file
 from .plant_options import PlantFile, StateFolder, StoreAddress, folder
 from .up_options import (
     Boards,
@@ -61,6 +62,7 @@ ANOTHER_PLANT = Phrase(
     "Another plant beside it needs a directory and, on ROS 2, a domain of its own: "
     "ROS_DOMAIN_ID=N {command} ...",
 )
+IN_QUOTES = Phrase("cli.up.in_quotes", "a task of several words needs quotes: {task}")
 NEEDS_CERTIFICATE = Phrase("cli.up.needs_certificate", "{option} needs a certificate: --tls-cert FILE")
 CA_NEEDS_TLS = Phrase(
     "cli.up.ca_needs_tls", "--broker-ca is for boards that speak TLS: it needs --broker-tls"
@@ -130,7 +132,10 @@ def up(
 
 def run(
     tasks: Annotated[
-        list[str], typer.Argument(metavar="TASK", help="Tasks to do, e.g. 'sis_a 0B 7' 'sis_b 1C 3'.")
+        list[str],
+        typer.Argument(
+            metavar="TASK", callback=no_plant_file, help="Tasks to do, e.g. 'sis_a 0B 7' 'sis_b 1C 3'."
+        ),
     ],
     plant: PlantFile = None,
     ros: Ros = None,
@@ -178,8 +183,19 @@ def _model(plant: Path | None, tasks: list[str]) -> tuple[PlantModel, Recording 
         except TextError as error:
             problems.append(f"'{task}': {error}")
     if problems:
+        whole = " ".join(tasks)
+        if _is_task(whole, model):
+            problems = [say(IN_QUOTES(task=shlex.quote(whole)))]
         raise ConfigError(tuple(problems))
     return model, recording
+
+
+def _is_task(words: str, model: PlantModel) -> bool:
+    try:
+        text.alternatives(words, model)
+    except TextError:
+        return False
+    return True
 
 
 def _refuse_beside(tasks: list[str], plant: Path | None, state: Path | None) -> None:

@@ -13,6 +13,8 @@ from arboleda.model.errors import StartError
 from arboleda.runtime.rate import check_rate
 from arboleda.web.access.names import listen_address, public_origin
 
+from .misplaced_plant import no_plant_file
+
 
 class Boards(str, Enum):
     """The devices that answer on MQTT."""
@@ -179,5 +181,6 @@ DemoOption = Annotated[
     typer.Option("--demo", help="Give tasks without end, and have a virtual board fail now and then."),
 ]
 Tasks = Annotated[
-    list[str] | None, typer.Argument(metavar="TASK", help="Tasks to begin with, e.g. 'sis_a 0B 7'.")
+    list[str] | None,
+    typer.Argument(metavar="TASK", callback=no_plant_file, help="Tasks to begin with, e.g. 'sis_a 0B 7'."),
 ]

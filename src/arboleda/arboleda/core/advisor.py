@@ -168,14 +168,13 @@ class Advisor:
         by_routine = run.context.robots.homes_by_routine(robot)
         if by_routine:
             yield from _letting_go(run, robot)
-            if robot in run.cell.zone_users:
-                cells = [each.cell for each in self._runs[robot] if robot in each.cell.workspaces]
-                zones = frozenset[str]().union(*(cell.workspaces[robot].zones for cell in cells))
-                awaited = run.context.zones.awaited(robot, zones)
-                machines = set(run.cell.interlocked).intersection(awaited.values())
-                if any(run.context.robots.belief(each).moves for each in machines):
-                    return  # a machine at work comes to its end
-                yield from self._freeing(run, awaited, visited)
+            cells = [each.cell for each in self._runs[robot] if robot in each.cell.workspaces]
+            zones = frozenset[str]().union(*(cell.workspaces[robot].zones for cell in cells))
+            awaited = run.context.zones.awaited(robot, zones)
+            machines = {each for cell in cells for each in cell.interlocked}.intersection(awaited.values())
+            if any(run.context.robots.belief(each).moves for each in machines):
+                return  # a machine at work comes to its end
+            yield from self._freeing(run, awaited, visited)
             yield from _running_home(run, robot, why)
             return
         belief = run.context.robots.belief(robot)
@@ -244,13 +243,14 @@ def _letting_go(run: CellRun, robot: str) -> Iterator[Advice]:
 
 
 def _releasing(run: CellRun, robot: str, why: Sentence, *, instead: bool = False) -> Iterator[Advice]:
-    """To have a robot let go of its part, or to take that out by hand: first where it could not, and as
-    another way where it cannot be told to.
+    """To have a robot let go of its part, or to take that out by hand: first where it could not, or where
+    that needs what nobody brings about meanwhile; as another way where it cannot be told to.
     """
     release = Advice(do=Verb.RELEASE, scope=robot, why=why, drops=(robot,), instead=instead)
     by_hand = Advice(do=Verb.RELEASE, scope=robot, why=why, by_hand=True, instead=instead)
     obstacle = run.context.parts.obstacle_to_opening(robot)
-    if (Verb.RELEASE, robot) in run.in_vain:
+    unmet = obstacle is not None and obstacle.reason is Reason.PRECONDITION
+    if unmet or (Verb.RELEASE, robot) in run.in_vain:
         yield by_hand
         yield replace(release, instead=True)
         return

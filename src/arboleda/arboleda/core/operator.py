@@ -673,7 +673,7 @@ class Operator:
         return NOT_STILL(robots=moving) if moving else None
 
     def _clear(self, cell: CellRun, robots: set[str]) -> None:
-        kept = self._kept_stopped(cell, robots)
+        kept = self._kept_stopped(cell, robots.union(cell.cell.shared))
         was_stopped = cell.context.devices.is_stopped  # also if it was cleared: that may have got lost
         unstopped = {name for name in cell.cell.shared if not was_stopped(name)}
         for robot in cell.cell.robots:

@@ -483,7 +483,8 @@ class Plant:
     def _watch_zones(self) -> None:
         inside = self.zones.robots
         for name, cell in self.cells.items() if inside else ():
-            movers = filter(cell.context.devices.answers_for, cell.cell.zone_users)
+            # One that cells share may have homed for a cell without zones, and held those of another.
+            movers = filter(cell.context.devices.answers_for, cell.cell.workspaces)
             machines = filterfalse(cell.context.devices.is_lent, cell.cell.interlocked)
             for robot in (*movers, *machines):
                 if robot in inside:

@@ -10,7 +10,6 @@ from concurrent.futures import Future
 from typing import TypeVar
 
 from fastapi.concurrency import run_in_threadpool
-from nicegui import Client
 
 from arboleda.model.errors import ArboledaError
 from arboleda.model.messages import Outcome, Verb
@@ -23,6 +22,7 @@ from .feed import Feed
 from .open_page import OpenPage
 from .outcomes import Said
 from .page_api import PageApi
+from .toolkit import Client
 from .wording import Words
 
 ANSWER_S = 5.0

@@ -12,15 +12,18 @@ from arboleda.model.sentence import Phrase, Sentence
 from arboleda.web.languages import FIRST, contents
 from arboleda.web.languages.templates import FEW, Template, Templates
 
-from .wording import SENTENCES
+from .wording import REASONS as DRIVERS
+from .wording import SENTENCES, words
 
-GIVING = ("bt_xml", "core", "dispatch", "recipes", "trees", "wire")  # packages whose phrases are reasons
+GIVING = ("bt_xml", "core", "dispatch", "model", "recipes", "trees", "wire")  # whose phrases are reasons
 REASONS = frozenset(
     {
+        "advice",
         "command",
         "device",
         "effector",
         "need",
+        "next",
         "part",
         "path",
         "place",
@@ -30,6 +33,7 @@ REASONS = frozenset(
         "rejection",
         "robot",
         "script",
+        "task",
         "text",
         "tool",
         "why",
@@ -37,6 +41,8 @@ REASONS = frozenset(
         "zone",
     }
 )
+STEPS = frozenset({"step", "pose"})  # whose phrases are names of steps, and of where they lead
+POSES = "arboleda.plant_file.poses"
 DOING = "doing"  # of one word, too, as "homing", for they stand behind others
 
 
@@ -47,8 +53,21 @@ def findings(language: str) -> Templates:
         return Templates({})
     other: dict[str, str] = contents(language, "page").get(SENTENCES, {})
     reasons = {each.english: other[each.key] for each in plant_reasons() if each.key in other}
-    own: dict[str, str] = contents(language, "findings").get("sentences", {})
-    return Templates({**own, **reasons, **own})  # first, for of those that fit alike the first is taken
+    drivers = contents(language, DRIVERS)
+    own = contents(language, "findings").get("sentences", {}) | drivers
+    rows = {**own, **reasons, **own}  # first, for of those that fit alike the first is taken
+    return Templates(rows, ends=words(language).ends, of_devices=drivers)
+
+
+@cache
+def step_names(language: str) -> Templates:
+    """The templates of the names that steps have of themselves; in English there are none."""
+    if language == FIRST:
+        return Templates({})
+    other: dict[str, str] = contents(language, "page").get(SENTENCES, {})
+    told = (*_told(), *_of_module(POSES))
+    named = (each for each in told if each.key.partition(".")[0] in STEPS)
+    return Templates({each.english: other[each.key] for each in named if each.key in other})
 
 
 def plant_reasons() -> list[Phrase]:
@@ -60,8 +79,12 @@ def _told() -> Iterator[Phrase]:
     for name in GIVING:
         package = importlib.import_module(f"arboleda.{name}")
         for module in pkgutil.walk_packages(package.__path__, f"{package.__name__}."):
-            for value in vars(importlib.import_module(module.name)).values():
-                yield from _phrases(value)
+            yield from _of_module(module.name)
+
+
+def _of_module(name: str) -> Iterator[Phrase]:
+    for value in vars(importlib.import_module(name)).values():
+        yield from _phrases(value)
 
 
 def _is_reason(phrase: Phrase) -> bool:

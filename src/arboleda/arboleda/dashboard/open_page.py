@@ -5,11 +5,9 @@ from __future__ import annotations
 import json
 from collections.abc import Callable
 
-from nicegui import Client
-from nicegui.events import GenericEventArguments
-
 from arboleda.web.access.auth import Role
 
+from .toolkit import Client, GenericEventArguments
 from .wording import Words
 
 LONGEST = 300  # characters of a name that a browser sends

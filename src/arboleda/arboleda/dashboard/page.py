@@ -8,7 +8,6 @@ from typing import Annotated
 from fastapi import FastAPI, Query, Request
 from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import JSONResponse, Response
-from nicegui import Client, app, ui
 
 from arboleda.store.oee_rows import OeeQuery
 from arboleda.store.task_rows import TaskQuery
@@ -17,6 +16,7 @@ from arboleda.web.access.auth import Role
 from . import (
     demo,
     fault_form,
+    findings_route,
     header,
     links,
     make,
@@ -41,6 +41,7 @@ from .past.frame_queue import BESIDE_S, FrameQueue
 from .past.side import PastSide
 from .past.stills import Stills
 from .shell import is_operator, language_of, role_shown
+from .toolkit import Client, app, ui
 from .twin import pane, window
 from .twin.show import Show
 from .wording import words
@@ -107,6 +108,7 @@ def mount(server: FastAPI, plant: PageApi) -> None:
     _serve_tasks(server, plant, feed)
     reports.serve(server, plant)
     proof.serve(server, plant)
+    findings_route.serve(server, plant)
     shell.serve(server, plant.layout(), build)
     _keep_running(feed, show)
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from nicegui import Client
+from .toolkit import Client
 
 MOST = 40  # a browser opens its page within a second or two
 

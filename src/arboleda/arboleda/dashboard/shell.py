@@ -9,7 +9,6 @@ from functools import cache
 from importlib import resources
 
 from fastapi import FastAPI, Request
-from nicegui import Client, app, ui
 
 from arboleda.model.errors import StartError
 from arboleda.web.access.auth import Role
@@ -19,6 +18,7 @@ from arboleda.web.languages import spoken
 from .body import Parts, parts_of, script_data
 from .page_api import Layout
 from .page_budget import PageBudget
+from .toolkit import Client, app, ui
 from .wording import Words
 
 RECONNECT_S = 30.0

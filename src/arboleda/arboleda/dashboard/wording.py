@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
-from functools import cache
+from functools import cache, cached_property
 from typing import Any
 
 from arboleda.model.sentence import Phrase, Sentence
 from arboleda.views.verb_words import page_words
 from arboleda.web.languages import FIRST, contents
 from arboleda.web.languages import LANGUAGES as LANGUAGES  # of pages
+from arboleda.web.languages.templates import Templates
 
+ENDS = ("cell_state", "reason", "task_state")  # of a name in two of them the last one says it
+REASONS = "reasons"  # of drivers, which are words and no phrases
 SENTENCES = "sentences"  # the plant's sentences by key; English ones are in its phrases
 
 
@@ -20,6 +23,8 @@ class Words:
         self.language = language
         self._sentences: dict[str, str] = tree.get(SENTENCES, {})
         self._known: dict[Sentence, str] = {}
+        reasons = {} if language == FIRST else contents(language, REASONS)
+        self._reasons = Templates(reasons, of_devices=reasons)
         self.flat = {**_texts(english), **_texts(tree)}
 
     def __call__(self, key: str, **values: Any) -> str:
@@ -39,6 +44,23 @@ class Words:
         word, plain = self.of("cell_state", state), self.flat.get(f"cell_plain.{state}")
         return word if plain is None else f"{plain} ({word})"
 
+    @cached_property
+    def ends(self) -> dict[str, str]:
+        """The words for ends of tasks and their causes within a line, by the plant's own; none in English,
+        which says its own."""
+        if self.language == FIRST:
+            return {}
+        found = {
+            key.partition(".")[2]: text
+            for group in ENDS
+            for key, text in self.flat.items()
+            if key.startswith(f"{group}.")
+        }
+        return {
+            **{name: f"{text[:1].lower()}{text[1:]}" for name, text in found.items()},
+            **contents(self.language, "findings").get("ends", {}),
+        }
+
     def say(self, sentence: Sentence | str) -> str:
         """A sentence of the plant in this language; any other text, as of a user's own step, unchanged."""
         if isinstance(sentence, str):
@@ -47,7 +69,7 @@ class Words:
         if text is None:
             if len(self._known) > 2000:
                 self._known.clear()
-            text = self._known[sentence] = sentence.text_by(self._template)
+            text = self._known[sentence] = sentence.text_by(self._template, self._reasons)
         return text
 
     def _template(self, phrase: Phrase) -> str:

@@ -9,6 +9,7 @@ from dataclasses import replace
 from functools import partial
 
 from arboleda.model.commands import (
+    FRESH_S,
     Command,
     Home,
     Motion,
@@ -70,6 +71,7 @@ NOT_GIVEN_KEPT = 16  # of the last commands that never left
 HOMING_S = 30.0  # a slow search for the switch, and back off it
 BROKEN_OFF = frozenset({Reason.LINK_LOST, Reason.REBOOTED, Reason.STOPPED, Reason.CANCELLED, Reason.INTERNAL})
 """What befell a command that its device might have carried out."""
+UNWELL = frozenset({MotionState.FAULT, MotionState.NO_LINK})
 KNOWN_STILL = frozenset({Reason.STOPPED_SHORT, Reason.NOT_REACHED, Reason.STOPPED})
 
 
@@ -112,6 +114,8 @@ class Dispatcher:
         self.under_way = UnderWay(model)
         self.unfinished = Unfinished(model)
         self.unnamed = UnnamedCommands(model)
+        # By robot, the facts that a command was to set which has failed: what is reported of them may be old.
+        self._doubtful_facts: dict[str, set[str]] = {}
         self.unheard_clears: set[str] = set()  # robots whose stop was cleared while they were offline
         self.last_sent: dict[str, Entry] = {}  # each robot's last command, a stop or halt left out
         self._last_work: dict[str, Entry] = {}  # of each robot
@@ -156,6 +160,8 @@ class Dispatcher:
                 self.not_given.append(entry)
                 self.not_given_count += 1
             return entry
+        if isinstance(command, Switch) and (doubtful := self._doubtful_facts.get(command.robot)):
+            entry.must_be_named = any(name in doubtful for name, _ in command.sets)
         entry.origin = self.beliefs[command.robot].position
         entry.before = self.beliefs[command.robot].receipt
         entry.settles_at = self._settles_at(entry, now)
@@ -185,6 +191,7 @@ class Dispatcher:
 
     def cancel(self, entry: Entry, now: float) -> None:
         """Ask an open command to end, once: work that can be halted is, a query is forgotten."""
+        entry.is_abandoned = True
         if entry.state is State.CANCELLING or entry.finishes:
             return
         self.ledger.feed(entry.command.id, Feed.CANCEL, now)
@@ -377,15 +384,17 @@ class Dispatcher:
         if self.unnamed.ids.get(name):
             self.unnamed.hear(report)
         if name in self.unfinished.by_device:
-            is_well = belief.state is not MotionState.FAULT
-            if self.unfinished.hear(report, now, is_well=is_well):
+            was_heard = before is None or before.online
+            is_well = was_heard and belief.state not in UNWELL
+            if self.unfinished.hear(report, now, is_well=is_well, unnamed=self.under_way.ids.get(name, ())):
                 self.version += 1
                 self.ledger.changed |= self._cells_of[name]
         if name in self.under_way.ids or name in self.unheard_clears:
             self.under_way.hear(report, now)
             if belief.online:
                 self._say_again(belief, now)
-        if (held := belief.held_in(belief)) is not None:
+        held = belief.held_in(belief)
+        if held is not None and belief.online:  # what it said before its link was lost may be older
             self.effectors.settle(belief.robot.name, Grip.ON if held else Grip.OFF)
 
     def give_up(self, cell: str, failure: Failure, now: float) -> None:
@@ -393,6 +402,7 @@ class Dispatcher:
         self.version += 1
         for entry in self.ledger.of_cell(cell):
             self.ledger.feed(entry.command.id, Feed.FAILED, now, failure)
+            self._doubt(entry)
             if entry.halts:
                 self._stop(entry.command.robot, StopMode.HALT)
 
@@ -457,7 +467,9 @@ class Dispatcher:
             if belief.state is MotionState.STOP_LATCHED:
                 self._stop(name, StopMode.CLEAR)
         elif self.under_way.is_overdue(name, now) and not self.ledger.of_robot(name):
-            self._stop(name, StopMode.HALT)
+            is_awaited = self.unfinished.may_be_news(name, self.under_way.ids[name])
+            if is_awaited or name in self.under_way.movers:
+                self._stop(name, StopMode.HALT)
 
     def _facts_shown(self, belief: Belief) -> tuple[object, ...]:
         """The part of a belief to which trees and screens react: everything but positions."""
@@ -481,8 +493,8 @@ class Dispatcher:
             return None
         moving = obstacle is not None and obstacle.reason is Reason.REJECTED
         if moving and self._shows_its_own_end(command) and not self._breaks_its_work(command):
-            return None  # its last code may be older than the end of its last move, which was proven
-        if by_hand and obstacle:
+            obstacle = None  # its last code may be older than the end of its last move, which was proven
+        elif by_hand and obstacle:
             obstacle = self.beliefs[robot].obstacle_besides_stop(was=was)
         return obstacle or self._unmet(command, was=was)
 
@@ -517,9 +529,11 @@ class Dispatcher:
         return None
 
     def may_come_to_rest(self, robot: str) -> bool:
-        """True where a robot takes a command soon: it may have ended its last move, or was told to halt."""
-        halts = any(entry.state is State.CANCELLING for entry in self.ledger.of_robot(robot))
-        return halts or self._may_be_the_end_of_its_last_move(robot)
+        """True where a robot takes a command soon: it may have ended its last move, or nobody waits any more
+        for what it does.
+        """
+        abandoned = any(entry.is_abandoned for entry in self.ledger.of_robot(robot))
+        return abandoned or self._may_be_the_end_of_its_last_move(robot)
 
     def _may_be_the_end_of_its_last_move(self, robot: str) -> bool:
         """True where "moving" may be a late report of a move that the position has already proved done.
@@ -593,11 +607,22 @@ class Dispatcher:
         elif verdict.feed is Feed.REJECTED:
             self._reject(entry.command.robot, verdict.failure)
         failed = entry.state is State.FAILED and verdict.feed is not Feed.REJECTED
+        if failed:
+            self._doubt(entry)
         if failed and _may_still_come(entry, verdict):
             allowed_s = self._allowed_s(entry.command, self.timings[entry.cell])
-            self.unfinished.failed(entry.command, allowed_s, now)
+            self.unfinished.expect(entry.command, _arrives_s(entry, now) + allowed_s, now)
+        called_off = entry.state is State.CANCELLED and verdict.feed is Feed.HALTED and not verdict.failure
+        if called_off and _arrives_s(entry, now) > 0:  # reports of before it came show its device at rest
+            self.unfinished.expect(entry.command, _arrives_s(entry, now), now)
         if failed and entry.halts and verdict.failure and verdict.failure.reason not in KNOWN_STILL:
             self._stop(entry.command.robot, StopMode.HALT)
+
+    def _doubt(self, entry: Entry) -> None:
+        """Take what is reported of the facts of a failed command for old, until another of them is done."""
+        if entry.sets:
+            facts = self._doubtful_facts.setdefault(entry.command.robot, set())
+            facts.update(name for name, _ in entry.sets)
 
     def _reject(self, robot: str, failure: Failure | None) -> None:
         count, _ = self.rejected.get(robot, (0, None))
@@ -606,6 +631,8 @@ class Dispatcher:
         belief.barred |= stopped and belief.state is not MotionState.STOP_LATCHED
 
     def _done(self, command: Command) -> None:
+        if doubtful := self._doubtful_facts.get(command.robot):
+            doubtful.difference_update(name for name, _ in command.sets)
         if command.robot in self.unfinished.by_device:
             self.unfinished.done(command)
         if isinstance(command, Switch) and command.grips is not None:
@@ -635,11 +662,16 @@ def was_broken_off(entry: Entry) -> bool:
 def _may_still_come(entry: Entry, verdict: Verdict) -> bool:
     """True where a device may carry out a command that has failed.
 
-    A boot ends all, and work is halted; but of a link that was lost nobody knows if the command, or word of
-    its beginning, is still on its way.
+    A boot ends all, and work that does not go on to its end is halted; but of a link that was lost nobody
+    knows if the command, or word of its beginning, is still on its way.
     """
     reason = None if verdict.failure is None else verdict.failure.reason
-    return reason is Reason.LINK_LOST if entry.is_work else reason is not Reason.REBOOTED
+    return reason is Reason.LINK_LOST if entry.halts else reason is not Reason.REBOOTED
+
+
+def _arrives_s(entry: Entry, now: float) -> float:
+    """The time in which a command may still come to its device, which has not named it as accepted."""
+    return 0.0 if entry.accepted_at is not None else max(0.0, entry.sent_at + FRESH_S - now)
 
 
 def _lets_go(command: Command) -> bool:

@@ -356,6 +356,10 @@ def _set_as_reported(entry: Entry, belief: Belief, report: Report) -> Verdict | 
     """UInt8 commands carry no id over ROS 2: what the robot reports of it confirms a switch."""
     if not entry.sets:
         return Verdict(feed=Feed.DONE) if report.done == entry.command.id else None
+    if entry.must_be_named and report.number is not None:
+        entry.must_be_named = entry.command.id not in (report.accepted, report.done)
+        if entry.must_be_named:
+            return None
     is_set = all(report.fact(name) == value for name, value in entry.sets)
     return Verdict(feed=Feed.DONE) if is_set else None
 

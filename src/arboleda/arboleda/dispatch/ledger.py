@@ -89,10 +89,12 @@ class Entry:
         self.origin: Position | None = None  # where its robot was believed to stand then
         self.settles_at: float | None = None
         self.settled = False  # it counts as done because its time was over: nothing was reported of it
+        self.must_be_named = False  # a board proves it by its id only: a fact may be from before
         self.left = True  # False: its robot was not ready for it
         self.too_early = False  # it never left, because its robot was still moving
         self.state = State.SENT
         self.accepted_at: float | None = None
+        self.is_abandoned = False  # nobody waits for its end any more
         self.cancelled_at: float | None = None
         self.cancelled_after = Moment(0, -math.inf)
         self.failure: Failure | None = None

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 
 from arboleda.model.commands import Command, Switch, Work
 from arboleda.model.messages import Report
-from arboleda.model.plant_model import Evidence, MotionState, PlantModel, Robot
+from arboleda.model.plant_model import Cell, Evidence, MotionState, PlantModel, Robot
 
 from .evidence import QUIET_S
 
@@ -50,12 +50,16 @@ class UnderWay:
     Commands reach a board in order, so one that it took settles all before it. One that was rejected settles
     only itself: the bridge may have kept it. Of any other arm only work counts; it is settled by its end, or
     once the arm was heard for as long as an answer may take. `ids` are theirs by robot, oldest first.
+
+    Shared devices that hold parts and name commands are followed, too; `movers` are all others.
     """
 
     def __init__(self, model: PlantModel) -> None:
         names = (name for cell in model.cells for name in (*cell.zone_users, *cell.shared_movers))
         users = [model.robots[name] for name in names]
-        self._naming = frozenset(robot.name for robot in users if _names_commands(robot))
+        self.movers = frozenset(robot.name for robot in users)
+        holders = (model.robots[name] for cell in model.cells for name in _shared_holders(cell))
+        self._naming = frozenset(robot.name for robot in (*users, *holders) if _names_commands(robot))
         self._others = frozenset(robot.name for robot in users) - self._naming
         self.ids: dict[str, list[str]] = {}
         self._reporting_since: dict[str, float] = {}  # since the last one left
@@ -91,34 +95,51 @@ class UnderWay:
 
 
 class Unfinished:
-    """Commands that have failed at devices which zones depend on, and that may still come to their end.
+    """Commands that are over for the plant, and that may still be done, at devices which zones depend on, and
+    at those that cells hand on to each other without a part in them.
 
     A command is no longer one of them once its device names it as ended, has done another one of the same
     facts, or was heard without a fault for as long as a command like that may take; work no longer, either,
-    once the device has taken it and is at rest. A boot leaves none. `by_device` has them, each with the time
-    that it may take.
+    once the device has taken it and is at rest. A boot leaves none. What a shared device says may be older
+    than a command of which it has named neither that nor a later one, so the time in which it is heard begins
+    with such a name. `by_device` has the commands, each with the time that it may take.
     """
 
     def __init__(self, model: PlantModel) -> None:
-        self._devices = frozenset(name for cell in model.cells for name in cell.interlocked)
+        self._devices = frozenset(
+            name for cell in model.cells for name in (*cell.interlocked, *_shared_holders(cell))
+        )
         self.by_device: dict[str, list[tuple[Switch | Work, float]]] = {}
         self._well_since: dict[str, float] = {}
 
-    def failed(self, command: Command, allowed_s: float, now: float) -> None:
-        """A command has failed, whatever its device goes on with."""
+    def expect(self, command: Command, allowed_s: float, now: float) -> None:
+        """Expect of a device that it may still carry this command out, for so long."""
         if command.robot in self._devices and isinstance(command, (Switch, Work)):
             self.by_device.setdefault(command.robot, []).append((command, allowed_s))
             self._well_since[command.robot] = now
+
+    def may_grip(self, device: str) -> bool:
+        """True where one of them has the device hold a part."""
+        return any(
+            command.grips for command, _ in self.by_device.get(device, ()) if isinstance(command, Switch)
+        )
+
+    def may_be_news(self, device: str, unnamed: Collection[str]) -> bool:
+        """True where all that a device has said may be older than one of them, as that is unnamed."""
+        return any(command.id in unnamed for command, _ in self.by_device.get(device, ()))
 
     def done(self, command: Command) -> None:
         """A command is done: it has taken the place of those that set the same."""
         facts = {name for name, _ in command.sets}
         self._keep(command.robot, lambda other, _: facts.isdisjoint(name for name, _ in other.sets))
 
-    def hear(self, report: Report, now: float, *, is_well: bool) -> bool:
-        """A robot reports, well or with a fault; True where less of it is unfinished now."""
+    def hear(self, report: Report, now: float, *, is_well: bool, unnamed: Collection[str]) -> bool:
+        """A robot reports, well or with a fault; True where less of it is unfinished now.
+
+        `unnamed` are the commands of which it has named neither them nor a later one.
+        """
         before = self.by_device[report.robot]
-        if not is_well:
+        if not is_well or self.may_be_news(report.robot, unnamed):
             self._well_since[report.robot] = now
         well_s = now - self._well_since[report.robot]
         ended = {report.done, report.failed, report.rejected}
@@ -150,3 +171,8 @@ def _settle(ids: list[str], report: Report) -> None:
 
 def _names_commands(robot: Robot) -> bool:
     return robot.evidence is Evidence.IDS and robot.has_stop
+
+
+def _shared_holders(cell: Cell) -> tuple[str, ...]:
+    """The devices that a cell shares and that can hold a part."""
+    return tuple(name for name in cell.shared if name in cell.holders)

@@ -10,6 +10,8 @@ from .facts import Facts
 GO, GRIP, LET_GO = "go", "grip", "let_go"
 """The names of a robot's own commands in a plant file."""
 LABELS = ("id", "heard", "token")  # what a command carries on its way beside what it was made with
+FRESH_S = 2.0
+"""Time after which a board obeys a command no more, s: since it sent the telemetry that the command names."""
 Position = tuple[float, ...] | int
 """Where a robot is, as its kind reports it: the joints of an arm, the node of a mobile robot."""
 

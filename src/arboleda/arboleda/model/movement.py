@@ -44,6 +44,10 @@ class Movement:
         """The position as its motors can hold it."""
         return position
 
+    def is_between(self, position: Position, start: Position, end: Position) -> bool:
+        """True where a reported position is on the straight way from one position to another."""
+        return position in (start, end)
+
     def lifted(self, position: Position, heights: Sequence[Position]) -> Position:
         """The position, raised to all of these heights where that is possible."""
         return position

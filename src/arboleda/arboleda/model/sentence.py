@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 from typing import Any, Union
 
+FROM_ELSEWHERE = frozenset({"error", "text", "why", "word"})  # slots of words that others made, as a driver
 Value = Union[str, int, float, "Sentence", "tuple[Value, ...]"]
 
 
@@ -50,12 +51,18 @@ class Sentence:
     def key(self) -> str:
         return self.phrase.key
 
-    def text_by(self, template: Callable[[Phrase], str]) -> str:
-        """It in the language whose text for a phrase, with the same slots, is `template`.
+    def text_by(self, template: Callable[[Phrase], str], own: Callable[[str], str] = str) -> str:
+        """It in the language whose text for a phrase, with the same slots, is `template`; `own` says what
+        others worded.
 
         Of a value that says nothing its parentheses say nothing either.
         """
-        words = {slot: _text_of(value, template) for slot, value in self.values.items()}
+        words = {
+            slot: own(value)
+            if slot in FROM_ELSEWHERE and isinstance(value, str)
+            else _text_of(value, template, own)
+            for slot, value in self.values.items()
+        }
         text = template(self.phrase)
         for slot in [slot for slot, word in words.items() if word == ""]:
             text = text.replace(f" ({{{slot}}})", "")
@@ -150,11 +157,11 @@ def _english(phrase: Phrase) -> str:
     return phrase.english
 
 
-def _text_of(value: Value, template: Callable[[Phrase], str]) -> Any:
+def _text_of(value: Value, template: Callable[[Phrase], str], own: Callable[[str], str]) -> Any:
     if isinstance(value, Sentence):
-        return str(value) if template is _english else value.text_by(template)
+        return str(value) if template is _english else value.text_by(template, own)
     if isinstance(value, tuple):
-        return ", ".join(str(_text_of(each, template)) for each in value)
+        return ", ".join(str(_text_of(each, template, own)) for each in value)
     return value
 
 

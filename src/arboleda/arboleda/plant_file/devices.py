@@ -152,6 +152,8 @@ def _tools(
             how = f'declare it under "shared", with tool_of: {sharing[carrier]}'
             document.problem(here, f"{carrier} is shared, and so is what it carries; {how}")
             continue
+        if carrier in document.keys(place) and carrier not in members:
+            continue  # its mistakes are reported there, and what else keeps its kind from being known
         if carrier not in robots:
             there = f"must be {choice(robots)}" if robots else "no device of this cell is a robot"
             document.problem(here, f"{there}, is {shown(carrier)}{nearest(str(carrier), robots)}")

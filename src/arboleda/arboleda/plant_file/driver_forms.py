@@ -6,7 +6,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import MISSING, Field, dataclass, fields
 from enum import Enum
-from importlib.metadata import entry_points
 from types import UnionType
 from typing import Annotated, Any, Literal, Union, get_args, get_origin, get_type_hints
 
@@ -15,6 +14,7 @@ from arboleda.model.errors import ArboledaError
 from arboleda.model.outside import plain, quoted
 
 from .drivers import GROUP, OF_DEVICES
+from .packages import entry_points
 from .python_uses import LONGEST, error_text
 from .yaml_flow import flow
 from .yaml_marks import YamlFault, parse
@@ -126,7 +126,7 @@ def _spec(name: str, own: Mapping[str, DriverSpec]) -> DriverSpec:
     """The driver of that name: of the plant's own files, or installed."""
     if name in own:
         return own[name]
-    point = next(iter(entry_points(group=GROUP, name=name)), None)
+    point = next(iter(entry_points(group=GROUP).select(name=name)), None)
     if point is None:
         raise ArboledaError(f"{quoted(name)} is no driver that this plant can name")
     try:

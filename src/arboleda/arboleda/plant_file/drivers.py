@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from functools import partial
-from importlib.metadata import entry_points
 from typing import Any
 
 from pydantic.errors import PydanticSchemaGenerationError
@@ -17,6 +16,7 @@ from arboleda.recipes.storage_layout import ARM, MOBILE
 
 from . import settings
 from .document import Document, Place, choice, nearest, shown
+from .packages import entry_points
 from .python_uses import LONGEST, PythonUses, Spot, error_text, refused
 from .shared import SECTION as SHARED
 

@@ -34,7 +34,7 @@ class Scene:
     def without(self, keys: set[Key]) -> Scene:
         return Scene(known={key: value for key, value in self.known.items() if key not in keys})
 
-    @property
+    @cached_property
     def mark(self) -> frozenset[tuple[Key, Value]]:
         """The key that tells it from others."""
         return frozenset(self.known.items())

@@ -82,13 +82,15 @@ def load_recorded(path: Path | None = None) -> tuple[PlantModel, Recording | Non
     return plant, Recording(files=_files(document), limits=_limits(document) or Limits(), reports=reports)
 
 
-def load_with_files(path: Path | None = None, *, runs: bool = False) -> tuple[PlantModel, PlantFiles]:
-    """The same plant, and all files that were read for it.
+def load_with_files(
+    path: Path | None = None, *, runs: bool = False, apart: bool = True
+) -> tuple[PlantModel, PlantFiles]:
+    """The same plant, and all files that were read for it; `apart` as of `load`.
 
     With `runs` it is for a plant that runs in this process: Python that it has imported is not run again, and
     is a problem where it is another now.
     """
-    plant, document, *_ = _parsed(*_content(path), recipes=True, runs=runs)
+    plant, document, *_ = _parsed(*_content(path), recipes=True, runs=runs, apart=apart)
     return plant, _files(document)
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import fields
-from importlib.metadata import EntryPoint, entry_points
+from importlib.metadata import EntryPoint
 from typing import Any
 
 from pydantic import create_model
@@ -20,6 +20,7 @@ from arboleda.wire import mqtt_limits
 from .document import Document, Place, shown
 from .kinds import OF_FACTS, OF_STEPS, name_objection
 from .moving_kinds import as_read
+from .packages import entry_points
 from .python_uses import LONGEST, KindInPython, PythonUses, Spot, error_text, refused
 from .registry import COME_WITH_IT, IN_PYTHON, RESERVED
 from .robot_kind import RobotKind

@@ -10,8 +10,10 @@ from itertools import combinations as pairs
 from py_trees import behaviours, decorators, timers
 from py_trees.behaviour import Behaviour
 
+from arboleda.bt_xml.findings import Place as XmlPlace
 from arboleda.bt_xml.recipe import TreeRecipe
 from arboleda.bt_xml.running.errors import TreeMistakes
+from arboleda.bt_xml.running.node import Node
 from arboleda.core.plant import Plant
 from arboleda.model.commands import Work
 from arboleda.model.errors import ConfigError
@@ -22,6 +24,7 @@ from arboleda.model.task import Order
 from arboleda.recipes.errors import RoleError
 from arboleda.trees.context import Context
 from arboleda.trees.leaves import Act
+from arboleda.trees.tree_nodes import nodes_of
 from arboleda.views import tree_view
 
 from .document import Document, Place, choice, nearest, shown
@@ -157,7 +160,7 @@ class Trial:
                 self.used.where(error, spot).problem(f"{recipe.name} cannot be built: {error_text(error)}")
             ]
         objection = _objection(tree)
-        found = [] if objection is None else [spot.problem(f"{recipe.name} {objection}")]
+        found = [] if objection is None else [objection.at(spot).problem(f"{recipe.name} {objection.why}")]
         return [*found, *self._lost(recipe)]
 
     def _lost(self, recipe: Recipe) -> Iterator[str]:
@@ -174,28 +177,49 @@ class Trial:
         self.document.keep_those_of(ConfigError(tuple(problems)))
 
 
-def _objection(tree: Behaviour) -> str | None:
+@dataclass(frozen=True, kw_only=True)
+class _Objection:
+    """Objection to a tree, and the node of a file that it is about."""
+
+    why: str
+    place: XmlPlace | None = None
+
+    def at(self, spot: Spot) -> Spot:
+        """Its place in that file, or `spot` for a tree of Python."""
+        if self.place is None:
+            return spot
+        return Spot(file=self.place.file, line=self.place.mark.line, column=self.place.mark.column)
+
+
+def _objection(tree: Behaviour) -> _Objection | None:
     """The objection to a tree that could be built but would never end, or always fail."""
-    for device in _at_once(tree):
-        return f"has {device} do two things at once, in a parallel; it does one after the other: work(...)"
-    for node in tree.iterate():
-        for kind, instead in NOT_WOKEN.items():
-            if isinstance(node, kind):
-                return f"has a py_trees {kind.__name__} ({node.name}), which nothing wakes; take {instead}"
+    for device, place in _at_once(tree):
+        instead = "work(...)" if place is None else "a Sequence"
+        why = f"has {device} do two things at once, in a parallel; it does one after the other: {instead}"
+        return _Objection(why=why, place=place)
+    for node in nodes_of(tree):
+        for kind in type(node).__mro__:  # `isinstance` would ask each of their abstract classes
+            if kind in NOT_WOKEN:
+                instead = NOT_WOKEN[kind]
+                why = f"has a py_trees {kind.__name__} ({node.name}), which nothing wakes; take {instead}"
+                return _Objection(why=why)
     return None
 
 
-def _at_once(tree: Behaviour) -> Iterator[str]:
-    """The devices to which two branches of a parallel give work: the second would be refused."""
-    for node in tree.iterate():
+def _at_once(tree: Behaviour) -> Iterator[tuple[str, XmlPlace | None]]:
+    """The devices to which two branches of a parallel give work, as the second would be refused, each with
+    the place of the parallel in a file of XML.
+    """
+    for node in nodes_of(tree):
         branches = [_at_work(child) for child in node.children] if tree_view.kind(node) == "parallel" else []
         for one, other in pairs(branches, 2):
-            yield from sorted(one & other)
+            place = node.place if isinstance(node, Node) else None
+            yield from ((device, place) for device in sorted(one & other))
 
 
 def _at_work(branch: Behaviour) -> set[str]:
     """The devices that a part of a tree has move, or work by themselves."""
-    commands = [node.make(id="") for node in branch.iterate() if isinstance(node, Act)]
+    commands = [node.make(id="") for node in nodes_of(branch) if isinstance(node, Act)]
     return {command.robot for command in commands if isinstance(command, Work)}
 
 
@@ -239,9 +263,16 @@ def _sampled(words: Sequence[Sequence[str]], number: int) -> list[str]:
 
 
 def _without_value(cell: Cell, recipe: Recipe) -> str | None:
-    """The sentence that a parameter has no possible value in a cell, for want of targets; else None."""
+    """The sentence that a parameter has no possible value in a cell; else None. It is for want of targets, or
+    of the device that lists them.
+    """
     for each in recipe.parameters:
         if not each.words(cell):
+            if isinstance(recipe, TreeRecipe):
+                try:
+                    recipe.check_devices(cell)
+                except RoleError as error:
+                    return str(error)
             return f"{each.name} of {recipe.name} has no value to choose{_how_to_choose(cell, recipe, each)}"
     return None
 

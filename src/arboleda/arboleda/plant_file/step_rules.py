@@ -16,7 +16,7 @@ from arboleda.model.facts import Value
 from arboleda.recipes.authoring import FAIL, IS, NO_OTHER
 from arboleda.recipes.decorators import Again, AtMost, Forgiven, Inverted, Rescue, Times
 from arboleda.recipes.handles import FactCheck, FactWait
-from arboleda.trees.leaves import Act, Leaf, Require, Unless
+from arboleda.trees.leaves import Act, Approach, Leaf, Require, Unless
 
 from .foresight import Key, Scene, common
 from .parallel_scenes import Branches
@@ -34,6 +34,11 @@ def _act(walk: Walkthrough, node: Act, scenes: Sequence[Scene]) -> Outcome:
     command, answer = node.make(id=""), {answer_key(node)}
     done = tuple(walk.foresight.after(command, scene).without(answer) for scene in scenes)
     return Outcome(done=done, failed=walk.blurred(node, scenes))
+
+
+def _approach(walk: Walkthrough, node: Approach, scenes: Sequence[Scene]) -> Outcome:
+    """It may not be needed, and the move after it begins where it ends: that one says where the robot is."""
+    return Outcome(done=tuple(scenes), failed=walk.blurred(node, scenes))
 
 
 def _require(walk: Walkthrough, node: Require, scenes: Sequence[Scene]) -> Outcome:
@@ -190,6 +195,7 @@ def repeated(walk: Walkthrough, step: Behaviour, scenes: Sequence[Scene], times:
 RULES: Mapping[type, Rule] = {
     Leaf: _leaf,
     Act: _act,
+    Approach: _approach,
     Require: _require,
     Unless: _unless,
     FactCheck: _fact_check,

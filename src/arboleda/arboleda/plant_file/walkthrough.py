@@ -138,5 +138,8 @@ def answer_key(act: Behaviour) -> Key:
 
 def few(scenes: Iterable[Scene]) -> tuple[Scene, ...]:
     """The scenes, each once; of too many what they have in common."""
-    distinct = tuple({scene.mark: scene for scene in scenes}.values())
+    all_of_them = tuple(scenes)
+    if len(all_of_them) < 2:  # as mostly
+        return all_of_them
+    distinct = tuple({scene.mark: scene for scene in all_of_them}.values())
     return distinct if len(distinct) <= MOST_SCENES else common(distinct)

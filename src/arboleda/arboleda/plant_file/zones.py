@@ -79,7 +79,7 @@ def with_zones(document: Document, cell: Cell, all_zones: Sequence[Zone]) -> Cel
         spaces.append(zoned)
     zoned_cell = replace(cell, spaces=tuple(spaces))
     homes = [space.home for space in spaces if space.home.zones]
-    lying = {home.name: f"cell {cell.name}: {zone_plan.lying(home)}; {WAITS}" for home in homes}
+    lying = {home.name: f"in cell {cell.name}: {zone_plan.lying(home)}; {WAITS}" for home in homes}
     _keep_unplanned(document, cell, lying | plan_problems(zoned_cell), all_zones)
     locks = tuple(
         lock for zone in all_zones for lock in zone.interlocks if lock.device in _device_names(cell)
@@ -106,7 +106,7 @@ def _keep_confusions(document: Document, cell: Cell, space: Workspace, all_zones
     for found in confusions(space) if space.zones else ():
         zone = next(zone for zone in all_zones if zone.name == found.zone)
         spots = [Spot(cell=cell.name, pose=name) for name in found.named]
-        document.problem(zone.place(*spots), f"cell {cell.name}: {found.sentence}")
+        document.problem(zone.place(*spots), f"in cell {cell.name}: {found.sentence}")
 
 
 def _placed(cell: Cell, pose: Pose, all_zones: Sequence[Zone]) -> Pose:

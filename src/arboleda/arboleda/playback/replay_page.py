@@ -7,12 +7,10 @@ from typing import TYPE_CHECKING, Any
 from urllib.parse import urlencode
 
 from fastapi import FastAPI
-from starlette.exceptions import HTTPException
 
 from arboleda.dashboard.past import page
 from arboleda.dashboard.past.past import Past
 from arboleda.dashboard.past.side import Start
-from arboleda.model.errors import ArboledaError
 from arboleda.model.plant_model import PlantModel
 from arboleda.plant_file.urdf import robot_urdf
 from arboleda.runtime.parts.records import Records
@@ -21,7 +19,7 @@ from arboleda.views import view
 from arboleda.web.access.auth import Door
 from arboleda.web.access.guard import Guard
 from arboleda.web.access.names import LOCAL, names_for
-from arboleda.web.api import own_up, refuse
+from arboleda.web.api import answer_in_sentences
 from arboleda.web.server import Server
 
 if TYPE_CHECKING:
@@ -56,9 +54,7 @@ class RecordServer:
 
     def __init__(self, side: RecordedPast, port: int | None) -> None:
         app = FastAPI(docs_url=None, redoc_url=None, openapi_url=None, redirect_slashes=False)
-        app.add_exception_handler(ArboledaError, refuse)
-        app.add_exception_handler(HTTPException, refuse)
-        app.add_exception_handler(Exception, own_up)
+        answer_in_sentences(app)
         page.mount(app, side)
         self._server = Server(Guard(app, names_for(LOCAL, None), Door(None)), host=LOCAL, port=port)
 

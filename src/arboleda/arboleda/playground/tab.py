@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from arboleda.campaigns.request import Request
+from arboleda.dashboard.findings import findings
 from arboleda.dashboard.twin.bodies import Body
 from arboleda.model.errors import ArboledaError, ConfigError
 from arboleda.model.plant_model import PlantModel
@@ -49,14 +50,15 @@ class Tab:
         self._progress: Progress = _silent
 
     def hear(self, text: str, progress: Progress = _silent) -> str:
-        """Do what a request asks for; {"sentence"} says what cannot be done. `progress` hears from what takes
-        long which share of it is done, from 0 to 1."""
+        """Do what a request asks for; {"sentence"} says what cannot be done. What is found wrong is said in
+        the `language` of the request. `progress` hears from what takes long which share of it is done, from
+        0 to 1."""
         self._progress = progress
         request = json.loads(text)
         try:
             answer = DOES[request["do"]](self, request)
         except ArboledaError as error:
-            answer = {"sentence": str(error)}
+            answer = {"sentence": _translate(request, str(error))}
         return json.dumps(answer, default=in_json)
 
     def open(self, request: Row) -> Row:
@@ -125,17 +127,21 @@ class Tab:
         try:
             model, drawings = building.built(request["files"], request["plant"])
         except ConfigError as error:
-            return {"problems": [building.problem(each) for each in error.problems]}
+            return {"problems": [_problem(request, building.problem(each)) for each in error.problems]}
         self._playables[WORK] = Playable(model=model, drawings=drawings)
         return {"problems": []}
 
     def program(self, request: Row) -> Row:
         """Run a program of a lesson."""
-        return programs.run(request["files"], request["program"], request["arguments"], request["typed"])
+        found = programs.run(request["files"], request["program"], request["arguments"], request["typed"])
+        problem = found["problem"]
+        return found | {"problem": None if problem is None else _problem(request, problem)}
 
     def judge(self, request: Row) -> Row:
         """Judge a work; the first thing that is not so can be opened as STORY then."""
         verdict, film, model = judging.judged(request["exercise"], request["files"], self._progress)
+        for finding in verdict["findings"]:
+            finding["seen"] = _translate(request, finding["seen"])
         return verdict | self._filmed(film, model)
 
     def record(self, request: Row) -> Row:
@@ -165,6 +171,16 @@ class Tab:
     def _open(self) -> Session:
         assert self._session is not None  # the page opens a plant first
         return self._session
+
+
+def _translate(request: Row, text: str) -> str:
+    """A finding in the language of a request."""
+    return findings(spoken([request.get("language")]))(text)
+
+
+def _problem(request: Row, problem: Row) -> Row:
+    """A problem {file, line, text} in the language of a request."""
+    return problem | {"text": _translate(request, problem["text"])}
 
 
 def _shipped(name: str) -> Playable:

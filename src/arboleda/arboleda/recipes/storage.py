@@ -58,4 +58,4 @@ def plan_problems(cell: Cell) -> dict[str, str]:
         return {}
     place = StorageLayout(cell).palletizing.place
     rule = "palletizing ends and waits there, so it must be outside all zones"
-    return {place.name: f"cell {cell.name}: {zone_plan.lying(place)}; {rule}"} if place.zones else {}
+    return {place.name: f"in cell {cell.name}: {zone_plan.lying(place)}; {rule}"} if place.zones else {}

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from collections import deque
 
-FRESH_US = 2_000_000
+from arboleda.model.commands import FRESH_S
+
+FRESH_US = round(FRESH_S * 1e6)
 MARK_US = 250_000  # the resolution of a board's memory of telemetry times
 
 

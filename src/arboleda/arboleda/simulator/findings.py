@@ -8,7 +8,6 @@ from enum import Enum
 
 from arboleda.bt_xml.running.leaves import FAILS
 from arboleda.bt_xml.running.root import FAILED as TREE_FAILED
-from arboleda.core.plant import Plant
 from arboleda.dispatch.ledger import Entry, State
 from arboleda.model.messages import Reason, TaskChanged, TaskState
 from arboleda.recipes.authoring import FAIL
@@ -16,6 +15,7 @@ from arboleda.recipes.decorators import RESCUE_FAILED
 
 from .record import Record
 from .storage.tasks import NAMES
+from .truth.refused_commands import RefusedCommands
 from .world import World
 
 AS_WRITTEN = (FAIL.key, FAILS.key)  # steps that do nothing but fail
@@ -58,8 +58,7 @@ class Findings:
         self.as_written: Counter[Finding] = Counter()
         self._world = world
         self._record = record
-        self._plant: Plant | None = None
-        self._not_given_count = 0  # commands that were not given
+        self._refused_commands = RefusedCommands()
         self._refused: dict[str, list[Finding]] = {}  # by cell, of the task that runs there
         self._recipes: dict[str, str] = {}  # by cell, of the same task
         self._tasks: dict[str, str] = {}  # by cell, its text
@@ -67,34 +66,22 @@ class Findings:
     def look(self) -> None:
         """Take in a step; no fault has come until then."""
         record, plant = self._record, self._world.plant
-        if plant is not self._plant:
-            self._plant, self._not_given_count = plant, 0
-        if (
-            record.tasks.changes
-            or record.commands.moved
-            or plant.dispatcher.not_given_count != self._not_given_count
-        ):
-            self._take_in()
+        refused = self._refused_commands.fresh(plant) if plant.dispatcher.not_given_count else []
+        if refused or record.tasks.changes or record.commands.moved:
+            self._take_in(refused)
 
-    def _take_in(self) -> None:
+    def _take_in(self, refused: list[Entry]) -> None:
         changes = [change.message for change in self._record.tasks.changes if not change.answer]
         for task_change in changes:
             if task_change.state is TaskState.RUNNING and task_change.cell not in self._recipes:
                 self._began(task_change)
-        for entry in self._not_given():
+        for entry in refused:
             self._refuse(entry)
         for sent, _ in self._record.commands.moved:
             if sent.entry is not None and sent.entry.state is State.FAILED:
                 self._refuse(sent.entry)
         for task_change in changes:
             self._follow(task_change)
-
-    def _not_given(self) -> list[Entry]:
-        """The commands that did not leave in this step."""
-        dispatcher = self._world.plant.dispatcher
-        fresh = dispatcher.not_given_count - self._not_given_count
-        self._not_given_count += fresh
-        return list(dispatcher.not_given)[-fresh:] if fresh else []
 
     def _began(self, change: TaskChanged) -> None:
         self._recipes[change.cell or ""] = self._world.plant.intake.tasks[change.task].order.recipe

@@ -10,6 +10,7 @@ from .invariants.choices import CHOICES
 from .invariants.commands import COMMANDS
 from .invariants.devices import DEVICES
 from .invariants.hosts import HOSTS
+from .invariants.kinds import KINDS
 from .invariants.liveness import LIVENESS
 from .invariants.memory import MEMORY
 from .invariants.memory_bounds import BOOKS
@@ -54,6 +55,7 @@ INVARIANTS: tuple[Invariant, ...] = (
     *STARTS,
     *OVER_ALL_STARTS,
     *DEVICES,
+    *KINDS,
     *PLACES,
     *TEACHING,
 )

@@ -119,15 +119,15 @@ class JudgedWorld:
         """
         self._rests += 1
         self.end_faults()
-        tasks = self._look.record.tasks.open
+        tasks = self._look.record.tasks
         longest_s = WAITS * max((cell.zone_wait_s for cell in self.world.model.cells), default=0.0)
-        open_tasks, since, end = len(tasks), self.seconds, self.seconds + REST_S
-        while self.seconds < end and not (self._is_delivered() and self._judges.is_at_rest(self._look)):
+        open_tasks, since, end = len(tasks.open), self.seconds, self.seconds + REST_S
+        while self.seconds < end and not (self._is_quiet() and self._judges.is_at_rest(self._look)):
             self.world.advance(1.0)
-            ended = len(tasks) < open_tasks
-            if ended:
-                open_tasks, since = len(tasks), self.seconds
-            if ended or (self.world.plant.zones.waiting and self.seconds < since + longest_s):
+            before, open_tasks = open_tasks, len(tasks.open)
+            if open_tasks < before:
+                since = self.seconds
+            if open_tasks < before or (self.world.plant.zones.waiting and self.seconds < since + longest_s):
                 end = self.seconds + REST_S
         self._raise(self._judges.at_the_end(self._look))
         self.world.advance(STAYS_S, until)
@@ -137,12 +137,15 @@ class JudgedWorld:
         """Judge the whole now by the invariants that look at it every so often."""
         self._raise(self._judges.look_around(self._look))
 
-    def _is_delivered(self) -> bool:
-        """True if no message is under way: one that a fault has held may be a stranger's stop."""
+    def _is_quiet(self) -> bool:
+        """True if no message is under way, of which one that a fault held may be a stranger's stop, and no
+        board carries anything out, as it may with a switch that the plant has given up.
+        """
         world = self.world
         lines: list[Line] = [world.to_bridge, world.to_plant]
         lines += [line for client in world.broker.clients.values() for line in (client.up, client.down)]
-        return all(line.busy_until <= world.now for line in lines)
+        is_delivered = all(line.busy_until <= world.now for line in lines)
+        return is_delivered and all(board.body.next_change_us is None for board in world.boards.values())
 
     def _begin_expected(self, expected: tuple[int, Fault]) -> None:
         rests, fault = expected

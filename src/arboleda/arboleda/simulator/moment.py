@@ -29,7 +29,8 @@ class Moment:
     `last_words` are what a plant that died in the middle of its step was asked and had sent by then: the
     rest of that step is nobody's. `unkept` is what leaves a plant that ends as it can keep nothing more.
     `late` is what left only when a commit had taken its time, and how many s after its step; `undelivered`
-    are the commands of which the plant heard in this step that they did not leave.
+    are the commands of which the plant heard in this step that they did not leave. `outdated` are those of
+    `delivered` that a bridge had published before another process led, and that arrive only after that.
     """
 
     requests: list[Event] = field(
@@ -41,6 +42,7 @@ class Moment:
     published: list[tuple[str, Publication]] = field(default_factory=list)  # (client, what it published)
     ordered: list[Publication] = field(default_factory=list)  # what the bridge published of that
     delivered: list[tuple[str, Delivery]] = field(default_factory=list)  # (client, what reached it)
+    outdated: list[Delivery] = field(default_factory=list)
     former: list[Any] = field(default_factory=list)  # what left a process that another one had superseded
     writes: list[Any] = field(default_factory=list)  # what a store took that two hosts reach
     executed: list[tuple[str, Goal]] = field(default_factory=list)  # (board, command it carries out)
@@ -60,6 +62,7 @@ class Moment:
         self.published.clear()
         self.ordered.clear()
         self.delivered.clear()
+        self.outdated.clear()
         self.former.clear()
         self.writes.clear()
         self.executed.clear()

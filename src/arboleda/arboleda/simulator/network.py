@@ -83,7 +83,10 @@ def keeps_its_place(message: Any) -> bool:
 
 
 class Client:
-    """A process at the broker: its inbox, and whether it is connected."""
+    """A process at the broker: its inbox, and whether it is connected.
+
+    `superseded`: another process does its work by now. What it said before that may still be under way.
+    """
 
     def __init__(self, name: str, topics: Iterable[str]) -> None:
         self.name = name
@@ -91,6 +94,7 @@ class Client:
         self.inbox: list[Any] = []
         self.up, self.down = Line(), Line()
         self.connected = False
+        self.superseded = False
         self.connection = 0  # counts connections: what was under way in an earlier one is lost
         self.queue = 0  # counts queues at the broker: what waited in an earlier one is lost, presence apart
 
@@ -103,16 +107,20 @@ class Broker:
     """Takes publications from clients to the inboxes of those that listen, as `Delivery`.
 
     A publication that is not delayed anywhere is in the inbox before `publish` returns. `delivered` gets each
-    delivery, with the name of the client that it reached.
+    delivery, with the name of the client that it reached, and `outdated` those of these that a client had
+    published before it was superseded, and that arrive after that.
     """
 
-    def __init__(self, clock: Clock, at: At, delivered: list[tuple[str, Delivery]]) -> None:
+    def __init__(
+        self, clock: Clock, at: At, delivered: list[tuple[str, Delivery]], outdated: list[Delivery]
+    ) -> None:
         self.is_up = True
         self.retained: dict[str, Publication] = {}
         self.clients: dict[str, Client] = {}
         self._clock = clock
         self._at = at
         self._delivered = delivered
+        self._outdated = outdated
         self._lives = 0
         self._listeners: dict[str, list[Client]] = {}
 
@@ -137,17 +145,19 @@ class Broker:
     def publish(self, publication: Publication, sender: Client | None = None) -> None:
         """Publish for a sender; None: somebody outside the plant, or the broker with a client's last will."""
         now = self._clock.now
+        # What a process says once it is superseded is no message of before: it should say nothing.
+        of_before = None if sender is None or sender.superseded else sender
         if sender is None or (sender.connected and not sender.up.troubles and sender.up.busy_until <= now):
-            self._spread(publication, now)
+            self._spread(publication, now, of_before)
         elif sender.connected:
             for at in sender.up.carry(now, publication):
-                self._when(at, self._arrive, (self._lives, publication))
+                self._when(at, self._arrive, (self._lives, publication, of_before))
 
     def tell_retained(self, client: Client) -> None:
         """Deliver the retained messages to a client that has just subscribed."""
         for publication in self.retained.values():
             if publication.topic in client.topics:
-                self._send(client, publication, self._clock.now, retained=True)
+                self._send(client, publication, self._clock.now, None, retained=True)
 
     def die(self) -> None:
         """End every connection, and drop all that was retained or under way."""
@@ -163,37 +173,46 @@ class Broker:
         else:
             self._at(at, call, argument)
 
-    def _arrive(self, carried: tuple[int, Publication]) -> None:
-        life, publication = carried
+    def _arrive(self, carried: tuple[int, Publication, Client | None]) -> None:
+        life, publication, sender = carried
         if life == self._lives:
-            self._spread(publication, self._clock.now)
+            self._spread(publication, self._clock.now, sender)
 
-    def _spread(self, publication: Publication, now: float) -> None:
+    def _spread(self, publication: Publication, now: float, sender: Client | None) -> None:
         if not self.is_up:
             return
         topic, payload = publication.topic, publication.payload
         if publication.retain:
             self.retained[topic] = publication
         for client in self._listeners.get(topic, ()):
-            down = client.down  # `is_clear` is not called, here and above: every message comes by
+            down = client.down  # neither `is_clear` nor `_hand` is called: every message comes by here
             if client.connected and not down.troubles and down.busy_until <= now:
                 delivery = Delivery(at=now, topic=topic, payload=payload, retain=False)
                 self._delivered.append((client.name, delivery))
+                if sender is not None and sender.superseded:
+                    self._outdated.append(delivery)
                 client.inbox.append(delivery)
             else:
-                self._send(client, publication, now, retained=False)
+                self._send(client, publication, now, sender, retained=False)
 
-    def _send(self, client: Client, publication: Publication, now: float, *, retained: bool) -> None:
+    def _send(
+        self, client: Client, publication: Publication, now: float, sender: Client | None, *, retained: bool
+    ) -> None:
         if not client.connected:
             return
-        carried = (client, client.connection, client.queue, publication, retained)
+        carried = (client, client.connection, client.queue, publication, sender, retained)
         for at in client.down.carry(now, publication):
             self._when(at, self._hand_over, carried)
 
-    def _hand_over(self, carried: tuple[Client, int, int, Publication, bool]) -> None:
-        client, connection, queue, publication, retained = carried
+    def _hand_over(self, carried: tuple[Client, int, int, Publication, Client | None, bool]) -> None:
+        client, connection, queue, publication, sender, retained = carried
         if client.connection == connection and (client.queue == queue or keeps_its_place(publication)):
             topic, payload = publication.topic, publication.payload
             delivery = Delivery(at=self._clock.now, topic=topic, payload=payload, retain=retained)
-            self._delivered.append((client.name, delivery))
-            client.inbox.append(delivery)
+            self._hand(client, delivery, sender)
+
+    def _hand(self, client: Client, delivery: Delivery, sender: Client | None) -> None:
+        self._delivered.append((client.name, delivery))
+        if sender is not None and sender.superseded:
+            self._outdated.append(delivery)
+        client.inbox.append(delivery)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import deque
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from functools import cache
 from typing import Any
 
@@ -55,6 +55,7 @@ from .storage.works import Works
 from .world import BRIDGE, World
 
 NO_VERBS: frozenset[Verb] = frozenset()
+GIVEN_UP = (State.FAILED, State.CANCELLED)
 GETS_GOING = frozenset(verb for verb in Verb if verb.row.moves)
 SLOW_S = 10.0  # after the last sign of it, a bridge that stalled or a slow line may still have old reports
 
@@ -338,7 +339,7 @@ class Record:
                 self._retried(request.scope)
             elif isinstance(request, OperatorRequest) and request.verb is Verb.CANCEL:
                 self._may_be_cancelled(request.scope)
-        sent = {each.command.id for each in self.commands.new}
+        sent = {each.command.id: each.command for each in self.commands.new}
         if sent:
             self.commands.follow(self._plant.dispatcher.ledger, self._plant.now)
         self.works.follow(self.tasks, self.commands.new, self._plant.now)
@@ -353,6 +354,9 @@ class Record:
         self.lost_stops = [name for name in stopped if kept.get(name) != "on" and not undone]
         if words:
             self._take_over_stops()
+            for each in self.commands.open.values():
+                if each.entry is not None and each.entry.state in GIVEN_UP:
+                    self.starts.gave_up(each.command.id)
 
     def _take_over_stops(self) -> None:
         """Take over the stops on the disk: of a step in which the plant died, they show how far it got."""
@@ -434,6 +438,8 @@ class Record:
             cell = self.cells[sent.entry.cell] if sent.entry is not None else None
             if sent.state is State.DONE and cell is not None and cell.run.state is CellState.EXECUTE:
                 self.starts.went_on(sent.command.id)
+            elif sent.state in GIVEN_UP:
+                self.starts.gave_up(sent.command.id)
         if moved:
             self.proofs.follow(list(self.commands.open.values()))
             self._follow_homing()
@@ -543,7 +549,7 @@ class Record:
         if due:
             self._look_again_at = now + LOOK_S
         new = self.commands.new
-        sent = {each.command.id for each in new}
+        sent = {each.command.id: each.command for each in new}
         senders = {each.entry.cell for each in new if each.entry}
         for cell in self._cells:
             cell.watch_time(now, away=self.away)
@@ -551,20 +557,19 @@ class Record:
                 cell.look(sent)
                 self._follow_steps(cell, sent)
 
-    def _follow_steps(self, cell: KnownCell, sent: set[str]) -> None:
-        """Note the steps of the cell's task that gave the commands of this step."""
+    def _follow_steps(self, cell: KnownCell, sent: Mapping[str, Command]) -> None:
+        """Note the steps of the cell's task that gave the commands of this step, with their tokens."""
         run = cell.run
         if run.task is None or run.run.recovering:
             return
         for leaf in cell.leaves:
             entry = leaf.entry if isinstance(leaf, Act) else None
-            if entry is not None and entry.command.id in sent:
-                board = self.world.model.robots[entry.command.robot].mqtt
+            command = None if entry is None else sent.get(entry.command.id)
+            if command is not None:
+                board = self.world.model.robots[command.robot].mqtt
                 misled = self.world.deceptions[board, "ack"] > 0
                 path = turn_of(leaf)
-                self.starts.gave(
-                    Step(run.task.id, path, entry.command, self._start, cell.retries, misled=misled)
-                )
+                self.starts.gave(Step(run.task.id, path, command, self._start, cell.retries, misled=misled))
 
     def _on_command(self, command: Command) -> None:
         known = self.robots[command.robot]

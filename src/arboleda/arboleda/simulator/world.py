@@ -87,7 +87,7 @@ class World:
         self._agenda: list[tuple[float, int, Callable[[Any], None], Any]] = []
         self._agenda_no = count()
         self.skipped_s = 0.0  # of `now`, in which nobody did anything
-        self.broker = Broker(self, self.at, self.moment.delivered)
+        self.broker = Broker(self, self.at, self.moment.delivered, self.moment.outdated)
         self.to_bridge, self.to_plant = Hop(), Hop()  # the hop between plant and bridge
         self.beat_reached_bridge_at = -math.inf  # the last heartbeat, since the bridge started
         self.epoch_at_bridge = 0  # of the newest heartbeat that reached the bridge, since it started

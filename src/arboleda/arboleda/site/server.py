@@ -6,10 +6,8 @@ import threading
 from pathlib import Path
 
 from fastapi import FastAPI
-from starlette.exceptions import HTTPException
 
 from arboleda.dashboard.site import page
-from arboleda.model.errors import ArboledaError
 from arboleda.runtime import tokens
 from arboleda.runtime.endpoints import Find
 from arboleda.runtime.waiting import interruptible, until, until_interrupted
@@ -18,7 +16,7 @@ from arboleda.web.access import login
 from arboleda.web.access.auth import Door
 from arboleda.web.access.guard import Guard
 from arboleda.web.access.names import names_for
-from arboleda.web.api import own_up, refuse
+from arboleda.web.api import answer_in_sentences
 from arboleda.web.server import Server
 
 from .watch import Site
@@ -31,9 +29,7 @@ class SiteServer:
     def __init__(self, find: Find, options: WebOptions, state: Path) -> None:
         self._options, self._state = options, state
         app = FastAPI(docs_url=None, redoc_url=None, openapi_url=None, redirect_slashes=False)
-        app.add_exception_handler(ArboledaError, refuse)
-        app.add_exception_handler(HTTPException, refuse)
-        app.add_exception_handler(Exception, own_up)
+        answer_in_sentences(app)
         app.include_router(login.routes())
         page.mount(app, Site(find))
         door = Door(tokens.TokenFile(state) if options.guarded else None)

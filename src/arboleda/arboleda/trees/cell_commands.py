@@ -82,8 +82,14 @@ class CellCommands:
         return next(iter(self._dispatcher.ledger.of_robot(robot)), None)
 
     def may_come_to_rest(self, robot: str) -> bool:
-        """True where a robot takes a command soon: it may have ended its last move, or was told to halt."""
+        """True where a robot takes a command soon: it may have ended its last move, or nobody waits any more
+        for what it does.
+        """
         return self._dispatcher.may_come_to_rest(robot)
+
+    def finishes(self, robot: str) -> bool:
+        """True while a robot does work that goes on until it is finished."""
+        return self._dispatcher.finishes(robot)
 
     def _objection(self, command: Command) -> Failure | None:
         own: Failure | None = None

@@ -165,8 +165,12 @@ class CellDevices:
         return Failure(reason=Reason.ZONE_UNAVAILABLE, sentence=sentence)
 
     def is_as_left(self, device: str) -> bool:
-        """True for a shared device as cells leave it to each other: it holds no part, and is at home."""
-        return not self.may_hold(device) and self.is_home(device)
+        """True for a shared device as cells leave it to each other: it holds no part, and is at home.
+
+        That it says so proves nothing while it may still take one, on a command that is over for the plant.
+        """
+        may_grip = self._dispatcher.unfinished.may_grip(device)
+        return not may_grip and not self.may_hold(device) and self.is_home(device)
 
     def is_home(self, device: str) -> bool:
         """True for a shared robot that is seen at its home, outside all zones, and for what goes nowhere."""

@@ -74,9 +74,19 @@ class CellRobots:
             standing=standing, positions={name: at for name, at in known.items() if at is not None}
         )
 
+    def is_down_elsewhere(self, robot: str, goal: Pose) -> bool:
+        """True where a robot is at, or on the way down to, another target with an approach than its goal."""
+        space, here = self._cell.reach[robot], self.position(robot)
+        lifted = [(pose, pose.above) for pose in space.poses if pose.above is not None]
+        motion = space.robot.motion
+        if here is None or any(motion.stands_at(here, above) for _, above in lifted):
+            return False
+        down = [pose for pose, above in lifted if motion.is_between(here, pose.q, above)]
+        return bool(down) and goal not in down
+
     def risen(self, robot: str) -> Position:
         """The position of a robot, lifted as high as its highest approach; home where it is unknown."""
-        space, here = self._cell.workspaces[robot], self.position(robot)
+        space, here = self._cell.reach[robot], self.position(robot)
         heights = [pose.above for pose in space.poses if pose.above]
         return space.robot.motion.lifted(here, heights) if here is not None and heights else space.home.q
 

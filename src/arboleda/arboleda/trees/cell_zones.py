@@ -72,7 +72,8 @@ class CellZones:
         """Ask for zones, all at once; True once the robot has them.
 
         `inside`: a robot that stands in a zone may go on with what it holds, to get out, unless an operator
-        has freed a part of that meanwhile.
+        has freed a part of that meanwhile. One outside that holds a part of them, from before an operator or
+        another start of the plant, gives that back and asks for all.
         """
         held = self._zones.held_by(robot)
         if not held:
@@ -82,6 +83,8 @@ class CellZones:
             taken = trusted and self._zones.request(robot, zones, moves_over=True)
         else:
             taken = self._zones.regain(robot, zones) if inside else zones <= held
+            if not (taken or inside) and robot in self._zones.robbed and self.leave(robot):
+                taken = self._zones.request(robot, zones)
         if taken:
             self._remember(robot)
         return taken

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 
 from arboleda.dispatch.dispatcher import Dispatcher
 from arboleda.model.facts import shown
-from arboleda.model.plant_model import Cell, MotionState
+from arboleda.model.plant_model import Cell, Evidence, MotionState
 
 
 class Interlocks:
@@ -19,9 +19,10 @@ class Interlocks:
 
     def occupied_by(self, device: str) -> frozenset[str]:
         """The zones that a device may be in the way of: it does not report the contrary, or has a command
-        that leads there, or one that has failed and may still be carried out.
+        that leads there, or one that is over and may still be carried out.
 
-        What moves without a command of this plant may be on its way there.
+        What moves without a command of this plant may be on its way there, and so may what has not taken its
+        new work yet: it may still carry out what it was told before.
         """
         belief = self._dispatcher.beliefs[device]
         may_come = [entry.command for entry in self._dispatcher.ledger.of_robot(device)]
@@ -30,7 +31,7 @@ class Interlocks:
             each.zone
             for each in self._cell.interlocks_of(device)
             if not belief.online
-            or (belief.state is MotionState.MOVING and self._dispatcher.work_of(device) is None)
+            or (belief.state is MotionState.MOVING and not self._is_at_its_work(device))
             or any(belief.fact(name) != value for name, value in each.free_while)
             or any(map(each.is_ended_by, may_come))
         )
@@ -55,6 +56,12 @@ class Interlocks:
             if belief.fact(name) != value
         ]
         return tuple(dict.fromkeys(unsaid)) or None
+
+    def _is_at_its_work(self, device: str) -> bool:
+        """True while a device has work, and has named it as taken where it names its commands."""
+        work = self._dispatcher.work_of(device)
+        names_commands = self._dispatcher.model.robots[device].evidence is Evidence.IDS
+        return work is not None and (work.accepted_at is not None or not names_commands)
 
     def led_into(self, device: str, zones: Iterable[str]) -> frozenset[str]:
         """The zones that a device is in the way of once it is out of these, as a lift between two of them."""

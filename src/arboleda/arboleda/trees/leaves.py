@@ -31,6 +31,7 @@ KEPT_BY_MACHINE = Phrase(
 )
 WAITS_FOR_ZONE = Phrase("zone.waits_for", "waits for zone {zone}, which {other} holds")
 WAITS_FOR_ZONE_TURN = Phrase("zone.waits_for_turn", "waits for zone {zone}, which {other} asked for before")
+WAITS_TO_BE_OUTSIDE = Phrase("zone.waits_outside", "waits until {arm} is seen outside zone {zone}")
 WAITS_FOR_MACHINE = Phrase(
     "zone.waits_for_machine", "waits for {device}, which keeps its zone as long as it does not report {facts}"
 )
@@ -262,11 +263,17 @@ class Act(Leaf):
         return (self.guard() if self.guard is not None else None) or self.failures.opened_effector()
 
     def _waits_for_the_robot(self, entry: Entry) -> bool:
-        """True while the robot still moves and there is time; once it rests, it gets its command."""
-        if not entry.too_early or self.time.now >= self.patient_until:
+        """True while the robot still moves and there is time; once it rests, it gets its command.
+
+        Work that goes on whoever left it has a deadline of its own, and is waited for until then.
+        """
+        if not entry.too_early:
             return False
-        if not self.context.commands.may_come_to_rest(entry.command.robot):
+        commands, robot = self.context.commands, entry.command.robot
+        if not commands.may_come_to_rest(robot):
             self._give()
+        elif self.time.now >= self.patient_until and not commands.finishes(robot):
+            return False
         return self.entry is not None and self.entry.too_early
 
     def _wait(self) -> Status:
@@ -289,6 +296,19 @@ class Act(Leaf):
     def terminate(self, new_status: Status) -> None:
         if new_status is Status.INVALID:
             self._halt()
+
+
+class Approach(Act):
+    """A move to where the next one begins; done without a command where the robot is there already."""
+
+    is_there: Callable[[], bool]
+
+    def send(self) -> None:
+        """Give the command, unless none has left and the robot is seen there, also after it was silent."""
+        if not self.left and self.is_there():
+            self.proven = True
+        else:
+            super().send()
 
 
 class Dwell(Leaf):
@@ -497,6 +517,8 @@ class TakeZones(Await):
         if ahead := self.access.asked_before(self.robot):
             zone, other = ahead
             return WAITS_FOR_ZONE_TURN(zone=zone, other=other)
+        if own := self.access.held_by(self.robot):
+            return WAITS_TO_BE_OUTSIDE(arm=self.robot, zone=min(own))
         return NOTHING
 
     def _not_free(self) -> Failure:

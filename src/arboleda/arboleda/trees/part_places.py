@@ -40,12 +40,13 @@ OF_PLACE, OF_HAND, SURE, LETTING_GO = "=", ":", "+", "-"
 class HeldPart:
     """Part that a hand may hold: the `target` where it took it, None where no part was known to be.
 
-    `is_sure`: it has held it since; `lets_go`: it was told to let go.
+    `is_sure`: it has held it since; `lets_go`: it was told to let go, at `put_at` as far as that is known.
     """
 
     target: str | None = None
     is_sure: bool = False
     lets_go: bool = False
+    put_at: str | None = None
 
     def back(self, here: str | None) -> str | None:
         """The target at which the part lies once the hand is empty; None where it is lost."""
@@ -56,13 +57,19 @@ class HeldPart:
     @property
     def written(self) -> str:
         """The part as one word, which `read` reads."""
-        return (self.target or "") + SURE * self.is_sure + LETTING_GO * self.lets_go
+        letting_go = LETTING_GO + (self.put_at or "") if self.lets_go else ""
+        return (self.target or "") + SURE * self.is_sure + letting_go
 
     @classmethod
     def read(cls, word: str) -> HeldPart:
         """The part that such a word stands for."""
-        target = word.rstrip(SURE + LETTING_GO)
-        return cls(target=target or None, is_sure=SURE in word, lets_go=LETTING_GO in word)
+        taken, lets_go, put_at = word.partition(LETTING_GO)
+        return cls(
+            target=taken.rstrip(SURE) or None,
+            is_sure=SURE in taken,
+            lets_go=bool(lets_go),
+            put_at=put_at or None,
+        )
 
 
 class Places:
@@ -90,6 +97,7 @@ class Places:
                 self._of_device.setdefault(place.device, []).append(place.target)
         self._parts = {place.target: 0 for place in cell.counted}
         self._held: dict[str, HeldPart] = {}
+        self._left_there: dict[str, str] = {}  # by hand, the target whose part it was to take, and has not
         if self._parts:
             self._take_over(self._kept())
             for hand in self._hands:
@@ -239,22 +247,39 @@ class Places:
         """Take in a step of a part's way through a hand."""
         held = self._held.get(hand) or HeldPart()
         here = held.target
+        if handling in (Handling.TOLD_TO_TAKE, Handling.TOLD_TO_LET_GO):
+            self._left_there.pop(hand, None)
         if handling is Handling.TOLD_TO_TAKE:
             here = self._target(self._hands[hand])
             held = HeldPart(target=None if here in self._rack and not self._parts[here] else here)
             self._held[hand] = held
             self._move(here, -1, hand)
         elif handling is Handling.HELD:
+            late = self._left_there.pop(hand, None)
+            if late is not None and self._target(self._hands[hand]) in (late, None):
+                held = HeldPart(target=late)  # it takes the part after all
+                self._move(late, -1, hand)
             self._held[hand] = replace(held, is_sure=True)
         elif handling is Handling.TOLD_TO_LET_GO and hand in self._held:
-            self._held[hand] = replace(held, lets_go=True)
+            self._held[hand] = replace(held, lets_go=True, put_at=self._target(self._hands[hand]))
         elif handling in (Handling.EMPTY, Handling.TAKEN_OUT):
             self._held.pop(hand, None)
             if handling is Handling.EMPTY:
-                here = self._target(self._hands[hand]) if held.lets_go else None
-                self._move(held.back(here), +1, hand)
+                here = self._put_down_at(hand, held) if held.lets_go else None
+                back = held.back(here)
+                self._move(back, +1, hand)
+                if back is not None and not held.is_sure:
+                    self._left_there[hand] = back
         if self._places or not self._noted.isdisjoint((held.target, here)):
             self._keep()
+
+    def _put_down_at(self, hand: str, held: HeldPart) -> str | None:
+        """The target at which a hand has let go: that where it was told to, if its robot is not heard."""
+        space = self._hands[hand]
+        tells_position = space.robot.evidence is not Evidence.STATE
+        if tells_position and self._robots.position(space.robot.name) is None:
+            return held.put_at
+        return self._target(space)
 
     def _move(self, target: str | None, parts: int, hand: str) -> None:
         """Count parts of a hand; those of another cell's tasks not where people see to the place for each."""

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 from py_trees.behaviour import Behaviour
 
 from arboleda.model.commands import Command
@@ -12,7 +10,7 @@ from arboleda.model.plant_model import Path
 from arboleda.model.sentence import Phrase
 
 from .context import Context
-from .leaves import Act, Require
+from .leaves import Act, Approach, Require
 
 AT_START = Phrase("step.at_start", "at start")
 DRIVE = Phrase("step.drive", "drive path {path}")
@@ -22,19 +20,6 @@ DRIVING_TO = Phrase("doing.drive_to", "driving to node {node}")
 NOT_AT_START = Phrase(
     "path.not_at_start", "{mobile} stands on node {node}, path {path} starts at node {start}"
 )
-
-
-class Approach(Act):
-    """A drive to where the next one begins; done without a command where the robot is there already."""
-
-    is_there: Callable[[], bool]
-
-    def send(self) -> None:
-        """Give the command, unless none has left and the robot is seen there, also after it was silent."""
-        if not self.left and self.is_there():
-            self.proven = True
-        else:
-            super().send()
 
 
 def follow(context: Context, robot: str, path: Path) -> list[Behaviour]:

@@ -22,6 +22,7 @@ from .context import Context
 from .leaves import (
     Act,
     Announce,
+    Approach,
     Await,
     Carry,
     Dwell,
@@ -162,6 +163,7 @@ def tour(context: Context, robot: str, visits: Sequence[Visit]) -> list[Behaviou
         begins = [number for number, leg in enumerate(legs) if leg.start == index]
         needed = [partial(_zones_of_leg, context, robot, poses, number) for number in begins]
         steps += [TakeZones(TAKE_ZONES(), context, robot, zones) for zones in needed]
+        steps += _rise_first(context, robot, pose) if index == 0 else []
         steps += _at(context, robot, pose, *work)
         ends = [leg for leg in legs if leg.end == index + 1]
         steps += [LeaveZones(LEAVE_ZONES(), context, robot) for _ in ends]
@@ -185,7 +187,7 @@ def visit_from_anywhere(
     """
     space = context.cell.reach[robot]
     origin = Note(NOTE_ORIGIN(), partial(context.parts.note_origin, robot, pose))
-    steps = _at(context, robot, pose, origin, *work)
+    steps = [*_rise_first(context, robot, pose), *_at(context, robot, pose, origin, *work)]
     if not space.zones:
         return steps
 
@@ -350,14 +352,29 @@ def _go_where(context: Context, robot: str, where: Callable[[], Pose | None], *,
 
 def _rise(context: Context, robot: str) -> list[Behaviour]:
     """The first move, straight up, of a robot that may stand low; none without approach heights."""
-    space = context.cell.workspaces[robot]
-    if not any(pose.above for pose in space.poses):
+    if not any(pose.above for pose in context.cell.workspaces[robot].poses):
         return []
+    return [Act(RISE(), context, partial(_risen, context, robot), RISING())]
 
-    def make(id: str) -> Command:
-        return space.robot.go(id=id, way=(context.robots.risen(robot),))
 
-    return [Act(RISE(), context, make, RISING())]
+def _rise_first(context: Context, robot: str, goal: Pose) -> list[Behaviour]:
+    """The same move before one to a goal, where the robot is down at another target: the work there has
+    failed, and the recipe goes on all the same.
+    """
+    if not any(pose.above for pose in context.cell.reach[robot].poses if pose != goal):
+        return []
+    rise = Approach(RISE(), context, partial(_risen, context, robot), RISING())
+
+    def is_up() -> bool:
+        robots = context.robots
+        return not (robots.is_out_of_sight(robot) or robots.is_down_elsewhere(robot, goal))
+
+    rise.is_there = is_up
+    return [rise]
+
+
+def _risen(context: Context, robot: str, id: str) -> Command:
+    return context.cell.reach[robot].robot.go(id=id, way=(context.robots.risen(robot),))
 
 
 def _settle(context: Context, robots: Sequence[str]) -> Behaviour:

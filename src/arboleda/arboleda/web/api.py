@@ -14,8 +14,9 @@ from urllib.parse import quote
 
 from fastapi import APIRouter, FastAPI, Request
 from fastapi.concurrency import run_in_threadpool
-from fastapi.responses import JSONResponse, PlainTextResponse
-from pydantic import BaseModel, ValidationError
+from fastapi.exceptions import RequestValidationError
+from fastapi.responses import JSONResponse, PlainTextResponse, Response
+from pydantic import ValidationError
 from starlette.exceptions import HTTPException
 from starlette.routing import BaseRoute, Match
 from starlette.types import Receive, Scope, Send
@@ -54,7 +55,7 @@ from .schema.bodies import (
     VerbArguments,
 )
 from .schema.plain_json import PlainJson, explained
-from .schema.queries import WRONG, Answers, described, query_of
+from .schema.queries import WRONG, Answers, described, described_body, query_of, text_answer, wrong_parameter
 
 
 class NotFound(BaseRoute):
@@ -82,6 +83,7 @@ class NotFound(BaseRoute):
         return sorted({method for route in known for method in getattr(route, "methods", None) or ()})
 
 
+NOTHING_SENT = "No response returned."
 log = logging.getLogger(__name__)
 Answer = TypeVar("Answer")
 
@@ -120,7 +122,7 @@ ACCEPTED: Answers = {
     }
 }
 CONFLICT: Answers = {409: {"model": Sentence, "description": "The plant does not do this now."}}
-PROMETHEUS = "text/plain; version=0.0.4; charset=utf-8"
+CSV, PROMETHEUS = "text/csv; charset=utf-8", "text/plain; version=0.0.4; charset=utf-8"
 NO_ACT: Answers = {404: {"model": Sentence, "description": "The plant does not know this act (any more)."}}
 UNKNOWN: Answers = {404: {"model": Sentence, "description": "There is no such task."}}
 
@@ -132,7 +134,7 @@ def make_app(
 
     At most so many `streams` of changes are open at a time; `counts` is what Prometheus gets, in its format.
     """
-    app = FastAPI(
+    app = openapi.DescribedApp(
         title="Arboleda",
         version=__version__,
         description=ABOUT,
@@ -141,9 +143,7 @@ def make_app(
         openapi_url=None,
         redirect_slashes=False,
     )
-    app.add_exception_handler(ArboledaError, refuse)
-    app.add_exception_handler(HTTPException, refuse)
-    app.add_exception_handler(Exception, own_up)
+    answer_in_sentences(app)
     routers = [routes(side), *looks(side), stream.routes(side, streams), login.routes(), openapi.routes(app)]
     routers += [_metrics(counts)] if counts is not None else []
     for router in routers:
@@ -151,6 +151,14 @@ def make_app(
     app.router.routes.append(NotFound([route for router in routers for route in router.routes]))
     _read_routes(app)
     return app
+
+
+def answer_in_sentences(app: FastAPI) -> None:
+    """Have an application answer with a sentence where it refuses, and where it fails."""
+    app.add_exception_handler(ArboledaError, refuse)
+    app.add_exception_handler(HTTPException, refuse)
+    app.add_exception_handler(RequestValidationError, refuse_parameter)
+    app.add_exception_handler(Exception, own_up)
 
 
 def _read_routes(app: FastAPI) -> None:
@@ -163,7 +171,7 @@ def _metrics(counts: Callable[[], bytes]) -> APIRouter:
     """Register the route for Prometheus; `counts` may wait for the plant."""
     api = APIRouter()
 
-    @api.get(METRICS, response_class=PlainTextResponse)
+    @api.get(METRICS, response_class=Response, responses=text_answer(PROMETHEUS, "Counts and states."))
     async def metrics() -> PlainTextResponse:
         """Counts and states in the text format of Prometheus."""
         return PlainTextResponse(await run_in_threadpool(counts), media_type=PROMETHEUS)
@@ -201,11 +209,13 @@ def _look(api: APIRouter, side: PlantApi) -> None:
         rows = await run_in_threadpool(side.history, query_of(request, TaskFilter).query())
         return PlainJson([_kept(row) for row in rows])
 
-    @api.get("/history.csv", response_class=PlainTextResponse, **wanted)
+    as_table = wanted | {"responses": WRONG | text_answer(CSV, "The table.")}
+
+    @api.get("/history.csv", response_class=Response, **as_table)
     async def history_as_table(request: Request) -> PlainTextResponse:
         """Tasks of all starts as a table for other programs, with a line of names."""
         rows = await run_in_threadpool(side.history, query_of(request, TaskFilter).query())
-        return PlainTextResponse(table(rows), media_type="text/csv; charset=utf-8")
+        return PlainTextResponse(table(rows), media_type=CSV)
 
     @api.get("/tasks/{task_id}", response_model=Task, responses=UNKNOWN)
     async def task(task_id: str) -> JSONResponse:
@@ -232,7 +242,7 @@ def _submit(api: APIRouter, side: PlantApi) -> None:
         status_code=202,
         response_model=Task,
         responses=REFUSED,
-        openapi_extra=_body(TaskText, TaskForm),
+        openapi_extra=described_body(TaskText, TaskForm),
     )
     async def add_task(request: Request) -> JSONResponse:
         """Queue a task, written or as a form; 422 where it is refused, 503 where the queue is full."""
@@ -251,7 +261,7 @@ def _operate(api: APIRouter, side: PlantApi) -> None:
     verb_route: dict[str, Any] = {
         "response_model": Done,
         "responses": ACCEPTED | REFUSED | CONFLICT,
-        "openapi_extra": _body(VerbArguments, required=False),
+        "openapi_extra": described_body(VerbArguments, required=False),
     }
 
     @api.post("/plant/{verb}", **verb_route)
@@ -349,17 +359,22 @@ async def refuse(_request: Request, error: Exception) -> JSONResponse:
     return PlainJson(explained(body), status_code=status, headers=headers)
 
 
+async def refuse_parameter(request: Request, error: Exception) -> JSONResponse:
+    """The answer to a request of which a part of its address is wrong."""
+    assert isinstance(error, RequestValidationError)
+    return await refuse(request, wrong_parameter(error.errors()[0]))
+
+
 async def own_up(request: Request, error: Exception) -> JSONResponse:
-    """The answer to an internal error: its details go to the log, a sentence to the caller."""
-    log.error("%s %s failed: %s", plain(request.method), plain(quote(request.url.path)), plain(repr(error)))
+    """The answer to an internal error: its details go to the log, a sentence to the caller.
+
+    Starlette raises one, too, where the caller has gone before anything was sent; it is not logged.
+    """
+    if str(error) != NOTHING_SENT or not await request.is_disconnected():
+        log.error(
+            "%s %s failed: %s", plain(request.method), plain(quote(request.url.path)), plain(repr(error))
+        )
     return JSONResponse({"sentence": "The plant could not answer: internal error."}, status_code=500)
-
-
-def _body(*models: type[BaseModel], required: bool = True) -> dict[str, Any]:
-    """The OpenAPI description of a request body that is one of these models."""
-    schemas = [model.model_json_schema() for model in models]
-    schema = schemas[0] if len(schemas) == 1 else {"anyOf": schemas}
-    return {"requestBody": {"content": {"application/json": {"schema": schema}}, "required": required}}
 
 
 def _kept(row: TaskRow) -> dict[str, Any]:

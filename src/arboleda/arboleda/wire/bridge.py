@@ -20,6 +20,7 @@ from arboleda.model.sentence import as_sentence
 
 from . import epochs, rejections, topics
 from .board import Board, Counters, Message
+from .copies import COPY_S
 from .hop import FromPlant, is_stop, loses_its_id, without_id
 from .rejections import FOREIGN, Rejection
 from .topics import Channel
@@ -42,7 +43,7 @@ class Leaving:
 class UnconfirmedCopy:
     """Command without an id, reported as foreign at `due` unless it has proved to be a copy by then.
 
-    `known`: it was reported at once, or need not be.
+    `known`: it was reported, or need not be. Its original may come until `until`, and brings no other copy.
     """
 
     due: float
@@ -50,6 +51,15 @@ class UnconfirmedCopy:
     event: FromPlant
     refused: bool
     known: bool
+
+    @property
+    def until(self) -> float:
+        """The time up to which its original is waited for.
+
+        Where nobody but the plant publishes on its topic, it is a copy, however long before its original it
+        came. Where somebody else does, it may be theirs, and the plant may give the same command soon after.
+        """
+        return self.due if self.event.sender else self.event.at + COPY_S
 
 
 Event = FromPlant | Delivery | Connection | Leaving
@@ -185,6 +195,7 @@ class Bridge:
         if board.copies.take(at, command):
             return []
         if (late := self._late(at, command)) is not None:
+            self._unsure.append(UnconfirmedCopy(due=at, board=board, event=event, refused=True, known=True))
             return board.refuse(at, command, late, sender)
         commanded = self._is_commanded(at)
         refused = commanded and self._refuses_others and not is_stop(command)
@@ -202,9 +213,10 @@ class Bridge:
         return at < self._plant_beat_at + PLANT_GONE_S
 
     def _no_copies(self, now: float) -> list[Message]:
-        due = [each for each in self._unsure if each.due <= now]
-        self._unsure = [each for each in self._unsure if each.due > now]
-        return [message for each in due for message in self._report(each)]
+        out = [message for each in self._unsure if each.due <= now for message in self._report(each)]
+        told = [replace(each, known=each.known or each.due <= now) for each in self._unsure]
+        self._unsure = [each for each in told if each.until > now]
+        return out
 
     def _report(self, unsure: UnconfirmedCopy) -> list[Message]:
         if unsure.known:

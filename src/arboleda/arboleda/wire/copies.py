@@ -22,9 +22,12 @@ class Copies:
         self._expected.append((at, without_id(command)))
 
     def take(self, at: float, command: Command) -> bool:
-        """True if a command without an id is an expected copy; it is expected no more then."""
+        """True if a command without an id is an expected copy; it is expected no more then.
+
+        It is that of the latest equal command: a copy that never comes is expected no longer than COPY_S.
+        """
         self._forget(at)
-        for each in self._expected:
+        for each in reversed(self._expected):
             if each[1] == command:
                 self._expected.remove(each)
                 return True

@@ -9,7 +9,7 @@ from arboleda.wire.topics import Channel
 
 from .bench import MOVING, CheckSkipped, Send, Steps, Wait
 from .device_bench import DeviceBench, is_work
-from .device_procedures import at_rest, carry_out, lasting, lead_to
+from .device_procedures import NO_WORK, at_rest, carry_out, lasting, lead_to
 from .procedures import ANSWER_S, accepted, demand, rest, stop, unmoved
 
 HALT_S = 1.5
@@ -30,7 +30,7 @@ MALFORMED = (
 
 def works(bench: DeviceBench) -> Steps:
     """A motion or a process makes it report moving, and then standing still."""
-    command = yield from lead_to(bench, is_work, "motion and no process")
+    command = yield from lead_to(bench, is_work, NO_WORK)
     before = len(bench.reports)
     bench.beating = True
     yield bench.order(command)
@@ -56,7 +56,8 @@ def verbs(bench: DeviceBench) -> Steps:
     for verb in bench.kind.verbs.values():
         if verb.effect is Effect.QUERY:
             continue
-        yield from carry_out(bench, (yield from lead_to(bench, _calls(verb.name), f"way to {verb.name}")))
+        lacking = f"its kind has no way to {verb.name}"
+        yield from carry_out(bench, (yield from lead_to(bench, _calls(verb.name), lacking)))
 
 
 def _calls(verb: str) -> Callable[[VerbCall], bool]:

@@ -7,7 +7,7 @@ from arboleda.wire.topics import Channel
 
 from .bench import LATCHED, MOVING, CheckFailed, CheckSkipped, Send, Steps, Wait
 from .device_bench import DeviceBench, commands, is_work
-from .device_procedures import LEAST_S, at_rest, carry_out, lasting, lead_to, named
+from .device_procedures import LEAST_S, NO_VERB, NO_WORK, at_rest, carry_out, lasting, lead_to, named
 from .number_checks import SILENCE_S
 from .procedures import (
     ANSWER_S,
@@ -28,7 +28,7 @@ HALT_S = 1.5
 
 def numbers(bench: DeviceBench) -> Steps:
     """Work is acknowledged by its number, and done by the same number once it has ended."""
-    command = yield from lead_to(bench, is_work, "motion and no process")
+    command = yield from lead_to(bench, is_work, NO_WORK)
     bench.beating = True
     yield from accepted(bench, bench.order(command))
     number = bench.seq
@@ -45,7 +45,7 @@ def telling(bench: DeviceBench) -> Steps:
 
 def duplicate(bench: DeviceBench) -> Steps:
     """One of the last eight orders once more (QoS 1 may deliver twice) is neither refused nor done again."""
-    command = yield from lead_to(bench, is_work, "motion and no process")
+    command = yield from lead_to(bench, is_work, NO_WORK)
     yield from carry_out(bench, command)
     copy, number = bench.order(command, seq=bench.seq), bench.seq
     for _ in range(3):
@@ -62,7 +62,7 @@ def old(bench: DeviceBench) -> Steps:
     bench.seq += 1
     missed = bench.seq
     yield from accepted(bench, stop(bench, 2))
-    command = yield from lead_to(bench, _any, "verb")
+    command = yield from lead_to(bench, _any, NO_VERB)
     bench.seq = max(bench.seq, missed)
     yield from refused(bench, bench.order(command, seq=missed), "viejo", missed)
 
@@ -70,14 +70,14 @@ def old(bench: DeviceBench) -> Steps:
 def old_epoch(bench: DeviceBench) -> Steps:
     """A lower epoca is refused with viejo, whatever its seq."""
     yield from accepted(bench, stop(bench, 2))
-    command = yield from lead_to(bench, _any, "verb")
+    command = yield from lead_to(bench, _any, NO_VERB)
     number = bench.seq + 100
     yield from refused(bench, bench.order(command, seq=number, epoch=bench.epoch - 1), "viejo", number)
 
 
 def new_epoch(bench: DeviceBench) -> Steps:
     """A higher epoca begins numbers of its own, and the old ones disappear."""
-    command = yield from lead_to(bench, is_work, "motion and no process")
+    command = yield from lead_to(bench, is_work, NO_WORK)
     yield from carry_out(bench, command)
     bench.epoch, bench.seq = bench.epoch + 1, 0
     yield from accepted(bench, stop(bench, 2))
@@ -86,7 +86,7 @@ def new_epoch(bench: DeviceBench) -> Steps:
 
 def stamped(bench: DeviceBench) -> Steps:
     """An order without seq and epoca is refused with formato."""
-    before, command = bench.place, (yield from lead_to(bench, _any, "verb"))
+    before, command = bench.place, (yield from lead_to(bench, _any, NO_VERB))
     yield from accepted(bench, stop(bench, 2))
     before = bench.place
     order = bench.order(command, seq=0)
@@ -99,13 +99,13 @@ def stamped(bench: DeviceBench) -> Steps:
 
 def late(bench: DeviceBench) -> Steps:
     """An order that names in visto what it told over 2 s ago is refused with tarde; paro never is."""
-    command = yield from lead_to(bench, _any, "verb")
+    command = yield from lead_to(bench, _any, NO_VERB)
     yield from only_in_time(bench, lambda visto: bench.order(command, visto=visto))
 
 
 def token(bench: DeviceBench) -> Steps:
     """The ficha of an order is echoed with ack and with hecho, and by no number of another command."""
-    command = yield from lead_to(bench, _any, "verb")
+    command = yield from lead_to(bench, _any, NO_VERB)
     yield from echoes_tokens(bench, lambda ficha: bench.order(command, ficha=ficha))
 
 
@@ -156,7 +156,8 @@ def queries(bench: DeviceBench) -> Steps:
     if not verbs:
         raise CheckSkipped("its kind has no query")
     for command in verbs:
-        yield from lead_to(bench, lambda each, wanted=command: each == wanted, f"way to {command.verb}")  # type: ignore[misc]
+        lacking = f"its kind has no way to {command.verb}"
+        yield from lead_to(bench, lambda each, wanted=command: each == wanted, lacking)  # type: ignore[misc]
         yield from carry_out(bench, command)
         answer = bench.last.answer
         known = not command.definition.answers or answer in command.definition.answers
@@ -167,11 +168,11 @@ def queries(bench: DeviceBench) -> Steps:
 
 def retained(bench: DeviceBench) -> Steps:
     """An order that a broker has kept for the board is refused with retenido when it comes back."""
-    command = yield from lead_to(bench, _any, "verb")
+    command = yield from lead_to(bench, _any, NO_VERB)
     yield from accepted(bench, stop(bench, 2))
     # the number of the stop: heard while it is connected, the order is a copy and does nothing
     order, before = bench.order(command, seq=bench.seq), bench.place
-    yield from refused_as_retained(bench, order, "order")
+    yield from refused_as_retained(bench, order, "a retained order")
     yield from unmoved(bench, before, "a retained order")
 
 

@@ -12,6 +12,8 @@ from .device_bench import DeviceBench, is_work
 from .procedures import ANSWER_S, demand
 
 LEAST_S = 0.4  # shorter work cannot be caught in the middle
+NO_WORK = "its kind has no motion and no process"
+NO_VERB = "its kind has no verb"
 
 
 def named(command: VerbCall) -> str:
@@ -40,11 +42,14 @@ def outcome(bench: DeviceBench, command: VerbCall) -> Steps:
     demand(over, f"{named(command)}: {wanted} was not said within {command.at_most_s:g} s")
 
 
-def lead_to(bench: DeviceBench, wanted: Callable[[VerbCall], bool], what: str) -> Steps:
-    """Carry out the orders that have to come before a wanted one, and return that one."""
+def lead_to(bench: DeviceBench, wanted: Callable[[VerbCall], bool], lacking: str) -> Steps:
+    """Carry out the orders that have to come before a wanted one, and return that one.
+
+    Where there is no way to one, the check is skipped, and `lacking` is why.
+    """
     row = bench.way(wanted)
     if row is None:
-        raise CheckSkipped(f"its kind has no {what}")
+        raise CheckSkipped(lacking)
     for command in row[:-1]:
         yield from carry_out(bench, command)
     return row[-1]
@@ -56,7 +61,8 @@ def lasting(bench: DeviceBench, least_s: float = LEAST_S) -> Steps:
     def wanted(command: VerbCall) -> bool:
         return is_work(command) and command.definition.on_stop is OnStop.HALT and command.takes_s >= least_s
 
-    order = yield from lead_to(bench, wanted, f"motion or process of {least_s:g} s and more that a stop ends")
+    lacking = f"its kind has no motion or process of {least_s:g} s and more that a stop ends"
+    order = yield from lead_to(bench, wanted, lacking)
     bench.beating = True
     yield bench.order(order)
     number = bench.seq

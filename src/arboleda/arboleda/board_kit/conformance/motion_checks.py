@@ -37,7 +37,8 @@ def telemetry(bench: Bench[Any]) -> Steps:
     """Every report is one JSON object with the state, of at most 512 bytes."""
     yield Wait(seconds=LISTEN_S)
     demand(bool(bench.reports), f"nothing on {bench.name}/sensores that can be read in {LISTEN_S:g} s")
-    demand(not bench.damaged, "it says " + "; ".join(bench.damaged[:1]))
+    damaged = "; ".join(bench.damaged[:1])
+    demand(not damaged, f"it says what cannot be read: {damaged}")
 
 
 def moves(bench: ArmBench) -> Steps:

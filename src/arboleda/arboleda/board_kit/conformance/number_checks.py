@@ -6,7 +6,7 @@ from arboleda.wire.topics import Channel
 
 from .arm_bench import ArmBench
 from .arm_procedures import drive, set_off
-from .bench import MOVING, CheckSkipped, Send, Steps, Wait
+from .bench import LATCHED, MOVING, CheckSkipped, Send, Steps, Wait
 from .procedures import (
     accepted,
     answer,
@@ -94,7 +94,7 @@ def retained(bench: ArmBench) -> Steps:
     yield from accepted(bench, stop(bench, 2))
     before, goal = bench.steps, bench.goal(bench.away(0.05), seq=bench.seq)
     # an old number: heard while it is connected, the goal is harmless
-    yield from refused_as_retained(bench, goal, "goal")
+    yield from refused_as_retained(bench, goal, "a retained goal")
     yield from unmoved(bench, before, "a retained goal")
 
 
@@ -140,7 +140,7 @@ def latch(bench: ArmBench) -> Steps:
     yield from set_off(bench, goal)
     yield from accepted(bench, stop(bench, 1))
     yield from rest(bench)
-    demand(bench.last.state == 4, f"after paro 1 its estado is {bench.last.state}, not 4")
+    demand(bench.last.state == LATCHED, f"after paro 1 its estado is {bench.last.state}, not {LATCHED}")
     yield from refused(bench, bench.goal(bench.away(0.05)), "paro")
     yield from refused(bench, bench.send(Channel.EFFECTOR, efector=1), "paro")
     before = bench.steps

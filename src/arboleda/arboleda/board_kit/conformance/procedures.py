@@ -17,7 +17,7 @@ LATE_S = 2.5  # a report of this age counts as old, by far
 TOKEN = "0a3f97001a01"
 AHEAD = 100_000  # so many reports on
 WAITED = (
-    ". That visto names what it told more than 2 s ago: the command waited in a broker, or in a connection "
+    "; that visto names what it told more than 2 s ago: the command waited in a broker, or in a connection "
     "that was cut. It has to remember which seq it told when; without that, what has waited moves it"
 )
 
@@ -78,10 +78,8 @@ def refused(bench: Bench[Any], send: Send, word: str, seq: int | None = None, *,
     yield from answer(bench, send, seq)
     number = bench.seq if seq is None else seq
     report = bench.last
-    demand(
-        (report.refusal, report.refused) == (word, number),
-        f"it should refuse {send.payload.decode()} with {word}; it says {_answer(bench)}{why}",
-    )
+    wrong = f"it should refuse {send.payload.decode()} with {word}; it says {_answer(bench)}"
+    demand((report.refusal, report.refused) == (word, number), wrong + why)
     yield from unmoved(bench, before, send.payload.decode())
 
 
@@ -144,7 +142,7 @@ def echoes_tokens(bench: Bench[Any], command: Callable[[str], Send]) -> Steps:
 
 
 def refused_as_retained(bench: Bench[Any], message: Send, what: str) -> Steps:
-    """Have the board come back while the broker keeps a message for it, which it has to refuse."""
+    """Have the board come back while the broker keeps a message for it, `what`, which it has to refuse."""
     yield replace(message, retain=True)
     yield Wait(seconds=0.5)
     arrivals = bench.arrivals
@@ -156,4 +154,4 @@ def refused_as_retained(bench: Bench[Any], message: Send, what: str) -> Steps:
     yield Wait(seconds=0.3)
     if not back:
         raise CheckSkipped("its MQTT client id is not its name, so it could not be made to reconnect")
-    demand(refusal == "retenido", f"it came back, heard a retained {what} and says rechazo {refusal}")
+    demand(refusal == "retenido", f"it came back, heard {what} and says rechazo {refusal}")

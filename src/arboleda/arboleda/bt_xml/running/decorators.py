@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from typing import Any
 
@@ -55,7 +56,10 @@ class KeepRunningUntilFailure(Decorator):
 
 
 class Loop(Decorator):
-    """Decorator that repeats its child while it ends as `goes_on` says, at most `times`; -1: without end."""
+    """Decorator that repeats its child while it ends as `goes_on` says, at most `times`; -1: without end.
+
+    A round that has taken no time is followed by a pause, as a tree is ticked only so often at one instant.
+    """
 
     counts = ("rounds",)
 
@@ -65,6 +69,7 @@ class Loop(Decorator):
         self.port = port
         self.goes_on = goes_on
         self.rounds = 0
+        self.round_began = -math.inf
 
     def reset_counts(self) -> None:
         self.rounds = 0
@@ -77,7 +82,8 @@ class Loop(Decorator):
         most = self.ports.number(self.port, self.scope)
         self.begin()
         while self.rounds < most or most == -1:
-            was_idle = self.child.status is Status.INVALID
+            if self.child.status is Status.INVALID:
+                self.round_began = self.time.now
             result = self.child.execute()
             if result is RUNNING:
                 return RUNNING
@@ -90,7 +96,8 @@ class Loop(Decorator):
             self.rounds += 1
             if self.goes_on is FAILURE:
                 most = self.ports.number(self.port, self.scope)
-            if was_idle and (self.rounds < most or most == -1):
+            took_no_time = self.round_began == self.time.now
+            if took_no_time and (self.rounds < most or most == -1):
                 return self.again(after_s=PAUSE_S if most == -1 else TICK_S)
         self.rounds = 0
         return self.goes_on

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
+
+from py_trees.common import Status
 
 from .node import FAILURE, RUNNING, SKIPPED, SUCCESS, Node, Result
 from .ports import NodePorts
@@ -11,7 +14,11 @@ AT = "current_child_idx"
 
 
 class RecoveryNode(Node):
-    """Node that runs its first child; if that fails, the second and then the first again, so many times."""
+    """Node that runs its first child; if that fails, the second and then the first again, so many times.
+
+    A round of several ticks that has taken no time is followed by a pause, as a tree is ticked only so often
+    at one instant.
+    """
 
     counts = ("recovers", "retries")
 
@@ -20,6 +27,7 @@ class RecoveryNode(Node):
         self.ports = ports
         self.recovers = False
         self.retries = 0
+        self.round_began = -math.inf
 
     def reset_counts(self) -> None:
         self.recovers, self.retries = False, 0
@@ -27,7 +35,10 @@ class RecoveryNode(Node):
     def work(self) -> Result:
         most = self.ports.number("number_of_retries", self.scope, "1")
         self.begin()
+        goes_on = any(child.status is Status.RUNNING for child in self.below)
         while self.retries <= most:
+            if not self.recovers and self.below[0].status is Status.INVALID:
+                self.round_began = self.time.now
             result = self.below[self.recovers].execute()
             if result is RUNNING:
                 return RUNNING
@@ -39,6 +50,8 @@ class RecoveryNode(Node):
             elif result is SUCCESS:
                 self.below[1].reset()
                 self.recovers, self.retries = False, self.retries + 1
+                if goes_on and self.round_began == self.time.now:
+                    return self.again()
             elif result is SKIPPED:  # no recovery is possible; this counts as no retry
                 self.below[1].reset()
                 self.recovers = False

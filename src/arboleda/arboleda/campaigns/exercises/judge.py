@@ -28,7 +28,7 @@ from ..proof.proof import Proof
 from ..proof.proof_tally import Case, ProofTally
 from ..proof.scenario import scenarios
 from ..proof.stage import Stage
-from ..words import fault_words
+from ..words import fault_words, task_is, task_is_to
 from .exercise import PLANT, Exercise, Proving, Text, TimedFault, Trial
 from .trial_run import Course, run_trial
 
@@ -254,22 +254,24 @@ def _wrong_ends(tally: ProofTally, proving: Proving) -> Iterator[tuple[Case, str
         allowed = proving.ends.get(case.fault.kind)
         what = f"{case.scenario.name}: {fault_words(case.fault)}, {case.instant.name}"
         outcome = case.outcome
+        why = f": {outcome.cause}" if outcome.cause else ""
         if allowed is not None and outcome.end.value not in allowed:
-            yield case, f"{what}: the task is {outcome.words}; it is to be {' or '.join(allowed)}"
+            yield case, f"{what}: {task_is('the task', outcome.end.value)}{why}; {task_is_to(allowed)}"
         if case.fault.kind in proving.noticed and outcome.end in IS_DONE and outcome.untrue:
             yield case, f"{what}: the task is called done, but {'; '.join(outcome.untrue)}"
 
 
 def _others(recorded: Course, course: Course) -> Iterator[str]:
     """In what a course is another one than that of the record."""
-    for before, now, what in (
-        (recorded.ends, course.ends, "the task is"),
-        (recorded.sentences, course.sentences, "the plant says"),
-        (recorded.acts, course.acts, "what is done is"),
-    ):
-        if before != now:
-            yield f"with these faults {what} {', '.join(now)}; in the record: {', '.join(before)}"
-            return
+    if recorded.ends != course.ends:
+        now, before = ", ".join(course.ends), ", ".join(recorded.ends)
+        yield f"with these faults the task ends as {now}; in the record: {before}"
+    elif recorded.sentences != course.sentences:
+        now, before = ", ".join(course.sentences), ", ".join(recorded.sentences)
+        yield f"with these faults the plant says {now}; in the record: {before}"
+    elif recorded.acts != course.acts:
+        now, before = ", ".join(course.acts), ", ".join(recorded.acts)
+        yield f"with these faults what is done is {now}; in the record: {before}"
 
 
 def _written(content: bytes, model: PlantModel, name: str) -> list[TimedFault]:

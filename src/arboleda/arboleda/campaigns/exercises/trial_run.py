@@ -63,6 +63,7 @@ class _Run:
         self._waiting = [each for each in faults if each.act]
         self._timed = [each.fault for each in faults if not each.act]
         self._last_changes: dict[str, TaskChanged] = {}  # by request, the last word
+        self._tasks = {f"test-{number}": text for number, text in enumerate(trial.tasks)}
         self._acts: list[str] = []
         self._story: list[str] = []
         self._ended_at = 0.0
@@ -87,7 +88,7 @@ class _Run:
             broken = str(error)
         except Exception as error:  # noqa: BLE001 - that none escapes is one of the invariants
             broken = f"{NO_EXCEPTION}: {type(error).__name__}: {error}"
-        changes = [self._last_changes.get(f"test-{number}") for number, _ in enumerate(self._trial.tasks)]
+        changes = [*map(self._last_changes.get, self._tasks)]
         course = Course(
             ends=[self._end(each) for each in changes],
             reasons=[each.reason.value if each and each.reason else "" for each in changes],
@@ -100,8 +101,8 @@ class _Run:
 
     def _work(self) -> None:
         self._world.advance(ASKED_AT_S)
-        for number, text in enumerate(self._trial.tasks):
-            self._world.request_task(text, f"test-{number}")
+        for request, text in self._tasks.items():
+            self._world.request_task(text, request)
         for fault in self._timed:
             self._world.at(self._world.now + fault.at, self._begin, fault)
         self._world.settle()
@@ -110,7 +111,7 @@ class _Run:
         self._world.advance(HEARD_S)
 
     def _is_over(self) -> bool:
-        changes = [self._last_changes.get(f"test-{number}") for number, _ in enumerate(self._trial.tasks)]
+        changes = [*map(self._last_changes.get, self._tasks)]
         return all(each is not None and (each.state in OVER or self._is_stuck(each)) for each in changes)
 
     def _is_stuck(self, change: TaskChanged) -> bool:
@@ -150,10 +151,10 @@ class _Run:
         before = self._last_changes.get(request or "")
         if request is not None and (before is None or before.state not in OVER):
             self._last_changes[request] = change
-            self._tell(_joined(f"{change.text} is {change.state.value}", str(change.sentence)))
+            self._tell(_joined(words.task_is(self._tasks[request], change.state.value), str(change.sentence)))
 
     def _begin(self, fault: Fault) -> None:
-        self._tell(f"FAULT {' '.join(words.fault_words(fault).split())}")
+        self._tell(f"FAULT: {' '.join(words.fault_words(fault).split())}")
         self._watched.begin(fault)
 
     def _tell(self, what: str) -> None:
@@ -205,11 +206,11 @@ class _Run:
         trial = self._trial
         rows = zip(trial.tasks, trial.ends, course.ends, course.reasons, course.sentences, strict=False)
         for task, allowed, end, reason, sentence in rows:
-            why = _joined(end, sentence)
+            why = _joined(words.task_is(task, end), sentence)
             if end not in allowed:
-                yield f"{task} is {why}; it is to be {' or '.join(allowed)}"
+                yield f"{why}; {words.task_is_to(allowed)}"
             elif trial.reason is not None and end != "done" and reason != trial.reason:
-                yield f"{task} is {why} ({reason}); the reason is to be {trial.reason}"
+                yield f"{why} ({reason}); the reason is to be {trial.reason}"
 
     def _of_facts(self) -> Iterator[str]:
         for what, wanted in self._trial.facts.items():
@@ -226,14 +227,13 @@ class _Run:
 
     def _of_acts(self, acts: Sequence[str]) -> Iterator[str]:
         for act, (least, most) in self._trial.acts.items():
-            times = sum(_means(act, each) for each in acts)
-            if not least <= times <= most:
-                span = f"{least}" if least == most else f"{least} to {most}"
-                yield f"'{act}' is done {times} times; it is to be done {span} times"
+            often = sum(_means(act, each) for each in acts)
+            if not least <= often <= most:
+                yield f"'{act}' is done {words.times(often)}; it is to be done {words.times(least, most)}"
         rest = iter(acts)
         for act in self._trial.order:
             if not any(_means(act, each) for each in rest):
-                order, was = ", then ".join(self._trial.order), ", ".join(acts)
+                order, was = ", ".join(self._trial.order), ", ".join(acts)
                 yield f"the order of what is done is to be: {order}; it was: {was}"
                 return
 

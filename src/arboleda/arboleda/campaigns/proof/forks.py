@@ -1,9 +1,13 @@
-"""Forks: each fault, or group, of an instant in a fork of the process that simulated what comes before it."""
+"""Forks: each fault, or group, of an instant in a fork of the process that simulated what comes before it.
+
+Where that took less than a fork takes, each run begins anew in this process instead.
+"""
 
 from __future__ import annotations
 
 import os
 import pickle
+import time
 from collections.abc import Callable, Sequence
 from typing import Any
 
@@ -20,6 +24,7 @@ from .stage import AllForked, Stage
 Tick = Callable[[], None]
 Faults = tuple[Fault, ...]  # of one run
 CAN_FORK = abilities.FORKS
+FORK_TAKES_S = 0.02  # of a processor: it copies what either process changes, and takes all of that down
 
 
 def run_all(
@@ -28,10 +33,11 @@ def run_all(
     faults: Sequence[Fault],
     tick: Tick,
     *,
-    forks: bool = CAN_FORK,
+    forks: bool | None = None,
     course: Course | None = None,
 ) -> list[Run]:
-    """A run for each of the faults, which all begin at one instant; the same with forks and without.
+    """A run for each of the faults, which all begin at one instant; the same with `forks` and without, by
+    default with them where that is cheaper.
 
     With the `course` of the calm run each ends as soon as it is known how it goes on.
     """
@@ -44,12 +50,18 @@ def run_groups(
     groups: Sequence[Faults],
     tick: Tick,
     *,
-    forks: bool = CAN_FORK,
+    forks: bool | None = None,
     course: Course | None = None,
 ) -> list[Run]:
     """The same for groups of faults that befall one run: their first ones all begin at one instant."""
-    if forks and groups:
-        return _forked(model, calm, groups, tick, course)
+    if groups and (CAN_FORK if forks is None else forks):
+        return _forked(model, calm, groups, tick, course, 0.0 if forks else FORK_TAKES_S)
+    return _anew(model, calm, groups, tick, course)
+
+
+def _anew(
+    model: PlantModel, calm: Calm, groups: Sequence[Faults], tick: Tick, course: Course | None
+) -> list[Run]:
     runs = []
     for faults in groups:
         runs.append(run_one(model, calm, *faults, course=course))
@@ -80,10 +92,17 @@ def _play(stage: Stage, calm: Calm, faults: Faults, begin: Callable[[], None]) -
 
 
 def _forked(
-    model: PlantModel, calm: Calm, groups: Sequence[Faults], tick: Tick, course: Course | None
+    model: PlantModel,
+    calm: Calm,
+    groups: Sequence[Faults],
+    tick: Tick,
+    course: Course | None,
+    cheap_s: float,
 ) -> list[Run]:
+    """Runs in forks; if it took less than `cheap_s` to come to the instant, in this process."""
+    cheap_until = time.process_time() + cheap_s
     stage = _stage(model, calm, course)
-    forks = _Forks(stage, groups, tick)
+    forks = _Forks(stage, groups, tick, cheap_until)
     try:
         run = _play(stage, calm, groups[0], forks.begin)
         forks.answer(run)
@@ -91,19 +110,32 @@ def _forked(
         return forks.runs
     finally:
         forks.leave()
-    raise ArboledaError(f"the run without a fault ended before {groups[0][0].at:g} s")
+    if not forks.begun:
+        raise ArboledaError(f"the run without a fault ended before {groups[0][0].at:g} s")
+    tick()
+    return [run, *_anew(model, calm, groups[1:], tick, course)]
 
 
 class _Forks:
-    """Forks at the instant: this process waits for each, in which one fault begins and the run goes on."""
+    """Forks at the instant: this process waits for each, in which one fault begins and the run goes on.
 
-    def __init__(self, stage: Stage, groups: Sequence[Faults], tick: Tick) -> None:
+    At an instant that came before `cheap_until`, by the processor time of this process, it forks nothing, and
+    goes on with the first group itself.
+    """
+
+    def __init__(self, stage: Stage, groups: Sequence[Faults], tick: Tick, cheap_until: float) -> None:
         self.runs: list[Run] = []
+        self.begun = False
         self._stage, self._groups, self._tick = stage, groups, tick
+        self._cheap_until = cheap_until
         self._pipe: int | None = None  # in a fork: where its run is awaited
 
     def begin(self) -> None:
-        """Fork for each group; returns in the forks only."""
+        """Fork for each group; returns in the forks only, or if there are none."""
+        self.begun = True
+        if time.process_time() < self._cheap_until:
+            self._stage.befall(self._groups[0])
+            return
         for faults in self._groups:
             read, write = os.pipe()
             child = os.fork()

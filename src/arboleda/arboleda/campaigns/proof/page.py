@@ -8,6 +8,7 @@ from html import escape
 from pathlib import Path
 from typing import Any
 
+from arboleda.dashboard.findings import findings
 from arboleda.dashboard.wording import Words, words
 from arboleda.drawing.words import outline
 from arboleda.web.languages import FIRST, LANGUAGES, texts
@@ -109,14 +110,15 @@ def _amount(proof: ProofPage) -> Iterator[str]:
 def _calm(calm: Calm) -> str:
     name, outcome = escape(calm.scenario.name), calm.run.outcome
     if outcome.broken is not None:
-        return f"<li class=bad>{name}: {escape(': '.join(outcome.broken))}</li>"
+        return f"<li class=bad>{name}: {escape(outcome.broken[0])}: {_found(outcome.broken[1])}</li>"
     if outcome.end is End.DONE and calm.is_sound:
-        again = f"; {_each('calm_again')} {escape(calm.again)}" if calm.again else ""
+        again = f"; {_each('calm_again')} {_found(calm.again)}" if calm.again else ""
         return f"<li>{name}: {_each('calm_good')}{again}</li>"
     if outcome.end is End.UNFINISHED:
         return f"<li>{name}: {_each('calm_waits')}</li>"
     style = "quiet" if calm.is_sound else "bad"
-    return f"<li class={style}>{name}: {escape(f'{outcome.words}: {calm.finding or calm.why}')}</li>"
+    why = _found(calm.finding or calm.why)
+    return f"<li class={style}>{name}: {_ended(outcome.words)}: {why}</li>"
 
 
 def _check(check: Check) -> str:
@@ -125,8 +127,8 @@ def _check(check: Check) -> str:
 
 
 def _unnoticed(case: Case, count: int, found: Sequence[Check]) -> str:
-    what = escape("; ".join(case.outcome.untrue))
-    befell = escape(f"{case.scenario.name}: {fault_words(case.fault)}, {case.instant.name}")
+    what = "; ".join(map(_found, case.outcome.untrue))
+    befell = _found(f"{case.scenario.name}: {fault_words(case.fault)}, {case.instant.name}")
     check = "; ".join(map(_check, found)) or _each("check_none")
     like = _each("runs_like_it", count=count)
     return f"<li>{what}<br>{check}<br><span class=quiet>{befell} ({like})</span></li>"
@@ -135,7 +137,7 @@ def _unnoticed(case: Case, count: int, found: Sequence[Check]) -> str:
 def _unmended(case: Case, count: int) -> str:
     acts = case.outcome.acts
     what = _each("never_ready") if acts is None else _each("acts", acts=acts)
-    befell = escape(f"{case.scenario.name}: {fault_words(case.fault)}, {case.instant.name}")
+    befell = _found(f"{case.scenario.name}: {fault_words(case.fault)}, {case.instant.name}")
     return f"<li>{what}<br><span class=quiet>{befell} ({_each('runs_like_it', count=count)})</span></li>"
 
 
@@ -143,8 +145,8 @@ def _breach(breach: Breach, plant: Path | None) -> str:
     name, sentence = breach.run.outcome.broken or ("", "")
     lines = "\n".join(map(escape, breach.result.lines[-40:]))
     return (
-        f"<h3 class=bad>{escape(f'{breach.scenario.name}: {name}')}</h3><p>{escape(sentence)}<br>"
-        f"{escape(f'{breach.befell}, {breach.instant.name}')} "
+        f"<h3 class=bad>{escape(f'{breach.scenario.name}: {name}')}</h3><p>{_found(sentence)}<br>"
+        f"{_found(f'{breach.befell}, {breach.instant.name}')} "
         f"({_each('runs_like_it', count=breach.count)})</p><pre>{lines}</pre>{_moment(breach.moment)}"
         f"<p>{_each('test')}</p><pre>{escape(as_tests([breach], plant))}</pre>"
     )
@@ -174,7 +176,7 @@ def _table(key: RecipeKey, rows: dict[str, Row]) -> str:
 
 
 def _turns(kind: str, target: str, turns: Sequence[tuple[Instant, str]]) -> str:
-    steps = "".join(f"<li>{escape(f'{instant.name}: {words}')}</li>" for instant, words in turns)
+    steps = "".join(f"<li>{_found(instant.name)}: {_ended(end)}</li>" for instant, end in turns)
     return f"<li>{escape(f'{kind} {target}')}<ol>{steps}</ol></li>"
 
 
@@ -184,11 +186,24 @@ def _cells(kind: str, row: Row) -> Iterator[str]:
     for number in (row.runs, *shown, row.runs - sum(shown), row.unnoticed):
         yield f"<td>{f'{number:,}' if number else ''}</td>"
     yield f"<td class=bad>{row.broken or ''}</td><td>{row.alone / row.runs:.0%}</td>"
-    causes = ", ".join(cause for cause, _ in row.causes.most_common())
-    yield f"<td>{escape(causes)}{' *' if row.changes else ''}</td>"
+    causes = ", ".join(_ended(cause) for cause, _ in row.causes.most_common())
+    yield f"<td>{causes}{' *' if row.changes else ''}</td>"
 
 
 def _each(key: str, **values: Any) -> str:
     """Words of the page in every language."""
     rows = ((each, texts(each, PART)[key]) for each in LANGUAGES)
     return "".join(f"<span lang={each}>{escape(text.format(**values))}</span>" for each, text in rows)
+
+
+def _ended(text: str) -> str:
+    """The end of a task with its cause, or a cause alone, given by the plant's words, in every language."""
+    said = (
+        (each, ": ".join(words(each).ends.get(name, name) for name in text.split(": "))) for each in LANGUAGES
+    )
+    return "".join(f"<span lang={language}>{escape(end)}</span>" for language, end in said)
+
+
+def _found(text: str) -> str:
+    """A finding, given in English, in every language."""
+    return "".join(f"<span lang={each}>{escape(findings(each)(text))}</span>" for each in LANGUAGES)

@@ -18,7 +18,7 @@ from ..campaign import Campaign, Runs
 from ..mending.answer import Answer, run_answer
 from ..mending.noticing import noticing_mend
 from ..plants import notes
-from ..screen import Show, progress
+from ..screen import Show, ends_of, progress
 from ..seed_campaign import BROKEN, HELD, INTERRUPTED
 from ..workers import Workers
 from . import proof_report, proof_summary
@@ -167,7 +167,7 @@ class ProofCampaign:
             self._console.print(line, soft_wrap=True)
         for line in proof_report.unmended_lines(tally.unmended()):
             self._console.print(line, soft_wrap=True)
-        for table in proof_report.tables(tally):
+        for table in proof_report.tables(tally, ends_of(self._console)):
             self._console.print(table)
         for breach in breaches:
             proof_report.story(self._console, breach)

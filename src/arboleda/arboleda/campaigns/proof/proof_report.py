@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 
 from rich.console import Console
 from rich.table import Table
@@ -53,7 +53,7 @@ def unnoticed_lines(tally: ProofTally) -> Iterator[Text]:
         what = "; ".join(case.outcome.untrue)
         times = f"{counted(count, 'run')}, e.g. {case.instant.name}"
         befell = f"{case.fault.kind} {case.fault.target}"
-        yield Text(f"  {case.scenario.task}: {befell}: {what} ({times})", "yellow")
+        yield Text(f"  {case.scenario.task}: {befell}: {what}; {times}", "yellow")
         yield Text(f"    {_check_words(checks(tally.proof, case))}", "dim")
     if len(found) > MOST_UNNOTICED:
         yield Text(f"  and {len(found) - MOST_UNNOTICED} more; --json has all", "yellow")
@@ -78,7 +78,7 @@ def unmended_lines(found: Sequence[tuple[Case, int]]) -> Iterator[Text]:
         acts = "it is never ready" if case.outcome.acts is None else f"it takes {case.outcome.acts} acts"
         times = f"{counted(count, 'run')}, e.g. {case.instant.name}"
         yield Text(
-            f"  {case.scenario.task}: {case.fault.kind} {case.fault.target}: {acts} ({times})", "yellow"
+            f"  {case.scenario.task}: {case.fault.kind} {case.fault.target}: {acts}; {times}", "yellow"
         )
     if len(found) > MOST_UNNOTICED:
         yield Text(f"  and {len(found) - MOST_UNNOTICED} more; --json has all", "yellow")
@@ -99,8 +99,8 @@ def story(console: Console, breach: Breach) -> None:
     breach_text.timeline(console, breach.result)
 
 
-def tables(tally: ProofTally) -> Iterator[Table]:
-    """A table for each recipe."""
+def tables(tally: ProofTally, end: Callable[[str], str]) -> Iterator[Table]:
+    """A table for each recipe; `end` says a cause."""
     for (cell, recipe), rows in tally.table().items():
         table = Table(title=f"{cell}: {recipe}", title_justify="left")
         table.add_column("fault", no_wrap=True)
@@ -108,17 +108,17 @@ def tables(tally: ProofTally) -> Iterator[Table]:
             table.add_column(head, justify="right")
         table.add_column("causes")
         for kind, row in rows.items():
-            table.add_row(kind, *_cells(row))
+            table.add_row(kind, *_cells(row, end))
         yield table
 
 
-def _cells(row: Row) -> Iterator[str]:
+def _cells(row: Row, end: Callable[[str], str]) -> Iterator[str]:
     shown = [row.ends[end.value] for end in SHOWN]
     yield f"{row.runs:,}"
     for number in (*shown, row.runs - sum(shown), row.unnoticed, row.broken):
         yield f"{number:,}" if number else ""
     yield f"{row.alone / row.runs:.0%}"
-    causes = ", ".join(cause for cause, _ in row.causes.most_common())
+    causes = ", ".join(end(cause) for cause, _ in row.causes.most_common())
     yield f"{causes}{f' {MOVED}' if row.changes else ''}".strip()
 
 

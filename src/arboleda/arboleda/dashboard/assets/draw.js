@@ -34,6 +34,12 @@ const nameOf = (file) => file.replace(/^.*\//, "").replace(/\.xml$/, "");
 const treeFiles = async () => (ofDraft() ? make.draft.state?.trees.map((file) => ({ recipe: nameOf(file), file })) : ask("/api/trees"));
 const way = (path) => (ofDraft() ? `/api/make/${path}` : `/api/trees/${path.replace("drawn/", "")}`);
 
+// What the server makes of a text, with what is found in it in the language of the page.
+async function drawn(act, asked) {
+  const shown = await ask(way(`drawn/${act}`), asked);
+  return shown && { ...shown, marks: await make.spoken(shown.marks) };
+}
+
 // Begin with this cell, where nothing is drawn yet.
 export function show(cell) {
   if (!document.getElementById("draw") || state.past.length || (state.now && !cell && !ofDraft())) return;
@@ -96,7 +102,7 @@ async function openFile(recipe, place = {}) {
   const { cell } = state;
   const found = state.files.find((each) => each.recipe === recipe);
   const text = found && (ofDraft() ? (await ask(`/api/draft/trees?${new URLSearchParams({ file: found.file })}`))?.text : found.text);
-  const shown = await ask(way("drawn/check"), { cell, text: text ?? NEW });
+  const shown = await drawn("check", { cell, text: text ?? NEW });
   if (!shown || state.cell !== cell) return;
   box("file").value = recipe;
   Object.assign(state, { file: recipe, past: [], future: [], now: shown, saved: shown.text, tree: null, path: "root", ...place });
@@ -108,7 +114,7 @@ export function edit(make, then) {
   return next(async () => {
     const { cell, now } = state;
     const operation = now && make();
-    const shown = operation && (await ask(way("drawn/edit"), { cell, text: now.text, operation }));
+    const shown = operation && (await drawn("edit", { cell, text: now.text, operation }));
     if (!shown || now !== state.now) return;
     say("");
     const changed = shown.text !== state.now.text;

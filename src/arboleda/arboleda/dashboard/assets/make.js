@@ -5,7 +5,7 @@ import * as device from "./make_device.js";
 import * as proposals from "./make_proposals.js";
 import * as proof from "./make_prove.js";
 import * as tryout from "./make_try.js";
-import { ask, box, draft, editor, element, fill, isMine, knownName, look, name, onDraft, say, step, take, there } from "./make_state.js";
+import { ask, box, draft, editor, element, fill, inWords, isMine, knownName, look, name, onDraft, say, spoken, step, take, there } from "./make_state.js";
 import * as question from "./question.js";
 import { all, words } from "./shell.js";
 
@@ -81,8 +81,9 @@ function drawn() {
   button("undo").disabled = !state.undo;
   button("redo").disabled = !state.redo;
   button("keep").disabled = button("discard").disabled = !state.changes.length;
-  lines("changes", state.changes.length ? state.changes : [words.make_no_change]);
-  for (const name of ["restart", "waiting"]) lines(name, state[name]), (box(`${name}-box`).hidden = !state[name].length);
+  if (state.changes.length) tell("changes");
+  else lines("changes", [words.make_no_change]);
+  for (const name of ["restart", "waiting"]) tell(name), (box(`${name}-box`).hidden = !state[name].length);
   const now = state.changes.join("\n");
   if (now === checked) return;
   clearTimeout(timer);
@@ -92,6 +93,13 @@ function drawn() {
 
 const button = (act) => document.querySelector(`#make [data-make="${act}"]`);
 
+// What the draft has under this name, unless it is another draft by the time that the words are there.
+async function tell(name) {
+  const { state } = draft;
+  const said = await inWords(state[name]);
+  if (draft.state === state) lines(name, said);
+}
+
 const lines = (id, rows) => box(id).replaceChildren(...rows.map((text) => element("li", text)));
 
 // What `check` says of the draft; one at a time, and the last change counts.
@@ -100,7 +108,7 @@ async function check() {
   if (checking) return void (timer = setTimeout(check, WAIT_MS));
   const now = draft.state.changes.join("\n");
   checking = true;
-  const found = await ask("/api/draft/check", {}, () => {});
+  const found = await spoken(await ask("/api/draft/check", {}, () => {}));
   checking = false;
   if (!found) return void (timer = setTimeout(check, WAIT_MS));
   checked = now;
@@ -118,19 +126,20 @@ export function marks({ problems, warnings }) {
 }
 
 // The version, and when each cell takes it, or why only the next start does.
-function applied({ version, cells: taken, restart, cancelled }) {
-  const when = Object.entries(taken).map(([cell, told]) => `${cell}: ${told}`);
+async function applied({ version, cells: taken, restart, cancelled }) {
+  const said = await inWords(Object.values(taken));
+  const when = Object.keys(taken).map((cell, n) => `${cell}: ${said[n]}`);
   const lost = cancelled.length ? [fill(words.make_cancelled, { tasks: cancelled.join(", ") })] : [];
   return [fill(words.make_kept, { version }), ...(restart.length ? [words.make_restart, ...restart] : when), ...lost].join(" ");
 }
 
 async function keep() {
-  if (!(await question.confirmed([words.make_keep, ...draft.state.changes].join("\n")))) return;
+  if (!(await question.confirmed([words.make_keep, ...(await inWords(draft.state.changes))].join("\n")))) return;
   say(words.make_checking);
-  const kept = await ask("/api/draft/apply", { editor: editor(), note: box("version-note").value.trim() });
+  const kept = await spoken(await ask("/api/draft/apply", { editor: editor(), note: box("version-note").value.trim() }));
   if (!kept) return;
   marks(kept);
-  say(kept.version === null ? words.make_not_kept : applied(kept));
+  say(kept.version === null ? words.make_not_kept : await applied(kept));
   if (kept.version === null) open("draft");
   await look();
   if (kept.restart.length) await offerRestart();

@@ -2,7 +2,7 @@
 
 import { showRecipe } from "./draw.js";
 import { intoDraft } from "./draw_copy.js";
-import { ask, box, draft, element, fill, options, say, step } from "./make_state.js";
+import { ask, box, draft, element, fill, inWords, options, say, spoken, step } from "./make_state.js";
 import * as place from "./place.js";
 import { words } from "./shell.js";
 
@@ -27,9 +27,9 @@ export async function read() {
   reading = null;
   if (!found) return;
   draft.cells = found.cells;
-  draft.faults = found.faults;
+  draft.faults = await spoken(found.faults);
   offer();
-  const problems = found.problems.map((text) => element("li", `✕ ${text}`, { "data-mark": "mistake" }));
+  const problems = (await inWords(found.problems)).map((text) => element("li", `✕ ${text}`, { "data-mark": "mistake" }));
   const list = element("ul", "", { class: "draw-marks make-unread" });
   list.append(element("li", words.make_unread), ...problems);
   box("cell-list").replaceChildren(...(problems.length ? [list] : []), ...found.cells.map(drawn));

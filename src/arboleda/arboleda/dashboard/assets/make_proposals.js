@@ -1,7 +1,7 @@
 // Proposals of assistants: what each would change, its tree, what was proved of it, and a person's decision on that very content.
 
 import { tableOf } from "./make_prove.js";
-import { ask, box, element, fill, keepName, name, there } from "./make_state.js";
+import { ask, box, element, fill, keepName, name, spoken, there } from "./make_state.js";
 import * as question from "./question.js";
 import { words } from "./shell.js";
 
@@ -9,6 +9,7 @@ const LOOK_MS = 5000;
 const PROOF_MS = 1000;
 const BUDGET_S = 60;
 const says = (sentence) => (box("proposals-note").textContent = sentence ?? "");
+const told = (answer) => spoken(answer, "changes");
 const isSeen = () => !document.hidden && box("proposals")?.offsetParent;
 
 let rows = [];
@@ -21,7 +22,7 @@ export function start() {
 }
 
 export async function look() {
-  const found = await ask("/api/proposals", undefined, () => {});
+  const found = await told(await ask("/api/proposals", undefined, () => {}));
   if (!found) return;
   const count = found.filter(({ stage }) => stage === "open").length;
   document.querySelector('[data-make-panel="proposals"]').dataset.mark = count ? "warning" : "";
@@ -58,7 +59,7 @@ function clicked({ target }) {
 }
 
 async function open(hash) {
-  const found = await ask(`/api/proposals/${hash}`, undefined, says);
+  const found = await told(await ask(`/api/proposals/${hash}`, undefined, says));
   if (!found) return;
   opened = hash;
   box("proposal").replaceChildren(...shown(found));
@@ -66,9 +67,9 @@ async function open(hash) {
 }
 
 // Whatever an assistant wrote is put there as text, and what it draws as a picture that cannot do anything.
-function shown({ hash, name: title, by, words: told, changes, warnings, recipes, trees, differing, differences, pictures, proof, proof_state, stage, fits }) {
+function shown({ hash, name: title, by, words: said, changes, warnings, recipes, trees, differing, differences, pictures, proof, proof_state, stage, fits }) {
   const parts = [element("h3", `${title} ${short(hash)}`), element("p", fill(words.make_whole_hash, { hash }), { class: "hint make-hash" })];
-  if (told) parts.push(outside(fill(words.make_words_of, { by }), told));
+  if (said) parts.push(outside(fill(words.make_words_of, { by }), said));
   parts.push(...list(words.make_would_change, changes.length ? changes : [words.make_changes_nothing]));
   for (const [file, lines] of Object.entries(differences)) parts.push(element("pre", lines, { tabindex: "0", role: "region", "aria-label": fill(words.make_difference_of, { file }) }));
   if (recipes.length) parts.push(...list(words.make_asks_for, recipes));
@@ -135,7 +136,7 @@ async function approve(hash) {
   if (!(await question.confirmed([fill(words.make_sure_approve, { hash: short(hash) }), ...changes, ...recipes].join("\n")))) return;
   says(words.make_checking);
   keepName(box("name").value.trim());
-  const done = await ask(`/api/proposals/${hash}/approve`, { name: name() }, says);
+  const done = await spoken(await ask(`/api/proposals/${hash}/approve`, { name: name() }, says));
   if (done) says(done.problems.length ? done.problems.join("\n") : [words.make_approved, ...done.restart].join(" "));
   await look();
 }

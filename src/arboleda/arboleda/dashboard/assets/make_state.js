@@ -43,6 +43,10 @@ export const keepName = (name) => localStorage.setItem(NAME, name);
 export const name = () => box("name").value.trim() || words.make_somebody;
 export const isMine = () => draft.state?.editor != null && sessionStorage.getItem(MINE) === draft.state.editor.since;
 
+const FINDINGS = "/findings.json"; // says what was found in the language of the page
+const ENGLISH = "en"; // in which everything is found
+const { language } = window.arboledaPage;
+
 // A GET without a body; null, and the sentence is shown, where it is refused.
 export async function ask(path, body, shown = say) {
   try {
@@ -51,11 +55,44 @@ export async function ask(path, body, shown = say) {
       const got = await fetch(path, options);
       if (got.status === 429 && tries < MOST_TRIES) await new Promise((go) => setTimeout(go, RETRY_MS));
       else if (got.ok) return await got.json();
-      else return shown((await got.json()).sentence), null;
+      else return shown(await refusal(path, await got.json())), null;
     }
   } catch {
     return shown(words.not_sent), null;
   }
+}
+
+const refusal = async (path, { sentence }) => (path.startsWith(FINDINGS) ? sentence : (await inWords([sentence]))[0]);
+
+const MOST_KNOWN = 1000;
+const known = new Map();
+
+// Lines on what was found in files and runs, in the language of the page; in English where nobody here may ask for more.
+export async function inWords(lines) {
+  const missing = language === ENGLISH ? [] : [...new Set(lines.filter((line) => line && !known.has(line)))];
+  if (missing.length) {
+    const said = await ask(`${FINDINGS}?${new URLSearchParams({ lang: language })}`, { lines: missing }, () => {});
+    if (known.size > MOST_KNOWN) known.clear();
+    missing.forEach((line, n) => known.set(line, said?.lines[n] ?? line));
+  }
+  return lines.map((line) => known.get(line) ?? line);
+}
+
+const FOUND = ["about", "broken", "cause", "problems", "restart", "seen", "sentence", "untrue", "warnings", "why"];
+
+// An answer whose texts on what was found, those of these keys and `more`, are in the language of the page.
+export async function spoken(answer, ...more) {
+  const keys = new Set([...FOUND, ...more]);
+  const each = (value, key, done) => {
+    if (typeof value === "string") return keys.has(key) ? done(value) : value;
+    if (Array.isArray(value)) return value.map((one) => each(one, key, done));
+    if (!value || typeof value !== "object" || key === "answers") return value; // their keys are of a recipe
+    return Object.fromEntries(Object.entries(value).map(([name, one]) => [name, each(one, name, done)]));
+  };
+  const texts = [];
+  each(answer, null, (text) => texts.push(text));
+  const said = await inWords(texts);
+  return each(answer, null, () => said.shift());
 }
 
 // One step of the draft; whoever edits nothing yet begins to. True if it was done.

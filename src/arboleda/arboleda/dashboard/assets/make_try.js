@@ -1,7 +1,7 @@
 // Try: a task of the draft is simulated in a process of its own, with a fault or without, and looked at as a record.
 
 import { onCells } from "./make_cells.js";
-import { ask, begun, box, draft, fill, isRecent, options } from "./make_state.js";
+import { ask, begun, box, draft, fill, isRecent, options, spoken } from "./make_state.js";
 import { words } from "./shell.js";
 
 const LOOK_MS = 400;
@@ -41,7 +41,7 @@ export async function recall() {
   if (last || !isRecent("try")) return;
   const run = await ask("/api/make/runs/try", undefined, () => {});
   if (last || run?.state !== "done") return;
-  last = await ask("/api/make/runs/try/result", undefined, () => {});
+  last = await spoken(await ask("/api/make/runs/try/result", undefined, () => {}));
   if (last) shown(last);
 }
 
@@ -61,9 +61,9 @@ async function go(wanted) {
 export async function ended(what, progress, says) {
   for (;;) {
     await new Promise((go) => setTimeout(go, LOOK_MS));
-    const run = await ask(`/api/make/runs/${what}`, undefined, says);
+    const run = await spoken(await ask(`/api/make/runs/${what}`, undefined, says));
     if (!run) return null;
-    if (run.state === "done") return ask(`/api/make/runs/${what}/result`, undefined, says);
+    if (run.state === "done") return spoken(await ask(`/api/make/runs/${what}/result`, undefined, says));
     if (run.state !== "running") return says(run.sentence ?? words.make_stopped), null;
     progress(run);
   }

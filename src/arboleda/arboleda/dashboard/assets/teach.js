@@ -2,7 +2,7 @@
 
 import { open } from "./make.js";
 import { fromTaught } from "./make_cells.js";
-import { editor, keepName, knownName } from "./make_state.js";
+import { editor, inWords, keepName, knownName } from "./make_state.js";
 import { answer, words } from "./shell.js";
 import * as device from "./teach_device.js";
 import * as press from "./teach_press.js";
@@ -15,6 +15,7 @@ let drawn = new Map(); // the controls of each device, by name
 let shape = "";
 let timer = null;
 let recipeLink = null; // stands in the note from the second target on
+let told = null; // what the plant said last, if it is what the note says
 let taught = null; // the targets that were made last, of one cell
 
 export function start() {
@@ -80,7 +81,7 @@ function draw({ teaching, refusal, devices, targets, zones, drafts }) {
   const isMine = teaching !== null && mine()?.session === teaching.session;
   box("begin").disabled = teaching !== null || refusal !== null;
   box("end").disabled = teaching === null;
-  if (teaching === null && refusal) say(refusal);
+  if (teaching === null && refusal) tell(refusal);
   const now = JSON.stringify([zones, ...devices.map(({ name, joints, verbs, nodes }) => [name, joints, verbs, nodes])]);
   if (now !== shape) build(devices, targets, zones);
   shape = now;
@@ -104,12 +105,13 @@ function step() {
   return chosen === "hold" ? null : Number(chosen);
 }
 
-function heard({ sentence, teaching, robot }, { number }) {
-  if (sentence) return say(sentence);
+function heard({ sentence, teaching, robot }, { number }, unseen) {
+  if (sentence) return tell(sentence);
   if (robot) drawn.get(robot.name)?.show(robot);
   if (!teaching) return say(words.teach_over);
   if (teaching.number === number) say("");
-  else if (teaching.trouble) say(teaching.trouble);
+  else if (teaching.trouble) tell(teaching.trouble);
+  else if (unseen) say(words.teach_unseen);
 }
 
 async function here({ name }, target, approach, zone) {
@@ -135,14 +137,23 @@ async function ask(path, body) {
     const got = await fetch(path, options);
     const said = await got.json();
     if (got.ok) return said;
-    say(said.sentence);
+    tell(said.sentence);
   } catch {
     answer(words.not_sent, false);
   }
   return null;
 }
 
+// What the plant says, in the language of the page, unless something else is said before that is known.
+async function tell(sentence) {
+  if (sentence === told) return;
+  told = sentence;
+  const [line] = await inWords([sentence]);
+  if (told === sentence) say(line), (told = sentence);
+}
+
 function say(sentence) {
+  told = null;
   const offered = recipeLink && taught?.cell === cell && taught.targets.length > 1;
   box("note").replaceChildren(sentence, ...(offered ? [" ", recipeLink] : []));
 }

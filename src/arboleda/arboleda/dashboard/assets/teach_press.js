@@ -3,7 +3,7 @@
 
 const BEAT_MS = 50;
 const MOST_UNDER_WAY = 3;
-const UNSEEN_MS = 1500; // after which a step that was never seen to begin is over
+const UNSEEN_MS = 1500; // after which what was never seen to begin is let go of
 const PATIENCE_MS = 2000;
 
 let press = null;
@@ -13,7 +13,8 @@ let whoTeaches = () => null;
 
 export const held = () => press;
 
-// `heard(answer, press)` gets each answer of the plant, and `{ sentence }` where it refuses; `teacher()` is { cell, session }.
+// `heard(answer, press, unseen)` gets each answer of the plant, and `{ sentence }` where it refuses; `unseen`: a button
+// that is held was let go of because nothing began. `teacher()` is { cell, session }.
 export function start(heard, teacher) {
   [hear, whoTeaches] = [heard, teacher];
   window.addEventListener("blur", letGo);
@@ -60,7 +61,7 @@ async function beat(mine) {
   mine.seen ||= moves;
   const unseen = !mine.seen && Date.now() - mine.since > UNSEEN_MS;
   if (answer.sentence || !answer.teaching || (mine.seen && !moves) || unseen) stopped();
-  hear(answer, mine);
+  hear(answer, mine, unseen && !mine.alone); // a step may be over before an answer has it
 }
 
 function said({ number, robot, goal, along, verb, values, teacher }) {

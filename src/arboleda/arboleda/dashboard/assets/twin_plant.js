@@ -102,10 +102,15 @@ export class Plant {
     this.paints.paint(colorOf);
   }
 
-  // What has to be seen of the plant, or of one cell, as points.
+  // What has to be seen of the plant, or of one cell, as points; the plant's where nothing of the cell is drawn.
   points(name) {
-    const { Vector3 } = this.THREE;
     this.root.updateMatrixWorld(true);
+    const found = this.pointsOf(name);
+    return found.length ? found : this.pointsOf();
+  }
+
+  pointsOf(name) {
+    const { Vector3 } = this.THREE;
     const cells = this.scene.cells.filter((cell) => !name || cell.name === name);
     const places = this.scene.places.filter((each) => !name || each.cell === name);
     const frames = [...cells.flatMap((cell) => [...cell.pickups]), ...places.map(({ frame }) => frame)];

@@ -1,5 +1,7 @@
 // The versions of the plant's files: which is at work, and a way back.
 
+import { inWords } from "./make_state.js";
+
 const { language } = window.arboledaPage;
 const EVERY_MS = 10_000;
 
@@ -92,10 +94,10 @@ async function back(event) {
   const answer = await post(`${button.dataset.number}/put`, { name: by });
   button.disabled = false;
   const said = answer && (await answer.json().catch(() => null));
-  part("versions-said").textContent = said ? (answer.ok ? told(said) : said.sentence) : part("versions-box").dataset.lost;
+  part("versions-said").textContent = said ? (answer.ok ? await told(said) : said.sentence) : part("versions-box").dataset.lost;
   show();
 }
 
-function told({ problems, restart }) {
-  return [...problems, ...restart].join("\n");
+async function told({ problems, restart }) {
+  return (await inWords([...problems, ...restart])).join("\n");
 }

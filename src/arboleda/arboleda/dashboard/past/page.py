@@ -5,10 +5,10 @@ from __future__ import annotations
 import re
 
 from fastapi import FastAPI, Request
-from nicegui import Client, ui
 
 from .. import header, links, shell, tasks, timeline, trees
 from ..body import Parts, body
+from ..toolkit import Client, ui
 from ..twin import pane, window
 from ..wording import words
 from . import bar

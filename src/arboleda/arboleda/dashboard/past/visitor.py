@@ -7,13 +7,11 @@ import logging
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from nicegui import Client
-from nicegui.events import GenericEventArguments
-
 from arboleda.model.errors import ArboledaError
 from arboleda.views.changes import changed
 
 from ..faces import Face
+from ..toolkit import Client, GenericEventArguments
 from ..wording import Words
 from .frame_queue import FrameQueue
 from .moments import dated

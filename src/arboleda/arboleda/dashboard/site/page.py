@@ -8,7 +8,6 @@ from contextlib import suppress
 
 from fastapi import FastAPI, Request
 from fastapi.responses import JSONResponse
-from nicegui import Client, app, ui
 
 from arboleda.model.errors import PayloadError
 from arboleda.model.messages import Verb
@@ -23,6 +22,7 @@ from ..open_page import LONGEST, OpenPage
 from ..page_api import Layout
 from ..shell import language_of, role_shown
 from ..tags import act_button, rows, tag
+from ..toolkit import Client, app, ui
 from ..wording import Words, words
 from .face import face
 from .side import RequestOutcome, SiteSide

@@ -53,10 +53,9 @@ def pose(xyz: Sequence[float], rpy: Sequence[float]) -> Matrix:
 
 
 def times(a: Matrix, b: Matrix) -> Matrix:
+    """The frame `b`, seen from where `a` is seen; written out, as drawings and checks do it often."""
     columns = tuple(zip(*b, strict=True))
-    return tuple(
-        tuple(sum(x * y for x, y in zip(row, column, strict=True)) for column in columns) for row in a
-    )
+    return tuple(tuple([x * i + y * j + z * k + w * m for i, j, k, m in columns]) for x, y, z, w in a)
 
 
 def at(matrix: Matrix, point: Point = (0, 0, 0)) -> Point:

@@ -8,12 +8,11 @@ from collections.abc import Callable, Sequence
 from typing import Any, Protocol
 
 from fastapi import FastAPI, Request, Response
-from nicegui import Client, ui
-from nicegui.events import GenericEventArguments
 
 from arboleda.model.errors import ArboledaError
 from arboleda.web.access.auth import require
 
+from ..toolkit import Client, GenericEventArguments, ui
 from . import bodies
 from .show import Show
 from .twin import Twin

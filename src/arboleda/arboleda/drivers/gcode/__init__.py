@@ -1,5 +1,6 @@
-"""The driver `gcode` without its line: machines of axes whose controller runs GRBL 1.1 or Marlin.
+"""The driver `gcode` without its line: machines of axes whose controller runs GRBL 1.1, Marlin or Klipper.
 
-`machine.py` is what both dialects have in common, `grbl.py` and `marlin.py` what the driver makes of either,
-`grbl_lines.py` and `marlin_lines.py` what is on the wire; `settings.py` has the keys of the plant file.
+`machine.py` is what the dialects have in common; `grbl.py`, `marlin.py` and `moonraker.py` are what the
+driver makes of each, and the `_lines.py` beside it what is on the wire; `settings.py` has the keys of the
+plant file.
 """

@@ -148,9 +148,8 @@ class GrblMachine(Machine):
         self._last_data_at = now
         resets, self._resets = self._resets, False
         if self._step is Step.RESETTING:
-            self._step, self._news = None, True
-            self._tell(accepted=self._stop_id)
-            self._stop_id = ""
+            self._step = None
+            self._confirm_stop()
         elif resets:
             return  # the end of a reset, after which another stop was given
         elif self._known:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import Generic, TypeVar
 
-LONGEST = 512  # bytes of a line; both firmwares send fewer
+LONGEST = 512  # bytes of a line; GRBL and Marlin send fewer
 FARTHEST_MM = 100_000.0
 NUMBER = r"-?\d{1,6}\.\d{1,4}"
 
@@ -15,15 +15,15 @@ Line = TypeVar("Line")
 class LineReader(Generic[Line]):
     """Splitter of the stream into lines; those that mean nothing to `parsed` are passed over."""
 
-    def __init__(self, parsed: Callable[[str], Line | None]) -> None:
-        self._parsed = parsed
+    def __init__(self, parsed: Callable[[str], Line | None], *, longest: int = LONGEST) -> None:
+        self._parsed, self._longest = parsed, longest
         self._rest = b""
 
     def feed(self, data: bytes) -> list[Line]:
         """The lines that are complete now, in order."""
         *whole, rest = (self._rest + data).split(b"\n")
-        self._rest = rest[-LONGEST:]
-        found = (self._parsed(each[-LONGEST:].decode("ascii", "replace").strip()) for each in whole)
+        self._rest = rest[-self._longest :]
+        found = (self._parsed(each[-self._longest :].decode("ascii", "replace").strip()) for each in whole)
         return [each for each in found if each is not None]
 
 

@@ -1,6 +1,6 @@
 """State machine of the driver `gcode`, without a line: the connection, the commands, what the plant hears.
 
-What a firmware says and hears is its dialect's: `grbl.py`, `marlin.py`.
+What a firmware says and hears is its dialect's: `grbl.py`, `marlin.py`, `moonraker.py`.
 """
 
 from __future__ import annotations
@@ -173,6 +173,11 @@ class Machine(ABC):
     def _tell(self, **ids: str) -> None:
         self._receipts |= {name: id for name, id in ids.items() if id}
         self._news = True
+
+    def _confirm_stop(self) -> None:
+        """Tell that the last stop has come to its end."""
+        self._tell(accepted=self._stop_id)
+        self._stop_id = ""
 
     def _reject(self, id: str, word: str) -> None:
         if id:

@@ -22,6 +22,7 @@ from .marlin_lines import (
     HALTED,
     STOPPED,
     UNHOMED,
+    Busy,
     Capability,
     Firmware,
     Line,
@@ -37,7 +38,8 @@ from .marlin_lines import (
 
 SILENT_S = 3.0  # a busy controller says so once a second
 BOOT_S = 10.0  # a board boots when its line is opened, some with a picture on their screen
-STOP_AGAIN_S = 2.0  # Marlin drops all moves for a second, and answers after that
+STOP_AGAIN_S = 3.0  # Marlin drops all moves for a second, and for one more after a second stop
+SHUTDOWN_S = 2.0  # it moves on for 0.6 s after it says that it is halted, longer the faster it steps
 SET_NUMBER, ASK_NAME, ASK_PLACE, FINISH, HOME_ALL, MOTORS_ON = "M110 N0", "M115", "M114", "M400", "G28", "M17"
 SETTINGS = ("M113 S1", "M84 S0")  # a sign of life each second; motors that never go off by themselves
 PARSER = "EMERGENCY_PARSER"
@@ -95,11 +97,13 @@ class MarlinMachine(Machine):
         self._halt_at = now
 
     def _greet(self, now: float) -> None:
+        self._write("")  # what was left of a line that was torn ends here, and takes no stop with it
         if self._left_at_work:  # nobody waits for that work any more
             self._left_at_work = False
             self._say_halt(now, Halt.QUICK)
         self._ask(SET_NUMBER)
-        self._ask(ASK_NAME)
+        self._unanswered.append(ASK_NAME)  # without a number: once Marlin comes to do M110 it counts anew,
+        self._write(ASK_NAME)  # and refuses what follows a line that it has read meanwhile
 
     @property
     def _at_work(self) -> bool:
@@ -116,8 +120,9 @@ class MarlinMachine(Machine):
 
     def _wait(self, now: float) -> None:
         patience_s = SILENT_S if self._position is not None else BOOT_S
-        if self._trouble == HALTED:
-            pass  # it says nothing more until it is reset
+        if self._trouble == HALTED:  # it says nothing more until it is reset
+            if self._open_halt is not None and now - self._halt_at > SHUTDOWN_S:
+                self._end_halt()
         elif now - self._last_data_at > patience_s:
             self._close(now, f"it has said nothing for {patience_s:g} s; is it Marlin, at this baud?")
             return
@@ -163,7 +168,8 @@ class MarlinMachine(Machine):
     def _halt(self, now: float) -> None:
         """Drop all moves. Homing would go on with its next leg, and believe its end: that is shut down."""
         if self._trouble == HALTED:
-            self._end_halt()
+            if self._open_halt is None:
+                self._end_halt()
             return
         if self._work is not None:
             self._is_homed = self._is_homed and self._settings.stop_keeps_place
@@ -177,9 +183,8 @@ class MarlinMachine(Machine):
         self._write(halt.value)  # without a number: it passes lines that were lost or are not read yet
 
     def _end_halt(self) -> None:
-        self._open_halt, self._news = None, True
-        self._tell(accepted=self._stop_id)
-        self._stop_id = ""
+        self._open_halt = None
+        self._confirm_stop()
 
     # What it says.
 
@@ -195,6 +200,8 @@ class MarlinMachine(Machine):
         elif isinstance(line, Place):
             if self._unanswered and self._unanswered[0] == ASK_PLACE:
                 self._place = line
+        elif isinstance(line, Busy):
+            self._take_busy(now, line.word)
         elif isinstance(line, Refusal):
             self._refusal = line.word
         elif isinstance(line, Trouble):
@@ -207,6 +214,20 @@ class MarlinMachine(Machine):
             self._take_start(now)
         elif isinstance(line, Resend):
             self._close(now, "a line did not come to it as it was sent; none is sent again")
+
+    def _take_busy(self, now: float, word: str) -> None:
+        """Shut it down where it is busy with the line of a move, which it answers before it makes one.
+
+        Then it divides the move into pieces. M410 drops those that wait, and Marlin goes on with the others.
+        """
+        divides = word == "processing" and bool(self._unanswered) and self._unanswered[0].startswith("G1")
+        if not divides or self._open_halt is Halt.KILL:
+            return
+        if self._work is not None:
+            self._tell(failed=self._work.id, failure="divided")
+        self._work, self._is_homed, self._news = None, False, True
+        self._queue.clear()
+        self._say_halt(now, Halt.KILL)
 
     def _take_start(self, now: float) -> None:
         if self._is_heard:
@@ -301,8 +322,8 @@ class MarlinMachine(Machine):
             if self._work is not None:
                 self._tell(failed=self._work.id, failure=word)
                 self._work = None
-            if self._open_halt is not None:
-                self._end_halt()
+            self._position = None  # its motors go off
+            self._open_halt, self._halt_at = Halt.KILL, now
         elif self._work is not None:
             self._give_up(now, word)
 

@@ -18,7 +18,7 @@ POSITION = re.compile(rf"(X:{NUMBER}(?: [A-Z]:{NUMBER})*) Count(?: ?[A-Z]: ?-?\d
 AXIS = re.compile(rf"[XYZ]:({NUMBER})")
 FIRMWARE = re.compile(r"FIRMWARE_NAME:(.+)")
 CAPABILITY = re.compile(r"Cap:([A-Z_]+):([01])")
-BUSY = re.compile(r"(?:echo:)?busy: [a-z ]+")
+BUSY = re.compile(r"(?:echo:)?busy: ([a-z ]+)")
 RESEND = re.compile(r"Resend: ?\d+|Error:.*Last Line: \d+")
 UNKNOWN = re.compile(r"echo:Unknown command: .*")
 HOME_FIRST = re.compile(r"echo:Home [XYZ]+ (?:Printer )?First")
@@ -41,7 +41,9 @@ class Place:
 
 @dataclass(frozen=True, kw_only=True)
 class Busy:
-    """Sign of life of a controller that goes on with a line."""
+    """Sign of life of a controller that goes on with a line, or waits for somebody."""
+
+    word: str
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -99,8 +101,8 @@ def parsed(text: str) -> Line | None:
     if found := POSITION.fullmatch(text):
         position = millimetres(AXIS.findall(found[1]))
         return None if position is None else Place(position=position)
-    if BUSY.fullmatch(text):
-        return Busy()
+    if found := BUSY.fullmatch(text):
+        return Busy(word=found[1])
     if text == "start":
         return Start()
     if RESEND.fullmatch(text):

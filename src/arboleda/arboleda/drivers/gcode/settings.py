@@ -22,11 +22,11 @@ class Settings(StreamAddress):
     """Settings of the driver `gcode`: the line, and the letter of each axis with its zero.
 
     `zeros_mm` are the positions of the machine at which the axes of the model are at 0; `stop_keeps_place`
-    declares that a machine with Marlin loses no step where it stops without braking.
+    declares that a machine with Marlin loses no step where it stops without braking. Moonraker is at a host.
     """
 
     baud: int = 115200
-    dialect: Literal["grbl", "marlin"] = "grbl"
+    dialect: Literal["grbl", "marlin", "moonraker"] = "grbl"
     axes: tuple[Literal["X", "Y", "Z"], ...] = ("X", "Y", "Z")
     zeros_mm: tuple[float, ...] = ()
     homing: bool = True
@@ -44,17 +44,23 @@ class Settings(StreamAddress):
             raise DriverError(f"speed_percent is {self.speed_percent}; allowed: 1 to 100")
         if not 0.05 <= self.poll_s <= 0.5:
             raise DriverError(f"poll_s is {self.poll_s:g}; allowed: 0.05 to 0.5")
-        if self.stop_keeps_place and self.dialect == "grbl":
-            raise DriverError("stop_keeps_place is for dialect: marlin; GRBL keeps its place by itself")
+        if self.stop_keeps_place and self.dialect != "marlin":
+            raise DriverError(
+                "stop_keeps_place is for dialect: marlin; others keep their place by themselves"
+            )
+        if self.dialect == "moonraker" and self.serial:
+            raise DriverError("dialect: moonraker needs host and port, not serial; its port is 7125")
+        if self.dialect == "moonraker" and not self.homing:
+            raise DriverError("homing: false is not for moonraker; Klipper moves only what was homed")
 
     @property
     def reported_facts(self) -> tuple[str, ...]:
-        """The facts that the machine tells; Marlin knows of no door."""
+        """The facts that the machine tells; only GRBL knows of a door."""
         return (HEALTH, "door", "mode") if self.dialect == "grbl" else (HEALTH, "mode")
 
     @property
     def home_clears_faults(self) -> bool:
-        """True for GRBL, where homing begins with a reset where that is needed; Marlin needs one by hand."""
+        """True for GRBL, where homing begins with a reset if that is needed; others need one by hand."""
         return self.dialect == "grbl"
 
     @property

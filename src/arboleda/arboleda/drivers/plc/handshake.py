@@ -233,8 +233,14 @@ def stop_order(settings: Mapped[O_co], mode: StopMode) -> O_co:
 
 
 def _readings(settings: Mapped[object]) -> Iterator[str]:
-    """The places to read; those that a program sets last are read first."""
+    """The places to read; those that a program sets last are read first.
+
+    A program often shows all of it in one block, which one request reads as it is at one moment. The number
+    that was written lies in another block, so it is read last, and in between only where `busy` needs it.
+    """
     sequence = settings.sequence
+    written: str | None = getattr(sequence, "write", None)
+    busy: str | None = getattr(sequence, "busy", None)
     for name in ECHOES:
         place: str | None = getattr(sequence, name, None)
         if place is not None:
@@ -243,9 +249,12 @@ def _readings(settings: Mapped[object]) -> Iterator[str]:
         variable: PlcVariable | None = getattr(sequence, name, None)
         if variable is not None:
             yield variable.place
-    yield from (node for name in ("busy", "write") if (node := getattr(sequence, name, None)) is not None)
+    if written is not None and busy is not None:
+        yield from (busy, written)
     yield from (node for node in (settings.boot, settings.alive) if node is not None)
     if settings.state is not None:
         yield settings.state.place
     yield from (variable.place for variable in settings.facts.values())
     yield from (verb.answer.place for verb in settings.verbs.values() if verb.answer is not None)
+    if written is not None and busy is None:
+        yield written

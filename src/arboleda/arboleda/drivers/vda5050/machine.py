@@ -31,6 +31,7 @@ from .state import ENDS_ORDER, FACTS, Body, VehicleState, read
 
 BEAT_S = 0.3
 AGAIN_S = 2.0  # after this time an unanswered stop or request is sent again
+PAUSES = 3  # requests, where a vehicle has ended a pause and says that it is not paused
 FACTSHEET_TRIES = 3  # factsheet requests; not all vehicles have one
 NEIGHBOURS = 20  # that a sentence may name
 LONGEST_COMMAND = "1800000000-99999"  # an id as the plant makes them, by its start and a number
@@ -79,6 +80,7 @@ class Vehicle:
             str, list[str]
         ] = {}  # types of stops, each with all its actions, while none of them is over
         self._stops_at = -math.inf  # time of the last stop
+        self._pauses_left = 0  # so often it is told again to pause, where it has said that it did and has not
         self._count = 0  # of actions
         self._most_nodes: int | None = None  # of an order
         self._has_sheet, self._sheet_requests, self._ask_at = False, 0, -math.inf
@@ -166,6 +168,8 @@ class Vehicle:
         if (why := self._link.trouble) is not None:
             raise NotSent(why)
         if isinstance(command, Stop):
+            if command.mode is not StopMode.HALT:  # a halt takes nothing back of a latching stop
+                self._pauses_left = PAUSES if command.mode is StopMode.LATCH else 0
             return self._stop(now, *STOPS[command.mode])
         if isinstance(command, FollowPath):
             return self._begin(command, self._map.way(self._at, command.nodes))
@@ -235,8 +239,15 @@ class Vehicle:
 
     def _say_stops_again(self, now: float) -> list[Message]:
         """Send stops again until they have ended: a message may be lost, or a vehicle deaf for a while."""
-        due = self._stops and now - self._stops_at >= AGAIN_S and self._link.trouble is None
-        return self._stop(now, *self._stops) if due else []
+        if now - self._stops_at < AGAIN_S or self._link.trouble is not None:
+            return []
+        if self._stops:
+            return self._stop(now, *self._stops)
+        if not self._pauses_left or self._state is None or self._state.paused:
+            self._pauses_left = 0
+            return []
+        self._pauses_left -= 1
+        return self._stop(now, "startPause")
 
     def _request(self, *types: str) -> list[Publish]:
         """A message for each action: some vehicles lose the second action of a message."""

@@ -38,9 +38,14 @@ class Joint:
     def at_rate(self, rate: float) -> Joint:
         return replace(self, speed=self.speed * rate, acceleration=self.acceleration * rate**2)
 
+    @property
+    def lifts(self) -> bool:
+        """True for a prismatic axis that moves up and down."""
+        return self.pinion_radius_m is not None and self.up != 0
+
     def higher(self, value: float, *others: float) -> float:
         """The highest of these values if the joint lifts, else `value`."""
-        if self.pinion_radius_m is None or self.up == 0:
+        if not self.lifts:
             return value
         return min(value, *others) if self.up < 0 else max(value, *others)
 

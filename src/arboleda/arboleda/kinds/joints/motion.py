@@ -55,6 +55,11 @@ class JointMotion(Movement):
             held = self._held[goal] = self.quantised(goal)
         return self.reached(position, held)
 
+    def is_between(self, position: Position, start: Position, end: Position) -> bool:
+        assert isinstance(position, tuple) and isinstance(start, tuple) and isinstance(end, tuple)
+        rows = zip(position, self.quantised(start), self.quantised(end), self.tolerances, strict=True)
+        return all(min(a, b) - within <= q <= max(a, b) + within for q, a, b, within in rows)
+
     def confuses(self, position: Position, other: Position) -> bool:
         """True if the robot, stopped within tolerance of one position, may count as standing at the other."""
         assert isinstance(position, tuple) and isinstance(other, tuple)

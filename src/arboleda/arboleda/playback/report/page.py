@@ -11,6 +11,7 @@ from html import escape
 from importlib import resources
 from typing import Any
 
+from arboleda.dashboard.findings import findings
 from arboleda.dashboard.wording import Words, words
 from arboleda.drawing.words import outline
 from arboleda.model.plant_model import PlantModel
@@ -148,4 +149,12 @@ def _messages(found: Incident, name: str) -> str:
 def _try(each: ForkTrial, report: Report) -> str:
     what = _each(each.what, value=each.value)
     command = f"{report.command} {each.options}".strip() if each.options else ""
-    return f"<tr><td>{what}<td>{escape(each.end)}<td><code>{escape(command)}</code>"
+    return f"<tr><td>{what}<td>{_end(each.end)}<td><code>{escape(command)}</code>"
+
+
+def _end(text: str) -> str:
+    """The end of a task in a fork, `failed TASK (id ID): why`, in every language."""
+    state, _, rest = text.partition(" ")
+    task, mark, why = rest.partition("): ")
+    said = ((each, words(each).ends.get(state, state), findings(each)(why)) for each in LANGUAGES)
+    return "".join(_span(language, f"{end} {task}{mark}{found}".strip()) for language, end, found in said)

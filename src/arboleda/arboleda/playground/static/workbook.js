@@ -99,7 +99,7 @@ const button = (does) => document.querySelector(`[data-does=${does}]`);
 function ask(what, request, progress) {
   pending++;
   const slow = setTimeout(() => (button("interrupt").disabled = false), SLOW_MS);
-  return python.ask(what, request, progress).finally(() => {
+  return python.ask(what, { ...request, language }, progress).finally(() => {
     clearTimeout(slow);
     if (!--pending) button("interrupt").disabled = true;
   });

@@ -51,10 +51,10 @@ class MakeBench(MakeApi):
         """Nothing: processes begin when somebody asks for them."""
 
     def stop(self) -> None:
-        """End all processes. Idempotent."""
+        """End all processes, and begin no other. Idempotent."""
         self._workshop.stop()
         for run in self._runs.values():
-            run.stop()
+            run.end()
 
     def _plant_file(self) -> Path:
         """The plant file that there is; DraftRefused before the plant that comes with Arboleda is copied."""
@@ -81,6 +81,9 @@ class MakeBench(MakeApi):
     def copy(self, editor: str, cell: str, recipe: str, name: str) -> Row:
         text = self._workshop.copied(*self._desk.files, cell, recipe, name)
         return self._desk.add_trees(editor, f"{name}{ENDING}", text)
+
+    def translate(self, language: str, lines: list[str]) -> list[str]:
+        return self._workshop.translate(spoken([language]), lines)
 
     def drivers(self, language: str) -> list[Row]:
         return self._workshop.drivers(*self._desk.files, texts(spoken([language]), "drivers"))

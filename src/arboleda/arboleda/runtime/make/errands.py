@@ -12,10 +12,12 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from arboleda.model.errors import ArboledaError
 from arboleda.plant_file.recipe_trial import PATH
 from arboleda.recorder.preamble import PlantFiles
 
 START = PATH + "from arboleda.campaigns.draft import {module}; {module}.main()"
+ENDING = "nothing is begun any more: the plant ends"
 NO_RESULT = "it ended without a result; try again, or run `arboleda {command}` on the plant file"
 
 
@@ -34,6 +36,7 @@ class ErrandRun:
         self._work = work
         self.folder = folder
         self._turns = threading.Lock()
+        self._ended = False
         self._run: subprocess.Popen[str] | None = None
         self._state: dict[str, Any] = {"state": "idle"}
 
@@ -43,7 +46,7 @@ class ErrandRun:
             return dict(self._state)
 
     def begin(self, files: PlantFiles, plant_file: Path, wanted: Mapping[str, Any]) -> None:
-        """Begin anew, with these files as those beside `plant_file`."""
+        """Begin anew, with these files as those beside `plant_file`; ArboledaError after `end`."""
         request = {
             "plant": files.plant,
             "plant_file": str(plant_file.absolute()),
@@ -51,22 +54,33 @@ class ErrandRun:
             "folder": str(self.folder.absolute()),
             "wanted": dict(wanted),
         }
-        self.stop()
-        shutil.rmtree(self.folder, ignore_errors=True)
-        self.folder.mkdir(parents=True)
         command = [sys.executable, "-I", "-c", START.format(module=self._work.module), json.dumps(sys.path)]
         pipe = subprocess.PIPE
-        run = subprocess.Popen(command, stdin=pipe, stdout=pipe, stderr=subprocess.DEVNULL, text=True)
         with self._turns:
+            if self._ended:
+                raise ArboledaError(ENDING)
+            self._kill()
+            shutil.rmtree(self.folder, ignore_errors=True)
+            self.folder.mkdir(parents=True)
+            run = subprocess.Popen(command, stdin=pipe, stdout=pipe, stderr=subprocess.DEVNULL, text=True)
             self._run, self._state = run, {"state": "running"}
         threading.Thread(target=self._follow, args=(run, json.dumps(request)), daemon=True).start()
 
     def stop(self) -> None:
         """End what is under way; idempotent."""
         with self._turns:
-            run, self._run = self._run, None
-            if self._state["state"] == "running":
-                self._state = {"state": "stopped"}
+            self._kill()
+
+    def end(self) -> None:
+        """End what is under way, and begin nothing any more; idempotent."""
+        with self._turns:
+            self._ended = True
+            self._kill()
+
+    def _kill(self) -> None:
+        run, self._run = self._run, None
+        if self._state["state"] == "running":
+            self._state = {"state": "stopped"}
         if run is not None:
             run.kill()
 

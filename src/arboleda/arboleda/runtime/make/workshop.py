@@ -20,6 +20,7 @@ from arboleda.web.desks.draft import DraftRefused
 START = PATH + "from arboleda.runtime.make import workshop_process; workshop_process.main()"
 PATIENCE_S = 120.0  # of one answer
 NO_ANSWER = "the draft could not be looked at, nothing came of it; `arboleda check` says more"
+ENDING = "the draft is not looked at any more: the plant ends"
 
 Row = dict[str, Any]
 
@@ -30,13 +31,17 @@ class Workshop:
     def __init__(self, plant_file: Callable[[], Path]) -> None:
         self._plant_file = plant_file
         self._turns = threading.Lock()
+        self._beginning = threading.Lock()  # held while a process begins, and while all of it is to end
+        self._ended = False
         self._run: subprocess.Popen[bytes] | None = None
         self._files: PlantFiles | None = None  # that the process was given last
         self._problems: tuple[str, ...] = ()
 
     def stop(self) -> None:
-        """End the process; idempotent. What it was asked is answered by a refusal."""
-        run = self._run
+        """End the process, and begin no other; idempotent. Whoever waits for an answer is refused."""
+        with self._beginning:
+            self._ended = True
+            run = self._run
         if run is None:
             return
         run.kill()
@@ -81,6 +86,14 @@ class Workshop:
             self._load(base, files)
             return str(self._ask("copied", cell, recipe, name))
 
+    def translate(self, language: str, lines: list[str]) -> list[str]:
+        """Findings in a language, by the workshop's process, as looking for templates takes a while."""
+        with self._turns:
+            if self._run is None or self._run.poll() is not None:
+                self._begin()
+            translated: list[str] = self._ask("translate", language, lines)
+            return translated
+
     def drivers(self, base: PlantFiles, files: PlantFiles, words: Mapping[str, str]) -> list[Row]:
         """The drivers that a device of a declared kind can have, with a field for each setting."""
         found: list[Row] = self._answer(base, files, "drivers", dict(words))
@@ -117,7 +130,10 @@ class Workshop:
     def _begin(self) -> None:
         command = [sys.executable, "-I", "-c", START, json.dumps(sys.path)]
         pipe = subprocess.PIPE
-        self._run = subprocess.Popen(command, stdin=pipe, stdout=pipe, stderr=subprocess.DEVNULL)
+        with self._beginning:
+            if self._ended:
+                raise ArboledaError(ENDING)
+            self._run = subprocess.Popen(command, stdin=pipe, stdout=pipe, stderr=subprocess.DEVNULL)
         self._files = None
 
     def _ask(self, name: str, *values: Any) -> Any:
@@ -130,7 +146,9 @@ class Workshop:
             run.stdin.flush()
             result, refusal = pickle.load(run.stdout)
         except (OSError, EOFError, ValueError, pickle.UnpicklingError) as error:
-            raise ArboledaError(NO_ANSWER) from error
+            run.kill()
+            run.wait()  # the next request finds it ended, and begins another
+            raise ArboledaError(ENDING if self._ended else NO_ANSWER) from error
         finally:
             late.cancel()
             late.join()

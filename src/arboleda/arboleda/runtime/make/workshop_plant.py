@@ -13,6 +13,7 @@ from arboleda.bt_xml.editing.operations import Operation
 from arboleda.bt_xml.recipe import TreeRecipe
 from arboleda.core import text
 from arboleda.core.plant import Plant
+from arboleda.dashboard.findings import findings
 from arboleda.drivers.port import DriverSpec
 from arboleda.model.errors import ArboledaError, ConfigError
 from arboleda.model.outside import quoted
@@ -48,6 +49,10 @@ class WorkshopPlant:
         self._open.close()
         self._open = opened
         return ()
+
+    def translate(self, language: str, lines: list[str]) -> list[str]:
+        """Findings, given in English, in a language."""
+        return [findings(language)(line) for line in lines]
 
     def cells(self) -> list[Row]:
         """Each cell: its devices, with facts and verbs, its targets and its recipes."""

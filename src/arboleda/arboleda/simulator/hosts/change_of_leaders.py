@@ -32,6 +32,7 @@ def change_leaders(world: World, epoch: int) -> SupersededProcess | None:
     """
     world.plant_process.be_gone()
     client, bridge, left = world.broker.clients[BRIDGE], world.bridge, None
+    client.superseded = True
     stalled = world.processes.stalled
     until = max(stalled.pop(PLANT, world.now), stalled.pop(BRIDGE, world.now))
     if bridge is None or not world.is_on(PLANT):

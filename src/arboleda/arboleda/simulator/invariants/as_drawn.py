@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
+from functools import partial
 
 from arboleda.kinds.declared import VerbCall
 from arboleda.model.commands import Command
@@ -12,7 +13,7 @@ from arboleda.model.plant_model import Cell
 from arboleda.model.task import Task
 
 from ..plants.devices.meaning import Meaning, Told, Unsure, plain
-from ..plants.devices.steps import Recipe, Value
+from ..plants.devices.steps import Param, Recipe, Tell, Value, walk
 from ..recorded.commands import SentCommand
 from .invariant import Invariant, Look, Trigger
 
@@ -21,7 +22,8 @@ HARMLESS = (Verb.ANSWER, Verb.LOAD, Verb.UNLOAD)
 NAME = "recipes_do_what_was_drawn"
 SENTENCE = """A task of a drawn recipe that is called done, before anything went wrong, has told each device
     what was drawn, in that order, and has waited as long, in Python as in a tree of a file; one that
-    was drawn to fail fails with the words of that step."""
+    was drawn to fail fails with the words of that step. Whatever goes wrong, none tells a device what no
+    recipe has."""
 JITTER_S = 0.05
 
 
@@ -37,11 +39,14 @@ class DrawnTasks:
         self._recipes = recipes
         self._pauses = pauses
         self._names = {each.name for each in recipes}
+        steps = (step for each in recipes for step in walk(each.step) if isinstance(step, Tell))
+        self._drawn = {(each.role, *_pattern(each)) for each in steps}
         self._sent: dict[str, list[SentCommand]] = {}  # by cell
         self._is_disturbed = False
 
     def look(self, look: Look) -> Iterator[str]:
         """Take in a step: each breach in a sentence."""
+        yield from self._undrawn(look)
         requests = [each for each in look.moment.requests if isinstance(each, OperatorRequest)]
         self._is_disturbed |= any(each.verb not in HARMLESS for each in requests)
         if self._is_disturbed or look.world.last_fault_at > -math.inf:
@@ -52,6 +57,23 @@ class DrawnTasks:
         for change in look.record.tasks.changes:
             if not change.answer and change.message.state in ENDS:
                 yield from self._ended(look, change.message)
+
+    def _undrawn(self, look: Look) -> Iterator[str]:
+        """Orders for tasks of drawn recipes that no recipe has."""
+        for sent in look.record.commands.new:
+            if sent.entry is None or not isinstance(sent.command, VerbCall):
+                continue
+            if look.truth.released(sent.robot):
+                continue  # an operator has it let go of what it holds
+            cell, tasks = look.world.model.cell(sent.entry.cell), look.world.plant.intake.tasks
+            task = tasks.get(look.record.tasks.running.get(cell.name, ""))
+            if task is None or task.order.recipe not in self._names or sent.robot in _tools(cell):
+                continue
+            role = next(role for role, robot in cell.roles.items() if robot.name == sent.robot)
+            verb, values = _order(sent.command)
+            known = [rest for *named, rest in self._drawn if named == [role, verb]]
+            if not any(map(partial(_fits, values), known)):
+                yield f"{task.id} tells {role} {verb} {values}, which no recipe has"
 
     def _ended(self, look: Look, change: TaskChanged) -> Iterator[str]:
         cell, task = look.world.model.cell(change.cell or ""), look.world.plant.intake.tasks.get(change.task)
@@ -73,7 +95,7 @@ class DrawnTasks:
             return
         if not succeeds:
             yield f"{change.task} of {task.order.recipe} is called done, and was drawn to fail"
-        tools = {space.tool.name for space in cell.spaces if space.tool is not None}  # told by grips
+        tools = _tools(cell)
         roles = [role for role, robot in cell.roles.items() if robot.name not in tools]
         yield from _differences(change.task, roles, _calls(cell, sent), drawn.orders)
         took_s = (task.ended_at or 0.0) - (task.started_at or 0.0)
@@ -99,6 +121,11 @@ def _meaning(
     return Meaning(recipes, answers, takes_s, pauses=pauses)
 
 
+def _tools(cell: Cell) -> set[str]:
+    """The devices of a cell that are told by grips."""
+    return {space.tool.name for space in cell.spaces if space.tool is not None}
+
+
 def _calls(cell: Cell, sent: Sequence[SentCommand]) -> dict[str, list[Told]]:
     """The calls to each role, in that order."""
     roles = {robot.name: role for role, robot in cell.roles.items()}
@@ -114,6 +141,17 @@ def _differences(
     for role in roles:
         if (given := calls.get(role, [])) != (wanted := orders.get(role, [])):
             yield f"{task} is called done; {role} was told {given}, and {wanted} was drawn"
+
+
+def _fits(values: Sequence[Value], pattern: Sequence[Value | None]) -> bool:
+    return all(wanted in (value, None) for value, wanted in zip(values, pattern, strict=True))
+
+
+def _pattern(step: Tell) -> tuple[str, tuple[Value | None, ...]]:
+    """A verb and its values as `_order` has them; None for that of a parameter, which may be any."""
+    given = dict(step.values)
+    values = (None if isinstance(given[name], Param) else plain(given[name]) for name in sorted(given))
+    return step.verb, tuple(values)
 
 
 def _order(command: Command) -> Told:

@@ -8,10 +8,13 @@ from collections.abc import Iterable, Iterator
 from py_trees.behaviour import Behaviour
 
 from arboleda.bt_xml.running.decorators import Loop
+from arboleda.core.cell_states import CellState
 from arboleda.dispatch.ledger import TABLE, State
-from arboleda.model.commands import Home, Motion, Query, Stop, StopMode, Switch
+from arboleda.kinds.joints import MoveJoints
+from arboleda.kinds.joints.motion import JointMotion
+from arboleda.model.commands import Command, Home, Motion, Query, Stop, StopMode, Switch
 from arboleda.model.messages import Reason, Verb
-from arboleda.model.plant_model import MotionState, Robot, Timing
+from arboleda.model.plant_model import Cell, Evidence, MotionState, Robot, Timing
 from arboleda.trees.leaves import Act
 
 from ..recorded.cells import KnownCell
@@ -152,9 +155,12 @@ def _longest_s(robot: Robot, sent: SentCommand, timing: Timing) -> float:
 
 
 def _moved_deadline(look: Look, sent: SentCommand) -> Iterator[str]:
-    """Sentences on a deadline that was moved: only a cancel gives another one, that for its halt."""
+    """Sentences on a deadline that was moved: a cancel gives another one, that for its halt, and a command
+    that left late has at most so much more, to settle.
+    """
     if sent.entry is None or sent.cancelled_at is None:
-        if sent.entry is not None and sent.entry.deadline != sent.deadline:
+        moved_s = 0.0 if sent.entry is None else sent.entry.deadline - sent.deadline
+        if moved_s and not 0 < moved_s <= sent.late_s + ROUNDING_S:
             yield f"the deadline of {sent} was moved"
     elif sent.entry.deadline > sent.cancelled_at + look.record.timing_of(sent).stop_timeout_s + ROUNDING_S:
         yield f"{sent} has more than stop_timeout_s to end after its cancel"
@@ -228,6 +234,18 @@ def _left(look: Look) -> Iterator[str]:
             yield f"{sent} is open, and no step of {cell.name} waits for it"
 
 
+@invariant(Trigger.TOLD)
+def held_cells_stand_still(look: Look) -> Iterator[str]:
+    """A cell at work is held only once all that it had told to move has ended."""
+    commands = look.record.commands
+    changes = look.record.transitions
+    held = {cell.name for cell, _, after in changes if after is CellState.HELD and cell.tree is not None}
+    for sent in commands.open.values() if held else ():
+        in_one = sent.entry is not None and sent.entry.cell in held
+        if in_one and sent.can_be_halted and sent not in commands.new:
+            yield f"{sent} is under way, and its cell is held"
+
+
 def _needs_no_halt(look: Look, sent: SentCommand) -> bool:
     """True if a command has had its halt, or cannot be under way."""
     halted = look.record.robots[sent.robot].halts > sent.halts
@@ -249,6 +267,45 @@ def no_move_after_its_halt(look: Look) -> Iterable[str]:
     return look.record.stops.overtaken
 
 
+@invariant(Trigger.COMMANDED)
+def low_robots_rise_first(look: Look) -> Iterator[str]:
+    """A robot whose last word places it at a target with an approach leaves it by that, or straight up,
+    unless a person leads it by hand.
+    """
+    for sent in look.record.commands.new:
+        if sent.way and sent.entry is not None:
+            cell = look.world.plant.cells[sent.entry.cell]
+            place = _low_place(look, sent.command, cell.cell)
+            if place is not None and cell.manual.teaching is None:
+                yield f"{sent} leaves {place} sideways"
+
+
+def _low_place(look: Look, command: Command, cell: Cell) -> str | None:
+    """The target with an approach that a move leaves neither by that approach nor straight up."""
+    here, space = look.record.robots[command.robot].q, cell.reach.get(command.robot)
+    if (
+        not isinstance(command, MoveJoints)
+        or here is None
+        or space is None
+        or space.robot.evidence is Evidence.STATE
+    ):
+        return None
+    motion = space.robot.motion
+    assert isinstance(motion, JointMotion)
+    rows = zip(motion.joints, here, command.q, motion.tolerances, strict=True)
+    if all(joint.lifts or abs(goal - at) <= 2 * within for joint, at, goal, within in rows):
+        return None
+    high = [(pose, pose.above) for pose in space.poses if pose.above is not None]
+    if any(motion.stands_at(here, above) for _, above in high):
+        return None  # within its tolerance it may be low, too
+    if any(pose.above is None and motion.stands_at(here, pose.q) for pose in space.poses):
+        return None  # the same spot, as a target without an approach
+    low = {pose.name: above for pose, above in high if motion.stands_at(here, pose.q)}
+    if any(motion.stands_at(command.q, above) for above in low.values()):
+        return None
+    return next(iter(low), None)
+
+
 COMMANDS = (
     no_move_after_its_halt,
     no_command_to_unfit,
@@ -258,4 +315,6 @@ COMMANDS = (
     no_deadline_overrun,
     retries_bounded,
     halted_moves_sent_halt,
+    held_cells_stand_still,
+    low_robots_rise_first,
 )

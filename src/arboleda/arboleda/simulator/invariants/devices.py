@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from arboleda.dispatch.ledger import State
-from arboleda.model.commands import Command, Home, Motion, Query, Question
-from arboleda.model.messages import Fact, OperatorRequest, Remember, TaskState, Verb
+from arboleda.model.commands import Command, Home, Motion, Query, Question, Stop, StopMode
+from arboleda.model.messages import Fact, OperatorRequest, Reason, Remember, TaskState, Verb
 from arboleda.model.plant_model import Evidence, MotionState, Robot
 
+from ..recorded.commands import SentCommand
 from ..truth.ended_commands import EndedCommand
 from ..truth.robot import RobotTruth
 from ..truth.truth import Truth
@@ -143,6 +144,38 @@ def finishing_work_is_finished(look: Look) -> Iterator[str]:
             yield f"{robot.robot.name} was cut short in what it was to finish"
 
 
+@invariant(Trigger.NEWS)
+def finishing_work_is_not_halted(look: Look) -> Iterator[str]:
+    """Work that goes on through a stop is neither halted nor called off when its step is left."""
+    commands = look.record.commands
+    for sent, _ in commands.moved:
+        if sent.finishes and (sent.state in (State.CANCELLING, State.CANCELLED) or _failed_by_stop(sent)):
+            yield f"{sent} was called off, and was to finish"
+    at_work = {id(sent) for sent in (*commands.open.values(), *(sent for sent, _ in commands.moved))}
+    told = [*look.moment.sent]
+    for number, stop in enumerate(told, start=1):
+        if not isinstance(stop, Stop) or stop.mode is not StopMode.HALT:
+            continue
+        last = commands.last_work.get(stop.robot)
+        if last is not None and last.command in told[number:]:
+            continue  # it leaves after the halt, which was for what came before
+        if last is not None and last.finishes and id(last) in at_work and not _is_forged(look, stop.robot):
+            yield f"{last} was halted, and was to finish"
+
+
+def _failed_by_stop(sent: SentCommand) -> bool:
+    """True if a command that its robot had not refused was taken to have ended by a stop."""
+    failure = sent.entry.failure if sent.entry and sent.state is State.FAILED else None
+    return failure is not None and failure.reason is Reason.STOPPED and not sent.rejected
+
+
+def _is_forged(look: Look, robot: str) -> bool:
+    """True if the robot has said in this step that it took a command that the plant never gave it."""
+    given = {command.id for command in look.record.commands.goals.get(robot, ())}
+    accepted = {report.accepted for report in look.moment.reports if report.robot == robot}
+    return not accepted - {None} <= given
+
+
 @invariant(Trigger.CHANGED)
 def nothing_is_dropped(look: Look) -> Iterator[str]:
     """A robot lets go of what it carries only where it stands at a target, or on an operator's word; where
@@ -158,13 +191,13 @@ def nothing_is_dropped(look: Look) -> Iterator[str]:
                 continue
             places = carrier.here | carrier.stood if carrier in truth.changed else carrier.here
             excused = carrier.taken_away or truth.released(space.hand.name) or truth.mistaken(carrier)
-            if not places and not excused and not _is_done_by_a_lie(truth, hand):
+            if not places and not excused and not _is_settled_by_a_lie(truth, hand):
                 yield f"{space.hand.name} lets go, and {space.robot.name} stands at no target"
 
 
-def _is_done_by_a_lie(truth: Truth, hand: RobotTruth) -> bool:
-    """True if the last command of a tool is called done because of a lie about what it holds."""
-    booked = truth.last_done(hand.robot.name)
+def _is_settled_by_a_lie(truth: Truth, hand: RobotTruth) -> bool:
+    """True if a lie about what a tool holds tells of the end of its last command, also of one given up."""
+    booked = truth.last_ended(hand.robot.name)
     return booked is not None and truth.deceived_since(hand.robot.mqtt, hand.PLACE, booked.sent_at)
 
 
@@ -249,7 +282,15 @@ def _truly_holds(look: Look, body: RobotTruth) -> bool:
         return False
     what = "effector" if body.robot.goes else body.PLACE
     lies = look.truth.deceived_since(body.robot.mqtt, what, look.world.now)
-    return not lies and look.world.plant.dispatcher.memory.value(Fact.EMPTIED, body.robot.name) is None
+    return not lies and not _is_said_to_be_empty(look, body.robot.name)
+
+
+def _is_said_to_be_empty(look: Look, name: str) -> bool:
+    """True if a person has said so, in this step or before: the next cell may have it already."""
+    said = (each for each in look.moment.sent if isinstance(each, Remember) and each.value is not None)
+    if any((each.fact, each.name) == (Fact.EMPTIED, name) for each in said):
+        return True
+    return look.world.plant.dispatcher.memory.value(Fact.EMPTIED, name) is not None
 
 
 def _gives_back(message: Remember) -> bool:
@@ -279,6 +320,7 @@ DEVICES = (
     no_command_against_a_need,
     no_command_against_a_need_of_others,
     finishing_work_is_finished,
+    finishing_work_is_not_halted,
     nothing_is_dropped,
     an_answer_is_to_its_question,
     offered_answers_are_accepted,

@@ -66,6 +66,7 @@ class Trigger(Enum):
     IDLE = "record.idle"
     CHANGED = "truth.changed"
     MISPLACED = "truth.places.wrong"
+    MISSED = "truth.places.missed"
     PASSED = "truth.storage.parts.passages"
     ENDED = "truth.storage.ended"
     DONE_TASKS = "truth.done_tasks"

@@ -42,6 +42,13 @@ def time_stands_still_only_when_held(look: Look) -> Iterable[str]:
 
 
 @invariant(Trigger.NEWS)
+def time_stands_still_where_held(look: Look) -> Iterable[str]:
+    """The own time of a cell that is held at work stands still: what waits there waits on when it goes on."""
+    ran = [cell for cell in look.record.cells.values() if abs(cell.ran_s) > SLACK_S]
+    return [f"{cell.name} was held, and its time went on" for cell in ran]
+
+
+@invariant(Trigger.NEWS)
 def no_tree_outlives_its_work(look: Look) -> Iterable[str]:
     """A cell has a tree only while it works, or is held at work."""
     left = [
@@ -223,6 +230,7 @@ def nothing_waits_at_end(look: Look) -> Iterable[str]:
 LIVENESS = (
     running_tree_has_waker,
     time_stands_still_only_when_held,
+    time_stands_still_where_held,
     no_tree_outlives_its_work,
     no_starvation,
     zone_requests_end,

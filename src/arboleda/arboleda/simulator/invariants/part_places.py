@@ -10,6 +10,7 @@ from arboleda.model.facts import Value, shown
 from arboleda.model.messages import Fact
 from arboleda.model.plant_model import Cell
 
+from ..truth.part_places import kept_parts
 from .invariant import Look, Trigger, invariant
 
 
@@ -17,6 +18,12 @@ from .invariant import Look, Trigger, invariant
 def parts_are_taken_and_put_where_they_can_be(look: Look) -> Iterator[str]:
     """No hand takes hold of a part at a place where none is, or lets go of one at a place that is full."""
     yield from look.truth.places.wrong
+
+
+@invariant(Trigger.MISSED)
+def parts_and_room_are_missed_where_there_are_none(look: Look) -> Iterator[str]:
+    """A command is refused for a place that has no part, or no room, only where that is so."""
+    yield from look.truth.places.missed
 
 
 @invariant(Trigger.DONE_TASKS)
@@ -36,31 +43,39 @@ def books_of_parts_are_true(look: Look) -> Iterator[str]:
         if wrong and not places.is_doubtful:
             truly = {each: places.parts[each] for each in wrong}
             yield f"{task} is called done; by the books there are {wrong}, and truly {truly}"
-        parts = {target: int(number) for target, at, number in map(_parted, kept.split()) if at}
+        parts = kept_parts(kept)
         if any(parts.get(each, 0) != booked[each] for each in known):
             yield f"{task} is called done; by the books there are {booked}, and kept is {kept!r}"
-
-
-def _parted(word: str) -> tuple[str, str, str]:
-    return word.partition("=")
 
 
 @invariant(Trigger.DONE_TASKS)
 def done_tasks_leave_nothing_behind(look: Look) -> Iterator[str]:
     """A task that is called done leaves no part in a hand, and none in a device where there was none before,
     unless its recipe says so or people fill and empty that place; in a cell without places, and in a device
-    that is no hand of one, as long as nothing has gone wrong: an alternative may leave it closed.
+    that is no hand of one, as long as nothing has gone wrong: an alternative may leave it closed. What a
+    device holds that cells share is left by the cell that commanded it last, and a hand that closes late, on
+    a command of before the task, by nobody.
     """
-    for cell, task, _ in look.truth.done_tasks:
+    for cell, task, began in look.truth.done_tasks:
         model = look.world.model.cell(cell)
         if not _is_known(look, cell) or task not in look.world.plant.intake.tasks:
             continue
         wanted = _wanted(look, model, task)
         for name in model.holders if _is_calm(look) else _hands(look, model):
             robot = look.truth.robot(name)
-            if robot is not None and robot.body.true_facts.get(robot.robot.held_fact) and name not in wanted:
+            if name in wanted or _closed_late(look, model, name, began):
+                continue
+            if name in model.shared and not _was_commanded(look, name, cell, since=began):
+                continue
+            if robot is not None and robot.body.true_facts.get(robot.robot.held_fact):
                 yield f"{task} is called done, and {name} still holds a part"
         yield from _left_in_devices(look, model, task, wanted)
+
+
+def _was_commanded(look: Look, robot: str, cell: str, *, since: float) -> bool:
+    """True where the last command to a robot is of this cell, and not older than `since`, in s."""
+    last = look.world.plant.dispatcher.last_sent.get(robot)
+    return last is not None and last.cell == cell and last.sent_at >= since
 
 
 def _left_in_devices(look: Look, cell: Cell, task: str, wanted: dict[str, Value]) -> Iterator[str]:
@@ -102,6 +117,13 @@ def _hands(look: Look, cell: Cell) -> list[str]:
     return [name for name in cell.holders if look.truth.places.cells[cell.name].has(name)]
 
 
+def _closed_late(look: Look, cell: Cell, hand: str, began: float) -> bool:
+    """True for a hand that was in the middle of a grip as the task began, and was told nothing since."""
+    places = look.truth.places.cells.get(cell.name)
+    is_late = places is not None and hand in places.late_hands
+    return is_late and not _was_commanded(look, hand, cell.name, since=began)
+
+
 def _wanted(look: Look, cell: Cell, task: str) -> dict[str, Value]:
     order = text.parse(look.world.plant.intake.tasks[task].order.text, look.world.model)
     return cell.recipe(order.recipe).end_of(order.values)
@@ -117,6 +139,7 @@ def _found(look: Look, cell: Cell, what: str) -> Value:
 
 PLACES = (
     parts_are_taken_and_put_where_they_can_be,
+    parts_and_room_are_missed_where_there_are_none,
     books_of_parts_are_true,
     done_tasks_leave_nothing_behind,
     recipes_end_as_they_say,

@@ -46,15 +46,19 @@ def ends_are_proven(look: Look) -> Iterator[str]:
             yield f"{sent} is taken for accepted, which nobody has said"
         elif sent.state is State.DONE and not (proof.done or _settled(look, sent)):
             yield f"{sent} is taken for done, which nobody has said since it was sent"
-        elif sent.state is State.CANCELLED and not (proof.still or proof.must_end or _is_forgotten(sent)):
+        elif sent.state is State.CANCELLED and not (proof.still or proof.must_end or _is_over(look, sent)):
             yield f"{sent} is taken for halted, and nobody has said that it stands still"
         elif sent.state is State.FAILED:
             yield from _wrong_cause(look, sent, proof)
 
 
-def _is_forgotten(sent: SentCommand) -> bool:
-    """True if a command can be given up without a word of its robot, as a question can."""
-    return isinstance(sent.command, Query)
+def _is_over(look: Look, sent: SentCommand) -> bool:
+    """True if a command needs no word of its robot to end: a question, and what never left."""
+    return isinstance(sent.command, Query) or _has_not_left(look, sent)
+
+
+def _has_not_left(look: Look, sent: SentCommand) -> bool:
+    return sent.command.id in look.moment.undelivered
 
 
 def _has_reported_since(look: Look, sent: SentCommand) -> bool:
@@ -89,7 +93,7 @@ def _wrong_cause(look: Look, sent: SentCommand, proof: Proof) -> Iterator[str]:
 def _by_time(look: Look, sent: SentCommand) -> set[Reason]:
     """The reasons for which it may fail now though its robot says nothing."""
     record, known = look.record, look.record.robots[sent.robot]
-    is_cut_off = known.stale_at <= record.stepped_at or sent.command.id in look.moment.undelivered
+    is_cut_off = known.stale_at <= record.stepped_at or _has_not_left(look, sent)
     found = {Reason.LINK_LOST} if is_cut_off else set()
     if sent.entry is not None and sent.entry.deadline <= record.stepped_at + ROUNDING_S:
         found.add(Reason.STOP_UNCONFIRMED if sent.cancelled_at is not None else Reason.DEADLINE)

@@ -19,7 +19,7 @@ from arboleda.model.messages import (
     TaskState,
     Verb,
 )
-from arboleda.model.plant_model import Cell, Evidence
+from arboleda.model.plant_model import Cell, Evidence, Workspace
 from arboleda.model.sentence import Sentence
 from arboleda.recipes.storage_layout import StorageLayout
 
@@ -134,8 +134,8 @@ def first_come_first_served(look: Look) -> Iterable[str]:
 
 @invariant(Trigger.TOLD)
 def tasks_start_where_all_is_ready(look: Look) -> Iterable[str]:
-    """A task starts only where each robot of its cell takes commands and no effector may hold a part, but for
-    what another cell has that shares it.
+    """A task starts only where each robot of its cell takes commands and stands outside the shared zones by
+    its last word, and no effector may hold a part, but for what another cell has that shares it.
     """
     record, zones = look.record, look.world.plant.zones
     for change in record.tasks.changes:
@@ -146,12 +146,28 @@ def tasks_start_where_all_is_ready(look: Look) -> Iterable[str]:
             known = record.robots[robot.name]
             if robot.link not in UNSENT and known.is_unfit(record.stepped_at, look.world.plant.epoch):
                 yield f"task {change.message.task} starts, and {robot.name} takes no command"
+        for name in (each for each in cell.zone_users if each not in cell.shared):
+            if not _seen_outside(look, cell.workspaces[name]):
+                yield f"task {change.message.task} starts, and {name} is not seen outside the zones"
         keepers = {name: zones.holder(name) or look.world.model.cell_of[name].name for name in cell.shared}
         with_others = {name for name, keeper in keepers.items() if keeper != cell.name}
         for name in (each for each in cell.holders if each not in with_others):
             kept = record.kept.get(Fact.EFFECTOR, {}).get(name, "off")
             if "off" not in (kept, record.effector_of(name)) and not _let_go(look, name):
                 yield f"task {change.message.task} starts, and the effector of {name} is {kept}"
+
+
+def _seen_outside(look: Look, space: Workspace) -> bool:
+    """True for a robot that stood at a zone-free pose by its last word, or by one of this step; and for one
+    that tells no position.
+    """
+    robot, key = space.robot, space.robot.position_key
+    if key is None or robot.evidence is Evidence.STATE:
+        return True
+    said = [report for report in look.moment.reports if report.robot == robot.name]
+    places = [getattr(each, key) for each in (look.record.robots[robot.name], *said)]
+    free = [spot for spot, _ in space.free_spots]
+    return any(here is not None and robot.motion.stands_at(here, spot) for here in places for spot in free)
 
 
 def _let_go(look: Look, name: str) -> bool:

@@ -9,12 +9,13 @@ from arboleda.core.cell_states import CellState
 from arboleda.dispatch.ledger import OPEN, State
 from arboleda.model.commands import Command, Home, Stop, StopMode, Switch
 from arboleda.model.common_places import with_common_places
-from arboleda.model.messages import Journal, OperatorAnswer, OperatorRequest, Outcome, TaskState, Verb
+from arboleda.model.messages import Fact, Journal, OperatorAnswer, OperatorRequest, Outcome, TaskState, Verb
 from arboleda.model.plant_model import Evidence, Link
 
 from ..recorded.cells import KnownCell
 from ..recorded.commands import SentCommand
 from ..recorded.robots import StopProgress
+from ..recorded.scopes import UNSENT
 from ..recorded.verbs import CellSnapshot
 from .invariant import Look, Trigger, invariant
 
@@ -118,7 +119,13 @@ def _refused(look: Look, request: OperatorRequest) -> bool | None:
         return True
     if verb in CANNOT:
         return True if all(map(CANNOT[verb], cells)) else None
+    if record.away and verb in (Verb.RESUME, Verb.RETRY) and any(_is_at_a_step(cell) for cell in cells):
+        return None  # robots are offline until they are heard again: what became of the step may not be known
     return not any(map(CAN[verb], cells))
+
+
+def _is_at_a_step(cell: CellSnapshot) -> bool:
+    return cell.state is S.HELD and cell.has_task
 
 
 def _homes_its_own(look: Look, cell: str) -> bool:
@@ -197,13 +204,8 @@ def _uncancelled(look: Look, cell: str, *, motions: bool = False) -> Iterator[st
     for sent in look.record.commands.open.values():
         if sent.entry is None or sent.entry.cell != cell or (motions and not sent.can_be_halted):
             continue
-        if sent.state is not State.CANCELLING and not _finishes(sent):
+        if sent.state is not State.CANCELLING and not sent.finishes:
             yield f"{sent} goes on"
-
-
-def _finishes(sent: SentCommand) -> bool:
-    """True for work that goes on through a stop."""
-    return sent.is_work and not sent.can_be_halted
 
 
 def _cleared(look: Look, request: OperatorRequest) -> Iterator[str]:
@@ -218,11 +220,18 @@ def _cleared(look: Look, request: OperatorRequest) -> Iterator[str]:
     for before, cell in could:
         kept = _kept_stopped(look, request)
         mine = [r.name for r in cell.cell.robots if r.name not in kept]
-        latched = [name for name in mine if record.robots[name].stop is StopProgress.LATCHED]
+        latched = [name for name in mine if _is_stopped(look, name)]
         if latched and before.state is S.ABORTED and cell.state is not S.ABORTED:
             yield f"{cell.name} is {cell.state.value}, and {latched} are still stopped"
         if not latched and cell.state is S.ABORTED and len(could) == 1:
             yield f"{cell.name} is still aborted, and none of its robots is stopped"
+
+
+def _is_stopped(look: Look, name: str) -> bool:
+    """True while a stop of a robot holds; to a person nothing is sent, so what is kept says it of them."""
+    if look.world.model.robots[name].link in UNSENT:
+        return look.world.disk.facts.get(Fact.LATCH, {}).get(name) == "on"
+    return look.record.robots[name].stop is StopProgress.LATCHED
 
 
 def _reset(look: Look, request: OperatorRequest) -> Iterator[str]:
@@ -269,8 +278,9 @@ def _emptied(look: Look, request: OperatorRequest) -> Iterator[str]:
     left = [name for name in held if look.world.plant.dispatcher.effectors.grips.holding(name)]
     if left:
         yield f"{left} may still hold a part"
-    if any(isinstance(each, Command) for each in look.moment.sent):
-        yield "something was commanded"
+    for each in look.moment.sent:
+        if isinstance(each, Command) and each.robot in scope:
+            yield f"{each.robot} was commanded"
 
 
 def _homed(look: Look, request: OperatorRequest) -> Iterator[str]:

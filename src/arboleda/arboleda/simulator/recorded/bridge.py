@@ -132,7 +132,7 @@ class _Bridge:
             is_alone = event.at >= self._beat_at + PLANT_GONE_S and now - event.at <= self._patience_s
             self.of_others += [command] if is_alone else []
             if board is not None:
-                board.hear_others(event.at, command, is_alone=is_alone)
+                board.hear_others(event.at, command, event.sender, is_alone=is_alone)
         elif board is not None:
             if event.copied:
                 board.expect_copy(event.at, command)

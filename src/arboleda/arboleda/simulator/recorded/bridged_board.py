@@ -107,10 +107,10 @@ class BridgedBoard:
     def expect_copy(self, at: float, command: Command) -> None:
         self._commands.copies.expect(at, command)
 
-    def hear_others(self, at: float, command: Command, *, is_alone: bool) -> None:
+    def hear_others(self, at: float, command: Command, sender: str, *, is_alone: bool) -> None:
         """Take in a command without an id; `is_alone`: no plant is heard."""
         self.touched = True
-        self._commands.take_unnamed(at, command, is_alone=is_alone)
+        self._commands.take_unnamed(at, command, sender, is_alone=is_alone)
 
     def command(self, command: Command, plant: int | None) -> None:
         self.touched = True

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Container, Iterator
 from operator import attrgetter
 from typing import Any
 
@@ -31,7 +31,8 @@ class KnownCell:
     step given anew, `retries` how often one had a step tried again, over all starts. `waited_s` is how long
     the arm has waited for its zones in the cell's own time, for a recovery only since all before it were at
     work; `behind_work`: those were at work when it last waited. `frozen_s` is how much of that time did not
-    pass since the last news although the cell was not held.
+    pass since the last news although the cell was not held, `ran_s` how much did pass although it was held
+    at work, also of what passed at once as it went on.
     """
 
     signs = attrgetter("state", "run.tree", "task", "queue.paused")
@@ -63,7 +64,8 @@ class KnownCell:
         self.looked = False
         self.waited_s = 0.0
         self.behind_work = False
-        self.frozen_s = 0.0
+        self.frozen_s = self.ran_s = 0.0
+        self._held_at: float | None = None
         self._lag_s = math.inf
         self._waiter: Behaviour | None = None
         self.wakes = self.context.time.wakes
@@ -116,9 +118,12 @@ class KnownCell:
 
         Where the plant was `away`, that time does not pass for a cell at work.
         """
-        lag_s = now - self.context.time.now
+        own, before = self.context.time.now, self._held_at
+        lag_s = now - own
         self.frozen_s = 0.0 if away else max(lag_s - self._lag_s, 0.0)
         self._lag_s = math.inf if self.state in PAUSED else lag_s
+        self._held_at = own if self.state in PAUSED and self.tree is not None else None
+        self.ran_s = 0.0 if before is None or self.tree is None else own - before
 
     def watch_recovery(self, moves: list[SentCommand]) -> None:
         """Note the moves of its arm that its tree has sent, if it is in a recovery."""
@@ -129,7 +134,7 @@ class KnownCell:
             self.recovery_moves = []
         self.recovery_moves += moves
 
-    def look(self, sent: set[str]) -> None:
+    def look(self, sent: Container[str]) -> None:
         """Look up the leaves that run, and count the commands of this step, by id, that are theirs."""
         self.looked = True
         self.leaves = _running(self.run.tree)

@@ -83,14 +83,14 @@ class Choices:
         progress = self._courses.at_work.get(run.cell.name)
         if run.task is None or progress is None or progress.recovers:
             return None
-        now = run.context.time.now + (0.0 if run.state in STANDS else since_step_s)
+        steps, now = progress.steps, run.context.time.now + (0.0 if run.state in STANDS else since_step_s)
         for alike in _alike(run.task.order, past)[:-1]:
             courses = [task.course for task in alike[-LAST:] if task.course]
-            known = [step for step in progress.steps if any(step in course.begun for course in courses)]
+            known = [step for step in steps if any(step in course.begun for course in courses)]
             if known:
                 step = known[-1]
                 with_it = [course for course in courses if step in course.begun]
-                return median(_rest(course, step, now - progress.steps[step]) for course in with_it)
+                return median(_rest(course, step, now - steps[step]) for course in with_it)
         return None
 
     def _is_hindered(self, run: CellRun, world: World) -> bool:

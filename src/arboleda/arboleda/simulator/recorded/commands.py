@@ -6,6 +6,7 @@ import math
 from collections import deque
 
 from arboleda.dispatch.ledger import OPEN, Entry, Ledger, State
+from arboleda.kinds.declared import WorkCall
 from arboleda.model.commands import Command, Motion, OnStop, Stop, StopMode, Switch, Work
 from arboleda.model.messages import Heartbeat, Report, Verb
 from arboleda.model.plant_model import MotionState
@@ -33,7 +34,8 @@ class SentCommand:
         self.verbs = verbs
         self.halts = halts
         self.is_work = isinstance(command, Work)
-        self.can_be_halted = isinstance(command, Work) and command.on_stop is OnStop.HALT
+        self.can_be_halted = isinstance(command, Work) and _on_stop(command) is OnStop.HALT
+        self.finishes = self.is_work and not self.can_be_halted  # whatever stops its robot
         self.way = command.way if isinstance(command, Motion) else ()
         self.sets = command.sets
         self.rejected = False
@@ -48,6 +50,11 @@ class SentCommand:
 
     def __str__(self) -> str:
         return f"{type(self.command).__name__} {self.command.id} to {self.robot}"
+
+
+def _on_stop(command: Work) -> OnStop:
+    """Its end at a stop, by the definition of its verb: what the command says of it is the engine's."""
+    return command.definition.on_stop if isinstance(command, WorkCall) else command.on_stop
 
 
 class Commands:

@@ -5,11 +5,14 @@ from __future__ import annotations
 from arboleda.model.commands import Command
 from arboleda.wire.hop import without_id
 
-COPIES_S, EARLY_S = 5.0, 0.2  # how late after its original, and how early before it a copy may come
+COPIES_S = 5.0  # how far a copy and its original may come apart
+EARLY_S = 0.2  # how long before its original a copy may come where others publish on its topic, too
 
 
 class KnownCopies:
-    """Copies that are expected, and commands without an id (`early`) whose original may still come."""
+    """Copies that are expected, and commands without an id (`early`) with the time up to which their original
+    may still come.
+    """
 
     def __init__(self) -> None:
         self.early: list[tuple[float, Command]] = []
@@ -21,21 +24,24 @@ class KnownCopies:
         if not _take(self.early, plain):
             self._expected.append((at, plain))
 
-    def take(self, at: float, command: Command) -> bool:
-        """True if a command without an id is an expected copy; another one may prove to be one yet."""
+    def take(self, at: float, command: Command, sender: str) -> bool:
+        """True if a command without an id is an expected copy; another one may prove to be one yet.
+
+        One that names a `sender` beside the plant may be theirs, so its original is not waited for as long.
+        """
         self._expected = [each for each in self._expected if each[0] + COPIES_S > at]
-        if _take(self._expected, command):
+        if _take(self._expected, command, latest=True):
             return True
-        self.early.append((at, command))
+        self.early.append((at + (EARLY_S if sender else COPIES_S), command))
         return False
 
     def end_step(self, now: float) -> None:
-        self.early = [each for each in self.early if each[0] + EARLY_S > now]
+        self.early = [each for each in self.early if each[0] > now]
 
 
-def _take(rows: list[tuple[float, Command]], command: Command) -> bool:
-    """Take the first row of this command out; False if there is none."""
-    row = next((each for each in rows if each[1] == command), None)
+def _take(rows: list[tuple[float, Command]], command: Command, *, latest: bool = False) -> bool:
+    """Take the first row of this command out, or the `latest` one; False if there is none."""
+    row = next((each for each in (reversed(rows) if latest else rows) if each[1] == command), None)
     if row is not None:
         rows.remove(row)
     return row is not None

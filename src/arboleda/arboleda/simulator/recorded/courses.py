@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
+from collections import Counter
 from collections.abc import Mapping, Sequence
-from functools import cached_property
 
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
@@ -38,6 +38,7 @@ class TaskInProgress:
         self._turns: dict[Behaviour, list[int]] = {
             step: turns for step in self._steps if (turns := turns_of(step))
         }
+        self._at_once: set[Behaviour] = set()  # steps of them that ended in the pass in which they began last
         self.rested: object = None  # as what its tree came to rest last
         self._repeats = False  # whether a step began more than once
         self._rests: list[float] = []  # when it came to rest
@@ -59,6 +60,9 @@ class TaskInProgress:
             begins = was is not step.status and (was is Status.INVALID or step.status is Status.RUNNING)
             if begins and step in self._turns and step.status is not Status.RUNNING:
                 self._turns[step] = turns_of(step)
+                self._at_once.add(step)
+            elif begins:
+                self._at_once.discard(step)
             if (step in self._turns and self._is_in_another_turn(step)) or begins:
                 self._repeats = self._repeats or step in self.begun
                 self.begun[step] = now
@@ -110,13 +114,15 @@ class TaskInProgress:
         """The steps that began, by their names as courses have them."""
         return {name: node for name, node in self._names.items() if node in self.begun}
 
-    @cached_property
+    @property
     def _names(self) -> Mapping[str, Behaviour]:
-        names = [node.name for node in self.nodes]
-        return {
-            f"{node.name} #{names[: number + 1].count(node.name)}": node
-            for number, node in enumerate(self.nodes)
-        }
+        """The nodes by their names of now: a step has values of a script in its name once it knows them."""
+        number = Counter[str]()
+        names = {}
+        for node in self.nodes:
+            number[node.name] += 1
+            names[f"{node.name} #{number[node.name]}"] = node
+        return names
 
     def _may_be_left(self, after_s: float) -> bool:
         """True if a step may have begun so many s after the task and been left in the same pass, as one whose
@@ -132,7 +138,9 @@ class TaskInProgress:
         at = self.began + after_s
         if abs(min(self.begun[step], self.ended_at) - at) <= ROUNDING_S:
             return True
-        if not self._repeats and not self._is_in_a_later_turn(step):
+        # A try that failed at once was seen with the number of the one after it.
+        again = self._is_in_a_later_turn(step) or step in self._at_once
+        if not self._repeats and not again:
             return False
         since = min(self._over.get(step, math.inf), self._reset.get(step, math.inf))
         if self._is_in_a_later_turn(step):  # one that a reset made neither done nor failed began since then

@@ -55,7 +55,7 @@ class PassedCommands:
         self._robot = robot
         self._link, self._motion, self._numbers = link, motion, numbers
         self._wrong = wrong
-        self._latched = False
+        self._latched = self._was_latched = False  # now, and as the step began
         self._ids: set[str] = set()  # ids of commands
 
     @property
@@ -73,17 +73,16 @@ class PassedCommands:
         self._ids.add(command.id)
         self.orders.append((command, self._word_against(command)))
 
-    def take_unnamed(self, at: float, command: Command, *, is_alone: bool) -> None:
+    def take_unnamed(self, at: float, command: Command, sender: str, *, is_alone: bool) -> None:
         """Take a command without an id: a copy is ignored, a stop obeyed, others if no plant is heard."""
-        if self.copies.take(at, command):
+        if self.copies.take(at, command, sender):
             return
         if (is_stop(command) or is_alone) and not self._word_against(command):
             self.orders.append((command, ""))
 
     def _word_against(self, command: Command) -> str:
         """The word that refuses a command for this board, or ""; even a refused stop is remembered."""
-        if isinstance(command, Stop) and command.mode is not StopMode.HALT:
-            self._latched = command.mode is StopMode.LATCH
+        self._latched = _latched_after(command, self._latched)
         if not self._link.up:
             return "no_link"
         if isinstance(command, Stop) and not self._robot.has_stop:
@@ -113,7 +112,9 @@ class PassedCommands:
             isinstance(each, Stop) and each.mode is StopMode.HALT for each, word in self.orders if not word
         )
         own = sum(map(_halts, left)) > halts
+        latched, self._was_latched = self._was_latched, self._latched
         for place, (command, word) in enumerate(self.orders):
+            held, latched = latched, _latched_after(command, latched)
             if word:
                 self._check_refusal(command, word, refused)
                 continue
@@ -123,6 +124,9 @@ class PassedCommands:
             if own and _halts(left[0]):
                 own = False
                 self._take_own_halt(left.pop(0), place)
+            is_latch = isinstance(command, Stop) and command.mode is StopMode.LATCH
+            while returned and held and not is_latch and left and _latches(left[0]):
+                self._number("", left.pop(0), place)  # its latch again, before this command
             publication = left.pop(0) if left else None
             is_it = publication is not None and publication.topic.endswith("/" + CHANNELS[type(command)])
             if publication is None or not is_it:
@@ -191,6 +195,13 @@ class PassedCommands:
 
     def _breach(self, sentence: str) -> None:
         self._wrong[COMMANDS].append(sentence)
+
+
+def _latched_after(command: Command, latched: bool) -> bool:
+    """True if a stop is latched after a command; `latched`: one was before."""
+    if isinstance(command, Stop) and command.mode is not StopMode.HALT:
+        return command.mode is StopMode.LATCH
+    return latched
 
 
 def _halts(publication: Publication) -> bool:

@@ -12,7 +12,7 @@ from typing import cast
 
 from arboleda.kinds.joints import Jointed, MoveJoints
 from arboleda.kinds.mobile import FollowPath
-from arboleda.model.commands import Home, Query, Switch
+from arboleda.model.commands import Home, Motion, Query, Switch
 from arboleda.model.messages import Failure, Reason, Report
 from arboleda.model.plant_model import Evidence, MotionState, Robot
 
@@ -205,7 +205,9 @@ def _moved(
         proof.named |= shown.moving
         # at `joints` state and place come in separate messages, so the truth judges the distance
         goal = shown.position or shown.facts
-        has_moved = goal if robot.evidence is Evidence.JOINTS and (sent.way or sent.sets) else shown.moving
+        by_goal = robot.evidence is Evidence.JOINTS and isinstance(command, Motion)
+        # the facts that a process sets may be older than it
+        has_moved = goal if by_goal and (sent.way or sent.sets) else shown.moving
         proof.done |= has_moved and (stopped or report.state is None)
     if (stopped or report.state is None) and not _surely_at(off):
         proof.causes.add(Reason.STOPPED_SHORT)
@@ -213,7 +215,7 @@ def _moved(
 
 def _rests(sent: SentCommand, report: Report) -> bool:
     """True if the robot is at rest; "stopped" also ends work that goes on through a stop."""
-    latched = sent.is_work and not sent.can_be_halted and report.state is MotionState.STOP_LATCHED
+    latched = sent.finishes and report.state is MotionState.STOP_LATCHED
     return latched or report.state is MotionState.STOPPED
 
 

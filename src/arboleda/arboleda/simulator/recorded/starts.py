@@ -58,6 +58,7 @@ class Starts:
         self._done: dict[tuple[str, str], list[Step]] = {}  # (task, robot) -> what its board carried out
         self._steps: dict[str, Step] = {}  # those that were given and have not ended, by their command
         self._over: dict[tuple[str, str], Step] = {}  # (task, path) -> a step from which the task went on
+        self._given_up: deque[str] = deque(maxlen=TASKS)  # commands whose step may be given again
 
     def clear_news(self) -> None:
         """Clear the findings of the step before."""
@@ -86,6 +87,11 @@ class Starts:
             self._over[step.task, step.path] = step
             if len(self._over) > TASKS:
                 del self._over[next(iter(self._over))]
+
+    def gave_up(self, command: str) -> None:
+        """Note that a command failed or was halted: its step may be given again, whatever its board did."""
+        if self._steps.pop(command, None) is not None:
+            self._given_up.append(command)
 
     def restart(self, *, undone: bool) -> None:
         """Begin another start of the plant; `undone`: what was kept last may be gone."""
@@ -124,6 +130,8 @@ class Starts:
     def _carry_out(self, step: Step) -> None:
         done = self._done.setdefault((step.task, step.command.robot), [])
         before = [each for each in done if each.path == step.path and each.start < step.start]
+        if before:
+            before = [each for each in before if each.command.id not in self._given_up]
         if before and not step.misled and not _may_be_repeated(done, before[-1], step):
             self._again(step, before[-1])
         done.append(step)

@@ -23,9 +23,10 @@ class Switch:
     """A change of an effector, at the named poses where its arm stood still.
 
     `by_others`: somebody else than the plant opened it; `by_command`: the board carried out a command for it;
-    `released`: an operator had it opened; `taken_away`: somebody had put the arm elsewhere by hand; `legal`:
-    at the pick-up or palletizing pick or, opened, where the part of the cell's last task belongs or at the
-    palletizing place.
+    `outdated`: it did so for an order of a process that no longer led when that arrived, and that has no
+    number by which the board could have refused it; `released`: an operator had it opened; `taken_away`:
+    somebody had put the arm elsewhere by hand; `legal`: at the pick-up or palletizing pick or, opened, where
+    the part of the cell's last task belongs or at the palletizing place.
     """
 
     cell: str
@@ -35,6 +36,7 @@ class Switch:
     lost_power: bool
     by_others: bool
     by_command: bool
+    outdated: bool
     released: bool
     taken_away: bool
     legal: bool
@@ -234,6 +236,7 @@ class CellTruth:
             lost_power=arm.lost_power,
             by_others=arm.opened,
             by_command=any(isinstance(goal, EffectorGoal) and goal.on == arm.on for goal in goals),
+            outdated=arm.switched_by is not None and arm.switched_by.outdated,
             released=self.released,
             taken_away=arm.taken_away,
             legal=at_pick if arm.on else self.legal_to_open(arm),

@@ -10,7 +10,7 @@ from arboleda.model.plant_model import Evidence
 from ..invariants.invariant import Look, Trigger, invariant
 from ..truth.arm import ArmTruth
 from .deeds import CellTruth, EndedTask, Switch, named
-from .parts import FELL, FLOOR, GRIPPED, POWER, RELEASED
+from .parts import FELL, FLOOR, GRIPPED, OUTDATED, POWER, RELEASED
 
 
 @invariant(Trigger.DEEDS)
@@ -33,7 +33,7 @@ def no_part_dropped(look: Look) -> Iterator[str]:
     world = look.world
     for passage in look.truth.storage.parts.passages:
         taken = passage.cause == FELL and (world.faults_active > 0 or world.last_fault_at == world.now)
-        excused = taken or passage.cause in (POWER, RELEASED)
+        excused = taken or passage.cause in (POWER, RELEASED, OUTDATED)
         arm = look.truth.storage.arms[passage.arm]
         if passage.place == FLOOR and not (excused or arm.taken_away or look.truth.unseen(arm)):
             yield f"{passage.arm} drops part {passage.part.number} ({passage.cause})"
@@ -129,7 +129,8 @@ def _grips(look: Look) -> Iterator[str]:
     for name in truth.storage.stray_grips:
         yield f"{name} is told to grip while no task of its cell runs"
     for switch in _switches(look):
-        if not switch.on or switch.taken_away or truth.unseen(truth.storage.arms[switch.arm]):
+        excused = switch.outdated or switch.taken_away or truth.unseen(truth.storage.arms[switch.arm])
+        if not switch.on or excused:
             continue
         if why := _grips_wrongly(truth.storage.cells[switch.cell], switch):
             yield f"{switch.arm} grips at {named(switch.poses)}: {why}"
@@ -146,6 +147,7 @@ def _opened(look: Look) -> Iterator[str]:
         excused = (
             switch.lost_power
             or switch.by_others
+            or switch.outdated
             or switch.released
             or switch.taken_away
             or look.truth.unseen(look.truth.storage.arms[switch.arm])

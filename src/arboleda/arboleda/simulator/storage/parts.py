@@ -10,6 +10,7 @@ from .deeds import CellTruth
 
 FLOOR, EFFECTOR = "floor", "effector"  # where a part can be, besides a pose
 GRIPPED, PUT, RELEASED, FELL, POWER = "gripped", "put down", "released", "fell", "lost with the power"
+OUTDATED = "let go for a leader of before"
 
 
 @dataclass(kw_only=True)
@@ -91,9 +92,9 @@ class Parts:
 
     def _part_with(self, part: Part, cell: CellTruth, arm: ArmTruth) -> None:
         cause, place = _cause(cell, arm), FLOOR
-        if cause in (PUT, RELEASED):
+        if cause in (PUT, RELEASED, OUTDATED):
             place = self._put(part, cell, arm)
-        if cause == PUT and place != FLOOR and cell.puts_down:
+        if cause in (PUT, OUTDATED) and place != FLOOR and cell.puts_down:
             cell.places += 1
         self.passages.append(Passage(part=part, arm=arm.robot.name, cause=cause, place=place))
 
@@ -120,7 +121,10 @@ def _cause(cell: CellTruth, arm: ArmTruth) -> str:
         return POWER
     if arm.on or arm.opened:
         return FELL
-    return RELEASED if cell.switch is not None and cell.switch.released else PUT
+    switch = cell.switch
+    if switch is not None and switch.outdated:
+        return OUTDATED
+    return RELEASED if switch is not None and switch.released else PUT
 
 
 def _pick_like(poses: frozenset[str], cell: CellTruth, arm: ArmTruth) -> str:

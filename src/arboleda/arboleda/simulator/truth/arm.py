@@ -13,7 +13,7 @@ from arboleda.sim.board import Board
 from arboleda.wire.payloads import EffectorGoal
 
 from ..network import Client
-from .robot import NOWHERE, RobotTruth
+from .robot import NOWHERE, Act, RobotTruth
 
 JITTER_STEPS = 2  # a ramp that slows down may speed up again by that much (D. Austin, 2005)
 RAMP_SLACK = 1.1  # a stepper's ramp is a little longer than the formula's
@@ -99,6 +99,15 @@ class ArmTruth(RobotTruth):
     def let_go(self) -> bool:
         """True if its effector went off in this step, with its power on, and nobody else opened it."""
         return self.was_on and not self.on and not self.lost_power and not self.opened
+
+    @property
+    def switched_by(self) -> Act | None:
+        """The order by which its effector came in this step to be as it is; None if none was obeyed so."""
+        on, switched_by = self.was_on, None
+        for act in self.acts:
+            if isinstance(act.goal, EffectorGoal) and act.goal.on != on:
+                on, switched_by = act.goal.on, act
+        return switched_by if on == self.on else None
 
     @property
     def stands(self) -> bool:

@@ -28,6 +28,7 @@ class MachineTruth(RobotTruth):
 
     SIGNS = ("next_change_us", "moving")  # its work may end while a switch goes on until the same time
     PLACE = "facts"
+    FORGETS = True
 
     def __init__(self, robot: Robot, cell: Cell, board: Board, client: Client) -> None:
         self.facts: Facts = dict(board.body.true_facts)

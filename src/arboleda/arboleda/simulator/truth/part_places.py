@@ -5,9 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
+from arboleda.dispatch.ledger import Entry
 from arboleda.model.common_places import with_common_places
-from arboleda.model.messages import OperatorAnswer, TaskChanged, TaskState
+from arboleda.model.grips import Grip
+from arboleda.model.messages import OperatorAnswer, OperatorRequest, TaskChanged, TaskState, Verb
 from arboleda.model.plant_model import Cell, Evidence, Place, Workspace
+from arboleda.trees.part_places import EMPTY, trouble_in
 
 from ..recorded.scopes import Scopes
 from ..world import World
@@ -22,7 +25,8 @@ class CellPlaces:
     know them any more, `end_is_doubtful` where that was so when that task ended: a device has lied or lost
     its power, its effector was stuck and nobody reports that, somebody took a hand's part, a hand took one
     at a station where none was known, or two places are one to its robot. The next task begins with what is
-    in the books then, unless a hand still holds something.
+    in the books then, unless a hand still holds something. `late_hands` were in the middle of a grip, on an
+    earlier command, as that task began.
     """
 
     def __init__(self, cell: Cell, robots: Mapping[str, Any]) -> None:
@@ -30,6 +34,8 @@ class CellPlaces:
         self.parts = {place.target: 0 for place in cell.counted}
         self.at_begin = self.at_end = dict(self.parts)
         self._began_with = dict(self.parts)
+        self.late_hands: frozenset[str] = frozenset()
+        self._began_in_grip: frozenset[str] = frozenset()
         self.is_doubtful = self.end_is_doubtful = False
         self.by_people = {place.target for place in cell.counted if place.by_people}
         self._places = {place.target: place for place in cell.counted}
@@ -37,20 +43,22 @@ class CellPlaces:
         self._hands = {space.hand.name: space for space in cell.spaces if space.hand.held_fact}
         self._held = {hand: _holds(robots[hand]) for hand in self._hands if hand in robots}
 
-    def begin(self, booked: Mapping[str, int]) -> None:
-        """A task begins: people have filled the supplies and emptied the outputs."""
+    def begin(self, booked: Mapping[str, int], in_grip: Iterable[str]) -> None:
+        """A task begins: people have filled the supplies and emptied the outputs; these hands are about to
+        close or to open.
+        """
         if self.is_doubtful:
             self.parts = dict(booked)
             self.is_doubtful = any(self._held.values())  # a hand has what the plant may not know of
         for target in self.by_people:
             place = self._places[target]
             self.parts[target] = place.holds if place.supply else 0
-        self._began_with = dict(self.parts)
+        self._began_with, self._began_in_grip = dict(self.parts), frozenset(in_grip)
 
     def end(self) -> None:
         """The task is done."""
         self.at_begin, self.at_end = self._began_with, dict(self.parts)
-        self.end_is_doubtful = self.is_doubtful
+        self.end_is_doubtful, self.late_hands = self.is_doubtful, self._began_in_grip
 
     def follow(self, hand: RobotTruth, carrier: RobotTruth | None, *, is_of_others: bool) -> str | None:
         """Take in what a hand did in this step, also for another cell; the sentence about what cannot be."""
@@ -88,9 +96,18 @@ class CellPlaces:
             self._began_with[target] += now - self.parts[target]
             self.parts[target] = now
 
+    def capacity(self, target: str) -> int:
+        """The most parts that a place can have."""
+        return self._places[target].holds
+
     def has(self, hand: str) -> bool:
         """True for a hand of one of its robots."""
         return hand in self._held
+
+    @property
+    def hands(self) -> list[str]:
+        """The hands of its robots."""
+        return list(self._hands)
 
     @property
     def tools(self) -> list[str]:
@@ -114,7 +131,9 @@ class CellPlaces:
 
 
 class PlacesTruth:
-    """Truth of the places of all cells that have some; `wrong`: sentences about this step."""
+    """Truth of the places of all cells that have some; `wrong`: sentences about this step, and `missed` those
+    about commands that the plant refused for a part, or for room, that there is.
+    """
 
     def __init__(
         self,
@@ -125,6 +144,7 @@ class PlacesTruth:
         released: Callable[[str], bool],
     ) -> None:
         self.wrong: list[str] = []
+        self.missed: list[str] = []
         self.cells = {cell.name: CellPlaces(cell, robots) for cell in world.model.cells if cell.counted}
         self._world = world
         self._scopes = Scopes(world.model)
@@ -139,6 +159,8 @@ class PlacesTruth:
     def forget(self) -> None:
         """Forget what happened in the step before."""
         self.wrong = []
+        if self.missed:
+            self.missed = []
 
     def follow(self, changed: Iterable[RobotTruth]) -> None:
         """Take in what robots did in this step."""
@@ -153,11 +175,33 @@ class PlacesTruth:
                 if found is not None and not places.is_doubtful and not self._released(name):
                     self.wrong.append(found)
 
+    def take_refusal(self, entry: Entry) -> None:
+        """Take in that a command did not leave, where that was for a place: is it as the plant says?
+
+        Nothing is said in the middle of a grip, of which the plant cannot know yet how it ends.
+        """
+        trouble = None if entry.failure is None else trouble_in(entry.failure.sentence)
+        places = self.cells.get(entry.cell)
+        if trouble is None or places is None or places.is_doubtful or self._is_in_grip(places):
+            return
+        target = str(trouble.values["place"])
+        truly, most = places.parts[target], places.capacity(target)
+        if truly if trouble.key == EMPTY.key else truly < most:
+            self.missed.append(f"{trouble}, and truly {target} has {truly} of {most}")
+
     def take_answer(self, answer: OperatorAnswer) -> None:
         """Take in what a person did before they said it: they put parts at a place, or took them out."""
-        for name, parts in with_common_places(self._scopes.parts(answer), self._world.model.cells).items():
-            self.cells[name].set(parts)
-            self.cells[name].is_doubtful |= any(map(self._closes_or_opens, self.cells[name].tools))
+        self._set(with_common_places(self._scopes.parts(answer), self._world.model.cells))
+
+    def restart(self, words: Iterable[object], kept: Mapping[str, str]) -> None:
+        """Begin with a new plant: what a person said in the step in which the old one died is so if it was
+        kept, though nobody was answered.
+        """
+        for word in words:
+            if isinstance(word, OperatorRequest) and word.verb in (Verb.LOAD, Verb.UNLOAD):
+                named = with_common_places(self._scopes.parts(word), self._world.model.cells)
+                if all(_are_kept(parts, kept.get(name, "")) for name, parts in named.items()):
+                    self._set(named)
 
     def task(self, change: TaskChanged) -> None:
         """Take in the plant's word on a task."""
@@ -165,13 +209,24 @@ class PlacesTruth:
         if places is None or change.request is not None:
             return
         if change.state is TaskState.RUNNING:
-            places.begin(self._world.plant.cells[places.cell.name].context.places.counts)
+            booked = self._world.plant.cells[places.cell.name].context.places.counts
+            places.begin(booked, filter(self._closes_or_opens, places.tools))
         elif change.state is TaskState.DONE:
             places.end()
+
+    def _set(self, named: Mapping[str, Mapping[str, int]]) -> None:
+        for name, parts in named.items():
+            self.cells[name].set(parts)
+            self.cells[name].is_doubtful |= any(map(self._closes_or_opens, self.cells[name].tools))
 
     def _is_of_others(self, hand: str, cell: Cell) -> bool:
         """True while another cell has a hand that it shares with this one."""
         return hand in cell.shared and self._world.plant.zones.holder(hand) not in (None, cell.name)
+
+    def _is_in_grip(self, places: CellPlaces) -> bool:
+        grips = self._world.plant.dispatcher.effectors.grips
+        switching = any(grips[hand] is Grip.SWITCHING for hand in places.hands)
+        return switching or any(map(self._closes_or_opens, places.tools))
 
     def _closes_or_opens(self, hand: str) -> bool:
         """True in the middle of a grip: nobody knows whether a person counted that part, too."""
@@ -189,6 +244,17 @@ class PlacesTruth:
         stuck = getattr(robot.body, "stuck", False) and robot.robot.has_effector
         unnoticed = stuck and robot.robot.evidence is not Evidence.IDS
         return lies or robot.lost_power or by_hand or unnoticed or self._mistaken(robot)
+
+
+def kept_parts(text: str) -> dict[str, int]:
+    """The parts at places in what a plant keeps of a cell, by target; hands are in it, too."""
+    pairs = (word.partition("=") for word in text.split())
+    return {target: int(number) for target, at, number in pairs if at}
+
+
+def _are_kept(parts: Mapping[str, int], text: str) -> bool:
+    kept = kept_parts(text)
+    return all(kept.get(target, 0) == number for target, number in parts.items())
 
 
 def _holds(hand: Any) -> bool:

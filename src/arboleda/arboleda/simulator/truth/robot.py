@@ -29,12 +29,15 @@ UNDER_WAY = 64  # publications of the bridge that may still reach the board
 class Act:
     """A goal that a board carried out, and what held just before.
 
-    `ours`: our bridge published it; `latched`: the board had obeyed a latching stop that was not cleared;
-    `homed`: its counters were right; `moves`: it sets the robot in motion; `starts`: a stop forbids it.
+    `ours`: our bridge published it; `outdated`: it did so before another process led, the board got it after
+    that, and no number in it lets the board tell; `latched`: the board had obeyed a latching stop that was
+    not cleared; `homed`: its counters were right; `moves`: it sets the robot in motion; `starts`: a stop
+    forbids it.
     """
 
     goal: Goal
     ours: bool
+    outdated: bool
     latched: bool
     homed: bool
     moves: bool
@@ -53,6 +56,7 @@ class RobotTruth:
 
     SIGNS: tuple[str, ...]  # attributes of a body of which one changes with anything that happens
     PLACE: str  # the name of the place in lies of boards
+    FORGETS = False  # what was switched may be as in the beginning after a boot
     zones = NOWHERE  # where it is, or may have swept
     here = NOWHERE  # the targets at which it stands still
     stood = NOWHERE  # the same, in this step, if it has moved on
@@ -79,7 +83,7 @@ class RobotTruth:
         self.signs = attrgetter(*self.SIGNS)
         self._client = client
         self._executed: list[Goal] = []  # what the board says that it carried out in this step
-        self._ahead: list[Delivery] = []  # what reached it and was not yet heard
+        self._ahead: list[tuple[Delivery, bool]] = []  # what reached it and was not yet heard; if outdated
         self.boot = board.boot_id
         self._left = 0  # how many of `_ahead` were there before this step
         self._ours: deque[tuple[str, bytes]] = deque(maxlen=UNDER_WAY)
@@ -131,9 +135,11 @@ class RobotTruth:
     def be_opened(self, at: float) -> None:
         """Note that somebody else than the plant has it let go of what it holds."""
 
-    def reach(self, delivery: Delivery) -> None:
-        """Note a message that is at its board, which has not read it yet."""
-        self._ahead.append(delivery)
+    def reach(self, delivery: Delivery, *, outdated: bool) -> None:
+        """Note a message that is at its board, which has not read it yet; `outdated`: from a bridge that
+        another one had superseded meanwhile.
+        """
+        self._ahead.append((delivery, outdated))
         self.again = True
 
     def carry_out(self, goal: Goal) -> None:
@@ -217,16 +223,17 @@ class RobotTruth:
         executed, self._executed = self._executed, []
         waiting = sum(map(_is_command, self._client.inbox)) if self._ahead else 0
         count = len(self._ahead) - waiting
-        for delivery in self._ahead[:count]:
+        for delivery, outdated in self._ahead[:count]:
             goal = None if delivery.retain else goal_of(delivery.topic, delivery.payload, self.body.axes)
             if goal is not None:
                 self._obeyed(goal)
             if executed and goal == executed[0]:
-                self._did(executed.pop(0), ours=(delivery.topic, delivery.payload) in self._ours)
+                ours = (delivery.topic, delivery.payload) in self._ours
+                self._did(executed.pop(0), ours=ours, outdated=outdated and ours and goal.epoch is None)
         del self._ahead[:count]
         self._left = waiting
         for goal in executed:  # nobody sent it: the board acts on its own
-            self._did(goal, ours=False)
+            self._did(goal, ours=False, outdated=False)
 
     def _obeyed(self, goal: Goal) -> None:
         """Take in a stop, whatever its numbers; one of the instant of a boot may be older than that."""
@@ -235,10 +242,18 @@ class RobotTruth:
             self._homing = False
             self.stopping = True
 
-    def _did(self, goal: Goal, *, ours: bool) -> None:
+    def _did(self, goal: Goal, *, ours: bool, outdated: bool) -> None:
         moves = self._moves(goal)
         starts = moves or self._grips(goal)
-        act = Act(goal=goal, ours=ours, latched=self.latched, homed=self.homed, moves=moves, starts=starts)
+        act = Act(
+            goal=goal,
+            ours=ours,
+            outdated=outdated,
+            latched=self.latched,
+            homed=self.homed,
+            moves=moves,
+            starts=starts,
+        )
         self.acts.append(act)
         if moves:
             self.stopping = self.taken_away = False

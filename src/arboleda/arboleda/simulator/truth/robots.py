@@ -31,6 +31,7 @@ KINDS: dict[type[Robot], Callable[..., RobotTruth]] = {
     Device: MachineTruth,
 }
 """The truth that is followed of a robot, by its class."""
+LATE_BOOT_S = 2.0  # within which a boot is heard of
 
 
 class RobotsTruth:
@@ -88,7 +89,8 @@ class RobotsTruth:
         """True if the plant may be told a wrong place of a robot: it is `unseen`, its board lies, a report
         from before an earlier start moved it comes late, or it says that it stands still while it moves; for
         a machine also if it has said so since it began to move, does something long after its time, or has
-        lied about its boot since it was given the switch that it did: a boot would have ended that.
+        lied about its boot since it was given the switch that it did: a boot would have ended that. So may
+        it of one that forgets at a boot what was switched, until that boot is heard of.
         """
         if self.world.now < self._late_until and robot.robot.name in self._late:
             return True
@@ -100,7 +102,11 @@ class RobotsTruth:
         if robot.switched_from is not None and self.deceived_since(board, "boot", robot.switched_from):
             return True
         lies = self.deceived_since(board, robot.PLACE, self.world.now)
-        return robot.overdue or lies or self.unseen(robot)
+        return robot.overdue or lies or self.unseen(robot) or self._has_forgotten_unheard(robot)
+
+    def _has_forgotten_unheard(self, robot: RobotTruth) -> bool:
+        booted_at, belief = robot.booted_us / 1e6, self.world.plant.dispatcher.beliefs[robot.robot.name]
+        return robot.FORGETS and self.world.now < booted_at + LATE_BOOT_S and belief.boot_id != robot.boot
 
     def look(self) -> None:
         """Take in what happened in this step; called before any invariant."""
@@ -211,9 +217,10 @@ class RobotsTruth:
                 robot = boards.get(publication.topic.partition("/")[0])
                 if robot is not None:
                     robot.expect(publication)
+        outdated = set(map(id, self.world.moment.outdated))
         for client, delivery in self.world.moment.delivered:
             if client in boards and not delivery.topic.endswith(BEATS):
-                boards[client].reach(delivery)
+                boards[client].reach(delivery, outdated=id(delivery) in outdated)
 
     def _follow_changes(self) -> None:
         for robot in self.changed:

@@ -8,7 +8,7 @@ from typing import Any
 
 from arboleda.model.commands import Command, needs_clear
 from arboleda.model.messages import Fact, OperatorAnswer, Remember, Verb
-from arboleda.model.plant_model import PlantModel, Robot
+from arboleda.model.plant_model import Evidence, PlantModel, Robot
 from arboleda.wire.forms import form_of
 from arboleda.wire.payloads import Goal, JointsGoal, StopGoal
 
@@ -92,9 +92,12 @@ def robots_of(model: PlantModel, scope: str) -> list[str]:
 
 
 def is_order_of(goal: Goal, robot: Robot, command: Command) -> bool:
-    """True if a goal on the wire is this command."""
+    """True if a goal on the wire is this command: to the same place by another token is another one."""
     stamp: dict[str, Any] = {"seq": goal.seq, "epoch": goal.epoch}
-    stamp |= {} if isinstance(goal, StopGoal) else {"heard": goal.heard, "token": goal.token}
+    if not isinstance(goal, StopGoal):
+        if robot.evidence is Evidence.IDS and goal.token != command.token:
+            return False
+        stamp |= {"heard": goal.heard, "token": goal.token}
     _, expected = form_of(robot).goal(robot, command, **stamp)
     if isinstance(goal, JointsGoal) and isinstance(expected, JointsGoal):
         return all(abs(a - b) < ROUNDING_DEG for a, b in zip(goal.q, expected.q, strict=True))

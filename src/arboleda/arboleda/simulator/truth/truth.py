@@ -6,7 +6,7 @@ import json
 
 from arboleda.model.commands import Command, Motion, Query, Switch
 from arboleda.model.facts import Value
-from arboleda.model.messages import OperatorAnswer, Report, TaskChanged, TaskState, Verb
+from arboleda.model.messages import Fact, OperatorAnswer, Report, TaskChanged, TaskState, Verb
 from arboleda.model.whole_cells import whole_cell
 from arboleda.wire.hop import FromPlant
 from arboleda.wire.payloads import OrderGoal
@@ -18,6 +18,7 @@ from ..storage.truth import StorageTruth
 from ..world import World
 from .ended_commands import EndedCommand
 from .part_places import PlacesTruth
+from .refused_commands import RefusedCommands
 from .robots import RobotsTruth
 from .stops import is_order_of, robots_of
 
@@ -35,10 +36,11 @@ class Truth(RobotsTruth):
         self.storage = StorageTruth(world, self.robots, self.unseen)
         self.places = PlacesTruth(world, self.robots, mistaken=self.mistaken, released=self.released)
         self.done_tasks: list[tuple[str, str, float]] = []
+        self._refused_commands = RefusedCommands()
         self._facts = {name: dict(robot.body.true_facts) for name, robot in self.robots.items()}
         self._left: dict[tuple[str, object], float] = {}  # when a fact ceased to be so, a target was left
         self._released: dict[str, float] = {}  # when an operator had a robot let go
-        self._last: dict[str, EndedCommand] = {}  # the last command of each robot, if it is called done
+        self._last: dict[str, EndedCommand] = {}  # the last command of each robot, questions left out
         self._questions: dict[tuple[str, int, int], str] = {}  # (robot, epoca, seq) -> the question
         self._answers: dict[str, set[Value]] = {}  # what was truly answered to it
         self._began: dict[str, float] = {}
@@ -65,9 +67,14 @@ class Truth(RobotsTruth):
         """The answers that a device has truly given to the query with this id."""
         return self._answers.get(question, set())
 
-    def last_done(self, robot: str) -> EndedCommand | None:
-        """The last command of a robot, questions left out, if it is called done."""
+    def last_ended(self, robot: str) -> EndedCommand | None:
+        """The last command of a robot that has ended, questions left out."""
         return self._last.get(robot)
+
+    def last_done(self, robot: str) -> EndedCommand | None:
+        """The same, if it is called done."""
+        last = self._last.get(robot)
+        return last if last is not None and last.done else None
 
     def _did_more(self) -> bool:
         return self.storage.has_news
@@ -95,6 +102,10 @@ class Truth(RobotsTruth):
         super().look()
         for booked in self.books.ended:
             self._end(booked)
+        plant = self.world.plant
+        if self.places.cells and plant.dispatcher.not_given_count:
+            for refused in self._refused_commands.fresh(plant):
+                self.places.take_refusal(refused)
         for passed in self.world.moment.bridged if self._orders else ():
             self._follow_questions(passed.events, passed.out)
         for client, publication in self.world.moment.published:
@@ -107,6 +118,8 @@ class Truth(RobotsTruth):
     def _new_plant(self) -> None:
         """Forget the last commands of robots: a new plant has no book of what became of them."""
         super()._new_plant()
+        kept = self.world.plant_process.found.facts.get(Fact.PARTS, {})
+        self.places.restart(self.world.moment.last_words, kept)
         self._last.clear()
         self.storage.restart()
 
@@ -123,10 +136,8 @@ class Truth(RobotsTruth):
 
     def _end(self, booked: EndedCommand) -> None:
         command = booked.command
-        if booked.done and not isinstance(command, Query):
+        if not isinstance(command, Query):
             self._last[command.robot] = booked
-        elif not isinstance(command, Query):
-            self._last.pop(command.robot, None)
 
     def _follow_questions(self, events: list[object], out: list[object]) -> None:
         """Take in the questions that the bridge sent on, each under a number."""

@@ -1,1 +1,1 @@
-"""A virtual machine of three axes whose controller runs GRBL 1.1 or Marlin."""
+"""A virtual machine of three axes whose controller runs GRBL 1.1, Marlin or Klipper."""

@@ -9,23 +9,30 @@ import typer
 
 from ..faults import Faults
 from ..pty_line import PtyLine
-from ..serving import FaultNames, FaultPort, serve, with_faults
-from .faults import GRBL_FAULTS, MARLIN_FAULTS
+from ..serving import Controller, FaultNames, FaultPort, serve, with_faults
+from .faults import GRBL_FAULTS, MARLIN_FAULTS, MOONRAKER_FAULTS
 from .grbl import VirtualGrbl
 from .marlin import VirtualMarlin
+from .moonraker import VirtualMoonraker
 
 NAME = "gcode"
+MOONRAKER = "a virtual machine with Klipper, behind Moonraker,"
 HELP = with_faults(
     with_faults(
-        "Play a machine of three axes whose controller runs GRBL 1.1 or Marlin, on a pseudo terminal: moves "
-        "that take their time, stops, homing, alarms, a door. It begins not homed, as a real one does. Any "
-        "sender of G-code can use it.",
-        GRBL_FAULTS,
-        "Faults with GRBL",
+        with_faults(
+            "Play a machine of three axes whose controller runs GRBL 1.1 or Marlin, on a pseudo terminal, or "
+            "Klipper, behind a port of Moonraker: moves that take their time, stops, homing, alarms, a door. "
+            "It begins not homed, as a real one does. Any sender of G-code can use it.",
+            GRBL_FAULTS,
+            "Faults with GRBL",
+        ),
+        MARLIN_FAULTS,
+        "Faults with Marlin",
     ),
-    MARLIN_FAULTS,
-    "Faults with Marlin",
+    MOONRAKER_FAULTS,
+    "Faults with Moonraker",
 )
+FAULTS = {"grbl": GRBL_FAULTS, "marlin": MARLIN_FAULTS, "moonraker": MOONRAKER_FAULTS}
 
 
 class Dialect(str, Enum):
@@ -33,6 +40,7 @@ class Dialect(str, Enum):
 
     GRBL = "grbl"
     MARLIN = "marlin"
+    MOONRAKER = "moonraker"
 
 
 def run(
@@ -40,6 +48,8 @@ def run(
     link: Annotated[
         str, typer.Option(help="Name of the line, a link to its pseudo terminal; by default of the dialect.")
     ] = "",
+    port: Annotated[int, typer.Option(help="Port with Moonraker; 0: any free one.")] = 7125,
+    host: Annotated[str, typer.Option(help="The address that it listens on.")] = "127.0.0.1",
     homed: Annotated[
         bool, typer.Option("--homed", help="Begin homed, ready to move; with GRBL only.")
     ] = False,
@@ -50,13 +60,20 @@ def run(
         raise typer.BadParameter(
             "a machine with Marlin does not tell whether it is homed", param_hint="--homed"
         )
+    if dialect is Dialect.MOONRAKER and (homed or link):
+        raise typer.BadParameter(
+            "a machine with Moonraker begins not homed, at a port", param_hint="--homed, --link"
+        )
 
-    def line(faults: Faults) -> PtyLine:
+    def line(faults: Faults) -> Controller:
+        if dialect is Dialect.MOONRAKER:
+            from ..web_socket_line import WebSocketLine  # websockets take a while to load
+
+            return WebSocketLine(VirtualMoonraker(faults), host=host, port=port, what=MOONRAKER)
         machine = VirtualMarlin(faults) if dialect is Dialect.MARLIN else VirtualGrbl(faults, homed=homed)
         name = {Dialect.GRBL: "GRBL", Dialect.MARLIN: "Marlin"}[dialect]
         return PtyLine(
             machine, link=link or f"/tmp/arboleda-{dialect.value}", what=f"a virtual machine with {name}"
         )
 
-    known = MARLIN_FAULTS if dialect is Dialect.MARLIN else GRBL_FAULTS
-    serve(line, known, fault, fault_port)
+    serve(line, FAULTS[dialect.value], fault, fault_port)

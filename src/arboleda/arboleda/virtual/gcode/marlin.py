@@ -14,6 +14,7 @@ from .machine import Path, Place, VirtualMachine, words_of
 NUMBERED = re.compile(r"N(\d+) (.*)\*(\d+)")
 AT_ONCE = re.compile(r"(?:N\d+ )?(M410|M112)(?:\*\d+)?")
 HOMING_S, DROPS_S, KEEPALIVE_S = 1.0, 1.0, 2.0
+DIES_S = 0.6  # for so long it moves on after it has said that it is halted
 SLIP_MM = 3.0
 STEPS_PER_MM = 80
 HALTED = "Error:Printer halted. kill() called!"
@@ -35,7 +36,7 @@ class VirtualMarlin(VirtualMachine):
     @property
     def next_deadline(self) -> float:
         """The time at which something becomes so by itself."""
-        ends = self._path.ends_at if self._path is not None else math.inf
+        ends = min(self._path.ends_at, self._dies_at) if self._path is not None else math.inf
         drops = self._drops_until if self._drops_until > self._now else math.inf
         busy = self._busy_at if self._is_busy else math.inf
         return min(ends, self._homes_at, drops, busy)
@@ -73,6 +74,7 @@ class VirtualMarlin(VirtualMachine):
         self._waits = False  # in M400
         self._keepalive_s, self._busy_at = KEEPALIVE_S, math.inf
         self._is_halted = self._is_stopped = False
+        self._dies_at = math.inf
 
     def _stand(self, counted: Place) -> None:
         self._counted = counted
@@ -87,7 +89,10 @@ class VirtualMarlin(VirtualMachine):
         self._was_off = off
         out = [] if self._is_halted else self._protect()
         if self._path is not None:
-            out += self._travel(now, self._path)
+            said = self._travel(min(now, self._dies_at), self._path)
+            out += [] if self._is_halted else said
+        if self._dies_at <= now:
+            self._path = None
         if self._homes_at <= now:
             out += self._end_homing()
         return out + self._go_on(now)
@@ -127,8 +132,8 @@ class VirtualMarlin(VirtualMachine):
         return ["ok"]
 
     def _kill(self) -> list[str]:
-        self._is_halted = True
-        self._path, self._homes_at, self._waits = None, math.inf, False
+        self._is_halted, self._dies_at = True, self._now + DIES_S
+        self._homes_at, self._waits = math.inf, False
         self._queue.clear()
         return [HALTED]
 
@@ -137,7 +142,7 @@ class VirtualMarlin(VirtualMachine):
             self._slip = (self._slip[0] + SLIP_MM, *self._slip[1:])
         self._path, self._goal = None, self._counted
         self._stand(self._counted)
-        self._drops_until = now + DROPS_S
+        self._drops_until = min(max(now, self._drops_until), now + DROPS_S) + DROPS_S  # one stop may wait
 
     # Lines.
 
@@ -203,6 +208,8 @@ class VirtualMarlin(VirtualMachine):
             return []
         if line.startswith("G1"):
             return self._move(now, line)
+        if line.startswith("M110"):
+            self._last_number = int(line.partition("N")[2] or 0)  # a second time, after it was read
         if line == "M114":
             return [self._position_line(), "ok"]
         if line == "M115":

@@ -85,7 +85,6 @@ class VirtualUr:
         self.faults = faults
         self.joints = joints
         self.arm = Arm(running=running)
-        self.programs_run = 0  # moves that were begun
         self._period_s = period_s
         self._now = -math.inf
         self._torn = False
@@ -234,7 +233,6 @@ class VirtualUr:
             late_s = LATE_START_S if "late_start" in self.faults else 0.0
             self._starts.append((now + late_s, program))
             moves = any(call.function == "movej" for call in program.calls)
-            self.programs_run += moves
             if moves and "hang_up" in self.faults:
                 self._run(now)
                 self._forget_clients()

@@ -42,6 +42,10 @@ class MakeApi(Protocol):
         """Add a recipe `name` that is a tree and does what one in Python does. The draft's state."""
 
     @abstractmethod
+    def translate(self, language: str, lines: list[str]) -> list[str]:
+        """Findings of files and runs, given in English, in a language; what it lacks stays in English."""
+
+    @abstractmethod
     def drivers(self, language: str) -> list[Row]:
         """The drivers that a device of a declared kind can have: `name`, `about`, a form for each of its
         `keys`, and `why_not` where it cannot be used here."""

@@ -18,7 +18,7 @@ from ..desks.draft import DraftApi, State
 from ..plant_api import PlantApi
 from ..schema.bodies import ResponseModel, Sentence
 from ..schema.plain_json import PlainJson
-from ..schema.queries import Answers, read_body
+from ..schema.queries import Answers, described_body, read_body
 
 MAY = "editing a draft"
 SHIPPED = "This plant has no file that could be changed; `arboleda new` writes one of your own."
@@ -154,8 +154,7 @@ def _edit(api: APIRouter, side: PlantApi) -> None:
             return await _answered(lambda: act(draft, body))
 
         step.__doc__ = about
-        described = {"requestBody": {"content": {"application/json": {"schema": model.model_json_schema()}}}}
-        wanted: dict[str, Any] = {"responses": REFUSED, "openapi_extra": described}
+        wanted: dict[str, Any] = {"responses": REFUSED, "openapi_extra": described_body(model)}
         api.post(path, response_model=DraftState, name=path.strip("/"), **wanted)(step)
 
     route("/take", Taking, "Begin to edit, or take over.", lambda each, to: each.take(to.editor, to.name))
@@ -180,16 +179,14 @@ def _edit(api: APIRouter, side: PlantApi) -> None:
 
 
 def _keep(api: APIRouter, side: PlantApi) -> None:
-    described = {"requestBody": {"content": {"application/json": {"schema": Keeping.model_json_schema()}}}}
-
-    @api.post("/keep", response_model=KeptDraft, responses=REFUSED, openapi_extra=described)
+    @api.post("/keep", response_model=KeptDraft, responses=REFUSED, openapi_extra=described_body(Keeping))
     async def keep(request: Request) -> JSONResponse:
         """Check the draft, write it into the plant's files and keep a version, which the next start takes."""
         draft = _draft(side, request)
         body = read_body(await request.body(), Keeping)
         return await _answered(lambda: draft.keep(body.editor, body.note))
 
-    @api.post("/apply", response_model=AppliedDraft, responses=REFUSED, openapi_extra=described)
+    @api.post("/apply", response_model=AppliedDraft, responses=REFUSED, openapi_extra=described_body(Keeping))
     async def apply(request: Request) -> JSONResponse:
         """The same, and put the version to work: a cell takes it once its task has ended."""
         draft = _draft(side, request)

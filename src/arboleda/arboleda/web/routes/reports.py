@@ -103,11 +103,21 @@ class TaskReport(ResponseModel):
     evidence: TaskEvidence | None = None
 
 
+class AwaitedReport(ResponseModel):
+    """Report that is not written yet."""
+
+    task: str
+    state: Literal["waiting"]
+
+
+LATER: Answers = {202: {"model": AwaitedReport, "description": "It is not written yet; ask again."}}
+
+
 def routes(side: PlantApi) -> APIRouter:
     """Register the route."""
     api = APIRouter(prefix="/api")
 
-    @api.get("/tasks/{task_id}/report", response_model=TaskReport, responses=NONE)
+    @api.get("/tasks/{task_id}/report", response_model=TaskReport, responses=NONE | LATER)
     async def report(task_id: str) -> JSONResponse:
         """Why a task failed: cause and evidence. The first answer may be 202, until it is written."""
         try:

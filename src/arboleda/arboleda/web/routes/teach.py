@@ -16,7 +16,7 @@ from ..desks import teach
 from ..plant_api import PlantApi
 from ..schema.bodies import ResponseModel, Sentence, Teaching
 from ..schema.plain_json import PlainJson, explained
-from ..schema.queries import Answers, read_body
+from ..schema.queries import Answers, described_body, read_body
 
 MAY = "teaching"
 REFUSED: Answers = {
@@ -112,14 +112,18 @@ def routes(side: PlantApi) -> APIRouter:
         desk = _desk(side, request)
         return await _answered(lambda: desk.state(cell))
 
-    @api.post("/{cell}/jog", response_model=Pressed, responses=REFUSED, openapi_extra=_body(ButtonState))
+    @api.post(
+        "/{cell}/jog", response_model=Pressed, responses=REFUSED, openapi_extra=described_body(ButtonState)
+    )
     async def jog(cell: str, request: Request) -> JSONResponse:
         """Hold a button of a cell that is taught, or let go of it."""
         desk = _desk(side, request)
         body = read_body(await request.body(), ButtonState)
         return await _answered(lambda: desk.press(cell, body.button()))
 
-    @api.post("/{cell}/here", response_model=MadeTarget, responses=REFUSED, openapi_extra=_body(NewTarget))
+    @api.post(
+        "/{cell}/here", response_model=MadeTarget, responses=REFUSED, openapi_extra=described_body(NewTarget)
+    )
     async def here(cell: str, request: Request) -> JSONResponse:
         """Make a target in the draft where a robot stands now, or move one there."""
         desk = _desk(side, request)
@@ -141,7 +145,3 @@ def _desk(side: PlantApi, request: Request) -> teach.TeachApi:
     if side.teach is None:
         raise HTTPException(404, "This plant is not taught from here.")
     return side.teach
-
-
-def _body(model: type[BaseModel]) -> dict[str, Any]:
-    return {"requestBody": {"content": {"application/json": {"schema": model.model_json_schema()}}}}

@@ -15,7 +15,7 @@ from ..desks.versions import VersionsApi
 from ..plant_api import PlantApi
 from ..schema.bodies import ResponseModel
 from ..schema.plain_json import PlainJson
-from ..schema.queries import read_body
+from ..schema.queries import described_body, read_body
 from .draft import REFUSED, SHIPPED, AppliedDraft
 
 MAY = "putting a version to work"
@@ -80,18 +80,21 @@ def routes(side: PlantApi) -> APIRouter:
         """The versions that were put to work, which one is, and what each cell works by."""
         return PlainJson(await run_in_threadpool(_versions(side).listed))
 
-    described = {"requestBody": {"content": {"application/json": {"schema": PutRequest.model_json_schema()}}}}
-
-    @api.post("/{number}/put", response_model=AppliedDraft, responses=REFUSED, openapi_extra=described)
+    @api.post(
+        "/{number}/put",
+        response_model=AppliedDraft,
+        responses=REFUSED,
+        openapi_extra=described_body(PutRequest),
+    )
     async def put(request: Request, number: Number) -> JSONResponse:
         """Put a version to work, as when going back to it: a cell takes it once its task has ended."""
         require(request.scope["arboleda.role"], MAY)
         desk, body = _versions(side), read_body(await request.body(), PutRequest)
         return PlainJson(await run_in_threadpool(lambda: desk.put(number, body.name)))
 
-    wish = {"requestBody": {"content": {"application/json": {"schema": RestartWish.model_json_schema()}}}}
-
-    @api.post("/restart", response_model=VersionList, responses=REFUSED, openapi_extra=wish)
+    @api.post(
+        "/restart", response_model=VersionList, responses=REFUSED, openapi_extra=described_body(RestartWish)
+    )
     async def restart(request: Request) -> JSONResponse:
         """Restart the plant with its files as they are now, once all its cells rest; until then no further
         task begins.

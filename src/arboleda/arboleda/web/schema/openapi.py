@@ -17,6 +17,20 @@ from ..access.login import page
 
 Schema = dict[str, Any]
 VERB = Verb.__name__
+SHAPES = "#/components/schemas/"  # before the name of a shape in a reference
+
+
+class DescribedApp(FastAPI):
+    """Application that describes the shapes within bodies beside all others, where references lead to."""
+
+    def openapi(self) -> Schema:
+        """The description as OpenAPI."""
+        api = super().openapi()
+        for route in (route for methods in api["paths"].values() for route in methods.values()):
+            for body in route.get("requestBody", {}).get("content", {}).values():
+                for shape in body["schema"].get("anyOf", [body["schema"]]):
+                    api["components"]["schemas"] |= shape.pop("$defs", {})
+        return api
 
 
 def routes(app: FastAPI) -> APIRouter:
@@ -112,5 +126,5 @@ def _shape(shape: Schema) -> str:
 def _field(name: str, field: Schema) -> str:
     about = field.get("description", "")
     kind = {key: value for key, value in field.items() if key not in ("title", "description", "examples")}
-    cells = (name, json.dumps(kind).replace("#/components/schemas/", ""), about)
+    cells = (name, json.dumps(kind).replace(SHAPES, ""), about)
     return f"<tr>{''.join(f'<td>{escape(cell)}</td>' for cell in cells)}</tr>"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any, TypeVar
 
 from fastapi import Request
@@ -11,6 +12,7 @@ from arboleda.model.errors import PayloadError
 from arboleda.model.outside import quoted
 
 from .bodies import Sentence
+from .openapi import SHAPES
 
 Query = TypeVar("Query", bound=BaseModel)
 Answers = dict[int | str, dict[str, Any]]
@@ -23,12 +25,25 @@ def query_of(request: Request, model: type[Query]) -> Query:
         return model.model_validate(dict(request.query_params))
     except ValidationError as error:
         found = error.errors(include_url=False, include_context=False)[0]
-        name = quoted(str(found["loc"][0]), 80)
         if found["type"] == "extra_forbidden":
+            name = quoted(str(found["loc"][0]), 80)
             raise PayloadError(
                 f"{name} is nothing to ask for; there are {', '.join(model.model_fields)}."
             ) from None
-        raise PayloadError(f"{name} is {quoted(str(found['input']), 80)}: {_begun(found['msg'])}.") from None
+        raise wrong_parameter(found) from None
+
+
+def wrong_parameter(found: Mapping[str, Any]) -> PayloadError:
+    """The refusal of a part of an address, by what pydantic found wrong with it."""
+    name = quoted(str(found["loc"][-1]), 80)
+    if found["type"] == "missing":
+        return PayloadError(f"{name} is missing; /api/docs says what to give.")
+    return PayloadError(f"{name} is {quoted(str(found['input']), 80)}: {_begun(found['msg'])}.")
+
+
+def text_answer(media_type: str, about: str) -> Answers:
+    """The OpenAPI description of an answer that is text of a type."""
+    return {200: {"description": about, "content": {media_type: {"schema": {"type": "string"}}}}}
 
 
 def described(model: type[BaseModel]) -> dict[str, Any]:
@@ -49,10 +64,11 @@ def read_body(body: bytes, model: type[Query]) -> Query:
         raise PayloadError(f"{name}: {_begun(found['msg'])}; /api/docs says what is allowed.") from None
 
 
-def described_body(model: type[BaseModel]) -> dict[str, Any]:
-    """The OpenAPI description of a body as `model`."""
-    schema = model.model_json_schema(ref_template="#/components/schemas/{model}")
-    return {"requestBody": {"content": {"application/json": {"schema": schema}}, "required": True}}
+def described_body(*models: type[BaseModel], required: bool = True) -> dict[str, Any]:
+    """The OpenAPI description of a body that is one of these models."""
+    schemas = [model.model_json_schema(ref_template=f"{SHAPES}{{model}}") for model in models]
+    schema = schemas[0] if len(schemas) == 1 else {"anyOf": schemas}
+    return {"requestBody": {"content": {"application/json": {"schema": schema}}, "required": required}}
 
 
 def _begun(sentence: str) -> str:

@@ -325,6 +325,7 @@ class Blocks:
             self._recover,
             self._invert,
             self._left,
+            self._left,
         )
         return self._dice.pick(makers)(depth - 1)
 

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from ...chance import Dice
 from .joined import groups_apart
-from .kinds import Kind, draw_kind, shipped, value_of
+from .kinds import Kind, draw_kind, shipped, value_of, with_spare
 from .layout import Device, Layout, Need, Robot, Section
 from .robots import RobotDrawer
 from .steps import Value
@@ -21,8 +21,9 @@ CELL = "cell"
 class CellDrawer:
     """Draws a layout; `section` is the cell in its plant file, `kinds` and `zones` beside it."""
 
-    def __init__(self, dice: Dice, *, alike: bool, are_written: bool) -> None:
+    def __init__(self, dice: Dice, spare: Dice, *, alike: bool, are_written: bool) -> None:
         self._dice = dice
+        self._spare = spare  # for the verbs that only trials tell
         self._alike = alike  # a second cell will have the same roles
         self._are_written = are_written  # the kinds, in Python
         self.kinds: dict[str, Kind] = {}
@@ -64,7 +65,8 @@ class CellDrawer:
         found: list[Device] = []
         count = dice.pick((1, 2, 2, 3, 3, 4))
         names = [f"kind_{number}" for number in range(1, 1 + min(count, dice.pick((1, 2, 3))))]
-        self.kinds = {name: draw_kind(dice, name, is_written=self._are_written) for name in names}
+        drawn = [draw_kind(dice, name, is_written=self._are_written) for name in names]
+        self.kinds = {kind.name: with_spare(self._spare, kind) for kind in drawn}
         for number in range(count):
             role = ROLES[(number * 3 + dice.below(3)) % len(ROLES)]
             if any(each.role == role for each in found):

@@ -10,9 +10,11 @@ from .cells import CELL, CellDrawer
 from .drawn import DrawnDevices, Form, can_be_xml
 from .layout import Section
 from .recipes import RecipeDrawer
+from .trials import Trials
 
 SECOND = 0.35  # how often a second cell is like the first one
 AS_XML = 0.4
+RECIPES = (2, 3, 4, 5)  # of a plant
 IN_PYTHON = 0.35  # how often kinds are written in Python
 BESIDE_DEG = 7.0  # half of what targets are apart
 
@@ -22,7 +24,8 @@ def draw(seed: int, attempt: int = 0) -> DrawnDevices:
     dice = Dice(seed, "plant of devices", attempt)
     alike = dice.chance(SECOND)
     are_written = Dice(seed, "kinds in Python", attempt).chance(IN_PYTHON)
-    drawer = CellDrawer(dice, alike=alike, are_written=are_written)
+    spare = Dice(seed, "spare verbs", attempt)
+    drawer = CellDrawer(dice, spare, alike=alike, are_written=are_written)
     layout = drawer.draw()
     section: Section = {"name": f"drawn_{seed}"}
     if dice.chance(0.3):
@@ -42,10 +45,17 @@ def draw(seed: int, attempt: int = 0) -> DrawnDevices:
     if drawer.zones:
         section["zones"] = _zones(drawer.zones, alike=alike)
     as_xml = dice.chance(AS_XML)
-    recipes = RecipeDrawer(dice, layout, as_xml=as_xml)
-    drawn = tuple(recipes.draw(number) for number in range(1, 1 + dice.pick((1, 2, 3))))
+    trials = Trials(Dice(seed, "trials", attempt), layout, as_xml=as_xml)
+    recipes = RecipeDrawer(dice, layout, trials, as_xml=as_xml)
+    drawn = tuple(recipes.draw(number) for number in range(1, 1 + dice.pick(RECIPES)))
     form = Form.XML if as_xml and all(map(can_be_xml, drawn)) else Form.PYTHON
-    return DrawnDevices(section=section, recipes=drawn, form=form, kinds=written if are_written else None)
+    return DrawnDevices(
+        section=section,
+        recipes=drawn,
+        form=form,
+        kinds=written if are_written else None,
+        spelling=seed,
+    )
 
 
 def _timing(dice: Dice) -> Section:

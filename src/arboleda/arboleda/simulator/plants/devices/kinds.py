@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from ...chance import Dice
@@ -33,10 +33,12 @@ WORDS: tuple[tuple[Value, ...], ...] = (
     (0, 1),
     (1001, 1002, 1003),
 )
+PROGRAM = "program"  # the parameter by which a device works, which sets nothing
 TEXTS = ("lot 7", "ñandú", "a", "Größe 3", "x-1_2")
 SPANS = (Span(lower=0, upper=9), Span(lower=-40, upper=125), Span(lower=0.5, upper=2.0))
 TIMES_S = (0, 0, 0.05, 0.2, 0.5, 1, 2, 4)
 LONG_S = (6, 12, 25)
+SPARE = "settle"
 SETTERS = ("put", "make", "bring", "move")
 WORKS = ("run", "press", "spin", "rinse", "blow", "heat_up", "feed")
 QUERIES = ("look", "scan", "weigh", "feel", "ask")
@@ -68,11 +70,15 @@ class Verb:
 
 @dataclass(frozen=True, kw_only=True)
 class Kind:
-    """A kind: its facts in an order in which verbs that set one need only those before it."""
+    """A kind: its facts in an order in which verbs that set one need only those before it.
+
+    `spare` are verbs that set two facts at once, which only trials tell.
+    """
 
     name: str
     facts: tuple[tuple[str, Type], ...] = ()
     verbs: tuple[Verb, ...] = ()
+    spare: tuple[Verb, ...] = ()
     clamp: str = ""  # the fact that says whether it holds a part
     is_shipped: bool = False
     is_written: bool = False  # in Python
@@ -81,7 +87,11 @@ class Kind:
         return dict(self.facts)[fact]
 
     def verb(self, name: str) -> Verb:
-        return next(each for each in self.verbs if each.name == name)
+        return next(each for each in self.all_verbs if each.name == name)
+
+    @property
+    def all_verbs(self) -> tuple[Verb, ...]:
+        return (*self.verbs, *self.spare)
 
     def setters(self, fact: str) -> list[Verb]:
         """The verbs that set nothing but this fact."""
@@ -100,7 +110,7 @@ class Kind:
     def section(self) -> Section:
         """The kind as a plant file declares it."""
         facts = {name: list(type) if isinstance(type, tuple) else type for name, type in self.facts}
-        verbs = {verb.name: _section(verb) for verb in self.verbs}
+        verbs = {verb.name: _section(verb) for verb in self.all_verbs}
         return {**({"facts": facts} if facts else {}), "verbs": verbs}
 
 
@@ -209,7 +219,7 @@ class _KindDrawer:
         effect = dice.pick(("process", "process", "motion"))
         type: Type = dice.pick(WORDS) if dice.chance(0.6) else dice.pick(("int", "number", "bool", "text"))
         type = self._limited(type)
-        parameters: tuple[tuple[str, Type], ...] = (("program", type),) if dice.chance(0.5) else ()
+        parameters: tuple[tuple[str, Type], ...] = ((PROGRAM, type),) if dice.chance(0.5) else ()
         free = [each for each in self._facts if each[0] != "clamped"]
         self._add(name, effect, parameters=parameters, needs=self._needs(free))
 
@@ -238,6 +248,20 @@ class _KindDrawer:
                 **more,
             )
         )
+
+
+def with_spare(dice: Dice, kind: Kind) -> Kind:
+    """The kind with a verb that sets two of its facts at once, where it has two that can be set."""
+    settable = list(kind.is_settable)
+    if len(settable) < 2:
+        return kind
+    first = dice.pick(settable)
+    second = dice.pick([each for each in settable if each != first])
+    sets = tuple((each, value_of(dice, kind.type_of(each))) for each in (first, second))
+    effect = dice.pick(("switch", "switch", "process", "motion"))
+    return replace(
+        kind, spare=(Verb(name=SPARE, effect=effect, sets=sets, takes_s=dice.pick((0.2, 0.5, 1))),)
+    )
 
 
 def value_of(dice: Dice, type: Type) -> Value:

@@ -38,7 +38,7 @@ def kinds_of(kinds: Sequence[Kind]) -> str:
 
 def _kind(kind: Kind) -> str:
     facts = ", ".join(f"{name!r}: {_type(type)}" for name, type in kind.facts)
-    verbs = "".join(f"\n            {verb.name!r}: {_verb(kind, verb)}," for verb in kind.verbs)
+    verbs = "".join(f"\n            {verb.name!r}: {_verb(kind, verb)}," for verb in kind.all_verbs)
     settings = kind.name.title().replace("_", "")
     return f'''@dataclass(frozen=True, kw_only=True)
 class {settings}:

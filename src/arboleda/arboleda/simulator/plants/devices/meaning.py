@@ -61,6 +61,7 @@ class Meaning:
         self.orders: dict[str, list[Told]] = {}
         self.seconds = 0.0
         self.cause: str | None = None
+        self._reason = ""  # of the failure that came last, where that is known
         self._pauses = pauses
         self._recipes = {each.name: each for each in recipes}
         self._answers = {role: deque(those) for role, those in answers.items()}
@@ -76,7 +77,7 @@ class Meaning:
 
     def _tell(self, step: steps.Tell, scope: Scope) -> bool:
         if step.refused:
-            self.cause = None
+            self.cause, self._reason = None, ""
             return False
         self.orders.setdefault(step.role, []).append(_order(step, scope))
         if step.answer:
@@ -94,7 +95,7 @@ class Meaning:
         return left.popleft()
 
     def _fail(self, step: steps.Fail, scope: Scope) -> bool:
-        self.cause = step.sentence
+        self.cause, self._reason = step.sentence, "rejected"
         return False
 
     def _wait(self, step: steps.Wait, scope: Scope) -> bool:
@@ -128,6 +129,8 @@ class Meaning:
             self.seconds += step.pause_s if number and self._pauses else 0.0
             if self._does(step.step, scope):
                 return True
+            if step.causes and self._reason not in step.causes:
+                return False
         return False
 
     def _repeat(self, step: steps.Repeat, scope: Scope) -> bool:
@@ -136,15 +139,20 @@ class Meaning:
     def _timeout(self, step: steps.Timeout, scope: Scope) -> bool:
         until = self.seconds + step.seconds
         succeeds = self._does(step.step, scope)
+        if isinstance(step.step, steps.Tell) and step.seconds == self._told_s(step.step, scope):
+            raise Unsure  # both ends are of the same instant
         if not self._is_late(step, scope):
             return succeeds
-        self.seconds, self.cause = until, None
+        self.seconds, self.cause, self._reason = until, None, "deadline"
         return False
 
     def _is_late(self, step: steps.Timeout, scope: Scope) -> bool:
         if isinstance(step.step, steps.Tell):
-            return step.seconds < self._takes_s(step.step.role, _order(step.step, scope))
+            return step.seconds < self._told_s(step.step, scope)
         return isinstance(step.step, steps.Wait) and step.seconds < step.step.seconds
+
+    def _told_s(self, step: steps.Tell, scope: Scope) -> float:
+        return self._takes_s(step.role, _order(step, scope))
 
     def _fallback(self, step: steps.Fallback, scope: Scope) -> bool:
         *failing, last = step.steps  # drawn so that they fail

@@ -110,7 +110,8 @@ def _parts(step: Step) -> tuple[str, list[Step | str], str] | None:
     if isinstance(step, Recover):
         return "cell.recover(", [step.work, step.rescue], ")"
     if isinstance(step, Retry):
-        return "cell.retry(", [step.step, f"times={step.times}", f"pause_s={step.pause_s}"], ")"
+        causes = [f"causes={list(step.causes)!r}"] if step.causes else []
+        return "cell.retry(", [step.step, f"times={step.times}", f"pause_s={step.pause_s}", *causes], ")"
     if isinstance(step, Repeat):
         return "cell.repeat(", [step.step, str(step.times)], ")"
     if isinstance(step, Timeout):
@@ -137,9 +138,9 @@ def _call(step: Step) -> str:
     if isinstance(step, Ask):
         return f"{step.role}.ask({step.question!r}, {list(step.answers)!r}, at_most_s={step.at_most_s})"
     if isinstance(step, Says):
-        return f"{step.role}.says({step.fact}={step.value!r})"
+        return f"{step.role}.says({_facts(step)})"
     if isinstance(step, Becomes):
-        return f"{step.role}.becomes({step.fact}={step.value!r}, at_most_s={step.at_most_s})"
+        return f"{step.role}.becomes({_facts(step)}, at_most_s={step.at_most_s})"
     if isinstance(step, Go):
         return f"{step.role}.go({_value(step.target)})"
     if isinstance(step, Home):
@@ -155,6 +156,10 @@ def _call(step: Step) -> str:
     if isinstance(step, Run):
         return f"cell.run({', '.join([step.recipe, *([_given(step.values)] if step.values else [])])})"
     return f"cell.wait({step.seconds if isinstance(step, Wait) else 0})"
+
+
+def _facts(step: Says | Becomes) -> str:
+    return _given(((step.fact, step.value), *step.also))
 
 
 def _given(values: Given) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 from ...chance import Dice
 from .blocks import Blocks
@@ -23,6 +24,7 @@ from .steps import (
     Using,
     Work,
 )
+from .trials import Trials
 
 TRIES = 12
 LONGEST_TASK_S = 100.0  # as a rule
@@ -32,8 +34,9 @@ PHASES = (1, 2, 2, 3, 4)
 class RecipeDrawer:
     """Draws recipes one after the other; each may run those before it."""
 
-    def __init__(self, dice: Dice, layout: Layout, *, as_xml: bool) -> None:
+    def __init__(self, dice: Dice, layout: Layout, trials: Trials, *, as_xml: bool) -> None:
         self._dice = dice
+        self._trials = trials
         self._layout = layout
         self._as_xml = as_xml  # only what a tree as XML can say
         self._usual_s: dict[str, float] = {}  # by recipe
@@ -48,6 +51,11 @@ class RecipeDrawer:
             took_s = usual_s(made.step, self._layout, self._usual_s)
             if took_s <= LONGEST_TASK_S:
                 break
+        tried = self._trials.draw()
+        if not carries and (moved := self._trials.of_parts()):
+            tried, carries = [*tried, *moved], True
+        if tried:
+            made = replace(made, step=Work(steps=(made.step, *tried)))
         self._drawn.append(made)
         self._usual_s[made.name] = took_s
         self._carrying |= {made.name} if carries else set()

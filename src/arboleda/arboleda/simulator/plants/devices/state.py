@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 
 from ...chance import Dice
@@ -26,7 +26,7 @@ class State:
 
     def unknown(self) -> State:
         """The same, with nothing known but what is frozen."""
-        return replace(self, facts={key: self.facts[key] for key in self.frozen if key in self.facts})
+        return replace(self, facts={key: value for key, value in self.facts.items() if key in self.frozen})
 
     def without(self, keys: Iterable[tuple[str, str]]) -> State:
         gone = set(keys)
@@ -37,8 +37,17 @@ class State:
 
     def met(self, others: Iterable[State]) -> State:
         """The state of which all of these know."""
-        known = [set(each.facts.items()) for each in others]
-        return replace(self, facts=dict(set.intersection(*known))) if known else self
+        known = [each.facts for each in others]
+        if not known:
+            return self
+        rows = known[0].items()  # in their order, as what is drawn next depends on it
+        return replace(
+            self, facts={key: value for key, value in rows if all(_has(each, key, value) for each in known)}
+        )
+
+
+def _has(facts: Mapping[tuple[str, str], Value], key: tuple[str, str], value: Value) -> bool:
+    return key in facts and facts[key] == value
 
 
 class Planner:

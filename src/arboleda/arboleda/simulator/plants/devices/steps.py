@@ -45,21 +45,23 @@ class Ask:
 
 @dataclass(frozen=True, kw_only=True)
 class Says:
-    """A check of a fact."""
+    """A check of a fact, and of those in `also` with it."""
 
     role: str
     fact: str
     value: Value
+    also: tuple[tuple[str, Value], ...] = ()
 
 
 @dataclass(frozen=True, kw_only=True)
 class Becomes:
-    """A wait for a fact."""
+    """A wait for a fact, and for those in `also` with it."""
 
     role: str
     fact: str
     value: Value
     at_most_s: float
+    also: tuple[tuple[str, Value], ...] = ()
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -155,11 +157,14 @@ class Choose:
 
 @dataclass(frozen=True, kw_only=True)
 class Retry:
-    """The step, again where it fails."""
+    """The step, again where it fails; `causes` are the only reasons for that, if there are any, which no tree
+    as XML can say.
+    """
 
     step: Step
     times: int
     pause_s: float
+    causes: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, kw_only=True)

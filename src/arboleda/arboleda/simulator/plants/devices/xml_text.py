@@ -35,13 +35,30 @@ from .steps import (
 )
 
 
-def xml_of(recipe: Recipe, others: Mapping[str, Recipe]) -> str:
+class Writer:
+    """Writer of steps as nodes, each in the plainest way; `trees` are those that it made on the way."""
+
+    def __init__(self) -> None:
+        self.trees: list[Element] = []
+
+    def add(self, parent: Element, step: Step) -> None:
+        """Write a step below a node."""
+        name, given, inner = _node(step)
+        made = SubElement(parent, name, given)
+        for each in inner:
+            self.add(made, each)
+        if isinstance(step, Choose) and len(step.ways) > 1:
+            SubElement(made, "AlwaysFailure")
+
+
+def xml_of(recipe: Recipe, others: Mapping[str, Recipe], writer: Writer) -> str:
     """The file of a recipe, with those of `others` that it runs."""
     main = _id(recipe.name)
     root = Element("root", {"BTCPP_format": "4", "main_tree_to_execute": main})
     for each in _together(recipe, others):
         tree = SubElement(root, "BehaviorTree", {"ID": _id(each.name)})
-        _add(tree, each.step)
+        writer.add(tree, each.step)
+    root.extend(writer.trees)
     model = SubElement(SubElement(root, "TreeNodesModel"), "SubTree", {"ID": main})
     for parameter in recipe.parameters:
         SubElement(model, "input_port", {"name": parameter.name})
@@ -65,15 +82,6 @@ def _id(name: str) -> str:
     return name.capitalize()
 
 
-def _add(parent: Element, step: Step) -> None:
-    name, given, inner = _node(step)
-    made = SubElement(parent, name, given)
-    for each in inner:
-        _add(made, each)
-    if isinstance(step, Choose) and len(step.ways) > 1:
-        SubElement(made, "AlwaysFailure")
-
-
 def _node(step: Step) -> tuple[str, dict[str, str], Sequence[Step]]:
     """The name of a node, its attributes and the steps below it."""
     if isinstance(step, Tell | Ask | Says | Becomes | Go | Home | Grip | LetGo | Visit):
@@ -81,7 +89,7 @@ def _node(step: Step) -> tuple[str, dict[str, str], Sequence[Step]]:
     if isinstance(step, Choose) and len(step.ways) == 1:
         return "Sequence", {}, [step.ways[0][1]]
     if isinstance(step, Choose):
-        cases = {f"case_{n}": _text(value) for n, (value, _) in enumerate(step.ways, 1)}
+        cases = {f"case_{n}": text_of(value) for n, (value, _) in enumerate(step.ways, 1)}
         ways = [way for _, way in step.ways]
         return f"Switch{len(ways)}", {"variable": f"{{{step.answer}}}", **cases}, ways
     if isinstance(step, Work):
@@ -97,47 +105,50 @@ def _node(step: Step) -> tuple[str, dict[str, str], Sequence[Step]]:
     if isinstance(step, Repeat):
         return "Repeat", {"num_cycles": str(step.times)}, (step.step,)
     if isinstance(step, Timeout):
-        return "Timeout", {"msec": _msec(step.seconds)}, (step.step,)
+        return "Timeout", {"msec": msec_of(step.seconds)}, (step.step,)
     if isinstance(step, Invert):
         return "Inverter", {}, (step.step,)
     if isinstance(step, Run):
-        given = {name: _text(value) for name, value in step.values}
+        given = {name: text_of(value) for name, value in step.values}
         return "SubTree", {"ID": _id(step.recipe), **given}, ()
     if isinstance(step, Fail):
         return "AlwaysFailure", {"name": step.sentence}, ()
     return (
-        ("Sleep", {"msec": _msec(step.seconds)}, ()) if isinstance(step, Wait) else ("AlwaysFailure", {}, ())
+        ("Sleep", {"msec": msec_of(step.seconds)}, ())
+        if isinstance(step, Wait)
+        else ("AlwaysFailure", {}, ())
     )
 
 
 def _leaf(step: Step) -> tuple[str, dict[str, str], Sequence[Step]]:
     if isinstance(step, Tell):
         answer = {"answer": f"{{{step.answer}}}"} if step.answer else {}
-        return f"{step.role}_{step.verb}", {**{n: _text(v) for n, v in step.values}, **answer}, ()
+        return f"{step.role}_{step.verb}", {**{n: text_of(v) for n, v in step.values}, **answer}, ()
     if isinstance(step, Ask):
         given = {"question": step.question, "answers": ";".join(step.answers)}
         return (
             f"{step.role}_ask",
-            {**given, "at_most_s": _text(step.at_most_s), "answer": f"{{{step.answer}}}"},
+            {**given, "at_most_s": text_of(step.at_most_s), "answer": f"{{{step.answer}}}"},
             (),
         )
     if isinstance(step, Says):
-        return f"{step.role}_says", {step.fact: _text(step.value)}, ()
+        return f"{step.role}_says", _facts(step), ()
     if isinstance(step, Becomes):
-        return (
-            f"{step.role}_becomes",
-            {step.fact: _text(step.value), "at_most_s": _text(step.at_most_s)},
-            (),
-        )
+        return f"{step.role}_becomes", {**_facts(step), "at_most_s": text_of(step.at_most_s)}, ()
     if isinstance(step, Visit):
-        return f"{step.role}_visit", {"target": _text(step.target)}, (step.body,)
+        return f"{step.role}_visit", {"target": text_of(step.target)}, (step.body,)
     if isinstance(step, Go):
-        return f"{step.role}_go", {"target": _text(step.target)}, ()
+        return f"{step.role}_go", {"target": text_of(step.target)}, ()
     ways = {Home: "home", Grip: "grip", LetGo: "let_go"}
     return f"{step.role}_{ways[type(step)]}", {}, ()  # type: ignore[union-attr]
 
 
-def _text(value: Value | Param) -> str:
+def _facts(step: Says | Becomes) -> dict[str, str]:
+    return {fact: text_of(value) for fact, value in ((step.fact, step.value), *step.also)}
+
+
+def text_of(value: Value | Param) -> str:
+    """A value as an attribute of a node."""
     if isinstance(value, Param):
         return f"{{{value.name}}}"
     if isinstance(value, bool):
@@ -145,5 +156,6 @@ def _text(value: Value | Param) -> str:
     return str(value)
 
 
-def _msec(seconds: float) -> str:
+def msec_of(seconds: float) -> str:
+    """A time as an attribute of a node."""
     return str(max(1, round(seconds * 1000)))

@@ -1,0 +1,206 @@
+"""What is found in another language by its English has a twin there: each sentence of these files."""
+
+from __future__ import annotations
+
+import ast
+import re
+from collections import Counter
+from collections.abc import Iterator
+from pathlib import Path
+from string import Formatter
+
+import pytest
+
+from arboleda.board_kit.conformance.judge import CHECKS, DEVICE_CHECKS
+from arboleda.dashboard.findings import findings
+from arboleda.simulator.faults import KINDS
+from arboleda.web.languages import FIRST, LANGUAGES, contents
+
+PACKAGE = Path(__file__).parents[2] / "src/arboleda/arboleda"
+WORDS = PACKAGE / "web/languages"
+SEEING = ("invariants", "recorded", "storage", "truth")  # what an invariant saw is said there
+DRIVEN = (
+    *(
+        "device_feed",
+        "dobot",
+        "gcode",
+        "modbus",
+        "opcua",
+        "opcua_login",
+        "opcua_session",
+        "polled",
+        "pylabrobot",
+    ),
+    *("s7", "serial_arm", "stream", "ur", "vda5050/*"),
+)
+AT_A_START = {  # of a driver, which `check` says, too
+    *("addresses.py", "checks.py", "health.py", "limits.py", "nodes.py", "paths.py", "port.py", "reading.py"),
+    *("registers.py", "settings.py", "stream.py", "variables.py"),
+}
+FILES = (
+    *sorted(PACKAGE.glob("plant_file/*.py")),
+    *sorted(PACKAGE.glob("kinds/*.py")),
+    *sorted(PACKAGE.glob("campaigns/*.py")),
+    *sorted(PACKAGE.glob("campaigns/proof/*.py")),
+    PACKAGE / "campaigns/exercises/trial_run.py",
+    *sorted(PACKAGE.glob("board_kit/conformance/*.py")),
+    *sorted(PACKAGE.glob("playground/*.py")),
+    *(file for folder in SEEING for file in sorted(PACKAGE.glob(f"simulator/{folder}/*.py"))),
+    PACKAGE / "wire/strict.py",
+    PACKAGE / "wire/payloads.py",
+    PACKAGE / "client/http.py",
+    PACKAGE / "bt_xml/checking.py",
+    PACKAGE / "bt_xml/reading.py",
+    PACKAGE / "runtime/draft_desk.py",
+    PACKAGE / "runtime/plant_folder.py",
+    PACKAGE / "runtime/version_desk.py",
+    *sorted(PACKAGE.glob("runtime/make/*.py")),
+    *sorted(PACKAGE.glob("runtime/proposals/*.py")),
+    *sorted(PACKAGE.glob("drivers/**/*.py")),  # settings, and why there is no link or nothing is sent
+    *sorted(file for name in DRIVEN for file in PACKAGE.glob(f"adapters/{name}.py")),
+)
+RUNNING = [
+    file
+    for file in FILES
+    if ("drivers" in file.parts or "adapters" in file.parts) and file.name not in AT_A_START
+]
+WRITING = {"from_above.py", "badge.py", "junit.py", "page.py", "pytest_file.py", "urdf.py"}  # other files
+VERBATIM = re.compile(
+    r"bold \w+|pylabrobot loop|echo:|(sec|def) arboleda_|state: \{|"
+    r"object at 0x|from arboleda\.|import sys|\^|cell\.\w+\(|becomes\(|def \{\}\(|timeout_s \{\},"
+)
+OF_LOG = re.compile("%[sd]")
+OF_OTHERS = {  # by which errors of PyYAML are known
+    "mapping values are not allowed",
+    "cannot start any token",
+    "unexpected end of stream",
+    "did not find expected",
+}
+TO_DEVICES = {  # and in examples of a plant file
+    "brake release",
+    "close popup",
+    "close safety popup",
+    "gripped: bool, width_mm: number, force_n: number",
+    "is in remote control",
+    "loaded: bool, charging: bool, battery: number",
+    "ns=2;s=Belt.State, nsu=http://maker.example/belt;s=State or ns=2;i=1001",
+    "power on",
+    "unlock protective stop",
+}
+# a phrase has a key, the name of a check stays as it is, nobody reads what a mistake in our code raises
+NO_SENTENCES = {"Phrase", "Check", "RuntimeError", "TypeError", "JSONDecodeError"}
+SENTENCE = re.compile(r"[a-z]{2,}[,;:]? (.*\W)?[a-z]{2,}")  # two words at least
+
+
+def sentences(node: ast.AST) -> Iterator[tuple[int, str]]:
+    """The texts of at least two words in a piece of Python, with {} for each value: line and text."""
+    if _is_docstring(node) or (isinstance(node, ast.Call) and _called(node) in NO_SENTENCES):
+        return
+    if isinstance(node, ast.Assert):
+        return
+    if isinstance(node, ast.Constant | ast.JoinedStr):
+        text = _text(node)
+        if (
+            SENTENCE.search(text)
+            and not OF_LOG.search(text)
+            and not VERBATIM.match(text)
+            and text not in OF_OTHERS | TO_DEVICES
+        ):
+            yield node.lineno, text
+    for each in ast.iter_child_nodes(node):
+        if not (isinstance(node, ast.JoinedStr) and isinstance(each, ast.Constant)):
+            yield from sentences(each)
+
+
+def _is_docstring(node: ast.AST) -> bool:
+    return isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant)
+
+
+def _called(call: ast.Call) -> str:
+    of = call.func
+    return of.attr if isinstance(of, ast.Attribute) else of.id if isinstance(of, ast.Name) else ""
+
+
+def _text(node: ast.Constant | ast.JoinedStr) -> str:
+    if isinstance(node, ast.JoinedStr):
+        return "".join(_text(each) if isinstance(each, ast.Constant) else "{}" for each in node.values)
+    return " ".join(node.value.split("\n    ")) if isinstance(node.value, str) else ""
+
+
+def said(language: str) -> set[str]:
+    """The sentences that a language has, in English with {} for each value."""
+    rows = (*contents(language, "findings")["sentences"], *contents(language, "reasons"))
+    return {_unnamed(each) for each in rows}
+
+
+def _unnamed(template: str) -> str:
+    """A template with {} for its values; two beside each other are one, for a hint may follow a value."""
+    pieces = Formatter().parse(template)
+    return _joined("".join(f"{words}{'' if slot is None else '{}'}" for words, slot, *_ in pieces))
+
+
+def _joined(text: str) -> str:
+    return re.sub(r"(\{\})+", "{}", text)
+
+
+def _is_said(text: str, known: set[str]) -> bool:
+    """True if a text is known, be it one with values already, or one that `format` fills."""
+    if _joined(text) in known:
+        return True
+    try:
+        return _unnamed(text) in known
+    except ValueError:
+        return False
+
+
+@pytest.mark.parametrize("language", LANGUAGES[1:])
+@pytest.mark.parametrize(
+    "file",
+    [each for each in FILES if each.name not in WRITING],
+    ids=lambda each: f"{each.parent.stem}-{each.stem}",
+)
+def test_a_sentence_has_its_twin(file: Path, language: str) -> None:
+    known = said(language)
+    found = sentences(ast.parse(file.read_text("utf-8")))
+    alone = [(line, text) for line, text in found if not _is_said(text, known)]
+    assert alone == [], f"say these in {language}/findings.yaml"
+
+
+@pytest.mark.parametrize("language", LANGUAGES[1:])
+@pytest.mark.parametrize("file", RUNNING, ids=lambda each: f"{each.parent.stem}-{each.stem}")
+def test_a_plant_that_runs_says_what_its_drivers_say(file: Path, language: str) -> None:
+    known = {_unnamed(each) for each in contents(language, "reasons")}
+    found = sentences(ast.parse(file.read_text("utf-8")))
+    alone = [(line, text) for line, text in found if not _is_said(text, known)]
+    assert alone == [], f"say these in {language}/reasons.yaml"
+
+
+@pytest.mark.parametrize("language", LANGUAGES[1:])
+def test_what_a_check_wants_of_a_board_has_its_twin(language: str) -> None:
+    wanted = {(each.steps.__doc__ or "").strip() for each in (*CHECKS, *DEVICE_CHECKS)}
+    assert wanted - said(language) == set(), f"say these in {language}/findings.yaml"
+
+
+@pytest.mark.parametrize("language", LANGUAGES[1:])
+def test_a_kind_of_fault_is_explained(language: str) -> None:
+    alone = [each.name for each in KINDS.values() if findings(language)(each.sentence) == each.sentence]
+    assert alone == [], f"say their docstrings in {language}/findings.yaml"
+
+
+def test_sentences_are_found() -> None:
+    python = (
+        '"""No docstring."""\ndemand(x, f"it says {word}")\nraise Wrong("no such thing" if x else "fine")\n'
+    )
+    assert list(sentences(ast.parse(python))) == [(2, "it says {}"), (3, "no such thing")]
+
+
+@pytest.mark.parametrize("language", [each for each in LANGUAGES if each != FIRST])
+def test_no_sentence_is_said_in_two_ways(language: str) -> None:
+    """Of two rows with the same English YAML silently takes the last."""
+    findings, reasons = (
+        (WORDS / language / f"{part}.yaml").read_text(encoding="utf-8") for part in ("findings", "reasons")
+    )
+    text = "\n".join((findings.partition("\nsentences:")[2], reasons))
+    rows = re.findall(r'^ *("(?:[^"\\]|\\.)*"):', text, re.MULTILINE)
+    assert len(rows) > 1000
+    assert [each for each, count in Counter(rows).items() if count > 1] == []
