@@ -1,12 +1,14 @@
 # Everything a person types here; what each target does is in `make help`.
 .DEFAULT_GOAL := help
-.PHONY: run test pinned-test integration-test test-tools judge-test ros-test ros-build kilted-test wheel-check aarch64-check images nightly campaign drawn-campaign devices-campaign crash-campaign standby-campaign kills hosts mutants exercises cost performance firmware firmware-test firmware-robot fuzz install lint diagrams reference proof shots example-pictures moving-picture gallery clean help docs playground
+.PHONY: run test smoke check pinned-test integration-test test-tools judge-test ros-test ros-build kilted-test wheel-check aarch64-check images nightly campaign drawn-campaign devices-campaign crash-campaign standby-campaign kills hosts mutants exercises cost performance firmware firmware-test firmware-robot fuzz install lint diagrams reference proof shots example-pictures moving-picture gallery clean help docs playground
 
 export PYTHON
 export PYTHONDONTWRITEBYTECODE := # what a target here runs hundreds of times is compiled once
 BIN := .venv/bin
 PYTEST_ARGS ?= -n auto --dist worksteal
-INTEGRATION_ARGS ?= -n 5 --dist worksteal # more than cores: most of the time, tests of the real chain wait
+INTEGRATION_ARGS ?= -n 4 --dist worksteal # more than cores: most of the time, tests of the real chain wait
+SMOKE_ARGS ?= -n 2 --dist worksteal
+REAL = scripts/with-messages $(BIN)/python -m pytest -p tests.second_tries
 TESTS ?= tests/unit tests/scenario tests/meta
 INTEGRATION_TESTS ?= tests/contract tests/system tests/tutorial
 KILTED_TESTS ?= $(addprefix tests/system/test_ros_,commands.py tools.py link.py log.py)
@@ -34,13 +36,27 @@ test:  ## run the tests that move time by hand, and those of the repository itse
 	@scripts/install test
 	$(BIN)/python -m pytest $(TESTS) $(PYTEST_ARGS)
 
+smoke:  ## run one test of each real part: a plant and its page, brokers, ROS 2, databases, drivers; needs what .ci/run installs
+	@scripts/install test
+	@scripts/install colcon
+	@.colcon/venv/bin/python scripts/ros-test messages
+	$(REAL) -m smoke $(INTEGRATION_TESTS) $(SMOKE_ARGS)
+
+check:  ## run every test there is, about an hour; goes on where it was interrupted; ONLY="kills ur" for jobs, or tests by a word in their names
+	@scripts/install test
+	@$(BIN)/python scripts/check $(ONLY)
+
+nightly:  ## the same with all cases and seeds; hours
+	@scripts/install test
+	@$(BIN)/python scripts/check --whole $(ONLY)
+
 pinned-test:  ## run what pins seeds as a whole: their digests, and what they once broke
 	@scripts/install test
 	ARBOLEDA_LENGTH=whole $(BIN)/python -m pytest $(PINNED_TESTS) $(PYTEST_ARGS)
 
 integration-test:  ## run the tests of real parts: adapters, processes, the page, the tutorial; INTEGRATION_TESTS=... for others
 	@scripts/install test
-	$(BIN)/python -m pytest $(INTEGRATION_TESTS) $(INTEGRATION_ARGS)
+	$(REAL) $(INTEGRATION_TESTS) $(INTEGRATION_ARGS)
 
 test-tools:  ## install the programs of others, too large for everybody, that some tests try what we write with: rerun
 	@scripts/install tools
@@ -59,25 +75,17 @@ ros-build:  ## build the ROS 2 packages with colcon, in .colcon, which ros-test 
 
 kilted-test:  ## run the tests of ROS 2 on the wheels of Kilted, in an environment of their own, .kilted; KILTED_TESTS=... for others
 	@scripts/install kilted
-	.kilted/bin/python -m pytest $(KILTED_TESTS) $(INTEGRATION_ARGS)
+	.kilted/bin/python -m pytest -p tests.second_tries $(KILTED_TESTS) $(INTEGRATION_ARGS)
 
-wheel-check:  ## ask the package index whether all that a wheel needs is there for each system and Python; needs uv
-	@scripts/wheel-check
+wheel-check:  ## ask the package index whether all that a wheel needs is there for each system and Python
+	@scripts/install tools
+	@PATH="$(CURDIR)/$(BIN):$$PATH" scripts/wheel-check
 
 aarch64-check:  ## run a plant on an emulated aarch64, before a release; as root, needs debootstrap and qemu-user-static
 	@scripts/aarch64-check
 
 images:  ## build the image of a container for amd64 and arm64, arboleda:VERSION; needs podman, or docker with buildx
 	@scripts/images
-
-nightly: install  ## the long form of what .ci/run has in short: tests as a whole, all seeds, kills, 100 mutants; hours
-	ARBOLEDA_LENGTH=whole $(MAKE) test judge-test integration-test # with what `make pinned-test` runs
-	$(MAKE) campaign drawn-campaign exercises
-	$(MAKE) devices-campaign DEVICE_SEEDS=100
-	$(MAKE) crash-campaign CRASH_SEEDS=50
-	$(MAKE) standby-campaign STANDBY_SEEDS=200
-	$(MAKE) kills
-	$(MAKE) mutants MUTANTS="--sample 100"
 
 campaign: install  ## simulate 1000 seeds with every kind of fault; SEEDS=... CYCLES=... for others, JOBS=... processes
 	$(SIMULATE) --seeds $(CALM_SEEDS) --cycles 20 --faults none
@@ -192,7 +200,7 @@ moving-picture:  ## take the picture of README.md that moves, docs/images/task.w
 	$(BIN)/python scripts/shots --moving
 
 clean:  ## remove .venv and whatever builds and tests left behind
-	rm -rf .venv .colcon .kilted build firmware/build install log dist .hypothesis .import_linter_cache .mypy_cache .pytest_cache .ruff_cache
+	rm -rf .venv .colcon .kilted .check build firmware/build install log dist .hypothesis .import_linter_cache .mypy_cache .pytest_cache .ruff_cache
 	rm -rf *.egg-info src/*/*.egg-info shots
 	find src tests -name __pycache__ -type d -prune -exec rm -rf {} +
 

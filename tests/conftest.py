@@ -5,6 +5,7 @@ from __future__ import annotations
 import gc
 import importlib.util
 import os
+import re
 import shutil
 import signal
 import socket
@@ -55,6 +56,12 @@ def pytest_configure() -> None:
         signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
+def pytest_addoption(parser: pytest.Parser) -> None:
+    parser.addoption(
+        "--about", metavar="WORD", help="only tests that have this word in their names: a driver"
+    )
+
+
 def folder(item: pytest.Item | pytest.Module) -> str:
     """The folder below this one that the test is in, or nothing."""
     return item.path.relative_to(HERE).parts[0] if item.path.is_relative_to(HERE) else ""
@@ -83,9 +90,19 @@ def need_tool(name: str) -> str:
     return tool
 
 
+def about(word: str, items: list[pytest.Item]) -> list[pytest.Item]:
+    """Those with the whole word in the name of file, test or case: `ur`, not `measured`."""
+    found = re.compile(rf"(?<![a-z0-9]){re.escape(word)}(?![a-z0-9])", re.IGNORECASE)
+    return [item for item in items if found.search(item.nodeid)]
+
+
 @pytest.hookimpl(trylast=True)
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Several workers get their tests in an order that keeps all cores busy."""
+    """Leave out what is not asked for; several workers get the rest in an order that keeps all cores busy."""
+    if word := config.getoption("--about"):
+        wanted = about(word, items)
+        config.hook.pytest_deselected(items=[item for item in items if item not in set(wanted)])
+        items[:] = wanted
     workers = getattr(config, "workerinput", {}).get("workercount", 1)
     if workers == 1:
         return

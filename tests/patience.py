@@ -1,7 +1,7 @@
 """How long tests wait for what comes by itself.
 
 It is for the busiest machine: who is answered waits no longer than that takes, only a failure takes it all.
-Where tests run only while nothing else wants the processor, ARBOLEDA_PATIENCE_S is more.
+ARBOLEDA_PATIENCE_S is another, for a machine that is slower still.
 """
 
 import os

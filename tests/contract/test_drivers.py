@@ -47,6 +47,7 @@ def shop(
         shop.device.close()
 
 
+@pytest.mark.smoke
 def test_accept_and_done(shop: Shop) -> None:
     shop.submit(WORK)
     ref = shop.told(WORK)

@@ -27,6 +27,7 @@ async def data(client: Client, tool: str, **given: Any) -> Any:
     return result.structured_content["data"]
 
 
+@pytest.mark.smoke
 def test_it_looks_stops_asks_why_and_tries_the_plant_file(
     arboleda: Callable[..., Any], start: Callable[..., Any], free_port: int, tmp_path: Path
 ) -> None:

@@ -24,6 +24,7 @@ DEMO = ("sis_a 0B 7", "sis_b 1C 3", "sis_c 2A 5")
 
 
 @pytest.mark.requires("rclpy")
+@pytest.mark.smoke
 def test_run_does_three_tasks_over_ros_2_and_mqtt(arboleda: Callable[..., Any], ros_domain: int) -> None:
     run = arboleda("run", *DEMO, "--rate", "5")
     assert run.wait() == 0, run.output
@@ -41,6 +42,7 @@ def test_run_without_ros_does_the_same(arboleda: Callable[..., Any]) -> None:
     assert sum(timed.match(line) is not None for line in run.lines) == 5
 
 
+@pytest.mark.smoke
 def test_run_works_on_a_real_mosquitto(
     arboleda: Callable[..., Any], mosquitto: Callable[[int], Any], free_port: int
 ) -> None:
@@ -70,6 +72,7 @@ def test_bad_input_ends_with_2_before_anything_starts(
     assert "Traceback" not in said and "broker:" not in said
 
 
+@pytest.mark.smoke
 def test_a_running_plant_takes_tasks_tells_its_state_and_ends_cleanly_on_ctrl_c(
     arboleda: Callable[..., Any],
 ) -> None:

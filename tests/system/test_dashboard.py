@@ -168,6 +168,7 @@ def by_panel(page: Any) -> None:
     wait_for_stop(page, "ready")
 
 
+@pytest.mark.smoke
 def test_a_task_is_sent_by_clicking_moves_the_tree_and_ends_done(open_page: Open) -> None:
     page = open_page("tasks")
     for choice in ("[data-value=sis_a]", "[data-value=storage]"):
@@ -195,6 +196,7 @@ def test_a_waiting_task_is_cancelled_and_sent_again(open_page: Open) -> None:
     wait_for_task(page, taken(page, "sis_b 2C 1"), "done")
 
 
+@pytest.mark.smoke
 def test_stop_is_confirmed_by_the_robots_and_cleared_and_reset(open_page: Open) -> None:
     page = open_page("tasks")
     task = send(page, "sis_c 0C 8")

@@ -28,6 +28,7 @@ def kept(arboleda: Callable[..., Any]) -> dict[str, str]:
     return {row["text"]: row["state"] for row in rows}
 
 
+@pytest.mark.smoke
 def test_a_killed_plant_loses_no_task_and_does_none_twice(arboleda: Callable[..., Any]) -> None:
     first = arboleda(*UP, "sis_a 0B 1 #one", "sis_a 0B 2 #two", "sis_a 0B 3 #three")
     first.wait_for("done      sis_a 0B 1")

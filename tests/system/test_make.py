@@ -115,6 +115,7 @@ class Person:
         assert self.troubles == []
 
 
+@pytest.mark.smoke
 def test_a_recipe_is_made_tried_proved_mended_and_put_to_work(
     browser: Any, address: str, folder: Path
 ) -> None:

@@ -32,6 +32,7 @@ def kept(arboleda: Callable[..., Any], *store: str) -> dict[str, str]:
     return {row["id"]: row["state"] for row in map(json.loads, listed.lines)}
 
 
+@pytest.mark.smoke
 def test_a_killed_plant_finds_its_tasks_in_the_database(
     arboleda: Callable[..., Any], store: tuple[str, str], tmp_path: Path
 ) -> None:

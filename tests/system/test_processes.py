@@ -17,6 +17,7 @@ LEVELS = pytest.mark.parametrize("evidence", list(Evidence))
 
 
 @LEVELS
+@pytest.mark.smoke
 def test_a_task_is_done_across_three_processes(chain: Callable[..., Chain], evidence: Evidence) -> None:
     parts = chain(evidence)
     parts.submit("sis_b 0A 4")

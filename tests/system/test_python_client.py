@@ -47,6 +47,7 @@ def site(tmp_path: Path, free_port: int) -> Iterator[Site]:
     made.end()
 
 
+@pytest.mark.smoke
 def test_the_example_shows_a_task_from_its_submission_to_its_report(
     arboleda: Callable[..., Any], start: Callable[..., Any], free_port: int
 ) -> None:

@@ -34,6 +34,7 @@ def replayed(file: Path) -> list[str]:
     return lines
 
 
+@pytest.mark.smoke
 def test_a_killed_start_and_the_next_one_are_the_same_again(site: Site, tmp_path: Path) -> None:
     site.until(lambda cell: cell["not_ready"] is None)
     plant = site.plant

@@ -123,6 +123,7 @@ def simulate(start: Callable[..., Any]) -> Callable[..., Any]:
     return go
 
 
+@pytest.mark.smoke
 def test_workers_find_what_one_process_finds(simulate: Callable[..., Any], tmp_path: Path) -> None:
     rows = []
     for jobs in ("1", "3"):

@@ -33,6 +33,7 @@ def shown(certs: Path) -> tuple[str, ...]:
     return "--tls-cert", str(certs / "plant.crt"), "--tls-key", str(certs / "plant.key")
 
 
+@pytest.mark.smoke
 def test_page_boards_and_commands_speak_tls(
     arboleda: Callable[..., Any],
     typed: Typed,

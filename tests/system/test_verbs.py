@@ -147,6 +147,7 @@ def cell(web: httpx.Client, name: str) -> dict[str, Any]:
     return next(each for each in web.get("/api/plant").json()["cells"] if each["name"] == name)
 
 
+@pytest.mark.smoke
 def test_the_same_verbs_over_http(web: httpx.Client, operator: Operator) -> None:
     held = web.post("/api/cells/sis_a/hold")
     assert held.status_code == 200
@@ -164,6 +165,7 @@ def test_the_same_verbs_over_http(web: httpx.Client, operator: Operator) -> None
     operator.up.wait_for("done      sis_a 0B 7")
 
 
+@pytest.mark.smoke
 def test_a_stop_over_http_reaches_every_robot(web: httpx.Client) -> None:
     assert web.post("/api/plant/stop").status_code == 200
 
@@ -178,6 +180,7 @@ def test_a_stop_over_http_reaches_every_robot(web: httpx.Client) -> None:
 
 
 @pytest.mark.requires("rclpy")
+@pytest.mark.smoke
 def test_the_plant_is_operated_by_services_of_ros_2(
     arboleda: Callable[..., Any], quick: tuple[str, ...], quick_discovery: None, observer: Any
 ) -> None:

@@ -49,6 +49,7 @@ def switch(faults: str, name: str, method: str) -> dict[str, Any]:
     return found
 
 
+@pytest.mark.smoke
 def test_a_part_is_stored_by_a_dobot_and_a_collision_fails_the_next(
     controller: tuple[Any, str, str], arboleda: Callable[..., Any], tmp_path: Path
 ) -> None:

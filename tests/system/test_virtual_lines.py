@@ -37,6 +37,7 @@ def example(folder: Path, plant: str, line: Path) -> str:
         ("gcode", "--dialect=marlin", "gantry/marlin.yaml", "bench visit rack drill"),
     ],
 )
+@pytest.mark.smoke
 def test_a_task_is_done_at_a_serial_line(
     start: Callable[..., Any],
     arboleda: Callable[..., Any],
@@ -60,6 +61,7 @@ def test_a_task_is_done_at_a_serial_line(
     assert not line.is_symlink()
 
 
+@pytest.mark.smoke
 def test_a_task_is_done_at_a_websocket(
     start: Callable[..., Any], arboleda: Callable[..., Any], tmp_path: Path
 ) -> None:

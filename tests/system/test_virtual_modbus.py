@@ -39,6 +39,7 @@ def plc(request: pytest.FixtureRequest, start: Callable[..., Any], tmp_path: Pat
     return process, str(tmp_path / file), faults[1]
 
 
+@pytest.mark.smoke
 def test_a_part_is_carried_then_the_belt_jams_then_the_plc_is_gone(
     plc: tuple[Any, str, str], arboleda: Callable[..., Any]
 ) -> None:

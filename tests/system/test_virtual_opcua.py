@@ -33,6 +33,7 @@ def plc(start: Callable[..., Any], tmp_path: Path) -> tuple[Any, str, str]:
     return process, str(tmp_path / "opcua.yaml"), faults[1]
 
 
+@pytest.mark.smoke
 def test_a_part_is_carried_then_calls_are_refused_then_the_plc_is_gone(
     plc: tuple[Any, str, str], arboleda: Callable[..., Any], start: Callable[..., Any]
 ) -> None:

@@ -28,6 +28,7 @@ def example(folder: Path, ports: str) -> str:
     return str(folder / "plant.yaml")
 
 
+@pytest.mark.smoke
 def test_a_part_is_carried_and_home_leads_out_of_a_protective_stop(
     start: Callable[..., Any], arboleda: Callable[..., Any], tmp_path: Path
 ) -> None:

@@ -83,6 +83,7 @@ def test_what_it_says_of_itself_is_valid_and_its_version_is_that_of_the_package(
 
 
 @pytest.mark.system
+@pytest.mark.smoke
 def test_it_runs_a_plant_where_nothing_else_is(installed: Command) -> None:
     ran = installed("run", "sis_a 0B 7", "--no-ros", "--rate", "10")
     assert ran.returncode == 0, ran.stderr
