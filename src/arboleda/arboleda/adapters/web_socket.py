@@ -34,9 +34,12 @@ class WebSocketStream(TcpStream):
             raise
 
     def _shake_hands(self) -> None:
-        """Wait for the other end's answer; what comes with it is kept for `read`."""
+        """Wait for the other end's answer, byte by byte.
+
+        What comes right behind it stays in the socket: a selector would not see what was read here.
+        """
         while self._protocol.state is State.CONNECTING:
-            data = super().read()
+            data = self._socket.recv(1)
             if not data:
                 raise OSError("it has closed the connection before it was a websocket")
             self._protocol.receive_data(data)
