@@ -114,6 +114,7 @@ class SecondTries:
         if getattr(report, "of_product", False):
             say(f"{test}: an exception of the product is not tried again")
             return False
+        say(f"{test}: tried again, alone")
         settings = [f"--override-ini={each}" for each in self._config.option.override_ini or ()]
         command = [sys.executable, "-m", "pytest", "-q", *settings, test]
         ran = subprocess.run(command, cwd=self._config.rootpath, capture_output=True, text=True, check=False)
