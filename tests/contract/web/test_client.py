@@ -1,111 +1,95 @@
-"""The client of the commands, against the real server."""
+"""The client of the commands over real connections, also where another process leads the plant."""
 
 from __future__ import annotations
 
-import json
-import os
+import socket
+import threading
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
 
 import pytest
 
 from arboleda.cli.client import PlantClient
-from arboleda.client import Conflict
-from arboleda.model.errors import ArboledaError, QueueFull, TextError
+from arboleda.cli.remote_plant import RemotePlant
+from arboleda.client import NoAnswer
 from arboleda.model.messages import Verb
-from arboleda.runtime import tokens
+from arboleda.runtime.standby.leader import LeaderInfo
+from arboleda.runtime.standby.waiting_room import WaitingRoom
 from arboleda.runtime.state import StateDir
-from arboleda.web import stream
+from arboleda.runtime.web_options import WebOptions
 
-from .conftest import QUEUED, TASK, VIEW
+from ...patience import PATIENCE_S
+from ...web_plant import QUEUED, TASK, VIEW, Plant
+from .conftest import Web
 
-
-@pytest.fixture
-def state(port, tmp_path):
-    with StateDir(tmp_path / "state") as made:
-        made.announce(port)
-        yield made
+HERE = socket.gethostname()
 
 
-def test_the_client_submits_and_looks(state, plant, monkeypatch):
+@contextmanager
+def standing_by(state: Path, url: str) -> Iterator[WaitingRoom]:
+    """A process on this state directory that stands by, while the plant is led at that address."""
+    room = WaitingRoom("demo", state, WebOptions(port=0))
+    with StateDir(state, plant="demo") as made:
+        room.start(made.announce)
+        room.show("waits for its end", LeaderInfo(plant="demo", host=HERE, process=7, url=url, epoch=7))
+        try:
+            yield room
+        finally:
+            room.stop()
+
+
+def test_the_client_submits_and_looks_whatever_proxy_there_is(
+    local: Web, plant: Plant, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setenv("http_proxy", "http://127.0.0.1:9")
-    client = PlantClient(state.path)
-    assert client.submit("sis_a 0B 7") == QUEUED
-    assert plant.asked_by == ["command"]
-    assert client.status() == VIEW
-    assert client.task("t-1") == QUEUED
-
-
-@pytest.mark.parametrize("kind", [TextError, QueueFull, ArboledaError])
-def test_the_client_says_what_the_plant_said(state, plant, kind):
-    plant.answer = kind("No cell sis_x")
-    with pytest.raises(ArboledaError, match=r"^No cell sis_x$") as said:
-        PlantClient(state.path).submit("x")
-    assert isinstance(said.value, kind)
-
-
-def test_the_client_operates_the_plant_or_one_thing_of_it(state, plant):
-    client = PlantClient(state.path)
-    assert client.operate(Verb.STOP) == {"verb": "stop", "scope": ""}
-    assert client.operate(Verb.HOME, "ra1", by_hand=True) == {"verb": "home", "scope": "ra1"}
-    assert plant.acts == [(Verb.STOP, "", False), (Verb.HOME, "ra1", True)]
-    plant.refusal = "ra1 still moves."
-    with pytest.raises(Conflict, match=r"^ra1 still moves\.$"):
-        client.operate(Verb.CLEAR, "sis_a")
-
-
-def test_the_client_follows_an_act_until_it_has_ended(state, plant):
-    rows = iter([{"outcome": "under_way"}, {"outcome": "under_way"}, {"outcome": "failed"}])
-    plant.act = lambda number: {"number": number, **next(rows)}
-    assert PlantClient(state.path).outcome(7) == {"number": 7, "outcome": "failed"}
-
-
-def test_who_follows_a_task_listens_anew_where_its_stream_was_cut(state, monkeypatch):
-    told = [
-        VIEW,
-        VIEW | {"tasks": [TASK | {"state": "running"}]},
-        VIEW | {"tasks": [TASK | {"state": "done"}]},
-    ]
-
-    async def tell(*_):
-        yield f"event: snapshot\ndata: {json.dumps(told.pop(0))}\n\n"
-
-    monkeypatch.setattr(stream, "tell", tell)
-    assert [now["state"] for now in PlantClient(state.path).follow(QUEUED)] == ["running", "done"]
-
-
-def test_who_may_not_listen_is_told_why(port, tmp_path, serve):
-    web = serve(streams=0)
-    with StateDir(tmp_path / "full") as made:
-        made.announce(web.port)
-        with pytest.raises(ArboledaError, match="No more than 0 may listen at a time"):
-            next(PlantClient(made.path).changes())
-
-
-def test_without_a_plant_the_client_says_so(tmp_path):
-    with pytest.raises(ArboledaError, match=f"No plant is running on {tmp_path}"):
-        PlantClient(tmp_path).status()
-
-
-def test_a_plant_without_its_api_is_said_to(tmp_path, free_port):
-    with StateDir(tmp_path) as state:
-        with pytest.raises(ArboledaError, match="still starting or ending"):
-            PlantClient(tmp_path).status()
-        state.announce(free_port)
-        with pytest.raises(ArboledaError, match=f"process {os.getpid()}\\) did not answer"):
-            PlantClient(tmp_path).status()
-
-
-def test_a_guarded_plant_gets_the_operators_token_from_the_state_directory(tmp_path, serve, plant):
-    known = tokens.read(tmp_path)
-    web = serve(known)
     with StateDir(tmp_path) as made:
-        made.announce(web.port, guarded=True)
-        assert PlantClient(tmp_path).operate(Verb.RESET) == {"verb": "reset", "scope": ""}
-        (tmp_path / tokens.TOKENS).unlink()
-        with pytest.raises(ArboledaError, match="cannot be read"):
-            PlantClient(tmp_path).status()
+        made.announce(local.port)
+        client = PlantClient(tmp_path)
+        assert client.submit("sis_a 0B 7") == QUEUED
+        assert client.status() == VIEW and client.task("t-1") == QUEUED
+    assert (plant.texts, plant.asked_by) == (["sis_a 0B 7"], ["command"])
 
 
-def test_an_answer_that_is_not_the_plants_is_said_to_be_none(state, plant):
-    plant.view = {"plant": float("nan")}
-    with pytest.raises(ArboledaError, match="internal error"):
-        PlantClient(state.path).status()
+def test_what_is_asked_of_a_standby_is_asked_of_the_leader_and_said_once(
+    local: Web, plant: Plant, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    with standing_by(tmp_path, local.origin):
+        reached = PlantClient(tmp_path)
+        assert reached.operate(Verb.STOP) == {"verb": "stop", "scope": ""}
+        assert next(reached.changes())[0] == "snapshot"
+    assert plant.acts == [(Verb.STOP, "", False)]
+    assert capsys.readouterr().err == f"plant demo is led on {HERE}: asked there\n"
+
+
+def test_who_follows_a_task_goes_on_with_the_next_leader(
+    serve: Callable[..., Web],
+    plant: Plant,
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr("arboleda.cli.client.NEXT_S", PATIENCE_S)
+    before, after = serve(), serve()
+    kept_by_several = RemotePlant(tmp_path, lambda: ("postgresql://db", "demo"), dict)
+    plant.view = VIEW | {"tasks": [TASK | {"state": "running"}]}
+    with standing_by(tmp_path, before.origin) as room:
+        told = PlantClient(tmp_path, kept_by_several).follow(QUEUED)
+        assert next(told)["state"] == "running"
+        plant.view = VIEW | {"epoch": 8, "tasks": [TASK | {"state": "done"}]}
+        room.show("waits", LeaderInfo(plant="demo", host=HERE, process=8, url=after.origin, epoch=8))
+        before.server.stop()
+        assert [row["state"] for row in told] == ["done"]
+    said = capsys.readouterr().err
+    assert said.endswith(f"plant demo is led on {HERE}: followed there\n")
+
+
+def test_a_process_that_cuts_a_connection_has_not_answered(tmp_path: Path) -> None:
+    with socket.create_server(("127.0.0.1", 0)) as listener, StateDir(tmp_path) as made:
+        cutting = threading.Thread(target=lambda: listener.accept()[0].close())
+        cutting.start()
+        made.announce(listener.getsockname()[1])
+        with pytest.raises(NoAnswer, match=r"did not answer\.") as silent:
+            PlantClient(tmp_path).submit("sis_a 0B 7")
+        cutting.join()
+    assert silent.value.may_have_heard

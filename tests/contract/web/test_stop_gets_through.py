@@ -7,29 +7,27 @@ import http.client
 import json
 import socket
 import threading
-import time
 from collections.abc import Iterator
-from concurrent.futures import Future, ThreadPoolExecutor
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack, closing, suppress
 from threading import Event, Semaphore
-from typing import Any
 
 import pytest
 from fastapi import FastAPI
 from starlette.types import Receive, Scope, Send
 
-from arboleda.model.messages import OperatorAnswer, Verb
+from arboleda.model.messages import Verb
 from arboleda.web import server
 from arboleda.web.access.auth import Role
 from arboleda.web.server import Server
 
 from ...patience import PATIENCE_S
-from .conftest import TOKENS, VIEW, Plant, Web
+from ...web_plant import TOKENS, VIEW, Plant
+from .conftest import Web
 
 STOPS = 20
 MOST = 64  # connections that the server takes
 ADDRESSES = [f"127.0.0.{number}" for number in range(2, 22)]
-HEAD = "GET /api/plant HTTP/1.1\r\nX-A: "
 # With Expect the server says when it waits for the body, of which no more comes.
 SLOW = (
     "POST {path} HTTP/1.1\r\nHost: 127.0.0.1:{port}\r\n{login}Content-Length: 40\r\n"
@@ -88,14 +86,9 @@ def stop(web: Web, login: dict[str, str]) -> int:
         return client.getresponse().status
 
 
-@pytest.mark.parametrize(
-    ("said", "path"),
-    [("", ""), (HEAD, ""), (SLOW, "/api/tasks"), (SLOW, "/api/plant/stop"), (STREAM, "")],
-    ids=["silent", "half a head", "half a task", "half a stop", "stream"],
-)
-def test_on_its_own_machine(serve, plant: Plant, said: str, path: str) -> None:
+def test_on_its_own_machine(serve, plant: Plant) -> None:
     web = serve(connections=MOST, streams=16)
-    with Attack(web, said, path) as attack:
+    with Attack(web, SLOW, "/api/plant/stop") as attack:
         assert stops(web, attack, {}) == [200] * STOPS
     assert plant.acts == [(Verb.STOP, "", False)] * STOPS
 
@@ -104,13 +97,10 @@ def test_on_its_own_machine(serve, plant: Plant, said: str, path: str) -> None:
     ("said", "path", "login"),
     [
         ("", "", ""),
-        (HEAD, "", ""),
-        (SLOW, "/login", ""),
-        (SLOW, "/api/tasks", LOGIN),
         (SLOW, "/api/plant/stop", LOGIN),
         (STREAM, "", LOGIN),
     ],
-    ids=["silent", "half a head", "half a login", "half a task", "half a stop", "stream"],
+    ids=["silent", "half a stop", "stream"],
 )
 def test_on_a_network(serve, plant: Plant, said: str, path: str, login: str) -> None:
     web = serve(dict(TOKENS), connections=MOST, streams=16)
@@ -135,22 +125,6 @@ def looks(browser: http.client.HTTPConnection) -> bool:
     return json.load(answer) == VIEW and browser.sock is not None
 
 
-def test_while_many_pages_wait_to_be_built(serve, plant: Plant) -> None:
-    built: list[int] = []
-    stopped_after: list[int] = []
-    operate = plant.operate
-
-    def noted(*args: Any, **options: Any) -> Future[OperatorAnswer]:
-        stopped_after.append(len(built))
-        return operate(*args, **options)
-
-    plant.operate = noted  # type: ignore[method-assign]
-    web = serve(mount=lambda app: slow_page(app, built), connections=MOST)
-    with Attack(web, "GET / HTTP/1.1\r\nHost: 127.0.0.1:{port}\r\n\r\n") as attack:
-        assert stops(web, attack, {}) == [200] * STOPS
-    assert stopped_after[0] < 50
-
-
 def test_while_more_is_asked_than_the_server_can_answer(serve, plant: Plant) -> None:
     asked = Semaphore(0)
     web = serve(mount=lambda app: page_that_is_never_made(app, asked), connections=MOST)
@@ -169,14 +143,6 @@ def page_that_is_never_made(app: FastAPI, asked: Semaphore) -> None:
     async def page() -> None:
         asked.release()
         await asyncio.Event().wait()
-
-
-def slow_page(app: FastAPI, built: list[int]) -> None:
-    @app.get("/")
-    async def page() -> str:
-        time.sleep(0.02)  # as NiceGUI does: nothing else runs in the loop meanwhile
-        built.append(len(built))
-        return "a page"
 
 
 def test_while_something_else_is_made_that_takes_long(serve, plant: Plant) -> None:
@@ -230,6 +196,7 @@ def test_the_server_ends_while_a_page_is_made_for_ever(hanging: tuple[Web, Event
 
 def test_the_server_ends_with_an_application_that_does_not(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(server, "END_S", 0.1)
+    monkeypatch.setattr(server, "STOP_S", PATIENCE_S)
 
     async def endless(scope: Scope, receive: Receive, send: Send) -> None:
         await receive()

@@ -76,7 +76,10 @@ def address(app: App) -> str:
     return note.split()[2]  # behind it may stand that the usual port is taken
 
 
-def test_over_http(app: App, robots: Robots, disk: Disk) -> None:
+def test_over_http_and_from_the_terminal(app: App, robots: Robots, disk: Disk, tmp_path: Path) -> None:
+    said = PlantClient(tmp_path).operate(Verb.STOP, "ra1")
+    assert "the stop has left for ra1" in said["why"]
+    assert robots.stopped == {"ra1"}
     url = address(app)
     with httpx.Client(trust_env=False, timeout=PATIENCE_S) as client:
         answer = client.post(f"{url}/stop")
@@ -87,10 +90,3 @@ def test_over_http(app: App, robots: Robots, disk: Disk) -> None:
         unknown = client.get(url.replace("plant", "tasks/a"))
         assert unknown.status_code == 503 and unknown.json()["key"] == "plant.not_kept"
         assert not disk.let_go.is_set()
-
-
-def test_from_the_terminal(app: App, robots: Robots, disk: Disk, tmp_path: Path) -> None:
-    said = PlantClient(tmp_path).operate(Verb.STOP, "ra1")
-    assert "the stop has left for ra1" in said["why"]
-    assert robots.stopped == {"ra1"}
-    assert not disk.let_go.is_set()

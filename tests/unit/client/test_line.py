@@ -11,7 +11,15 @@ from typing import Any
 import pytest
 
 from arboleda.client.calls import Blocking
-from arboleda.client.errors import Conflict, Later, NoAnswer, OtherPlant, Unauthorized, WrongRequest
+from arboleda.client.errors import (
+    Conflict,
+    Later,
+    NoAnswer,
+    OtherPlant,
+    StillRunning,
+    Unauthorized,
+    WrongRequest,
+)
 from arboleda.client.http import HttpRequest, Reply, Stream, at_once, each_at_once
 from arboleda.client.line import Call, Line
 from arboleda.client.methods import Tasks, Verbs
@@ -252,3 +260,28 @@ def test_a_task_that_ended_under_the_leader_before_is_found_in_the_history() -> 
 
     assert Client(line(http, A)).wait("lot").state == "done"
     assert http.asked[-1].url == f"{A}/api/history?words=lot"
+
+
+def test_who_waits_too_short_is_told_how_the_task_stands() -> None:
+    task = {"id": "lot", "text": "x", "cell": "a", "state": "running", "sentence": ""}
+    http = Scripted(a=[answer(task)])
+    http.streams = {A: [["id: 8-0", "event: snapshot", 'data: {"tasks": []}']]}
+
+    class Client(Blocking, Tasks):
+        pass
+
+    with pytest.raises(StillRunning, match="#lot has not ended yet, it is running") as still:
+        Client(line(http, A)).wait("lot", within_s=1.5)
+    assert still.value.task.id == "lot" and 101.5 <= http.now < 102.0
+
+
+def test_a_task_is_followed_to_its_end_by_the_events() -> None:
+    task = {"id": "t-1", "text": "x", "cell": "a", "sentence": ""}
+    states = ["queued", "running", "done"]
+    http = Scripted(a=[answer(task | {"state": each}) for each in states])
+    http.streams = {A: [["id: 7-0", "event: snapshot", 'data: {"tasks": []}', *changes(1, 2)]]}
+
+    class Client(Blocking, Tasks):
+        pass
+
+    assert [each.state for each in Client(line(http, A)).follow("t-1")] == states

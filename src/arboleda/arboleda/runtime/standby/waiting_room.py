@@ -80,7 +80,10 @@ def _of(language: str, tag: str, text: str) -> str:
 
 
 class WaitingRoom:
-    """WaitingRoom: a server for the time of waiting; it shows the last sentence given to `show`."""
+    """WaitingRoom: a server for the time of waiting; it shows the last sentence given to `show`.
+
+    `app` is what it serves.
+    """
 
     def __init__(self, plant: str, state: Path, options: WebOptions) -> None:
         self._plant, self._state, self._options = plant, state, options
@@ -95,9 +98,9 @@ class WaitingRoom:
             Route("/{rest:path}", self._send_on, methods=METHODS),
         ]
         names = names_for(options.address, options.public_url, scheme=options.scheme)
-        guarded = Guard(app, names, options.door_of(state), sockets=limits.SOCKETS, plant=plant)
+        self.app = Guard(app, names, options.door_of(state), sockets=limits.SOCKETS, plant=plant)
         self._server = Server(
-            guarded,
+            self.app,
             host=options.address,
             port=options.port,
             usual_port=options.usual_port,

@@ -64,7 +64,7 @@ def test_the_draft_is_looked_at(web: Any, draft: Draft) -> None:
     assert web.get("/api/draft").json() == STATE and draft.steps == [("state",)]
 
 
-@pytest.mark.parametrize("step", ["", *(f"/{step}" for step in STEPS)])
+@pytest.mark.parametrize("step", ["", "/check", "/undo", "/keep", "/apply"])
 def test_a_viewer_may_do_nothing_of_it(open_to_all: Any, draft: Draft, step: str) -> None:
     body = STEPS.get(step[1:], ({},))[0]
     method = "POST" if step else "GET"
@@ -83,7 +83,6 @@ def test_a_refusal_is_a_conflict_with_its_sentence(web: Any, draft: Draft) -> No
     [
         ("undo", {}),
         ("undo", {"editor": "short"}),
-        ("undo", {"editor": "no spaces here"}),
         ("undo", EDITOR | {"more": 1}),
         ("take", EDITOR | {"name": ""}),
         ("set", EDITOR | {"place": [], "value": 1}),

@@ -102,3 +102,9 @@ def test_addresses(name: str) -> None:
 )
 def test_other_spellings_are_none(name: str) -> None:
     assert not is_address(name)
+
+
+def test_a_page_in_clear_is_no_page_of_a_server_with_tls() -> None:
+    names = names_for("127.0.0.1", None, scheme="https")
+    assert names.knows_origin("https://127.0.0.1:8080", "127.0.0.1:8080")
+    assert not names.knows_origin("http://127.0.0.1:8080", "127.0.0.1:8080")

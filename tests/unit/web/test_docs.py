@@ -5,10 +5,13 @@ from __future__ import annotations
 import json
 import re
 
-import httpx
+import pytest
 
 from arboleda.model.messages import Verb
 from arboleda.web.schema import openapi
+
+from ...guarded_plant import shared_app
+from ...in_process import Caller
 
 DRAFT_STEPS = (
     "take",
@@ -41,7 +44,7 @@ MAKE_PATHS = (
 )
 
 
-def test_the_description_has_every_route_and_what_it_takes_and_gives(web: httpx.Client) -> None:
+def test_the_description_has_every_route_and_what_it_takes_and_gives(web: Caller) -> None:
     api = web.get("/api/openapi.json").json()
     assert set(api["paths"]) == {
         "/api/plant",
@@ -88,21 +91,25 @@ def test_the_description_has_every_route_and_what_it_takes_and_gives(web: httpx.
     assert not [name for name in api["components"]["schemas"] if "Validation" in name]
 
 
-def test_each_reference_leads_to_a_shape(web: httpx.Client) -> None:
-    text = web.get("/api/openapi.json").text
-    named = {f"#/components/schemas/{name}" for name in json.loads(text)["components"]["schemas"]}
+def test_each_reference_leads_to_a_shape() -> None:
+    api = shared_app().openapi()
+    text = json.dumps(api)
+    named = {f"#/components/schemas/{name}" for name in api["components"]["schemas"]}
     assert set(re.findall(r'"\$ref": ?"([^"]+)"', text)) <= named and "$defs" not in text
 
 
-def test_the_page_for_people_loads_nothing_and_links_lead_somewhere(web: httpx.Client) -> None:
-    page = web.get("/api/docs").text
+@pytest.fixture(scope="module")
+def page() -> str:
+    return Caller(shared_app()).get("/api/docs").text
+
+
+def test_the_page_for_people_loads_nothing_and_links_lead_somewhere(page: str) -> None:
     assert "POST /api/cells/{scope}/{verb}" in page
     assert not re.findall(r"<script|<link|<img|src=|@import|https?://", page)
     assert set(re.findall(r'href="#(\w+)"', page)) <= set(re.findall(r'id="(\w+)"', page))
 
 
-def test_every_verb_has_its_row_with_scope_deed_and_refusal(web: httpx.Client) -> None:
-    page = web.get("/api/docs").text
+def test_every_verb_has_its_row_with_scope_deed_and_refusal(page: str) -> None:
     table = page.partition('<section id="Verb">')[2].partition("</section>")[0]
     rows = re.findall(r"<tr><th>(\w+)</th>(.+?)</tr>", table)
     assert [word for word, _ in rows[1:]] == [verb.value for verb in Verb]
@@ -111,12 +118,11 @@ def test_every_verb_has_its_row_with_scope_deed_and_refusal(web: httpx.Client) -
     assert page.count('<a href="#Verb">') == 2
 
 
-def test_a_state_of_a_cell_is_one_of_those_that_are_listed(web: httpx.Client) -> None:
-    page = web.get("/api/docs").text
+def test_a_state_of_a_cell_is_one_of_those_that_are_listed(page: str) -> None:
     assert "One of: idle, execute, holding, held," in page
 
 
-def test_whatever_a_description_says_is_text(web: httpx.Client) -> None:
+def test_whatever_a_description_says_is_text() -> None:
     evil = "<script>alert(1)</script>"
     api = {
         "info": {"title": evil, "version": evil, "description": evil},

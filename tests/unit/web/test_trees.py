@@ -1,25 +1,23 @@
-"""Trees over HTTP: palette, marks and edits of a text, of which the server keeps nothing."""
+"""The routes of trees: palette, marks and edits of a text, of which the server keeps nothing."""
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import Any
 
 import httpx
 import pytest
 
+from arboleda.bt_xml.editing.errors import EditError
 from arboleda.plant_file import loader
 from arboleda.web import limits
 from arboleda.web.access.auth import Role
 from arboleda.web.plant_api import PlantApi
 
-from .conftest import Plant
+from ...in_process import Caller
+from ...web_plant import Plant
 
 OWN_TREE = Path(__file__).parents[3] / "examples/own_tree/plant.yaml"
-
-
-AGV = OWN_TREE.parents[1] / "agv/plant.yaml"
 
 
 class TreePlant(Plant):
@@ -27,7 +25,11 @@ class TreePlant(Plant):
 
     model = loader.load(OWN_TREE)
     tree_files, palette, drawn = PlantApi.tree_files, PlantApi.palette, PlantApi.drawn
-    copied = PlantApi.copied
+
+    def copied(self, cell: str, recipe: str, name: str) -> str:
+        if name == recipe:
+            raise EditError(f"there is a recipe '{name}' already")
+        return f"{name} does in {cell} what {recipe} does"
 
 
 @pytest.fixture
@@ -40,11 +42,11 @@ def text() -> str:
     return OWN_TREE.with_name("tend.xml").read_text()
 
 
-def post(web: httpx.Client, path: str, **body: Any) -> httpx.Response:
+def post(web: Caller, path: str, **body: Any) -> httpx.Response:
     return web.post(f"/api/trees/{path}", json=body)
 
 
-def test_the_trees_of_the_plant_are_given_as_they_were_read(web: httpx.Client, text: str) -> None:
+def test_the_trees_of_the_plant_are_given_as_they_were_read(web: Caller, text: str) -> None:
     (found,) = web.get("/api/trees").json()
     assert found == {
         "recipe": "tend",
@@ -58,7 +60,7 @@ def test_the_trees_of_the_plant_are_given_as_they_were_read(web: httpx.Client, t
     ("language", "about"), [("en", "goes to a target"), ("es", "Va a un destino"), ("../es", "goes to")]
 )
 def test_the_palette_has_the_devices_with_what_their_values_can_be(
-    web: httpx.Client, language: str, about: str
+    web: Caller, language: str, about: str
 ) -> None:
     groups = web.get("/api/trees/palette", params={"cell": "cell", "language": language}).json()
     assert [(each["sort"], each["name"]) for each in groups][:2] == [("device", "loader"), ("device", "jaw")]
@@ -70,7 +72,7 @@ def test_the_palette_has_the_devices_with_what_their_values_can_be(
     assert "ManualSelector" not in kinds  # is not run
 
 
-def test_an_edit_gives_the_text_and_marks_on_its_nodes(web: httpx.Client, text: str) -> None:
+def test_an_edit_gives_the_text_and_marks_on_its_nodes(web: Caller, text: str) -> None:
     shown = post(web, "check", cell="cell", text=text).json()
     assert [tree["name"] for tree in shown["trees"]] == ["Tend", "Carry", "TakeOut"] and shown["marks"] == []
     node = {"kind": "jaw_close", "attributes": {"width_mm": "900"}}
@@ -94,29 +96,28 @@ def test_an_edit_gives_the_text_and_marks_on_its_nodes(web: httpx.Client, text: 
         ({"do": "insert", "tree": "Tend", "parent": "root", "index": "0", "node": {"kind": "A"}}, "index"),
     ],
 )  # fmt: skip
-def test_what_cannot_be_done_is_told(web: httpx.Client, text: str, operation: Any, words: str) -> None:
+def test_what_cannot_be_done_is_told(web: Caller, text: str, operation: Any, words: str) -> None:
     answer = post(web, "edit", cell="cell", text=text, operation=operation)
     assert answer.status_code == 422 and words in answer.json()["sentence"], answer.text
 
 
-def test_text_that_is_no_tree_and_a_cell_that_is_not_there_are_told(web: httpx.Client, text: str) -> None:
+def test_text_that_is_no_tree_and_a_cell_that_is_not_there_are_told(web: Caller, text: str) -> None:
     assert "line 1, column 1" in post(web, "check", cell="cell", text="tend").json()["sentence"]
     assert "there are cell" in post(web, "check", cell="sell", text=text).json()["sentence"]
     answer = web.get("/api/trees/palette", params={"cell": "sell"})
     assert answer.status_code == 422 and "there are cell" in answer.json()["sentence"]
 
 
-def test_a_recipe_in_python_is_given_as_a_tree(web: httpx.Client, plant: Plant) -> None:
-    plant.model = loader.load(AGV)
-    made = post(web, "copy", cell="hall", recipe="fetch", name="fetch_tree").json()["text"]
-    shown = post(web, "check", cell="hall", text=made).json()
-    assert [tree["name"] for tree in shown["trees"]] == ["FetchTree"] and shown["marks"] == []
-    refused = post(web, "copy", cell="hall", recipe="fetch", name="fetch")
+def test_a_recipe_in_python_is_given_as_a_tree(web: Caller) -> None:
+    copy = {"cell": "hall", "recipe": "fetch"}
+    made = post(web, "copy", **copy, name="by_tree").json()
+    assert made == {"text": "by_tree does in hall what fetch does"}
+    refused = post(web, "copy", **copy, name="fetch")
     assert refused.status_code == 422 and "already" in refused.json()["sentence"]
-    assert post(web, "copy", cell="hall", recipe="fetch", name="a/b").status_code == 422
+    assert post(web, "copy", **copy, name="a/b").status_code == 422
 
 
-def test_no_file_of_this_machine_is_looked_into(web: httpx.Client, tmp_path: Path) -> None:
+def test_no_file_of_this_machine_is_looked_into(web: Caller, tmp_path: Path) -> None:
     secret = tmp_path / "secret.xml"
     secret.write_text('<root><BehaviorTree ID="Secret"><AlwaysSuccess/></BehaviorTree></root>')
     body = f'<include path="{secret}"/><BehaviorTree ID="M"><SubTree ID="Secret"/></BehaviorTree>'
@@ -134,9 +135,7 @@ def test_a_viewer_looks_and_only_an_operator_draws(open_to_all: Any, text: str) 
     assert post(open_to_all.client(token=Role.OPERATOR), "check", cell="cell", text=text).status_code == 200
 
 
-def test_a_file_may_be_large_and_has_a_limit(web: httpx.Client, text: str) -> None:
-    large = text.replace("<mill_close/>", "<mill_close/>\n" * 10_000)
+def test_a_file_may_be_large_and_has_a_limit(web: Caller, text: str) -> None:
+    large = f"{text}<!-- {'x' * limits.API_BODY_BYTES} -->"
     assert post(web, "check", cell="cell", text=large).status_code == 200
-    many = json.dumps({"cell": "cell", "text": " " * limits.TREE_BODY_BYTES})
-    answer = web.post("/api/trees/check", content=many, headers={"content-type": "application/json"})
-    assert answer.status_code == 413
+    assert post(web, "check", cell="cell", text=" " * limits.TREE_BODY_BYTES).status_code == 413

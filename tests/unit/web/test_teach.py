@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import pytest
 
+from arboleda.web import limits
 from arboleda.web.access.auth import Role
 from arboleda.web.desks.teach import Along, Button, Target, TeachRefused
 
@@ -91,9 +93,14 @@ def test_a_viewer_teaches_nothing(open_to_all: Any, desk: Desk, path: str) -> No
     assert answer.status_code == 403 and "operator" in answer.json()["sentence"] and desk.told == []
 
 
-def test_a_button_is_heard_as_often_as_it_is_said(web: Any, desk: Desk) -> None:
-    answers = [web.post("/api/teach/sis_a/jog", json=BUTTON | {"goal": 1}).status_code for _ in range(75)]
-    assert answers == [200] * 75
+def test_buttons_have_a_rate_of_their_own(
+    serve: Callable[..., Any], desk: Desk, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(limits, "CHANGE", (1e-9, 1))
+    web = serve().client()
+    answers = [web.post("/api/teach/sis_a/jog", json=BUTTON | {"goal": 1}).status_code for _ in range(3)]
+    assert answers == [200] * 3
+    assert [web.post("/api/plant/hold").status_code for _ in range(2)] == [200, 429]
 
 
 def test_a_plant_that_is_not_taught_from_here_says_so(web: Any) -> None:

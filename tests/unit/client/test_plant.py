@@ -1,0 +1,217 @@
+"""What the methods of a client return, and what they raise, against the API of a plant in this process."""
+
+from __future__ import annotations
+
+import json
+import sys
+import time
+from pathlib import Path
+from socket import gethostname
+from typing import Any
+
+import pytest
+
+from arboleda.client import (
+    Conflict,
+    Forbidden,
+    Later,
+    LibraryMissing,
+    NoAnswer,
+    NotFound,
+    OtherPlant,
+    Rows,
+    Unauthorized,
+    WrongRequest,
+)
+from arboleda.client import Plant as Client
+from arboleda.model.errors import QueueFull, TextError
+from arboleda.model.messages import Outcome, Verb
+from arboleda.runtime.standby.leader import LeaderInfo
+from arboleda.runtime.standby.waiting_room import WaitingRoom
+from arboleda.runtime.web_options import WebOptions
+from arboleda.web.access.auth import Role
+
+from ...guarded_plant import guarded
+from ...in_process import ORIGIN, Machine, without_threads
+from ...web_plant import KEPT, LATE, TASK, TOKENS, Plant
+
+
+@pytest.fixture
+def machine(monkeypatch: pytest.MonkeyPatch) -> Machine:
+    without_threads(monkeypatch)
+    monkeypatch.setattr(time, "sleep", lambda seconds: None)
+    return Machine(monkeypatch)
+
+
+@pytest.fixture
+def plant() -> Plant:
+    return Plant()
+
+
+@pytest.fixture
+def client(machine: Machine, plant: Plant) -> Client:
+    machine.listen(8080, guarded(plant).app)
+    return Client(ORIGIN, patience_s=0.0)
+
+
+def test_forms_and_looks_come_as_they_are_declared(client: Client, plant: Plant) -> None:
+    client.submit_form(cell="sis_a", values={"path": "0B", "station": 7}, id="lot43")
+    assert plant.forms == [("sis_a", "", {"path": "0B", "station": 7}, "lot43")]
+    assert client.recipes()[0].recipes[0].parameters[0].choices == ["5"]
+    assert client.promises("sis_a,sis_b 0B 7")[1].cell == "sis_b"
+    assert client.oee(cell="sis_a")[0].failed == 1
+
+
+def test_the_history_comes_as_rows_and_as_a_table(client: Client, plant: Plant) -> None:
+    rows = client.history(state="failed", limit=20)
+    assert [row.number for row in rows] == [row.number for row in KEPT]
+    assert rows[0].unchecked == ["release"] and rows[0].key == LATE.key and rows[0].values == {"robot": "ra1"}
+    assert (plant.queries[-1].state, plant.queries[-1].limit) == ("failed", 20)
+    assert client.history_csv(cell="sis_a").startswith("number,id,text,cell,")
+
+
+def test_rows_are_a_frame_of_pandas_or_say_how_to_get_it(
+    client: Client, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    class Pandas:
+        DataFrame = staticmethod(lambda rows: rows)
+
+    rows = client.history()
+    monkeypatch.setitem(sys.modules, "pandas", Pandas)
+    assert rows.to_pandas()[0]["cell"] == "sis_b"
+    monkeypatch.setitem(sys.modules, "pandas", None)
+    with pytest.raises(LibraryMissing, match="pip install pandas"):
+        Rows(rows).to_pandas()
+
+
+@pytest.mark.parametrize(("raised", "error"), [(TextError, WrongRequest), (QueueFull, Later)])
+def test_a_refusal_of_the_plant_is_an_error_with_its_sentence_as_data(
+    client: Client, plant: Plant, raised: type, error: type
+) -> None:
+    plant.answer = raised(LATE)
+    with pytest.raises(raised, match=r"^ra1 was late$") as refused:
+        client.submit("sis_x")
+    assert isinstance(refused.value, error)
+    assert (refused.value.key, refused.value.values) == ("late", {"robot": "ra1"})
+    assert refused.value.retry_after_s == (10.0 if error is Later else None)
+
+
+def test_a_task_that_is_refused_is_an_error_too(client: Client, plant: Plant) -> None:
+    plant.answer = TASK | {"state": "refused", "sentence": "There is no sis_x."}
+    with pytest.raises(WrongRequest, match=r"^There is no sis_x\.$") as refused:
+        client.submit("sis_x 0B 7")
+    assert refused.value.data["state"] == "refused"
+
+
+def test_verbs_carry_their_arguments(client: Client, plant: Plant) -> None:
+    plant.told = {"act": 4, "outcome": Outcome.UNDER_WAY}
+    assert client.operate(Verb.HOME, "ra1", by_hand=True).act == 4
+    client.operate("answer", "ana", answer="yes")
+    assert client.stop().verb == "stop"
+    assert plant.acts == [
+        (Verb.HOME, "ra1", True),
+        (Verb.ANSWER, "ana", False, ("answer", "yes")),
+        (Verb.STOP, "", False),
+    ]
+    plant.refusal = "ra1 still moves."
+    with pytest.raises(Conflict, match=r"^ra1 still moves\.$"):
+        client.operate("clear", "sis_a")
+    with pytest.raises(WrongRequest, match="is not an operator's verb"):
+        client.operate("explode")
+
+
+def test_an_act_is_followed_to_its_end(client: Client, plant: Plant) -> None:
+    row = {"number": 4, "at": 1.0, "verb": "home", "scope": "ra1", "cell": None, "sentence": ""}
+    row |= {"why": None, "ended_at": None, "ended": None}
+    outcomes = iter(["under_way", "done"])
+    plant.act = lambda number: row | {"outcome": next(outcomes)}
+    assert client.outcome(4).outcome == "done"
+
+
+def test_the_report_of_a_task_is_waited_for(client: Client, plant: Plant) -> None:
+    said = {"sentence": "ra1 was late", "key": "late", "values": {"robot": "ra1"}}
+    evidence = {"troubles": [], "last_command": None, "acts": [], "foreign": []}
+    facts = {
+        "task": "lot",
+        "text": "",
+        "cell": "sis_a",
+        "ended_s": 1.0,
+        "reason": "deadline",
+        "failure": said,
+    }
+    facts["cause"] = said | {"kind": "unended", "robot": "ra1"}
+    facts["evidence"] = evidence | {"absences": [{"at_s": -1.0, "seconds": 0.5}]}
+    page = '<script type="application/json" id="data">{}</script>'
+    plant.reports = iter([None, page.replace("{}", json.dumps({"scene": {}, "facts": facts})), page])
+    report = client.report("lot")
+    assert report.state == "written" and report.cause and report.cause.kind == "unended"
+    assert report.evidence and report.evidence.absences[0].seconds == 0.5
+    with pytest.raises(NotFound, match="an earlier version"):
+        client.report("lot")
+
+
+def test_the_draft_is_edited_under_one_id(client: Client, plant: Any) -> None:
+    steps: list[tuple[Any, ...]] = []
+    state = {"file": "plant.yaml", "editor": None, "changes": [], "waiting": [], "undo": 0, "redo": 0}
+    state |= {"values": {}, "trees": [], "restart": [], "is_ours": True}
+    applied = {"problems": [], "warnings": [], "version": 3, "cells": {"lab": "now"}, "cancelled": []}
+
+    class Desk:
+        def __getattr__(self, name: str) -> Any:
+            return lambda *told: steps.append((name, *told)) or applied | state
+
+    plant.draft = Desk()
+    draft = client.draft("ana-12345")
+    assert draft.state().file == "plant.yaml" and draft.take("Ana").is_ours
+    draft.set(["cells", "lab", "targets", 0], [1, {"b": None}])
+    assert draft.apply("why").cells == {"lab": "now"} and draft.check().problems == []
+    assert steps == [
+        ("state",),
+        ("take", "ana-12345", "Ana"),
+        ("set", "ana-12345", ("cells", "lab", "targets", 0), [1, {"b": None}]),
+        ("apply", "ana-12345", "why"),
+        ("check",),
+    ]
+    with pytest.raises(WrongRequest, match="place"):
+        client.draft().remove([])
+
+
+def test_what_is_not_there_is_said_to_be_that(client: Client) -> None:
+    with pytest.raises(NotFound, match="knows no task 'lot'"):
+        client.task("lot")
+    with pytest.raises(NotFound, match="knows no act 7"):
+        client.act(7)
+
+
+def test_what_is_not_allowed_without_a_token_or_to_a_viewer_is_told_apart(
+    machine: Machine, plant: Plant
+) -> None:
+    machine.listen(8080, guarded(plant, dict(TOKENS)).app)
+    with pytest.raises(Unauthorized, match="token"):
+        Client(ORIGIN).snapshot()
+    viewer = Client(ORIGIN, token=TOKENS[Role.VIEWER])
+    assert viewer.snapshot().plant == "demo" and viewer.stop().verb == "stop"
+    with pytest.raises(Forbidden, match="operator's token"):
+        viewer.submit("sis_a 0B 7")
+
+
+def test_another_plant_at_the_address_gets_nothing_done(machine: Machine, plant: Plant) -> None:
+    machine.listen(8080, guarded(plant, name="demo").app)
+    with pytest.raises(OtherPlant, match="demo"):
+        Client(ORIGIN, plant="other", patience_s=0.0).submit("sis_a 0B 7")
+    assert plant.texts == []
+
+
+def test_a_leader_that_a_standby_names_is_followed(machine: Machine, plant: Plant, tmp_path: Path) -> None:
+    led = LeaderInfo(plant="demo", host=gethostname(), process=7, url="http://127.0.0.1:8081", epoch=7)
+    room = WaitingRoom("demo", tmp_path, WebOptions(port=8080))
+    room.show("waits for its end", led)
+    machine.listen(8080, room.app)
+    machine.listen(8081, guarded(plant).app)
+    client = Client(ORIGIN, patience_s=0.0)
+    assert client.submit("sis_a 0B 7").state == "queued" and client.stop().verb == "stop"
+    assert machine.asked == [8080, 8081, 8081]
+    room.show("begins to wait", None)
+    with pytest.raises(NoAnswer, match="it begins to wait"):
+        Client(ORIGIN, patience_s=0.0).submit("sis_a 0B 7")
+    assert len(plant.texts) == 1
