@@ -15,10 +15,8 @@ from typing import Any
 
 import pytest
 
-from arboleda.adapters.broker import EmbeddedBroker
 from arboleda.adapters.broker_login import CA, CERTIFICATE, KEY, Address
 from arboleda.adapters.mqtt import MqttClient
-from arboleda.adapters.server_tls import pinned, server_tls
 from arboleda.wire.transport import Connection, Delivery
 
 from ..conftest import need_tool
@@ -154,22 +152,6 @@ class Mosquitto:
             self._process = None
 
 
-class Embedded:
-    """The plant's own broker, handled as Mosquitto is; with a certificate over TLS."""
-
-    def __init__(self, port: int, shown: tuple[Path, Path] | None = None) -> None:
-        tls = server_tls(*shown) if shown else None
-        believing = pinned(tls.pem) if tls else None
-        self.address = Address(host="127.0.0.1", port=port, tls=believing)
-        self._broker = EmbeddedBroker(port=port, tls=tls)
-
-    def start(self) -> None:
-        self._broker.start()
-
-    def stop(self) -> None:
-        self._broker.stop()
-
-
 def said(caplog: pytest.LogCaptureFixture, words: str) -> str:
     """A line of the log with these words."""
     end = time.monotonic() + PATIENCE_S
@@ -247,25 +229,6 @@ def mosquitto(
     yield make
     for broker in made:
         broker.stop()
-
-
-@pytest.fixture(params=["embedded", "embedded over TLS", "mosquitto"])
-def stopped_broker(request: pytest.FixtureRequest, free_port: int) -> Iterator[Embedded | Mosquitto]:
-    """Each kind of broker, not yet started."""
-    if request.param == "mosquitto":
-        broker = request.getfixturevalue("mosquitto")()
-    elif request.param == "embedded":
-        broker = Embedded(free_port)
-    else:
-        broker = Embedded(free_port, request.getfixturevalue("lab").sign("127.0.0.1"))
-    yield broker
-    broker.stop()
-
-
-@pytest.fixture
-def broker(stopped_broker: Embedded | Mosquitto) -> Embedded | Mosquitto:
-    stopped_broker.start()
-    return stopped_broker
 
 
 @pytest.fixture

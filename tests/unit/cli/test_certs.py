@@ -226,6 +226,27 @@ def test_a_board_cannot_log_in_as_the_plant(certs: Any, lab: Path, tmp_path: Pat
     assert status == 1 and "cannot have the MQTT name plant" in said and not lab.exists()
 
 
+MOSQUITTO = ("--mosquitto", "127.0.0.1", "--mosquitto", "mill.lab")
+
+
+def test_the_files_of_a_mosquitto_stay_and_another_place_for_them_is_refused(certs: Any, lab: Path) -> None:
+    at = ("--at", str(lab / "mosquitto"))
+    assert certs(*MOSQUITTO, *at)[0] == 0
+    before = contents(lab)
+    assert certs(*MOSQUITTO, *at)[0] == 0
+    status, said = certs(*MOSQUITTO, "--at", "/somewhere/else")
+    assert status == 1 and "mosquitto.conf is there and says something else" in " ".join(said.split())
+    assert contents(lab) == before
+
+
+def test_the_certificate_of_a_mosquitto_has_the_names_that_it_was_given_and_no_others(
+    certs: Any, lab: Path
+) -> None:
+    _, said = certs(*MOSQUITTO, "--at", str(lab / "mosquitto"))
+    (line,) = [line for line in said.splitlines() if "broker.crt" in line]
+    assert set(line.rpartition("  ")[2].split()) == {"mill.lab", "127.0.0.1"}
+
+
 def test_without_its_library_it_says_how_to_have_it(
     certs: Any, lab: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
