@@ -87,16 +87,11 @@ def fact(name: str, value: str | None, kind: Fact = Fact.EFFECTOR) -> Remember:
     return Remember(fact=kind, name=name, value=value)
 
 
-def test_facts(places: Places) -> None:
+def test_facts_and_the_journal(places: Places) -> None:
+    act = Journal(verb=Verb.STOP, scope="ra1", cell="sis_a", sentence=OWN(text=ODD))
     places.hold_the_same(
         lambda memory: memory.keep(fact("ra1", "switching"), fact("ra2", "off"), fact("ra1", "on")),
         lambda memory: memory.keep(fact(ODD, ODD, Fact.STEP), fact("ra1", None), fact("nobody", None)),
-    )
-
-
-def test_the_journal(places: Places) -> None:
-    act = Journal(verb=Verb.STOP, scope="ra1", cell="sis_a", sentence=OWN(text=ODD))
-    places.hold_the_same(
         lambda memory: memory.journal(act, 1000.25),
         lambda memory: memory.journal(replace(act, verb=Verb.OVERRIDE, cell=None), 999.5),
     )

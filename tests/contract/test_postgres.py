@@ -103,28 +103,6 @@ def test_a_leader_that_was_away_finds_out_that_it_is_none_any_more(
             memory.confirm()
 
 
-def test_who_waits_goes_by_its_own_clock_wherever_that_of_the_server_is_set(
-    postgres: Server, database: str, plant: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    now = 1000.0
-    monkeypatch.setattr("arboleda.adapters.clock.seconds", lambda: now)
-    others = Leadership(database, plant)
-    with leading(database, plant) as memory, closing(others):
-        assert not others.is_free()
-        with postgres.connection() as db:  # as if the clock had been set an hour on since
-            db.execute(f"UPDATE \"plant_{plant}\".leader SET seen = seen - interval '1 hour'")
-        assert not others.leader().leads
-        assert not others.is_free()
-        now += LEASE_S - 0.1
-        assert not others.is_free()
-        memory.renew()
-        assert not others.is_free() and others.leader().leads
-        now += LEASE_S
-        assert others.is_free()
-        with pytest.raises(Superseded):
-            memory.renew()
-
-
 def test_a_plant_has_one_leader_and_no_other_writes(
     database: str, plant: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -161,21 +139,6 @@ def test_who_was_ended_gives_the_plant_back_and_numbers_only_grow(database: str,
         assert not others.leader().leads
     others.close()
     assert numbers == [1000, 1001, 2000]
-
-
-def test_who_was_killed_is_waited_for_as_long_as_his_lease_lasts(
-    postgres: Server, database: str, plant: str
-) -> None:
-    killed = PostgresMemory(database, plant)
-    killed.open()
-    killed.lead(10)
-    with PostgresMemory(database, plant) as next_start:
-        assert next_start.lead(1) == 11
-    with pytest.raises(Superseded):
-        killed.keep(LATCH)
-    killed.close()
-    with leading(database, plant):  # the one that was superseded gave nothing back that was not his
-        pass
 
 
 def test_plants_that_share_a_database_are_found_and_know_nothing_of_each_other(
@@ -241,23 +204,17 @@ def test_a_server_that_cannot_be_used_is_one_sentence_with_what_to_do(
     assert "a-wrong-one" not in sentence
 
 
-def test_tables_of_a_newer_arboleda_are_left_alone(postgres: Server, database: str, plant: str) -> None:
-    with leading(database, plant):
-        pass
+def test_tables_of_a_newer_arboleda_are_left_alone_and_older_ones_brought_up_with_what_they_have(
+    postgres: Server, database: str, plant: str
+) -> None:
+    with leading(database, plant) as memory:
+        memory.keep(LATCH)
     with postgres.connection() as db:
         db.execute(f'UPDATE "plant_{plant}".leader SET format = 99')
     assert "is of a newer Arboleda (format 99, known: " in refusal(database, plant)
     history = PostgresHistory(database, plant)
     with pytest.raises(ArboledaError, match="is of a newer Arboleda"):
         history.select(TaskQuery())
-    history.close()
-
-
-def test_tables_of_an_older_format_are_brought_up_and_keep_what_they_have(
-    postgres: Server, database: str, plant: str
-) -> None:
-    with leading(database, plant) as memory:
-        memory.keep(LATCH)
     with postgres.connection() as db:
         db.execute(f'SET search_path TO "plant_{plant}"')
         db.execute("ALTER TABLE leader DROP COLUMN url, DROP COLUMN wanted, DROP COLUMN going")
