@@ -1,8 +1,8 @@
 """The contract of all drivers: what every one of them does for its device, case by case.
 
 A driver takes part with a bench in tests/contract/drivers, which plays its device by hand. The tests of its
-machine in tests/unit/drivers prove most of the cases. So here each kind of link has the cases that end an
-order or a connection, and one driver has them all; at night all drivers do.
+machine in tests/unit/drivers prove most of the cases. So here each driver does one work, each kind of link
+has one story of a stop and a lost connection, and one driver has the whole contract; at night all drivers do.
 """
 
 from __future__ import annotations
@@ -123,7 +123,24 @@ def test_late_answer(shop: Shop) -> None:
     assert shop.outcome("second").state is TaskState.DONE
 
 
-@of(LINKS)
+@of(LINKS, all_of=LINKS)
+def test_a_stop_under_way_and_a_reconnect(shop: Shop) -> None:
+    """What is stopped is never done, and a device that comes back is told nothing twice."""
+    shop.submit(WORK, "first")
+    shop.device.accepts(shop.told(WORK))
+    shop.cancel()
+    shop.told(HALT)
+    shop.device.rests()
+    assert shop.outcome("first").state is TaskState.CANCELLED
+    shop.submit(OTHER, "second")
+    shop.device.accepts(shop.told(OTHER))
+    shop.device.vanish()
+    end = shop.outcome("second")
+    assert (end.state, end.reason) == (TaskState.FAILED, Reason.LINK_LOST)
+    comes_back_and_is_stopped(shop)
+
+
+@of(["line_tcp"])
 def test_late_end(shop: Shop) -> None:
     """What is told of work that was cancelled ends no other."""
     shop.submit(WORK, "first")
@@ -158,7 +175,7 @@ def test_duplicate(shop: Shop) -> None:
     assert shop.outcome("second").state is TaskState.FAILED
 
 
-@of(["line_tcp", "modbus", "opcua"])
+@of(["line_tcp"])
 def test_silence(shop: Shop) -> None:
     shop.submit(WORK)
     shop.device.accepts(shop.told(WORK))
@@ -177,14 +194,19 @@ def test_reboot(shop: Shop) -> None:
     assert (end.state, end.reason) == (TaskState.FAILED, Reason.REBOOTED)
 
 
-@of(LINKS)
+@of(["line_tcp"])
 def test_reconnect(shop: Shop) -> None:
-    """A device that comes back is told nothing twice."""
+    """A device that comes back from the middle of its work is told nothing twice."""
     shop.submit(WORK)
     shop.device.accepts(shop.told(WORK))
     shop.device.vanish()
     end = shop.outcome()
     assert (end.state, end.reason) == (TaskState.FAILED, Reason.LINK_LOST)
+    comes_back_and_is_stopped(shop)
+
+
+def comes_back_and_is_stopped(shop: Shop) -> None:
+    """It hears of stops only: those of what was left at work, and its own."""
     shop.device.come_back()
     shop.until(online=True)
     shop.app.plant.operate(Verb.STOP, "shop").result(PATIENCE_S)
@@ -195,7 +217,7 @@ def test_reconnect(shop: Shop) -> None:
     shop.device.latches()
 
 
-@of(["line_tcp", "pylabrobot", "ur"], all_of=UNWATCHED)
+@of(["line_tcp"], all_of=UNWATCHED)
 def test_a_plant_that_freezes(shop: Shop) -> None:
     """What moves is halted without it, and nothing moves again by itself."""
     shop.submit(WORK)
@@ -235,7 +257,7 @@ MESSAGES = {
 
 @pytest.mark.parametrize(
     ("shop", "takes"),
-    [(name, takes) for name, takes in MESSAGES.items() if name in length(LINKS, ALL)],
+    [(name, MESSAGES[name]) for name in length(("gcode", "modbus", "opcua", "vda5050"), MESSAGES)],
     indirect=["shop"],
 )
 def test_a_message_that_breaks_what_takes_it(shop: Shop, takes: str, monkeypatch: pytest.MonkeyPatch) -> None:

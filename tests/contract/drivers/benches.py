@@ -53,6 +53,7 @@ SAME_LINK = frozenset(  # these reach their device by the threads and the librar
         "dobot",  # of ur
         "follow_waypoints",
         "gcode_marlin",
+        "gcode_moonraker",  # of gcode, over a web socket
         "gripper_command",  # of follow_joint_trajectory
         "gripper_command_parallel",
         "navigate_to_pose",  # of follow_joint_trajectory
