@@ -76,27 +76,12 @@ class Peer:
 class RawPeer:
     """An MQTT 3.1.1 client of a few bytes, which can break off without a word."""
 
-    def __init__(
-        self,
-        address: Address,
-        client_id: str,
-        *,
-        will: tuple[str, bytes] | None = None,
-        login: tuple[str, str] | None = None,
-        keepalive: int = 0,
-    ) -> None:
-        flags, rest = 0x02, text(client_id)
-        if will is not None:
-            flags |= 0x2C  # will, QoS 1, retained
-            rest += text(will[0]) + text(will[1])
-        if login is not None:
-            flags |= 0xC0
-            rest += text(login[0]) + text(login[1])
+    def __init__(self, address: Address, client_id: str, *, will: tuple[str, bytes]) -> None:
+        flags = 0x02 | 0x2C  # will, QoS 1, retained
+        rest = text(client_id) + text(will[0]) + text(will[1])
         self.socket = socket.create_connection((address.host, address.port), timeout=PATIENCE_S)
-        if address.tls is not None:
-            self.socket = address.tls.wrap_socket(self.socket)
-        self._send(0x10, text("MQTT") + bytes((4, flags)) + struct.pack("!H", keepalive) + rest)
-        self.answer = self.socket.recv(4)[3:]  # b"\0": accepted
+        self._send(0x10, text("MQTT") + bytes((4, flags)) + b"\0\0" + rest)
+        assert self.socket.recv(4)[3:] == b"\0", "it is accepted"
 
     def _send(self, kind: int, body: bytes) -> None:
         assert len(body) < 128
