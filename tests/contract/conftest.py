@@ -15,10 +15,8 @@ from typing import Any
 
 import pytest
 
-from arboleda.adapters.broker import EmbeddedBroker
 from arboleda.adapters.broker_login import CA, CERTIFICATE, KEY, Address
 from arboleda.adapters.mqtt import MqttClient
-from arboleda.adapters.server_tls import pinned, server_tls
 from arboleda.wire.transport import Connection, Delivery
 
 from ..conftest import need_tool
@@ -78,27 +76,12 @@ class Peer:
 class RawPeer:
     """An MQTT 3.1.1 client of a few bytes, which can break off without a word."""
 
-    def __init__(
-        self,
-        address: Address,
-        client_id: str,
-        *,
-        will: tuple[str, bytes] | None = None,
-        login: tuple[str, str] | None = None,
-        keepalive: int = 0,
-    ) -> None:
-        flags, rest = 0x02, text(client_id)
-        if will is not None:
-            flags |= 0x2C  # will, QoS 1, retained
-            rest += text(will[0]) + text(will[1])
-        if login is not None:
-            flags |= 0xC0
-            rest += text(login[0]) + text(login[1])
+    def __init__(self, address: Address, client_id: str, *, will: tuple[str, bytes]) -> None:
+        flags = 0x02 | 0x2C  # will, QoS 1, retained
+        rest = text(client_id) + text(will[0]) + text(will[1])
         self.socket = socket.create_connection((address.host, address.port), timeout=PATIENCE_S)
-        if address.tls is not None:
-            self.socket = address.tls.wrap_socket(self.socket)
-        self._send(0x10, text("MQTT") + bytes((4, flags)) + struct.pack("!H", keepalive) + rest)
-        self.answer = self.socket.recv(4)[3:]  # b"\0": accepted
+        self._send(0x10, text("MQTT") + bytes((4, flags)) + b"\0\0" + rest)
+        assert self.socket.recv(4)[3:] == b"\0", "it is accepted"
 
     def _send(self, kind: int, body: bytes) -> None:
         assert len(body) < 128
@@ -152,22 +135,6 @@ class Mosquitto:
             self._process.terminate()
             self._process.wait(PATIENCE_S)
             self._process = None
-
-
-class Embedded:
-    """The plant's own broker, handled as Mosquitto is; with a certificate over TLS."""
-
-    def __init__(self, port: int, shown: tuple[Path, Path] | None = None) -> None:
-        tls = server_tls(*shown) if shown else None
-        believing = pinned(tls.pem) if tls else None
-        self.address = Address(host="127.0.0.1", port=port, tls=believing)
-        self._broker = EmbeddedBroker(port=port, tls=tls)
-
-    def start(self) -> None:
-        self._broker.start()
-
-    def stop(self) -> None:
-        self._broker.stop()
 
 
 def said(caplog: pytest.LogCaptureFixture, words: str) -> str:
@@ -247,25 +214,6 @@ def mosquitto(
     yield make
     for broker in made:
         broker.stop()
-
-
-@pytest.fixture(params=["embedded", "embedded over TLS", "mosquitto"])
-def stopped_broker(request: pytest.FixtureRequest, free_port: int) -> Iterator[Embedded | Mosquitto]:
-    """Each kind of broker, not yet started."""
-    if request.param == "mosquitto":
-        broker = request.getfixturevalue("mosquitto")()
-    elif request.param == "embedded":
-        broker = Embedded(free_port)
-    else:
-        broker = Embedded(free_port, request.getfixturevalue("lab").sign("127.0.0.1"))
-    yield broker
-    broker.stop()
-
-
-@pytest.fixture
-def broker(stopped_broker: Embedded | Mosquitto) -> Embedded | Mosquitto:
-    stopped_broker.start()
-    return stopped_broker
 
 
 @pytest.fixture

@@ -1,4 +1,4 @@
-"""Alarms as they arrive: over HTTP at a real server, over MQTT at real brokers, from a plant that runs."""
+"""Alarms as they arrive: over HTTP at a real server, over MQTT at a real broker, from a plant that runs."""
 
 from __future__ import annotations
 
@@ -13,8 +13,7 @@ from typing import Any
 
 import pytest
 
-from arboleda.adapters import webhook
-from arboleda.adapters.webhook import DeliveryRefused, Hook, NotDelivered, Webhook
+from arboleda.adapters.webhook import Hook, NotDelivered, Webhook
 from arboleda.model.messages import Verb
 from arboleda.runtime.alarm_options import AlarmOptions
 from arboleda.runtime.build import App, Options, build
@@ -23,18 +22,16 @@ from arboleda.runtime.parts.broker import OtherBroker
 from arboleda.testing import shipped
 
 from ..patience import PATIENCE_S
-from .conftest import Inbox
+from .conftest import Inbox, Mosquitto
 
 ALARM = {"id": "lab-1-1", "sentence": "sis_a is held", "dropped": 0}
 
 
 class Hooked:
-    """An HTTP server that keeps what is posted and answers what it is told to."""
+    """An HTTP server that keeps what is posted, and answers once its gate is open."""
 
     def __init__(self) -> None:
         self.posts: Inbox = Inbox()
-        self.answers: list[int] = []
-        self.headers: dict[str, str] = {}
         self.gate = threading.Event()
         self.gate.set()
         hooked = self
@@ -43,9 +40,8 @@ class Hooked:
             def do_POST(self) -> None:
                 posted = self.rfile.read(int(self.headers["Content-Length"]))
                 hooked.gate.wait(PATIENCE_S)
-                hooked.headers = dict(self.headers) | {"path": self.path}
                 hooked.posts.put(json.loads(posted))  # whoever has the answer may look at once
-                self.send_response(hooked.answers.pop(0) if hooked.answers else 204)
+                self.send_response(204)
                 self.end_headers()
 
             def log_message(self, *_: object) -> None: ...
@@ -54,8 +50,8 @@ class Hooked:
         self.server.daemon_threads = True
         threading.Thread(target=self.server.serve_forever, daemon=True).start()
 
-    def hook(self, **options: Any) -> Hook:
-        return Hook(url=f"http://127.0.0.1:{self.server.server_port}/hooks/SECRET", **options)
+    def hook(self) -> Hook:
+        return Hook(url=f"http://127.0.0.1:{self.server.server_port}/hooks/SECRET")
 
     def close(self) -> None:
         self.gate.set()
@@ -70,72 +66,21 @@ def hooked() -> Iterator[Hooked]:
     made.close()
 
 
-@pytest.fixture
-def post(hooked: Hooked) -> Iterator[Callable[[], None]]:
-    posting = Webhook(hooked.hook(token="T0KEN"), timeout_s=PATIENCE_S)
-    yield lambda: posting.post(ALARM)
-    posting.close()
-
-
-def test_an_alarm_is_posted_as_json_with_its_token(hooked: Hooked, post: Callable[[], None]) -> None:
-    post()
-    assert list(hooked.posts) == [ALARM]
-    assert hooked.headers["path"] == "/hooks/SECRET" and hooked.headers["Authorization"] == "Bearer T0KEN"
-    assert hooked.headers["Content-Type"] == "application/json"
-
-
-@pytest.mark.parametrize(
-    ("status", "error", "why"),
-    [
-        (422, DeliveryRefused, "it answers 422"),
-        (500, NotDelivered, "it answers 500"),
-        (403, NotDelivered, f"it answers 403: see ${webhook.TOKEN}"),
-        (301, NotDelivered, f"it answers 301: name the address that it leads to in ${webhook.URL}"),
-    ],
-)
-def test_an_answer_that_is_no_yes_says_what_to_do(
-    hooked: Hooked, post: Callable[[], None], status: int, error: type[Exception], why: str
+def test_over_mqtt_an_alarm_waits_for_the_broker_and_is_taken_once_it_has_it(
+    mosquitto: Callable[..., Mosquitto], peer: Callable[..., Any], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    hooked.answers = [status]
-    with pytest.raises(error) as said:
-        post()
-    assert str(said.value) == why
-
-
-def test_who_does_not_answer_or_is_not_there_is_told_of_in_words(
-    hooked: Hooked, post: Callable[[], None]
-) -> None:
-    hooked.gate.clear()
-    impatient = Webhook(hooked.hook(), timeout_s=0.5)
-    with pytest.raises(NotDelivered, match=r"^no answer within 0.5 s$"):
-        impatient.post(ALARM)
-    impatient.close()
-    hooked.close()
-    with pytest.raises(NotDelivered) as said:
-        post()
-    assert "refused" in str(said.value) and "SECRET" not in str(said.value)
-
-
-def test_over_mqtt_an_alarm_is_taken_once_the_broker_has_it(broker: Any, peer: Callable[..., Any]) -> None:
-    reader = peer("reader", broker.address, subscriptions=["arboleda/alarms"]).up()
-    topic = OnTopic(shipped(), OtherBroker(broker.address, None), "arboleda/alarms")
-    topic.post(ALARM)
-    reader.inbox.wait(lambda inbox: inbox.payloads)
-    assert [json.loads(each) for each in reader.inbox.payloads] == [ALARM]
-    topic.close()
-
-
-def test_over_mqtt_an_alarm_waits_for_the_broker_and_comes_again_after_it(
-    stopped_broker: Any, peer: Callable[..., Any], monkeypatch: pytest.MonkeyPatch
-) -> None:
+    broker = mosquitto()
     monkeypatch.setattr("arboleda.runtime.parts.alarms.TAKES_S", 0.3)
-    topic = OnTopic(shipped(), OtherBroker(stopped_broker.address, None), "arboleda/alarms")
+    topic = OnTopic(shipped(), OtherBroker(broker.address, None), "arboleda/alarms")
     with pytest.raises(NotDelivered, match="is not connected"):
         topic.post(ALARM)
     monkeypatch.setattr("arboleda.runtime.parts.alarms.TAKES_S", PATIENCE_S)
-    stopped_broker.start()
+    broker.start()
+    reader = peer("reader", broker.address, subscriptions=["arboleda/alarms"]).up()
     topic.post(ALARM)
-    stopped_broker.stop()
+    reader.inbox.wait(lambda inbox: inbox.payloads)
+    assert [json.loads(each) for each in reader.inbox.payloads] == [ALARM]
+    broker.stop()
     monkeypatch.setattr("arboleda.runtime.parts.alarms.TAKES_S", 0.3)
     with pytest.raises(NotDelivered):
         topic.post(ALARM)

@@ -1,93 +1,34 @@
-"""What stands in `container/` fits the plant: its command line, and the files that `arboleda certs` makes."""
+"""The script that builds the images of `container/`."""
 
 from __future__ import annotations
 
-import re
 import shutil
 import subprocess
 from pathlib import Path
-from typing import Any
-
-import pytest
-import typer
-import yaml
-
-from arboleda.cli.main import cli
-from arboleda.cli.mosquitto_files import CONFIGURATION
 
 FOLDER = Path(__file__).parents[2] / "container"
 
 
-@pytest.fixture(scope="module")
-def services() -> dict[str, Any]:
-    return dict(yaml.safe_load((FOLDER / "compose.yaml").read_text())["services"])
+def test_one_command_builds_for_both_machines_with_the_builder_that_is_there(tmp_path: Path) -> None:
+    found = {builder: printed(tmp_path / builder, builder) for builder in ("podman", "docker")}
+    assert {builder: words[0] for builder, words in found.items()} == {each: each for each in found}
+    for words in found.values():
+        assert "linux/amd64,linux/arm64" in words
+        assert FOLDER.parent / words[words.index("--file") + 1] == FOLDER / "Containerfile"
 
 
-def mounted(service: dict[str, Any]) -> dict[str, str]:
-    """What is mounted from beside the file, by where."""
-    pairs = [each.split(":")[:2] for each in service["volumes"]]
-    return {inside: outside for outside, inside in pairs if outside.startswith("./")}
-
-
-def test_the_plants_command_line_is_one(services: dict[str, Any]) -> None:
-    verb, *options = services["plant"]["command"]
-    command = typer.main.get_command(cli).commands[verb]  # type: ignore[attr-defined]
-    with pytest.MonkeyPatch.context() as patch:
-        patch.delenv("ARBOLEDA_MQTT_CA", raising=False)
-        assert command.make_context(verb, options).params["broker"] == "mqtts://broker:8883"
-
-
-@pytest.mark.requires("cryptography")
-def test_the_files_that_are_mounted_are_those_that_its_first_lines_make(
-    services: dict[str, Any], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    line = next(
-        line for line in (FOLDER / "compose.yaml").read_text().splitlines() if "arboleda certs" in line
-    )
-    words = line.removeprefix("# arboleda ").replace("NAME", "mill.lab").split()
-    monkeypatch.chdir(tmp_path)
-    with pytest.raises(SystemExit) as ended:
-        cli(words, standalone_mode=True)
-    assert ended.value.code == 0
-    broker, plant = mounted(services["broker"]), mounted(services["plant"])
-    assert all((tmp_path / outside).exists() for outside in (*broker.values(), *plant.values()))
-    named = [
-        value for name, value in services["plant"]["environment"].items() if name.startswith("ARBOLEDA_MQTT")
-    ]
-    assert len(named) == 3 and set(named) <= set(plant)
-    (inside,) = broker
-    said = (tmp_path / broker[inside] / CONFIGURATION).read_text().split()
-    files = [word for word in said if word.startswith("/")]
-    assert len(files) == 4
-    assert all((tmp_path / broker[inside] / Path(each).relative_to(inside)).is_file() for each in files)
-
-
-def test_the_plant_keeps_its_memory_in_the_database_beside_it(services: dict[str, Any]) -> None:
-    environ, database = services["plant"]["environment"], services["database"]["environment"]
-    command = typer.main.get_command(cli).commands["up"]  # type: ignore[attr-defined]
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("ARBOLEDA_STORE", environ["ARBOLEDA_STORE"])
-        store = command.make_context("up", []).params["store"]
-    assert store == f"postgresql://{database['POSTGRES_USER']}@database/{database['POSTGRES_DB']}"
-    assert environ["PGPASSWORD"] == database["POSTGRES_PASSWORD"]  # of the file .env: none stands in this one
-    assert "ports" not in services["database"]
-    asked = re.search(r"^ARG EXTRAS=\[(.*)\]$", (FOLDER / "Containerfile").read_text(), re.MULTILINE)
-    assert asked and "postgres" in asked[1].split(",")
-
-
-@pytest.mark.parametrize("builder", ["podman", "docker"])
-def test_one_command_builds_for_both_machines(tmp_path: Path, builder: str) -> None:
-    (tmp_path / builder).write_text("#!/bin/sh\n")
-    (tmp_path / builder).chmod(0o755)
+def printed(path: Path, builder: str) -> list[str]:
+    """The command that the script would run where only this builder is on the path."""
+    path.mkdir()
+    (path / builder).write_text("#!/bin/sh\n")
+    (path / builder).chmod(0o755)
     for tool in ("sh", "sed", "dirname", "mkdir"):
-        (tmp_path / tool).symlink_to(str(shutil.which(tool)))
+        (path / tool).symlink_to(str(shutil.which(tool)))
     ran = subprocess.run(
         [FOLDER.parent / "scripts/images", "--print"],
-        env={"PATH": str(tmp_path)},
+        env={"PATH": str(path)},
         capture_output=True,
         text=True,
     )
     assert ran.returncode == 0, ran.stderr
-    words = ran.stdout.split()
-    assert words[0] == builder and "linux/amd64,linux/arm64" in words
-    assert FOLDER.parent / words[words.index("--file") + 1] == FOLDER / "Containerfile"
+    return ran.stdout.split()

@@ -1,6 +1,8 @@
 """The contract of all drivers: what every one of them does for its device, case by case.
 
-A driver takes part with a bench in tests/contract/drivers, which plays its device by hand.
+A driver takes part with a bench in tests/contract/drivers, which plays its device by hand. The tests of its
+machine in tests/unit/drivers prove most of the cases. So here each driver does one work, each kind of link
+has one story of a stop and a lost connection, and one driver has the whole contract; at night all drivers do.
 """
 
 from __future__ import annotations
@@ -17,19 +19,25 @@ import pytest
 from arboleda.model.messages import Reason, TaskState, Verb
 from arboleda.store.plant_memory import PlantMemory
 
+from ..lengths import length
 from ..patience import PATIENCE_S
 from .drivers.bench import ASK, HALT, LATCH, OTHER, WORK, Shop
-from .drivers.benches import BENCHES
+from .drivers.benches import BENCHES, SAME_LINK
 
 pytestmark = pytest.mark.system
 
-ASKING = [name for name, bench in BENCHES.items() if bench.asks]
-UNWATCHED = [name for name, bench in BENCHES.items() if not bench.watches]
-ASKED = pytest.mark.parametrize("shop", ASKING, indirect=True)
-SUPERVISED = pytest.mark.parametrize("shop", UNWATCHED, indirect=True)
+ALL = list(BENCHES)
+LINKS = [name for name in ALL if name not in SAME_LINK]
+ASKING = [name for name in ALL if BENCHES[name].asks]
+UNWATCHED = [name for name in ALL if not BENCHES[name].watches]
 
 
-@pytest.fixture(params=BENCHES)
+def of(drivers: list[str], *, all_of: list[str] = ALL) -> pytest.MarkDecorator:
+    """The case for the shops of these drivers, and at night for those of `all_of`."""
+    return pytest.mark.parametrize("shop", length(drivers, all_of), indirect=True)
+
+
+@pytest.fixture
 def shop(
     request: pytest.FixtureRequest, tmp_path: Path, ros_domain: int, quick_discovery: None
 ) -> Iterator[Shop]:
@@ -48,6 +56,7 @@ def shop(
 
 
 @pytest.mark.smoke
+@of(ALL)
 def test_accept_and_done(shop: Shop) -> None:
     shop.submit(WORK)
     ref = shop.told(WORK)
@@ -56,6 +65,7 @@ def test_accept_and_done(shop: Shop) -> None:
     assert shop.outcome().state is TaskState.DONE
 
 
+@of(["line_tcp"])
 def test_done_is_not_believed_while_the_facts_say_otherwise(shop: Shop) -> None:
     shop.submit(WORK)
     ref = shop.told(WORK)
@@ -65,6 +75,7 @@ def test_done_is_not_believed_while_the_facts_say_otherwise(shop: Shop) -> None:
     assert (end.state, end.reason) == (TaskState.FAILED, Reason.NOT_REACHED)
 
 
+@of(["line_tcp"])
 def test_reject(shop: Shop) -> None:
     shop.submit(WORK)
     words = shop.device.rejects(shop.told(WORK))
@@ -73,6 +84,7 @@ def test_reject(shop: Shop) -> None:
     assert words in str(end.sentence)
 
 
+@of(["line_tcp"])
 def test_failed(shop: Shop) -> None:
     shop.submit(WORK)
     ref = shop.told(WORK)
@@ -83,6 +95,7 @@ def test_failed(shop: Shop) -> None:
     assert words in str(end.sentence)
 
 
+@of(["line_tcp"])
 def test_cancel_before_accept(shop: Shop) -> None:
     """It is halted, and never done."""
     shop.submit(WORK)
@@ -94,7 +107,7 @@ def test_cancel_before_accept(shop: Shop) -> None:
     assert shop.outcome().state is TaskState.CANCELLED
 
 
-@ASKED
+@of(["line_tcp"], all_of=ASKING)
 def test_late_answer(shop: Shop) -> None:
     """An answer to an earlier question is none to this one."""
     shop.submit(ASK, "first")
@@ -110,6 +123,24 @@ def test_late_answer(shop: Shop) -> None:
     assert shop.outcome("second").state is TaskState.DONE
 
 
+@of(LINKS, all_of=LINKS)
+def test_a_stop_under_way_and_a_reconnect(shop: Shop) -> None:
+    """What is stopped is never done, and a device that comes back is told nothing twice."""
+    shop.submit(WORK, "first")
+    shop.device.accepts(shop.told(WORK))
+    shop.cancel()
+    shop.told(HALT)
+    shop.device.rests()
+    assert shop.outcome("first").state is TaskState.CANCELLED
+    shop.submit(OTHER, "second")
+    shop.device.accepts(shop.told(OTHER))
+    shop.device.vanish()
+    end = shop.outcome("second")
+    assert (end.state, end.reason) == (TaskState.FAILED, Reason.LINK_LOST)
+    comes_back_and_is_stopped(shop)
+
+
+@of(["line_tcp"])
 def test_late_end(shop: Shop) -> None:
     """What is told of work that was cancelled ends no other."""
     shop.submit(WORK, "first")
@@ -127,6 +158,7 @@ def test_late_end(shop: Shop) -> None:
     assert shop.outcome("second").state is TaskState.FAILED
 
 
+@of(["line_tcp"])
 def test_duplicate(shop: Shop) -> None:
     """The end of an order that is told again and again ends no other, and nothing is sent twice."""
     shop.submit(WORK, "first")
@@ -143,6 +175,7 @@ def test_duplicate(shop: Shop) -> None:
     assert shop.outcome("second").state is TaskState.FAILED
 
 
+@of(["line_tcp"])
 def test_silence(shop: Shop) -> None:
     shop.submit(WORK)
     shop.device.accepts(shop.told(WORK))
@@ -152,6 +185,7 @@ def test_silence(shop: Shop) -> None:
     shop.until(online=False)
 
 
+@of(["line_tcp"])
 def test_reboot(shop: Shop) -> None:
     shop.submit(WORK)
     shop.device.accepts(shop.told(WORK))
@@ -160,13 +194,19 @@ def test_reboot(shop: Shop) -> None:
     assert (end.state, end.reason) == (TaskState.FAILED, Reason.REBOOTED)
 
 
+@of(["line_tcp"])
 def test_reconnect(shop: Shop) -> None:
-    """A device that comes back is told nothing twice."""
+    """A device that comes back from the middle of its work is told nothing twice."""
     shop.submit(WORK)
     shop.device.accepts(shop.told(WORK))
     shop.device.vanish()
     end = shop.outcome()
     assert (end.state, end.reason) == (TaskState.FAILED, Reason.LINK_LOST)
+    comes_back_and_is_stopped(shop)
+
+
+def comes_back_and_is_stopped(shop: Shop) -> None:
+    """It hears of stops only: those of what was left at work, and its own."""
     shop.device.come_back()
     shop.until(online=True)
     shop.app.plant.operate(Verb.STOP, "shop").result(PATIENCE_S)
@@ -177,7 +217,7 @@ def test_reconnect(shop: Shop) -> None:
     shop.device.latches()
 
 
-@SUPERVISED
+@of(["line_tcp"], all_of=UNWATCHED)
 def test_a_plant_that_freezes(shop: Shop) -> None:
     """What moves is halted without it, and nothing moves again by itself."""
     shop.submit(WORK)
@@ -188,7 +228,7 @@ def test_a_plant_that_freezes(shop: Shop) -> None:
     assert shop.outcome().reason is not None
 
 
-@SUPERVISED
+@of(["line_tcp"], all_of=UNWATCHED)
 def test_a_disk_that_hangs(shop: Shop, monkeypatch: pytest.MonkeyPatch) -> None:
     """What moves is halted while the plant waits for its memory."""
     shop.submit(WORK)
@@ -215,7 +255,11 @@ MESSAGES = {
 """Where each driver takes what its device says."""
 
 
-@pytest.mark.parametrize(("shop", "takes"), MESSAGES.items(), indirect=["shop"])
+@pytest.mark.parametrize(
+    ("shop", "takes"),
+    [(name, MESSAGES[name]) for name in length(("gcode", "modbus", "opcua", "vda5050"), MESSAGES)],
+    indirect=["shop"],
+)
 def test_a_message_that_breaks_what_takes_it(shop: Shop, takes: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """It is the device's trouble: no thread of the driver ends by it."""
     of_server = "_handle_client"  # python-snap7's has a thread for each connection

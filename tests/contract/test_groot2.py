@@ -118,10 +118,12 @@ def children() -> set[int]:
 
 
 def test_each_cell_has_a_pair_of_ports_and_its_own_tree(
-    started: Callable[..., Groot2Part], viewer: Callable[[int], Viewer], port: int
+    started: Callable[..., Groot2Part], viewer: Callable[..., Viewer], port: int
 ) -> None:
     part = started("sis_a", "sis_b", port=port)
-    first, second = viewer(port), viewer(port + 2)
+    first = viewer(port)
+    second = viewer(port + 2, REQ_CORRELATE=1, REQ_RELAXED=1)  # it numbers its requests
+    second.send(struct.pack("<BBI", 2, ord("B"), 1), b"")  # and does not wait for the answer to this one
     part.saw(snapshot(("sis_a", "RUNNING"), ("sis_b", "SUCCESS")))
     first.until(1)
     second.until(2)
@@ -129,16 +131,6 @@ def test_each_cell_has_a_pair_of_ports_and_its_own_tree(
     assert msgpack.unpackb(second.ask("B", b"StepOfSisB")[0])["StepOfSisB"]["task_text"] == "sis_b 0B 7"
     assert first.ask("I", b"{}") == [b"read only: breakpoints and hooks would change what robots do"]
     assert part.notes == [f"Groot2: sis_a {port}/{port + 1}, sis_b {port + 2}/{port + 3} on 127.0.0.1"]
-
-
-def test_a_client_that_numbers_its_requests_is_answered(
-    started: Callable[..., Groot2Part], viewer: Callable[..., Viewer], port: int
-) -> None:
-    """A REQ socket that does so, and another request before the reply to the first."""
-    started("sis_a", port=port)
-    client = viewer(port, REQ_CORRELATE=1, REQ_RELAXED=1)
-    client.send(struct.pack("<BBI", 2, ord("B"), 1), b"")
-    assert b"no task yet" in client.ask("T")[0]
 
 
 def test_a_plant_shows_its_cells_where_its_file_says_so(
@@ -155,38 +147,12 @@ def test_a_plant_shows_its_cells_where_its_file_says_so(
     assert is_free(port)
 
 
-def test_where_it_is_not_wanted_nothing_listens(port: int, tmp_path: Path) -> None:
-    model = replace(shipped("sis_a"), groot2_port=port)
-    app = build(model, {"orchestrator"}, Options(state_dir=tmp_path / "state", groot2=False))
-    app.start()
-    app.stop()
-    assert not any("Groot2" in note for note in app.notes)
-
-
-def test_what_happens_is_recorded_for_who_asks_for_it(
-    started: Callable[..., Groot2Part], viewer: Callable[[int], Viewer], port: int
+def test_what_keeps_it_from_starting_is_one_sentence(
+    started: Callable[..., Groot2Part], port: int, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
-    part, client = started("sis_a", port=port), viewer(port)
-    part.saw(snapshot(("sis_a", "RUNNING")))
-    client.until(1)
-    (began,) = client.ask("r", b"start")
-    assert abs(int(began) / 1e6 - time.time()) < PATIENCE_S
-    part.saw(snapshot(("sis_a", "FAILURE")))
-    client.until(3)
-    (told,) = client.ask("t")
-    assert told[6:] == struct.pack("<HB", 1, 3)
-    assert int.from_bytes(told[:6], "little") < PATIENCE_S * 1e6
-
-
-def test_a_named_port_that_is_taken_is_one_sentence(started: Callable[..., Groot2Part], port: int) -> None:
     started("sis_a", port=port)
     with pytest.raises(StartError, match=f"ports {port} and {port + 1}, for sis_b: Address already in use"):
         started("sis_b", port=port)
-
-
-def test_a_library_that_is_missing_is_one_sentence(
-    started: Callable[..., Groot2Part], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
-) -> None:
     (tmp_path / "zmq.py").write_text("raise ImportError('no such library')\n")
     monkeypatch.syspath_prepend(tmp_path)
     with pytest.raises(StartError, match="is pyzmq installed"):

@@ -17,6 +17,8 @@ from arboleda.store.postgres.leader_row import END_LEASE, LAST_SEEN
 from arboleda.store.postgres.leadership import Leadership
 from arboleda.store.postgres.memory import LEAD, PostgresMemory
 
+from ..lengths import length
+
 NOW = 1000.0
 AGES_S = (0.1, LEASE_S + 1.0, WANTED_S - 5.0, WANTED_S + 5.0, -3600.0)  # or the clock is set back
 
@@ -123,7 +125,7 @@ class Both:
         return db
 
 
-@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("seed", range(length(1, 3)))
 def test_the_row_of_the_simulator_does_what_a_server_does(
     postgres: Server, database: str, plant: str, seed: int
 ) -> None:

@@ -1,13 +1,15 @@
-"""What every store of a plant's memory does alike, over SQLite files and a real PostgreSQL server."""
+"""A plant's memory in a real PostgreSQL server holds what one in an SQLite file does.
+
+The tests in tests/unit/store say what that is.
+"""
 
 from __future__ import annotations
 
-import json
-import sqlite3
-import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import closing
 from dataclasses import replace
+from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -28,303 +30,148 @@ from arboleda.store.plant_memory import PRUNED, PlantMemory
 from arboleda.store.postgres.history import PostgresHistory
 from arboleda.store.postgres.memory import PostgresMemory
 from arboleda.store.sqlite import Store
-from arboleda.store.task_rows import History, TaskHistory, TaskQuery, answers_of, course_of
+from arboleda.store.task_rows import History, TaskHistory, TaskQuery
 
-LATCH = Remember(fact=Fact.LATCH, name="ra1", value="on")
-ACT = Journal(
-    verb=Verb.OVERRIDE, scope="mesa", cell=None, sentence=OWN(text="mesa is free: ra1 was carried away")
-)
+ODD = "ñ 'x' \"y\" % ? %s {} \\ \n 日本"
+Deed = Callable[[PlantMemory], object]
 
 
-class Site:
-    """A place for the memory of one plant, which can be opened again and again."""
+class Places:
+    """The same memory in a file and in a server."""
 
-    def __init__(
-        self,
-        memory: Callable[[], PlantMemory],
-        history: Callable[[], History],
-        rows: Callable[[str], list[tuple]],
-    ) -> None:
-        self._memory, self._history, self.rows = memory, history, rows
-        self._histories: list[History] = []
+    def __init__(self, path: Path, address: str, plant: str) -> None:
+        self._memories = (lambda: Store(path)), (lambda: PostgresMemory(address, plant))
+        self._histories = TaskHistory(path), PostgresHistory(address, plant)
 
-    @contextmanager
-    def memory(self) -> Iterator[PlantMemory]:
-        with self._memory() as memory:
+    def hold_the_same(self, *deeds: Deed) -> None:
+        """Do it in both, each deed by a plant that has just started, and compare all that can be read."""
+        of_file, of_server = (
+            [self._seen(memory, history, deed) for deed in deeds]
+            for memory, history in zip(self._memories, self._histories, strict=True)
+        )
+        assert of_server == of_file
+
+    def _seen(self, opened: Callable[[], PlantMemory], history: History, deed: Deed) -> dict[str, Any]:
+        with opened() as memory:
             memory.lead(1)
-            yield memory
-
-    def history(self) -> History:
-        self._histories.append(self._history())
-        return self._histories[-1]
+            deed(memory)
+            seen = {"rows": [replace(row, number=0) for row in history.select(TaskQuery())]}
+        with opened() as memory:  # as the next start finds it
+            return seen | {
+                "facts": [memory.facts(fact) for fact in Fact],
+                "journal": memory.entries(),
+                "tasks": [replace(row, number=0) for row in memory.tasks(TaskQuery(limit=None))],
+                "figures": history.oee(OeeQuery(since_s=0.0, until_s=1000.0)),
+            }
 
     def close(self) -> None:
         for each in self._histories:
             each.close()
 
 
-@pytest.fixture(params=["sqlite", "postgres"])
-def site(request, tmp_path):
-    if request.param == "sqlite":
-        path = tmp_path / "plant.sqlite"
-
-        def rows(query):
-            db = sqlite3.connect(path)
-            found = db.execute(query).fetchall()
-            db.close()
-            return found
-
-        made = Site(lambda: Store(path), lambda: TaskHistory(path), rows)
-    else:
-        address, plant = request.getfixturevalue("database"), request.getfixturevalue("plant")
-        server = request.getfixturevalue("postgres")
-
-        def rows(query):
-            with server.connection() as db:
-                db.execute(f'SET search_path TO "plant_{plant}"')
-                return db.execute(query).fetchall()
-
-        made = Site(lambda: PostgresMemory(address, plant), lambda: PostgresHistory(address, plant), rows)
-    yield made
-    made.close()
-
-
 @pytest.fixture
-def store(site):
-    with site.memory() as opened:
-        yield opened
+def places(tmp_path: Path, database: str, plant: str) -> Iterator[Places]:
+    with closing(Places(tmp_path / "plant.sqlite", database, plant)) as made:
+        yield made
 
 
-def queued(id, text="sis_a 0B 1"):
+def queued(id: str, text: str = "sis_a 0B 1") -> TaskChanged:
     return TaskChanged(task=id, text=text, cell=text.split()[0], state=TaskState.QUEUED)
 
 
-def ended(id, state=TaskState.DONE, **why):
+def ended(id: str, state: TaskState = TaskState.DONE, **why: Any) -> TaskChanged:
     return replace(queued(id), state=state, **why)
 
 
-def times(site):
-    """The starts of the plant, and when its cells did no work."""
-    runs = site.rows("SELECT since_s, seen_s, ended FROM run ORDER BY number")
-    downs = site.rows("SELECT cell, state, since_s, until_s FROM down ORDER BY number")
-    return runs, downs
+def fact(name: str, value: str | None, kind: Fact = Fact.EFFECTOR) -> Remember:
+    return Remember(fact=kind, name=name, value=value)
 
 
-def test_a_new_memory_is_empty(store):
-    assert [store.facts(fact) for fact in Fact] == [{}] * len(Fact)
-    assert store.entries() == []
-
-
-def test_a_fact_is_kept_replaced_and_forgotten(site):
-    with site.memory() as store:
-        store.keep(Remember(fact=Fact.EFFECTOR, name="ra1", value="switching"))
-        store.keep(Remember(fact=Fact.EFFECTOR, name="ra2", value="off"))
-        store.keep(Remember(fact=Fact.EFFECTOR, name="ra1", value="on"))
-        store.keep(LATCH)
-    with site.memory() as store:
-        assert store.facts(Fact.EFFECTOR) == {"ra1": "on", "ra2": "off"}
-        store.keep(Remember(fact=Fact.EFFECTOR, name="ra1", value=None))
-        store.keep(Remember(fact=Fact.QUARANTINE, name="nowhere", value=None))
-        assert store.facts(Fact.EFFECTOR) == {"ra2": "off"}
-        assert store.facts(Fact.LATCH) == {"ra1": "on"}
-
-
-def test_the_journal_is_read_newest_first(site):
-    with site.memory() as store:
-        stopped = Journal(verb=Verb.STOP, scope="ra1", cell="sis_a", sentence=OWN(text="ra1 stopped"))
-        store.journal(stopped, 1000.25)
-        store.journal(ACT, 999.5)
-    with site.memory() as store:
-        newest, oldest = store.entries()
-        assert (newest.id, newest.unix_s, newest.verb) == (2, 999.5, Verb.OVERRIDE)
-        assert (newest.scope, newest.cell, newest.sentence) == (ACT.scope, None, str(ACT.sentence))
-        assert (oldest.scope, oldest.cell) == ("ra1", "sis_a")
-        assert (oldest.id, oldest.unix_s, oldest.verb) == (1, 1000.25, "stop")
-        assert store.entries(limit=1) == [newest]
-
-
-def test_who_asked_first_and_how_often_a_task_was_tried_are_kept(site):
-    with site.memory() as store:
-        store.task(queued("a"), "storage", 5.0, "page")
-        store.task(queued("a"), "storage", 6.0, "http")  # whoever asks again asks for the same task
-        store.task(queued("b"), "storage", 7.0, "ros2")
-        for _ in range(2):  # as it is told anew to whoever asks
-            store.task(ended("a", TaskState.RUNNING), "storage", 8.0)
-        store.attempted("a", 3)
-        store.task(ended("a"), "storage", 9.0)
-    with site.memory() as store:
-        kept = {row.id: (row.asked_by, row.attempts) for row in store.tasks(TaskQuery())}
-    assert kept == {"a": ("page", 3), "b": ("ros2", 0)}
-
-
-def test_what_was_answered_is_kept_with_the_end_of_a_task(site):
-    heard = [
-        TaskAnswer(by="ana", asked="¿Lleno?", answer="yes"),
-        TaskAnswer(by="eye", asked="look", answer=2.5),
-    ]
-    with site.memory() as store:
-        for id, answers in (("a", heard), ("b", ())):
-            store.task(queued(id), "storage", 5.0)
-            store.task(ended(id), "storage", 9.0, answers=answers)
-    with site.memory() as store:
-        kept = {row.id: answers_of(row) for row in store.tasks(TaskQuery())}
-    assert kept == {"a": tuple(heard), "b": ()}
-
-
-def test_how_a_task_went_is_kept_with_its_end(site):
-    course = Course(seconds=31.507, begun={"drive path 0B #1": 0.2, "move to “home” #2": 28.0})
-    with site.memory() as store:
-        for id, how in (("a", course), ("b", None)):
-            store.task(queued(id), "storage", 5.0)
-            store.task(replace(ended(id), course=how), "storage", 9.0)
-    with site.memory() as store:
-        assert {row.id: course_of(row) for row in store.tasks(TaskQuery())} == {"a": course, "b": None}
-
-
-def test_old_times_of_cells_are_forgotten_at_a_start(site):
-    with site.memory() as store:
-        store.began(10.0, 0.0)
-        store.stands("sis_a", "held", 20.0)
-        store.stands("sis_a", None, 30.0)
-        store.note_run(70.0, ended=True)
-        store.began(500.0, 40.0)
-        assert times(site) == ([(10.0, 70.0, 1), (500.0, 500.0, 0)], [])
-        store.began(600.0, 80.0)
-    assert times(site)[0] == [(500.0, 500.0, 0), (600.0, 600.0, 0)]
-
-
-def test_what_stood_when_the_plant_was_killed_stood_until_it_was_seen_last(site):
-    with site.memory() as store:
-        store.began(10.0, 0.0)
-        store.stands("sis_a", "held", 20.0)
-        store.stands("sis_b", "held", 75.0)
-        store.note_run(70.0)
-        store.began(500.0, 0.0)
-        store.stands("sis_a", "held", 501.0)
-        store.stands("sis_a", "aborted", 502.0)
-        store.stands("sis_a", None, 503.0)
-        store.note_run(560.0, ended=True)
-    assert times(site) == (
-        [(10.0, 70.0, 0), (500.0, 560.0, 1)],
-        [
-            ("sis_a", "held", 20.0, 70.0),
-            ("sis_b", "held", 75.0, 75.0),
-            ("sis_a", "held", 501.0, 502.0),
-            ("sis_a", "aborted", 502.0, 503.0),
-        ],
+def test_facts_and_the_journal(places: Places) -> None:
+    act = Journal(verb=Verb.STOP, scope="ra1", cell="sis_a", sentence=OWN(text=ODD))
+    places.hold_the_same(
+        lambda memory: memory.keep(fact("ra1", "switching"), fact("ra2", "off"), fact("ra1", "on")),
+        lambda memory: memory.keep(fact(ODD, ODD, Fact.STEP), fact("ra1", None), fact("nobody", None)),
+        lambda memory: memory.journal(act, 1000.25),
+        lambda memory: memory.journal(replace(act, verb=Verb.OVERRIDE, cell=None), 999.5),
     )
 
 
-def test_a_task_is_kept_from_its_acceptance_to_its_end(site):
-    with site.memory() as store:
-        store.task(queued("a"), "storage", 1.0)
-        store.task(ended("a", TaskState.RUNNING), "storage", 2.0)
-    with site.memory() as store:
-        (row,) = store.tasks(TaskQuery())
-        assert (row.id, row.text, row.cell, row.recipe) == ("a", "sis_a 0B 1", "sis_a", "storage")
-        assert (row.state, row.accepted_s, row.started_s, row.ended_s) == ("running", 1.0, 2.0, None)
-        store.task(ended("a", TaskState.FAILED, reason=Reason.DEADLINE, sentence=OWN(text="late")), "", 3.0)
-    with site.memory() as store:
-        (row,) = store.tasks(TaskQuery())
-        assert (row.state, row.reason, row.sentence, row.ended_s) == ("failed", "deadline", "late", 3.0)
-        assert json.loads(row.said) == OWN(text="late").data()
+def test_a_task_from_its_acceptance_to_its_end(places: Places) -> None:
+    answers = (TaskAnswer(by="ana", asked=ODD, answer=2.5),)
+    course = Course(seconds=31.507, begun={"drive path 0B #1": 0.2})
+    late = ended("b", TaskState.FAILED, reason=Reason.DEADLINE, sentence=OWN(text="late"))
+
+    def begun(memory: PlantMemory) -> None:
+        memory.task(queued("a"), "storage", 5.0, "page")
+        memory.task(queued("a"), "storage", 6.0, "http")  # whoever asks again asks for the same task
+        memory.task(queued("b"), ODD, 7.0, "ros2")
+        memory.task(ended("a", TaskState.RUNNING), "storage", 8.0)
+        memory.attempted("a", 3)
+        memory.task(ended("", TaskState.REFUSED), "", 9.0)
+
+    def over(memory: PlantMemory) -> None:
+        memory.task(replace(ended("a"), course=course), "storage", 9.0, answers=answers)
+        memory.task(late, "", 10.0)
+        memory.task(ended("a", TaskState.FAILED), "storage", 11.0)  # it has ended before
+
+    places.hold_the_same(begun, over)
 
 
-def test_a_task_that_is_asked_for_again_stays_as_it_is(store):
-    for change, at in [(queued("a"), 1.0), (ended("a", TaskState.RUNNING), 2.0), (ended("a"), 3.0)]:
-        store.task(change, "storage", at)
-    (kept,) = store.tasks(TaskQuery())
-    for change in (queued("a"), ended("a", TaskState.RUNNING), ended("a", TaskState.FAILED)):
-        store.task(change, "storage", 9.0)
-    assert store.tasks(TaskQuery()) == [kept]
+def test_times_of_cells(places: Places) -> None:
+    def killed(memory: PlantMemory) -> None:
+        memory.began(10.0, 0.0)
+        memory.task(queued("a"), "storage", 12.0)
+        memory.task(ended("a", TaskState.RUNNING), "storage", 13.0)
+        memory.task(ended("a"), "storage", 19.0)
+        memory.stands("sis_a", "held", 20.0)
+        memory.stands("sis_b", "held", 75.0)
+        memory.note_run(70.0)
+
+    def goes_on(memory: PlantMemory) -> None:
+        memory.began(500.0, 0.0)
+        memory.stands("sis_a", "held", 501.0)
+        memory.stands("sis_a", None, 503.0)
+        memory.note_run(560.0, ended=True)
+
+    places.hold_the_same(killed, goes_on, lambda memory: memory.began(600.0, 540.0))
 
 
-def test_a_task_that_was_refused_is_not_kept(store):
-    store.task(ended("", TaskState.REFUSED), "", 1.0)
-    assert store.tasks(TaskQuery()) == []
+def test_tasks_are_forgotten_from_the_oldest_on(places: Places) -> None:
+    def many(memory: PlantMemory) -> None:
+        for number in range(PRUNED + 5):
+            memory.task(queued(f"n{number}"), "storage", 1.0)
+            memory.task(ended(f"n{number}"), "storage", 2.0 + number)
+        memory.task(queued("open"), "storage", 1.0)
+
+    places.hold_the_same(
+        many,
+        lambda memory: memory.forget_tasks(1000.0),
+        lambda memory: memory.forget_tasks(2.0 + PRUNED + 2),
+    )
 
 
-@pytest.mark.parametrize(
-    ("query", "ids"),
-    [
-        (TaskQuery(), ["d", "c", "b", "a"]),
-        (TaskQuery(limit=2), ["d", "c"]),
-        (TaskQuery(limit=2, before=3), ["b", "a"]),
-        (TaskQuery(cell="sis_b"), ["c"]),
-        (TaskQuery(state="done"), ["a"]),
-        (TaskQuery(recipe="palletizing"), ["d"]),
-        (TaskQuery(is_open=True), ["d", "c", "b"]),
-        (TaskQuery(is_open=False), ["a"]),
-        (TaskQuery(words="0b 2"), ["b"]),
-        (TaskQuery(words="0_ 2"), []),
-        (TaskQuery(words="%"), []),
-        (TaskQuery(words="is_a"), ["d", "b", "a"]),
-        (TaskQuery(id="c"), ["c"]),
-        (TaskQuery(since_s=2.0, until_s=4.0), ["c", "b"]),
-        (TaskQuery(cell="sis_b", state="done"), []),
-    ],
-)
-def test_tasks_are_found_by_what_is_asked_for(site, query, ids):
-    with site.memory() as store:
-        texts = {"a": "sis_a 0B 1", "b": "sis_a 0B 2", "c": "sis_b 0B 1", "d": "sis_a palletizing"}
+def test_tasks_are_found_by_what_is_asked_for(database: str, plant: str) -> None:
+    queries = {
+        "the newest": (TaskQuery(limit=2), ["d", "c"]),
+        "the next page": (TaskQuery(limit=2, before=3), ["b", "a"]),
+        "a cell": (TaskQuery(cell="sis_b"), ["c"]),
+        "a state": (TaskQuery(state="done"), ["a"]),
+        "a recipe": (TaskQuery(recipe="palletizing"), ["d"]),
+        "open ones": (TaskQuery(is_open=True), ["d", "c", "b"]),
+        "those that have ended": (TaskQuery(is_open=False), ["a"]),
+        "words": (TaskQuery(words="0b 2"), ["b"]),
+        "words with a wildcard": (TaskQuery(words="0_ 2"), []),
+        "a task": (TaskQuery(id="c"), ["c"]),
+        "a time": (TaskQuery(since_s=2.0, until_s=4.0), ["c", "b"]),
+    }
+    texts = {"a": "sis_a 0B 1", "b": "sis_a 0B 2", "c": "sis_b 0B 1", "d": "sis_a palletizing"}
+    with PostgresMemory(database, plant) as memory, closing(PostgresHistory(database, plant)) as history:
+        memory.lead(1)
         for at, (id, text) in enumerate(texts.items(), start=1):
-            store.task(queued(id, text), "palletizing" if "pall" in text else "storage", float(at))
-        store.task(ended("a"), "storage", 9.0)
-        assert [row.id for row in store.tasks(query)] == ids
-        assert [row.id for row in site.history().select(query)] == ids
-
-
-def test_ended_tasks_are_forgotten_from_the_oldest_on_and_open_ones_never(store):
-    for number in range(PRUNED + 5):
-        store.task(queued(f"n{number}"), "storage", 1.0)
-        store.task(ended(f"n{number}"), "storage", 2.0 + number)
-    store.task(queued("open"), "storage", 1.0)
-    store.forget_tasks(1000.0)
-    assert [row.id for row in store.tasks(TaskQuery())] == [
-        "open",
-        *(f"n{PRUNED + n}" for n in (4, 3, 2, 1, 0)),
-    ]
-    store.forget_tasks(2.0 + PRUNED + 2)
-    assert len(store.tasks(TaskQuery(is_open=False))) == 3
-
-
-def test_the_history_of_a_plant_that_kept_nothing_is_empty(site):
-    assert site.history().select(TaskQuery()) == []
-
-
-def test_the_history_is_read_while_the_plant_writes(site):
-    history = site.history()
-    with site.memory() as store:
-        for id in ("a", "b"):
-            store.task(queued(id), "storage", 1.0)
-            assert history.select(TaskQuery())[0].id == id
-    history.close()
-
-
-def test_of_facts_that_are_kept_together_the_last_word_on_each_counts(store):
-    other = Remember(fact=Fact.LATCH, name="ra2", value="on")
-    store.keep(LATCH, other)
-    store.keep(replace(LATCH, value="off"), replace(other, value=None), replace(LATCH, value="cleared"))
-    assert store.facts(Fact.LATCH) == {"ra1": "cleared"}
-
-
-def test_a_text_may_have_any_character(store):
-    odd = "ñ 'x' \"y\" % ? %s {} \\ \n 日本"
-    store.keep(Remember(fact=Fact.STEP, name=odd, value=odd))
-    store.task(queued("a"), odd, 1.0)
-    assert store.facts(Fact.STEP) == {odd: odd}
-    assert [row.recipe for row in store.tasks(TaskQuery(recipe=odd))] == [odd]
-
-
-def test_figures_are_made_of_what_was_kept(site):
-    now = time.time()
-    with site.memory() as store:
-        store.began(now - 100, 0.0)
-        store.task(queued("a"), "storage", now - 90)
-        store.task(ended("a", TaskState.RUNNING), "storage", now - 80)
-        store.task(ended("a"), "storage", now - 70)
-        store.stands("sis_a", "held", now - 60)
-        store.stands("sis_a", None, now - 50)
-        store.note_run(now, ended=True)
-        (figures,) = site.history().oee(OeeQuery())
-    assert (figures.cell, figures.done, figures.failed) == ("sis_a", 1, 0)
+            memory.task(queued(id, text), "palletizing" if "pall" in text else "storage", float(at))
+        memory.task(ended("a"), "storage", 9.0)
+        right = {what: ids for what, (_, ids) in queries.items()}
+        for select in (memory.tasks, history.select):
+            found = {what: [row.id for row in select(query)] for what, (query, _) in queries.items()}
+            assert found == right

@@ -21,7 +21,7 @@ from pymodbus.client import ModbusTcpClient
 
 from arboleda.adapters.modbus import LINES, Modbus
 from arboleda.adapters.modbus_server import ModbusServer
-from arboleda.drivers import MotionState, NotSent, Report
+from arboleda.drivers import MotionState, Report
 from arboleda.drivers.modbus.registers import Register
 from arboleda.drivers.modbus.settings import Settings
 from arboleda.kinds.declared import Device
@@ -114,37 +114,15 @@ def is_lost(report: Report) -> bool:
     return report.state is MotionState.NO_LINK
 
 
-@pytest.mark.parametrize(
-    ("code", "word"), [(1, "illegal_function"), (2, "illegal_address"), (6, "device_busy")]
-)
-def test_an_exception_code_rejects_the_command(belt: Device, code: int, word: str) -> None:
+def test_an_exception_code_rejects_the_command(belt: Device) -> None:
     memory = Memory()
     with served(memory) as port, driven(belt, settings(belt, port=port)) as (driver, heard):
         heard.until(is_heard)
-        memory.refuses = code
+        memory.refuses = 6
         driver.send(load_command(belt))
         report = heard.until(lambda report: report.rejected is not None)
-        assert (report.rejected, report.refusal) == ("c1", word)
+        assert (report.rejected, report.refusal) == ("c1", "device_busy")
         heard.until(is_heard)  # the link stays
-
-
-def test_what_has_no_meaning_loses_the_link_and_says_why(belt: Device) -> None:
-    memory = Memory()
-    with served(memory) as port, driven(belt, settings(belt, port=port)) as (_, heard):
-        heard.until(is_heard)
-        memory.inputs[10] = 77
-        assert "input 10 is 77, for which there is no word" in str(heard.until(is_lost).lost)
-        memory.inputs[10] = 0
-        heard.until(is_heard)
-
-
-def test_who_is_not_there_is_reached_when_he_comes(belt: Device, free_port: int) -> None:
-    with driven(belt, settings(belt, port=free_port)) as (driver, heard):
-        assert f"127.0.0.1:{free_port} is not there" in str(heard.until(is_lost).lost)
-        with pytest.raises(NotSent, match="is not connected"):
-            driver.send(load_command(belt))
-        with served(Memory(), port=free_port):
-            heard.until(is_heard)
 
 
 def test_a_command_whose_answer_does_not_come_loses_the_link_and_is_not_repeated(belt: Device) -> None:

@@ -3,16 +3,13 @@
 from __future__ import annotations
 
 import logging
-import re
 import time
 from collections.abc import Callable
-from pathlib import Path
 from typing import Any
 
 import pytest
 
-from arboleda.adapters.broker_login import CA, CERTIFICATE, Address, address
-from arboleda.model.errors import StartError
+from arboleda.adapters.broker_login import CERTIFICATE, Address, address
 from arboleda.wire.transport import Publication
 
 from ..patience import PATIENCE_S
@@ -45,33 +42,25 @@ def complaint(caplog: pytest.LogCaptureFixture) -> str:
     return caplog.messages[0]
 
 
-def test_a_message_goes_over_tls(
+def test_a_message_goes_over_tls_to_a_broker_that_asks_for_a_certificate(
     secure: Callable[..., int], trusts: Callable[..., None], lab: Authority, peer: Callable[..., Any]
 ) -> None:
-    trusts(lab.certificate)
-    broker = address(f"mqtts://127.0.0.1:{secure('127.0.0.1')}")
+    port = secure("127.0.0.1", f"cafile {lab.certificate}", "require_certificate true")
+    trusts(lab.certificate, *lab.sign("plant"))
+    broker = address(f"mqtts://127.0.0.1:{port}")
     board = peer("ra_1", broker, subscriptions=["ra_1/juntas"]).up()
     bridge = peer("bridge", broker).up()
     bridge.client.publish(Publication(topic="ra_1/juntas", payload=b"goal"))
     assert board.inbox.wait(lambda inbox: inbox.deliveries)[0].payload == b"goal"
 
 
-def test_a_broker_that_asks_gets_a_certificate(
-    secure: Callable[..., int], trusts: Callable[..., None], lab: Authority, peer: Callable[..., Any]
-) -> None:
-    port = secure("127.0.0.1", f"cafile {lab.certificate}", "require_certificate true")
-    trusts(lab.certificate, *lab.sign("plant"))
-    peer("bridge", address(f"mqtts://127.0.0.1:{port}")).up()
-
-
 @pytest.mark.parametrize(
-    ("name", "days", "believes", "said"),
+    ("name", "days", "said"),
     [
-        ("127.0.0.1", -1, True, "certificate has expired; renew it, or set the clock of this machine"),
-        ("mill.lab", 1, True, "call the broker by a name that its certificate has"),
-        ("127.0.0.1", 1, False, f"name the file of its authority in ${CA}"),
+        ("127.0.0.1", -1, "certificate has expired; renew it, or set the clock of this machine"),
+        ("mill.lab", 1, "call the broker by a name that its certificate has"),
     ],
-    ids=["expired", "wrong host", "unknown authority"],
+    ids=["expired", "wrong host"],
 )
 def test_a_broker_that_is_not_believed_is_told_why(
     secure: Callable[..., int],
@@ -81,10 +70,9 @@ def test_a_broker_that_is_not_believed_is_told_why(
     caplog: pytest.LogCaptureFixture,
     name: str,
     days: int,
-    believes: bool,
     said: str,
 ) -> None:
-    trusts(lab.certificate if believes else None)
+    trusts(lab.certificate)
     port = secure(name, days=days)
     stranger = peer("bridge", address(f"mqtts://127.0.0.1:{port}"))
     sentence = complaint(caplog)
@@ -124,40 +112,6 @@ def test_a_client_without_the_certificate_that_is_asked_for_is_told_so(
     trusts(lab.certificate)
     peer("bridge", address(f"mqtts://127.0.0.1:{port}"))
     assert f"it may want a certificate of this client: ${CERTIFICATE}" in complaint(caplog)
-
-
-@pytest.mark.parametrize(
-    ("file", "content"), [("authority", None), ("authority", "no certificate"), ("certificate", "nor this")]
-)
-def test_a_file_that_is_of_no_use_is_named_before_anything_starts(
-    trusts: Callable[..., None], tmp_path: Path, file: str, content: str | None
-) -> None:
-    path = tmp_path / "file.pem"
-    if content is not None:
-        path.write_text(content)
-    trusts(**{file: path})
-    with pytest.raises(StartError, match=re.escape(str(path))):
-        address("mqtts://broker.lab")
-
-
-def test_a_key_without_its_certificate_is_refused(trusts: Callable[..., None], tmp_path: Path) -> None:
-    trusts(key=tmp_path / "key.pem")
-    with pytest.raises(StartError, match=re.escape(f"name that in ${CERTIFICATE}")):
-        address("mqtts://broker.lab")
-
-
-@pytest.mark.parametrize(
-    ("text", "reads"),
-    [
-        ("mqtts://broker.lab", "mqtts://broker.lab:8883"),
-        ("mqtts://[::1]:2883", "mqtts://[::1]:2883"),
-        ("mqtt://broker.lab", "broker.lab:1883"),
-        ("broker.lab:2883", "broker.lab:2883"),
-    ],
-)
-def test_an_address_reads_as_it_is_written(trusts: Callable[..., None], text: str, reads: str) -> None:
-    assert str(address(text)) == reads
-    assert str(address(reads)) == reads
 
 
 @pytest.fixture(autouse=True)

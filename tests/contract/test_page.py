@@ -78,28 +78,3 @@ def test_nothing_that_anybody_wrote_is_rendered_as_html(tab: Any) -> None:
     tab.wait_for_selector("#answer:has-text('{{1+1}}')")
     assert tab.inner_text("h1") == EVIL
     assert tab.evaluate("[window.broken ?? null, document.images.length]") == [None, 0]
-
-
-@pytest.mark.parametrize(
-    "event",
-    [
-        [],
-        ["stop"],
-        ["submit", 7],
-        ["submit", {"a": 1}],
-        ["seen", 1e99],
-        ["seen", True],
-        ["explode", "sis_a"],
-        ["__class__", "x"],
-        [["stop"], "x"],
-        [None, None, None, None],
-        ["submit", "x" * 10_000],
-    ],
-    ids=str,
-)
-def test_events_that_no_button_sends_change_nothing(tab: Any, event: list[Any]) -> None:
-    tab.evaluate("event => window.emitEvent('arboleda', ...event)", event)
-    tab.click("[data-tab=tasks]")
-    tab.fill("#task-text", "still here")
-    tab.click("#task-send")
-    tab.wait_for_selector("#answer:has-text('still here')")

@@ -45,13 +45,10 @@ def all_ok(said: str) -> bool:
     return len(topics) > 10 and all(words[0] == "ok" for words in topics)
 
 
-def test_a_closed_record_is_well(site: Site, tmp_path: Path) -> None:
+def test_a_record_is_well_closed_and_recovered(site: Site, tmp_path: Path) -> None:
     assert all_ok(rerun(tmp_path, "mcap", "check", "--full", str(site.files[0])))
     said = rerun(tmp_path, "mcap", "info", str(site.files[0]))
     assert "sensor_msgs/msg/JointState" in said and "ros2msg / cdr" in said and "arboleda.Step" in said
-
-
-def test_a_recovered_record_is_well(site: Site, tmp_path: Path) -> None:
     killed, whole = tmp_path / "killed.mcap", tmp_path / "whole.mcap"
     killed.write_bytes(site.files[0].read_bytes()[:-3000])
     copying.as_mcap(reader.alone(killed), whole, (1,))

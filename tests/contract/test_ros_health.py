@@ -1,4 +1,4 @@
-"""The health of an arm over real ROS 2: publishers of each quality of service, services, missing types."""
+"""The health of an arm over real ROS 2: publishers of each quality of service, services."""
 
 from __future__ import annotations
 
@@ -7,7 +7,6 @@ from typing import Any
 
 import pytest
 
-from arboleda.drivers.port import DriverError
 from arboleda.drivers.ros_action.health import Call, CallAnswer, Health, HealthReading
 
 from .conftest import Inbox
@@ -39,8 +38,9 @@ def node(require: Callable[[str], None], ros_domain: Any) -> Iterator[Callable[[
         link.close()
 
 
-@pytest.mark.parametrize("durability", ["VOLATILE", "TRANSIENT_LOCAL"])
-@pytest.mark.parametrize("reliability", ["RELIABLE", "BEST_EFFORT"])
+@pytest.mark.parametrize(
+    ("durability", "reliability"), [("VOLATILE", "BEST_EFFORT"), ("TRANSIENT_LOCAL", "RELIABLE")]
+)
 def test_a_value_is_read_whatever_the_publisher_s_quality_of_service(
     node: Callable[[str], Any], durability: str, reliability: str
 ) -> None:
@@ -102,13 +102,3 @@ def test_calls_are_answered_with_their_text_and_one_that_nobody_serves_is_told(
     assert all(each in (absent, refused) or each.ok for each in inbox)
     ours.executor.create_task(link.make, ABSENT)
     inbox.wait(lambda events: CallAnswer(call=ABSENT, ok=False, text="is not there") in events)
-
-
-def test_a_type_that_is_not_installed_is_told_with_what_to_install(node: Callable[[str], Any]) -> None:
-    from arboleda_ros.health import HealthLink
-
-    unknown = Health(topic="t", type="ur_dashboard_msgs/msg/SafetyMode", field="mode", well=(1,))
-    _, ours = node("driver")
-    with pytest.raises(DriverError, match="install ur_dashboard_msgs") as told:
-        HealthLink(ours, unknown, lambda message, event: None)
-    assert "ur_dashboard_msgs/msg/SafetyMode" in str(told.value)

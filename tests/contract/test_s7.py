@@ -6,7 +6,6 @@ import os
 import queue
 import subprocess
 import sys
-import threading
 import time
 from collections.abc import Iterator
 from contextlib import closing, contextmanager
@@ -16,9 +15,9 @@ from typing import IO, Any
 
 import pytest
 
-from arboleda.adapters.s7 import LINES, S7
+from arboleda.adapters.s7 import S7
 from arboleda.adapters.s7_server import S7Server
-from arboleda.drivers import NotSent, Stop, StopMode
+from arboleda.drivers import Stop, StopMode
 from arboleda.drivers.s7.settings import Settings, Verb, Write
 from arboleda.kinds.declared import Device
 from arboleda.plant_file.loader import load
@@ -98,7 +97,7 @@ def test_values_leave_before_their_number_and_a_bit_by_itself(belt: Device) -> N
     assert written == [(0, b"\2"), (2, b"\0\2"), (4, b"\0\0\1\x90"), (8, b"\0\1"), (12, b"\1")]
 
 
-def test_a_refused_write_rejects_the_command_and_its_number_never_leaves(belt: Device) -> None:
+def test_a_refused_write_rejects_the_command_and_a_refused_stop_loses_the_link(belt: Device) -> None:
     memory = Memory()
     with served(memory) as port, driven(belt, settings(belt, port=port)) as (driver, heard):
         heard.until(is_heard)
@@ -107,23 +106,13 @@ def test_a_refused_write_rejects_the_command_and_its_number_never_leaves(belt: D
         report = heard.until(lambda report: report.rejected is not None)
         assert (report.rejected, report.refusal) == ("c1", "error_8404")
         heard.until(is_heard)  # the link stays
-    assert memory.written.empty()
-
-
-def test_a_refused_stop_loses_the_link_and_says_so(belt: Device) -> None:
-    memory = Memory()
-    with served(memory) as port, driven(belt, settings(belt, port=port)) as (driver, heard):
-        heard.until(is_heard)
+        assert memory.written.empty(), "its number never leaves"
         memory.refuses = 12
         with pytest.raises(ConnectionError, match=r"the PLC refuses to take DB2.DBX12.0.*; it was a stop"):
             driver.send(Stop(id="c1", robot="belt", mode=StopMode.HALT))
-
-
-def test_what_may_have_begun_without_a_number_loses_the_link(belt: Device) -> None:
-    verb = Verb(write=(Write(at="DB2.DBB0", value=1), Write(at="DB2.DBW2:INT", value=1)))
-    memory, mapped = Memory(), settings(belt, sequence=None)
-    mapped = replace(mapped, verbs=mapped.verbs | {"load": verb})
-    with served(memory) as port, driven(belt, replace(mapped, port=port)) as (driver, heard):
+    begins_twice = Verb(write=(Write(at="DB2.DBB0", value=1), Write(at="DB2.DBW2:INT", value=1)))
+    unnumbered = settings(belt, sequence=None, verbs={"load": begins_twice})
+    with served(memory) as port, driven(belt, replace(unnumbered, port=port)) as (driver, heard):
         heard.until(is_heard)
         memory.refuses = 2
         with pytest.raises(ConnectionError, match="what was written before may have begun"):
@@ -142,36 +131,6 @@ def test_what_has_no_meaning_or_is_refused_loses_the_link_and_says_why(belt: Dev
         lost = str(heard.until(is_lost).lost)
         assert "the PLC refuses to show DB1 from byte 0 on" in lost
         assert "hardware_fault (return code 0x01); is PUT/GET permitted" in lost
-
-
-def test_nobody_there_and_a_plc_that_comes_back(belt: Device) -> None:
-    memory = Memory()
-    with served(memory) as port:
-        pass
-    with driven(belt, settings(belt, port=port)) as (driver, heard):
-        assert f"127.0.0.1:{port} is not there" in str(heard.until(is_lost).lost)
-        with pytest.raises(NotSent, match="is not connected"):
-            driver.send(load_command(belt))
-        server = S7Server(memory, port=port)
-        server.start()
-        heard.until(is_heard)
-        server.stop()
-        heard.until(is_lost)
-
-
-def test_two_devices_of_one_plc_share_a_connection(belt: Device) -> None:
-    other = replace(belt, name="other")
-    with served(Memory()) as port:
-        at = settings(belt, port=port)
-        with driven(belt, at) as (_, heard), driven(other, at) as (_, more):
-            heard.until(is_heard)
-            more.until(is_heard)
-            one, two = S7(at), S7(at)
-            line = LINES.take(one.address(), one.make_line)
-            assert LINES.take(two.address(), two.make_line) is line
-            LINES.give_back(one.address())
-            LINES.give_back(two.address())
-    assert not [thread for thread in threading.enumerate() if thread.name.startswith("s7 ")]
 
 
 @pytest.fixture
@@ -213,11 +172,9 @@ def test_the_original_snap7_takes_orders_and_keeps_the_neighbours_of_a_bit(
     assert orders[12] == 0b1010_0001, "a bit was written, and not its byte"
 
 
-@pytest.mark.parametrize(
-    ("place", "word"), [("DB1.DBW4000", "address_out_of_range"), ("DB7.DBW0", "no_such_block")]
-)
 def test_the_original_snap7_refuses_what_is_not_there(
-    belt: Device, peer: tuple[int, IO[str], IO[str]], place: str, word: str
+    belt: Device, peer: tuple[int, IO[str], IO[str]]
 ) -> None:
-    with driven(belt, settings(belt, port=peer[0], boot=place)) as (_, heard):
-        assert word in str(heard.until(is_lost).lost)
+    for place, word in (("DB1.DBW4000", "address_out_of_range"), ("DB7.DBW0", "no_such_block")):
+        with driven(belt, settings(belt, port=peer[0], boot=place)) as (_, heard):
+            assert word in str(heard.until(is_lost).lost)

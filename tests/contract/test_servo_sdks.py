@@ -70,16 +70,13 @@ DYNAMIXEL = pytest.mark.parametrize("bench", ["dynamixel"], indirect=True)
 
 
 @FEETECH
-def test_the_client_of_feetech_finds_and_moves_servos(bench: Bench, feetech: Any) -> None:
+def test_the_client_of_feetech_moves_servos_and_hears_their_alarms(bench: Bench, feetech: Any) -> None:
     wait_for(lambda: feetech.ping(1) == (777, OK, OK))
     wait_for(lambda: feetech.ReadPos(1) == (2048, OK, OK))
     wait_for(lambda: feetech.write1ByteTxRx(1, scservo_sdk.SMS_STS_TORQUE_ENABLE, 1) == (OK, OK))
     wait_for(lambda: feetech.WritePosEx(1, 2500, 1500, 50) == (OK, OK))
     wait_for(lambda: feetech.ReadPos(1)[0] == 2500)
 
-
-@FEETECH
-def test_the_client_of_feetech_writes_and_reads_several_at_once(bench: Bench, feetech: Any) -> None:
     for id in (1, 2):
         switch = partial(feetech.write1ByteTxRx, id, scservo_sdk.SMS_STS_TORQUE_ENABLE, 1)
         wait_for(lambda switch=switch: switch() == (OK, OK))
@@ -95,9 +92,6 @@ def test_the_client_of_feetech_writes_and_reads_several_at_once(bench: Bench, fe
 
     wait_for(lambda: places() == [2001, 2002])
 
-
-@FEETECH
-def test_the_client_of_feetech_hears_alarms_and_silence(bench: Bench, feetech: Any) -> None:
     bench.faults.switch("overheating", on=True)
     wait_for(lambda: feetech.ReadPos(3)[2] == 4)
     assert feetech.getRxPacketError(4) == "[ServoStatus] Overheat error!"
@@ -109,7 +103,9 @@ def test_the_client_of_feetech_hears_alarms_and_silence(bench: Bench, feetech: A
 
 
 @DYNAMIXEL
-def test_the_client_of_dynamixel_finds_and_moves_servos(bench: Bench, dynamixel: Callable[..., Any]) -> None:
+def test_the_client_of_dynamixel_moves_servos_and_ends_their_alarms(
+    bench: Bench, dynamixel: Callable[..., Any]
+) -> None:
     wait_for(lambda: dynamixel("ping", 1) == (1200, OK, OK))
     wait_for(lambda: sorted(dynamixel("broadcastPing")[0]) == [1, 2, 3, 4, 5, 6])
     wait_for(lambda: dynamixel("write1ByteTxRx", 1, 64, 1) == (OK, OK))
@@ -117,9 +113,6 @@ def test_the_client_of_dynamixel_finds_and_moves_servos(bench: Bench, dynamixel:
     wait_for(lambda: dynamixel("write4ByteTxRx", 1, 116, 2500) == (OK, OK))
     wait_for(lambda: dynamixel("read4ByteTxRx", 1, 132)[0] == 2500)
 
-
-@DYNAMIXEL
-def test_the_client_of_dynamixel_ends_an_alarm_by_a_boot(bench: Bench, dynamixel: Callable[..., Any]) -> None:
     wait_for(lambda: dynamixel("write1ByteTxRx", 3, 64, 1) == (OK, OK))
     bench.faults.switch("overheating", on=True)
     wait_for(lambda: dynamixel("read1ByteTxRx", 3, 70) == (4, OK, 0x80))  # with the alert bit
@@ -127,9 +120,5 @@ def test_the_client_of_dynamixel_ends_an_alarm_by_a_boot(bench: Bench, dynamixel
     bench.faults.switch("overheating", on=False)
     wait_for(lambda: dynamixel("reboot", 3)[0] == OK)
     wait_for(lambda: dynamixel("read1ByteTxRx", 3, 70) == (0, OK, OK))
-
-
-@DYNAMIXEL
-def test_the_client_of_dynamixel_refuses_a_wrong_crc(bench: Bench, dynamixel: Callable[..., Any]) -> None:
     bench.faults.switch("broken_frames", on=True)
     wait_for(lambda: dynamixel("read4ByteTxRx", 1, 132)[1] == dynamixel_sdk.COMM_RX_CORRUPT)

@@ -25,17 +25,14 @@ def board() -> Iterator[tuple[Faults, httpx.Client]]:
     switchboard.stop()
 
 
-def test_faults_are_listed_and_switched(board: tuple[Faults, httpx.Client]) -> None:
+def test_faults_are_listed_and_switched_and_what_is_not_there_is_told(
+    board: tuple[Faults, httpx.Client],
+) -> None:
     faults, client = board
     assert client.get("/faults").json()["slow"] == {"on": True, "what": "it is slow"}
     assert client.put("/faults/mute").json()["mute"]["on"] is True
     client.delete("/faults/slow")
+    answers = {path: client.put(path) for path in ("/faults/mut", "/mute", "/faults/", "/")}
+    assert {path: answer.status_code for path, answer in answers.items()} == dict.fromkeys(answers, 404)
+    assert all("error" in answer.json() for answer in answers.values())
     assert list(faults) == ["mute"]
-
-
-@pytest.mark.parametrize("path", ["/faults/mut", "/mute", "/faults/", "/"])
-def test_what_is_not_there_is_told(board: tuple[Faults, httpx.Client], path: str) -> None:
-    faults, client = board
-    answer = client.put(path)
-    assert answer.status_code == 404 and "error" in answer.json()
-    assert list(faults) == ["slow"]

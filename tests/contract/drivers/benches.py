@@ -47,3 +47,17 @@ if find_spec("control_msgs"):  # no wheels have it: `make ros-test` builds it, a
 if find_spec("nav2_msgs"):
     BENCHES["navigate_to_pose"] = nav2.BENCH
     BENCHES["follow_waypoints"] = nav2.WAYPOINTS_BENCH
+
+SAME_LINK = frozenset(  # these reach their device by the threads and the library of another one
+    {
+        "dobot",  # of ur
+        "follow_waypoints",
+        "gcode_marlin",
+        "gcode_moonraker",  # of gcode, over a web socket
+        "gripper_command",  # of follow_joint_trajectory
+        "gripper_command_parallel",
+        "navigate_to_pose",  # of follow_joint_trajectory
+        "pylabrobot_side_by_side",
+        "serial_arm",  # of gcode
+    }
+)

@@ -6,6 +6,7 @@ import asyncio
 import json
 import re
 from concurrent.futures import Future
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -113,3 +114,28 @@ def test_what_is_no_argument_of_a_verb_does_not_reach_the_plant(more: object) ->
 
 def test_a_refusal_says_why() -> None:
     assert shown(Plant(refusal=WHY)) == [("jaw: it is stuck", False)]
+
+
+@pytest.mark.parametrize(
+    "event",
+    [
+        [],
+        ["stop"],
+        ["submit", 7],
+        ["submit", {"a": 1}],
+        ["seen", 1e99],
+        ["explode", "sis_a"],
+        ["__class__", "x"],
+        [["stop"], "x"],
+        [None, None, None, None],
+        ["submit", "x" * 10_000],
+        "stop",
+        None,
+    ],
+    ids=lambda event: str(event)[:20],
+)
+def test_events_that_no_button_sends_do_nothing(event: object) -> None:
+    browser, plant = Browser(), Plant()
+    its: Any = Desk(browser, plant, Feed(plant), words("en"))  # type: ignore[arg-type]
+    asyncio.run(its.hear(SimpleNamespace(args=event)))
+    assert (browser.shown, plant.heard) == ([], [])

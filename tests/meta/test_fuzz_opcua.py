@@ -7,11 +7,12 @@ from typing import Any
 
 import pytest
 
+from ..lengths import length
 from ..scripts import load
 
-pytestmark = [pytest.mark.system, pytest.mark.requires("asyncua")]
+pytestmark = pytest.mark.requires("asyncua")
 
-RUNS = 2000
+RUNS = length(500, 2000)
 
 
 @pytest.fixture

@@ -1,0 +1,307 @@
+"""What every store of a plant's memory does alike, here over an SQLite file."""
+
+from __future__ import annotations
+
+import json
+import sqlite3
+from collections.abc import Iterator
+from contextlib import closing, contextmanager
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from arboleda.model.messages import (
+    Course,
+    Fact,
+    Journal,
+    Reason,
+    Remember,
+    TaskAnswer,
+    TaskChanged,
+    TaskState,
+    Verb,
+)
+from arboleda.model.sentence import OWN
+from arboleda.store.oee_rows import OeeQuery
+from arboleda.store.plant_memory import PRUNED
+from arboleda.store.sqlite import Store
+from arboleda.store.task_rows import TaskHistory, TaskQuery, answers_of, course_of
+
+LATCH = Remember(fact=Fact.LATCH, name="ra1", value="on")
+ACT = Journal(
+    verb=Verb.OVERRIDE, scope="mesa", cell=None, sentence=OWN(text="mesa is free: ra1 was carried away")
+)
+
+
+class Site:
+    """A place for the memory of one plant, which can be opened again and again."""
+
+    def __init__(self, path: Path) -> None:
+        self._path = path
+        self._histories: list[TaskHistory] = []
+
+    @contextmanager
+    def memory(self) -> Iterator[Store]:
+        with Store(self._path) as memory:
+            memory.lead(1)
+            yield memory
+
+    def history(self) -> TaskHistory:
+        self._histories.append(TaskHistory(self._path))
+        return self._histories[-1]
+
+    def rows(self, query: str) -> list[tuple]:
+        with closing(sqlite3.connect(self._path)) as db:
+            return db.execute(query).fetchall()
+
+    def close(self) -> None:
+        for each in self._histories:
+            each.close()
+
+
+@pytest.fixture
+def site(tmp_path):
+    made = Site(tmp_path / "plant.sqlite")
+    yield made
+    made.close()
+
+
+@pytest.fixture
+def store(site):
+    with site.memory() as opened:
+        yield opened
+
+
+def queued(id, text="sis_a 0B 1"):
+    return TaskChanged(task=id, text=text, cell=text.split()[0], state=TaskState.QUEUED)
+
+
+def ended(id, state=TaskState.DONE, **why):
+    return replace(queued(id), state=state, **why)
+
+
+def times(site):
+    """The starts of the plant, and when its cells did no work."""
+    runs = site.rows("SELECT since_s, seen_s, ended FROM run ORDER BY number")
+    downs = site.rows("SELECT cell, state, since_s, until_s FROM down ORDER BY number")
+    return runs, downs
+
+
+def test_a_new_memory_is_empty(store):
+    assert [store.facts(fact) for fact in Fact] == [{}] * len(Fact)
+    assert store.entries() == []
+
+
+def test_a_fact_is_kept_replaced_and_forgotten(site):
+    with site.memory() as store:
+        store.keep(Remember(fact=Fact.EFFECTOR, name="ra1", value="switching"))
+        store.keep(Remember(fact=Fact.EFFECTOR, name="ra2", value="off"))
+        store.keep(Remember(fact=Fact.EFFECTOR, name="ra1", value="on"))
+        store.keep(LATCH)
+    with site.memory() as store:
+        assert store.facts(Fact.EFFECTOR) == {"ra1": "on", "ra2": "off"}
+        store.keep(Remember(fact=Fact.EFFECTOR, name="ra1", value=None))
+        store.keep(Remember(fact=Fact.QUARANTINE, name="nowhere", value=None))
+        assert store.facts(Fact.EFFECTOR) == {"ra2": "off"}
+        assert store.facts(Fact.LATCH) == {"ra1": "on"}
+
+
+def test_the_journal_is_read_newest_first(site):
+    with site.memory() as store:
+        stopped = Journal(verb=Verb.STOP, scope="ra1", cell="sis_a", sentence=OWN(text="ra1 stopped"))
+        store.journal(stopped, 1000.25)
+        store.journal(ACT, 999.5)
+    with site.memory() as store:
+        newest, oldest = store.entries()
+        assert (newest.id, newest.unix_s, newest.verb) == (2, 999.5, Verb.OVERRIDE)
+        assert (newest.scope, newest.cell, newest.sentence) == (ACT.scope, None, str(ACT.sentence))
+        assert (oldest.scope, oldest.cell) == ("ra1", "sis_a")
+        assert (oldest.id, oldest.unix_s, oldest.verb) == (1, 1000.25, "stop")
+        assert store.entries(limit=1) == [newest]
+
+
+def test_who_asked_first_and_how_often_a_task_was_tried_are_kept(site):
+    with site.memory() as store:
+        store.task(queued("a"), "storage", 5.0, "page")
+        store.task(queued("a"), "storage", 6.0, "http")  # whoever asks again asks for the same task
+        store.task(queued("b"), "storage", 7.0, "ros2")
+        for _ in range(2):  # as it is told anew to whoever asks
+            store.task(ended("a", TaskState.RUNNING), "storage", 8.0)
+        store.attempted("a", 3)
+        store.task(ended("a"), "storage", 9.0)
+    with site.memory() as store:
+        kept = {row.id: (row.asked_by, row.attempts) for row in store.tasks(TaskQuery())}
+    assert kept == {"a": ("page", 3), "b": ("ros2", 0)}
+
+
+def test_what_was_answered_is_kept_with_the_end_of_a_task(site):
+    heard = [
+        TaskAnswer(by="ana", asked="¿Lleno?", answer="yes"),
+        TaskAnswer(by="eye", asked="look", answer=2.5),
+    ]
+    with site.memory() as store:
+        for id, answers in (("a", heard), ("b", ())):
+            store.task(queued(id), "storage", 5.0)
+            store.task(ended(id), "storage", 9.0, answers=answers)
+    with site.memory() as store:
+        kept = {row.id: answers_of(row) for row in store.tasks(TaskQuery())}
+    assert kept == {"a": tuple(heard), "b": ()}
+
+
+def test_how_a_task_went_is_kept_with_its_end(site):
+    course = Course(seconds=31.507, begun={"drive path 0B #1": 0.2, "move to “home” #2": 28.0})
+    with site.memory() as store:
+        for id, how in (("a", course), ("b", None)):
+            store.task(queued(id), "storage", 5.0)
+            store.task(replace(ended(id), course=how), "storage", 9.0)
+    with site.memory() as store:
+        assert {row.id: course_of(row) for row in store.tasks(TaskQuery())} == {"a": course, "b": None}
+
+
+def test_old_times_of_cells_are_forgotten_at_a_start(site):
+    with site.memory() as store:
+        store.began(10.0, 0.0)
+        store.stands("sis_a", "held", 20.0)
+        store.stands("sis_a", None, 30.0)
+        store.note_run(70.0, ended=True)
+        store.began(500.0, 40.0)
+        assert times(site) == ([(10.0, 70.0, 1), (500.0, 500.0, 0)], [])
+        store.began(600.0, 80.0)
+    assert times(site)[0] == [(500.0, 500.0, 0), (600.0, 600.0, 0)]
+
+
+def test_what_stood_when_the_plant_was_killed_stood_until_it_was_seen_last(site):
+    with site.memory() as store:
+        store.began(10.0, 0.0)
+        store.stands("sis_a", "held", 20.0)
+        store.stands("sis_b", "held", 75.0)
+        store.note_run(70.0)
+        store.began(500.0, 0.0)
+        store.stands("sis_a", "held", 501.0)
+        store.stands("sis_a", "aborted", 502.0)
+        store.stands("sis_a", None, 503.0)
+        store.note_run(560.0, ended=True)
+    assert times(site) == (
+        [(10.0, 70.0, 0), (500.0, 560.0, 1)],
+        [
+            ("sis_a", "held", 20.0, 70.0),
+            ("sis_b", "held", 75.0, 75.0),
+            ("sis_a", "held", 501.0, 502.0),
+            ("sis_a", "aborted", 502.0, 503.0),
+        ],
+    )
+
+
+def test_a_task_is_kept_from_its_acceptance_to_its_end(site):
+    with site.memory() as store:
+        store.task(queued("a"), "storage", 1.0)
+        store.task(ended("a", TaskState.RUNNING), "storage", 2.0)
+    with site.memory() as store:
+        (row,) = store.tasks(TaskQuery())
+        assert (row.id, row.text, row.cell, row.recipe) == ("a", "sis_a 0B 1", "sis_a", "storage")
+        assert (row.state, row.accepted_s, row.started_s, row.ended_s) == ("running", 1.0, 2.0, None)
+        store.task(ended("a", TaskState.FAILED, reason=Reason.DEADLINE, sentence=OWN(text="late")), "", 3.0)
+    with site.memory() as store:
+        (row,) = store.tasks(TaskQuery())
+        assert (row.state, row.reason, row.sentence, row.ended_s) == ("failed", "deadline", "late", 3.0)
+        assert json.loads(row.said) == OWN(text="late").data()
+
+
+def test_a_task_that_is_asked_for_again_stays_as_it_is(store):
+    for change, at in [(queued("a"), 1.0), (ended("a", TaskState.RUNNING), 2.0), (ended("a"), 3.0)]:
+        store.task(change, "storage", at)
+    (kept,) = store.tasks(TaskQuery())
+    for change in (queued("a"), ended("a", TaskState.RUNNING), ended("a", TaskState.FAILED)):
+        store.task(change, "storage", 9.0)
+    assert store.tasks(TaskQuery()) == [kept]
+
+
+def test_a_task_that_was_refused_is_not_kept(store):
+    store.task(ended("", TaskState.REFUSED), "", 1.0)
+    assert store.tasks(TaskQuery()) == []
+
+
+@pytest.mark.parametrize(
+    ("query", "ids"),
+    [
+        (TaskQuery(), ["d", "c", "b", "a"]),
+        (TaskQuery(limit=2), ["d", "c"]),
+        (TaskQuery(limit=2, before=3), ["b", "a"]),
+        (TaskQuery(cell="sis_b"), ["c"]),
+        (TaskQuery(state="done"), ["a"]),
+        (TaskQuery(recipe="palletizing"), ["d"]),
+        (TaskQuery(is_open=True), ["d", "c", "b"]),
+        (TaskQuery(is_open=False), ["a"]),
+        (TaskQuery(words="0b 2"), ["b"]),
+        (TaskQuery(words="0_ 2"), []),
+        (TaskQuery(words="%"), []),
+        (TaskQuery(words="is_a"), ["d", "b", "a"]),
+        (TaskQuery(id="c"), ["c"]),
+        (TaskQuery(since_s=2.0, until_s=4.0), ["c", "b"]),
+        (TaskQuery(cell="sis_b", state="done"), []),
+    ],
+)
+def test_tasks_are_found_by_what_is_asked_for(site, query, ids):
+    with site.memory() as store:
+        texts = {"a": "sis_a 0B 1", "b": "sis_a 0B 2", "c": "sis_b 0B 1", "d": "sis_a palletizing"}
+        for at, (id, text) in enumerate(texts.items(), start=1):
+            store.task(queued(id, text), "palletizing" if "pall" in text else "storage", float(at))
+        store.task(ended("a"), "storage", 9.0)
+        assert [row.id for row in store.tasks(query)] == ids
+        assert [row.id for row in site.history().select(query)] == ids
+
+
+def test_ended_tasks_are_forgotten_from_the_oldest_on_and_open_ones_never(store):
+    for number in range(PRUNED + 5):
+        store.task(queued(f"n{number}"), "storage", 1.0)
+        store.task(ended(f"n{number}"), "storage", 2.0 + number)
+    store.task(queued("open"), "storage", 1.0)
+    store.forget_tasks(1000.0)
+    assert [row.id for row in store.tasks(TaskQuery())] == [
+        "open",
+        *(f"n{PRUNED + n}" for n in (4, 3, 2, 1, 0)),
+    ]
+    store.forget_tasks(2.0 + PRUNED + 2)
+    assert len(store.tasks(TaskQuery(is_open=False))) == 3
+
+
+def test_the_history_of_a_plant_that_kept_nothing_is_empty(site):
+    assert site.history().select(TaskQuery()) == []
+
+
+def test_the_history_is_read_while_the_plant_writes(site):
+    history = site.history()
+    with site.memory() as store:
+        for id in ("a", "b"):
+            store.task(queued(id), "storage", 1.0)
+            assert history.select(TaskQuery())[0].id == id
+    history.close()
+
+
+def test_of_facts_that_are_kept_together_the_last_word_on_each_counts(store):
+    other = Remember(fact=Fact.LATCH, name="ra2", value="on")
+    store.keep(LATCH, other)
+    store.keep(replace(LATCH, value="off"), replace(other, value=None), replace(LATCH, value="cleared"))
+    assert store.facts(Fact.LATCH) == {"ra1": "cleared"}
+
+
+def test_a_text_may_have_any_character(store):
+    odd = "ñ 'x' \"y\" % ? %s {} \\ \n 日本"
+    store.keep(Remember(fact=Fact.STEP, name=odd, value=odd))
+    store.task(queued("a"), odd, 1.0)
+    assert store.facts(Fact.STEP) == {odd: odd}
+    assert [row.recipe for row in store.tasks(TaskQuery(recipe=odd))] == [odd]
+
+
+def test_figures_are_made_of_what_was_kept(site):
+    with site.memory() as store:
+        store.began(900.0, 0.0)
+        store.task(queued("a"), "storage", 910.0)
+        store.task(ended("a", TaskState.RUNNING), "storage", 920.0)
+        store.task(ended("a"), "storage", 930.0)
+        store.stands("sis_a", "held", 940.0)
+        store.stands("sis_a", None, 950.0)
+        store.note_run(1000.0, ended=True)
+        (figures,) = site.history().oee(OeeQuery(since_s=900.0, until_s=1000.0))
+    assert (figures.cell, figures.done, figures.failed) == ("sis_a", 1, 0)
