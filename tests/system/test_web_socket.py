@@ -10,6 +10,7 @@ from collections.abc import Iterator
 import pytest
 from websockets.sync.server import ServerConnection, serve
 
+from arboleda.adapters import stream
 from arboleda.adapters.web_socket import WebSocketStream
 from arboleda.virtual.web_socket_line import WebSocketLine
 
@@ -33,6 +34,12 @@ class Echo:
         return data
 
 
+@pytest.fixture(autouse=True)
+def patient(monkeypatch: pytest.MonkeyPatch) -> None:
+    """An end that answers late on a busy machine is waited for."""
+    monkeypatch.setattr(stream, "CONNECT_S", PATIENCE_S)
+
+
 @pytest.fixture
 def line() -> Iterator[WebSocketLine]:
     line = WebSocketLine(Echo())
@@ -45,11 +52,11 @@ def connected(port: int) -> WebSocketStream:
     return WebSocketStream(HOST, port, "/websocket", {})
 
 
-def heard(stream: WebSocketStream, size: int) -> bytes:
+def heard(there: WebSocketStream, size: int) -> bytes:
     """What came, without empty lines, once there are so many bytes."""
     data, end = b"", time.monotonic() + PATIENCE_S
     while len(data) < size and time.monotonic() < end:
-        got = stream.read()
+        got = there.read()
         assert got
         data += got.lstrip(b"\n")
     return data
@@ -90,12 +97,12 @@ def test_a_message_in_parts_is_one_line_a_ping_is_none_and_a_server_that_is_no_w
         thread = threading.Thread(target=server.serve_forever)
         thread.start()
         port = server.socket.getsockname()[1]
-        stream = WebSocketStream(HOST, port, "/websocket", {"X-Api-Key": "k"})
-        assert heard(stream, 19) == b"one line  still\nend\n"
+        there = WebSocketStream(HOST, port, "/websocket", {"X-Api-Key": "k"})
+        assert heard(there, 19) == b"one line  still\nend\n"
         assert keys == ["k"]
-        while stream.read():
+        while there.read():
             pass
-        stream.close()
+        there.close()
         server.shutdown()
         thread.join()
 
